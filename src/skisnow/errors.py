@@ -1,0 +1,50 @@
+"""What can go wrong, told so that the reader knows what to do.
+
+One base class, one subclass for each kind of trouble. Each message names where the trouble is, what is allowed and what
+to do about it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+class SkisnowError(Exception):
+    """Base of every error that skisnow raises on purpose."""
+
+
+class ParameterError(SkisnowError, ValueError):
+    """An argument is outside what the called function can work with."""
+
+
+class FieldDataError(SkisnowError):
+    """A campaign cannot be used as it is.
+
+    Parameters
+    ----------
+    problems
+        Every problem found, errors and others, each printable as one sentence.
+    """
+
+    def __init__(self, problems: Sequence[object]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(str(problem) for problem in self.problems))
+
+
+class FitError(SkisnowError):
+    """A fit has no answer: too few data, or data that do not determine it."""
+
+
+class StoreError(SkisnowError):
+    """The store of campaigns cannot do what was asked; nothing in it was changed."""
+
+
+class OutputError(SkisnowError):
+    """A file could not be written; nothing half-written was left behind."""
+
+
+class RangeWarning(UserWarning):
+    """A relation is used outside the range in which it was measured; the value is computed all the same."""

@@ -1,0 +1,1 @@
+"""From field records to snow parameters with uncertainty."""

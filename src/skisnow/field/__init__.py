@@ -1,0 +1,1 @@
+"""Field campaigns: records, files, screening, store, reference campaign."""

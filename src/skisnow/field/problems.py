@@ -1,0 +1,53 @@
+"""A problem found in a campaign: where, what, what is allowed, what to do."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Literal, TypeAlias
+
+Severity: TypeAlias = Literal["error", "warning", "mark"]
+
+ERROR_CODES = (
+    "missing_column",
+    "not_a_number",
+    "out_of_range",
+    "unknown_tool",
+    "unknown_plate",
+    "mixed_experiment",
+    "empty_file",
+    "unreadable_file",
+    "bad_toml",
+    "correction_mismatch",
+)
+WARNING_CODES = ("angles_look_like_radians", "angle_above_60", "unknown_column", "encoding", "separator")
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One problem. ``row`` is the line of the file (header: 1); what does not apply is None."""
+
+    severity: Severity
+    code: str
+    file: str
+    row: int | None
+    column: str | None
+    experiment: str | None
+    value: str | None
+    allowed: str
+    action: str
+
+    def __str__(self) -> str:
+        """Say it in one line."""
+        place = self.file
+        if self.row is not None:
+            place += f", row {self.row}"
+        if self.column is not None:
+            place += f", column {self.column}"
+        if self.experiment is not None:
+            place += f" (experiment {self.experiment})"
+        found = "" if self.value is None else f" found {self.value!r};"
+        return f"{self.severity} {self.code}: {place}:{found} allowed: {self.allowed}. {self.action}"
+
+    def as_dict(self) -> dict[str, str | int | None]:
+        """Give the problem as the object of ``skisnow check --json``."""
+        return asdict(self)

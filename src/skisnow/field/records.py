@@ -1,0 +1,241 @@
+"""What a field campaign consists of, in SI, by columns.
+
+Columns and not objects, because a campaign may hold a million readings. A single experiment is looked at through
+``PenetrationTests.series(i)``.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Mapping, Sequence
+    from pathlib import Path
+
+    from ..geometry import Tool
+    from .problems import Problem
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+Key = TypeVar("Key", bound="Hashable")
+
+
+@dataclass(frozen=True, slots=True)
+class PenetrationSeries:
+    """One penetration experiment: a tool at one edge angle under rising loads.
+
+    Attributes
+    ----------
+    experiment, site, tool
+        Names as written in the file.
+    edge_angle
+        ϑ in rad.
+    load, penetration_depth
+        F in N and e in m, one per load step in the order of loading.
+    """
+
+    experiment: str
+    site: str
+    tool: str
+    edge_angle: float
+    load: FloatArray
+    penetration_depth: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class PenetrationTests:
+    """All m penetration experiments of a campaign, n readings in the order of the file.
+
+    Attributes
+    ----------
+    experiment, site, tool, spot
+        Names, one per experiment; an absent spot is ``""``.
+    edge_angle
+        ϑ in rad, one per experiment.
+    snow_density, drop_cone_depth
+        The experiment's own density ρ (kg/m³) and drop-cone depth H_p (m); NaN where its rows give none. The mean where
+        its rows give several.
+    cancelled
+        Why the experiment was cancelled, ``""`` where it was not.
+    first
+        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i.
+    load, penetration_depth
+        F in N and e in m, one per reading.
+    row
+        Line of the file of each reading; the header is line 1.
+    further
+        Every further column of the file as text, one cell per reading: kept, not interpreted.
+    """
+
+    experiment: tuple[str, ...]
+    site: tuple[str, ...]
+    tool: tuple[str, ...]
+    spot: tuple[str, ...]
+    edge_angle: FloatArray
+    snow_density: FloatArray
+    drop_cone_depth: FloatArray
+    cancelled: tuple[str, ...]
+    first: IntArray
+    load: FloatArray
+    penetration_depth: FloatArray
+    row: IntArray
+    further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        """Count the experiments."""
+        return len(self.experiment)
+
+    @property
+    def series_of_reading(self) -> IntArray:
+        """Index of the experiment that each reading belongs to."""
+        return np.repeat(np.arange(len(self), dtype=np.int64), np.diff(self.first))
+
+    def series(self, index: int) -> PenetrationSeries:
+        """Look at one experiment by its index."""
+        part = slice(int(self.first[index]), int(self.first[index + 1]))
+        return PenetrationSeries(
+            experiment=self.experiment[index],
+            site=self.site[index],
+            tool=self.tool[index],
+            edge_angle=float(self.edge_angle[index]),
+            load=self.load[part],
+            penetration_depth=self.penetration_depth[part],
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ShearTests:
+    """All shear experiments of a campaign, one row each.
+
+    Attributes
+    ----------
+    experiment, site, plate, spot, cancelled, further
+        As in `PenetrationTests`.
+    edge_angle, penetration_depth, lever_arm, moment
+        ϑ (rad), e (m), r (m), M (N m).
+    snow_density, drop_cone_depth
+        The experiment's own ρ (kg/m³) and H_p (m), NaN where absent.
+    row
+        Line of the file.
+    """
+
+    experiment: tuple[str, ...]
+    site: tuple[str, ...]
+    plate: tuple[str, ...]
+    spot: tuple[str, ...]
+    edge_angle: FloatArray
+    penetration_depth: FloatArray
+    lever_arm: FloatArray
+    moment: FloatArray
+    snow_density: FloatArray
+    drop_cone_depth: FloatArray
+    cancelled: tuple[str, ...]
+    row: IntArray
+    further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        """Count the experiments."""
+        return len(self.experiment)
+
+
+@dataclass(frozen=True, slots=True)
+class DensitySamples:
+    """Samples of a density cutter: ρ in kg/m³. ``further`` as in `PenetrationTests`."""
+
+    sample: tuple[str, ...]
+    site: tuple[str, ...]
+    snow_density: FloatArray
+    cancelled: tuple[str, ...]
+    row: IntArray
+    further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def site_means(self) -> dict[str, float]:
+        """Mean density of each site's samples that were not cancelled (kg/m³)."""
+        return _means(self.site, self.snow_density, self.cancelled)
+
+
+@dataclass(frozen=True, slots=True)
+class DropConeTests:
+    """Repeats of a drop-cone test: depth H_p in m, larger is *softer*. A test is the mean of its repeats."""
+
+    test: tuple[str, ...]
+    site: tuple[str, ...]
+    repeat: tuple[str, ...]
+    drop_cone_depth: FloatArray
+    cancelled: tuple[str, ...]
+    row: IntArray
+    further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def site_means(self) -> dict[str, float]:
+        """Mean over each site's tests of the mean over the test's repeats (m); a cancelled test takes no part."""
+        tests = list(zip(self.site, self.test, strict=True))
+        gone = {test for test, why in zip(tests, self.cancelled, strict=True) if why}
+        cancelled = tuple("cancelled" if test in gone else "" for test in tests)
+        means = _means(tests, self.drop_cone_depth, cancelled)
+        return _means([site for site, _ in means], np.array(list(means.values())), ("",) * len(means))
+
+
+def _means(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) -> dict[Key, float]:
+    collected: dict[Key, list[float]] = {}
+    for key, value, why in zip(keys, values.tolist(), cancelled, strict=True):
+        if not why:
+            collected.setdefault(key, []).append(value)
+    return {key: math.fsum(found) / len(found) for key, found in collected.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Campaign:
+    """A checked campaign, corrections applied.
+
+    Attributes
+    ----------
+    name, place, observers
+        From campaign.toml; the name falls back to the folder's.
+    folder
+        Where it was read from.
+    gauge_resolution
+        Step of the depth gauge (m), or None where the campaign does not say.
+    load_uncertainty, moment_uncertainty, lever_arm_uncertainty
+        Standard uncertainties (N, N m, m); None where left out, which counts as 0.
+    load_steps
+        The campaign's own discs (N), for entry; may be empty.
+    tools, plates
+        Tools by name; plate lengths L (m) by name.
+    excluding
+        Codes of the marks that keep an experiment out of the estimates.
+    penetration, shear, density, drop_cone
+        The tables; None where the campaign has no such file.
+    problems
+        Warnings of reading the files (errors would have refused the campaign).
+    file_hashes
+        SHA-256 of each file that was read, by name.
+    """
+
+    name: str
+    place: str
+    observers: tuple[str, ...]
+    folder: Path
+    gauge_resolution: float | None
+    load_uncertainty: float | None
+    moment_uncertainty: float | None
+    lever_arm_uncertainty: float | None
+    load_steps: tuple[float, ...]
+    tools: Mapping[str, Tool]
+    plates: Mapping[str, float]
+    excluding: frozenset[str]
+    penetration: PenetrationTests | None
+    shear: ShearTests | None
+    density: DensitySamples | None
+    drop_cone: DropConeTests | None
+    problems: tuple[Problem, ...]
+    file_hashes: Mapping[str, str]
+
+    @property
+    def depth_uncertainty(self) -> float | None:
+        """Standard uncertainty of one depth reading from the gauge's step: step/√12 (m)."""
+        return None if self.gauge_resolution is None else self.gauge_resolution / 12.0**0.5

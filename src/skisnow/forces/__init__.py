@@ -1,0 +1,1 @@
+"""Force laws of snow on a tool or ski, one per file."""

@@ -1,0 +1,1 @@
+"""Snow properties, published relations and values."""
