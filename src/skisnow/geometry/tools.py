@@ -200,8 +200,9 @@ class LyingCylinder(Tool):
         _require_positive(self, radius=self.radius, width=self.width)
 
     def _half_chord(self, e: FloatArray) -> FloatArray:
-        chord: FloatArray = np.sqrt(np.maximum(e * (2.0 * self.radius - e), 0.0))
-        return np.where(e < self.radius, chord, self.radius)
+        chord = np.sqrt(np.maximum(e * (2.0 * self.radius - e), 0.0))
+        half: FloatArray = np.where(e < self.radius, chord, self.radius)
+        return half
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
         """See `Tool.contact_area`."""
