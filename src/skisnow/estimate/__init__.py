@@ -1,1 +1,7 @@
 """From field records to snow parameters with uncertainty."""
+
+from .analysis import Analysis, analyse
+from .results import results_dict
+from .screening import marks_of
+
+__all__ = ["Analysis", "analyse", "marks_of", "results_dict"]

@@ -25,7 +25,8 @@ GeometryForm: TypeAlias = Literal["extended", "paper"]
 class Tool(abc.ABC):
     """A rigid body pressed into snow along the snow normal.
 
-    A new shape is a new frozen dataclass below with these four methods, and one entry in ``SHAPES``.
+    A new shape is a new frozen dataclass below with these five methods, and one entry in the reader of
+    campaign files.
     """
 
     @abc.abstractmethod
@@ -39,6 +40,10 @@ class Tool(abc.ABC):
     @abc.abstractmethod
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """Growth of the contact area with depth, dA/de (m), as the error propagation needs it."""
+
+    @abc.abstractmethod
+    def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
+        """Penetration depth e (m) at which the volume V (m³, ≥ 0) is displaced: the inverse of `displaced_volume`."""
 
     @abc.abstractmethod
     def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
@@ -103,6 +108,15 @@ class SkiPiece(Tool):
         wedge = e < self.width * np.sin(angle)
         return np.where(wedge, self.length / np.tan(np.where(wedge, angle, 1.0)), 0.0)
 
+    def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
+        """See `Tool.depth_at_volume`."""
+        V, angle = np.broadcast_arrays(np.asarray(displaced_volume, float), np.asarray(edge_angle, float))
+        rim = self.width * np.sin(angle)
+        base = self.length * self.width * np.cos(angle)
+        wedge = base * rim / 2.0 > V
+        plain: FloatArray = np.sqrt(2.0 * np.tan(np.where(wedge, angle, 1.0)) * V / self.length)
+        return np.where(wedge, plain, V / base + rim / 2.0)
+
     def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.greatest_depth`: the width, beyond which snow closes over any real piece of ski."""
         return np.full(np.shape(edge_angle), self.width)
@@ -141,6 +155,14 @@ class PlainWedge(Tool):
         edged = angle > 0
         return np.where(edged, self.length / np.tan(np.where(edged, angle, 1.0)), 0.0)
 
+    def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
+        """See `Tool.depth_at_volume`."""
+        V, angle = np.broadcast_arrays(np.asarray(displaced_volume, float), np.asarray(edge_angle, float))
+        edged = angle > 0
+        plain = np.sqrt(2.0 * np.tan(np.where(edged, angle, 1.0)) * V / self.length)
+        flat: FloatArray = V / (self.length * self.width)
+        return np.where(edged, plain, flat)
+
     def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.greatest_depth`: W sin ϑ edged, where the base goes under; the width when flat."""
         angle = np.asarray(edge_angle, float)
@@ -175,6 +197,10 @@ class Disc(Tool):
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
         """See `Tool.area_growth`."""
         return np.zeros(np.shape(penetration_depth))
+
+    def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
+        """See `Tool.depth_at_volume`."""
+        return np.asarray(displaced_volume, float) / self._face
 
     def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.greatest_depth`: the diameter."""
@@ -214,8 +240,10 @@ class LyingCylinder(Tool):
         R = self.radius
         inside = np.minimum(e, R)
         # 2 arcsin √(e/2R) = arccos((R - e)/R), without its loss of digits at small e
-        section = R**2 * 2.0 * np.arcsin(np.sqrt(inside / (2.0 * R))) - (R - inside) * self._half_chord(inside)
-        return self.width * (section + 2.0 * R * (e - inside))
+        sector: FloatArray = R**2 * 2.0 * np.arcsin(np.sqrt(inside / (2.0 * R)))
+        section = sector - (R - inside) * self._half_chord(inside)
+        volume: FloatArray = self.width * (section + 2.0 * R * (e - inside))
+        return volume
 
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
         """See `Tool.area_growth`: infinite at e = 0, where the contact is a line."""
@@ -223,6 +251,22 @@ class LyingCylinder(Tool):
         with np.errstate(divide="ignore", invalid="ignore"):
             growth = 2.0 * self.width * (self.radius - e) / self._half_chord(e)
         return np.where(e < self.radius, growth, 0.0)
+
+    def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
+        """See `Tool.depth_at_volume`: by Newton's method from above, where the convex V makes it converge."""
+        V = np.asarray(displaced_volume, float)
+        R = self.radius
+        buried = R + (V / self.width - np.pi * R**2 / 2.0) / (2.0 * R)
+        # V ≥ w (4/3) √R e^1.5 bounds the depth of a shallow contact from above
+        e = np.where(buried >= R, buried, np.minimum((0.75 * V / (self.width * np.sqrt(R))) ** (2.0 / 3.0), R))
+        for _ in range(60):
+            area = self.contact_area(e, edge_angle)
+            excess = self.displaced_volume(e, edge_angle) - V
+            step = np.divide(excess, area, out=np.zeros_like(e), where=area > 0)
+            e = e - step
+            if np.all(np.abs(step) <= 1e-15 * R):
+                break
+        return e
 
     def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.greatest_depth`: the radius."""

@@ -1,0 +1,49 @@
+"""The command line: thin. No formula, no default of the science and no unit factor lives here."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from ..errors import FieldDataError, SkisnowError
+from . import analyse, check, reference, store
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Put the commands together; nothing heavy is imported before a command runs."""
+    from importlib.metadata import version
+
+    parser = argparse.ArgumentParser(
+        prog="skisnow", description="From field tests of a ski slope to snow parameters, figures and a report."
+    )
+    parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for command in (check, analyse, store, reference):
+        command.add_parser(commands)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns 0 when it did its work, 1 where the data or the machine refused, 2 for wrong words."""
+    options = build_parser().parse_args(arguments)
+    try:
+        status: int = options.run(options)
+    except FieldDataError as error:
+        for problem in error.problems:
+            print(problem, file=sys.stderr)
+        print("Nothing was written: mend the errors above first.", file=sys.stderr)
+        return 1
+    except SkisnowError as error:
+        print(f"skisnow: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("skisnow: interrupted; nothing half-written was left behind.", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        sys.stderr.close()
+        return 1
+    return status

@@ -1,0 +1,54 @@
+"""``skisnow analyse``: a campaign to snow parameters and, with ``--out``, to a report."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser("analyse", help="estimate snow hardness and failure shear stress of a campaign")
+    parser.add_argument("campaign", type=Path, help="folder of the campaign")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write results.json, report, figures and tables here")
+    parser.add_argument(
+        "--geometry",
+        choices=("extended", "paper"),
+        default="extended",
+        help="the ski piece with its continuation below the rim of its base, or the paper's plain wedge",
+    )
+    parser.add_argument("--json", action="store_true", help="print results.json instead of the summary")
+    parser.add_argument("--seed", type=int, help="seed of the bootstrap")
+    parser.add_argument("--resamples", type=int, metavar="N", help="bootstrap resamples of whole experiments")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Analyse, write what was asked for, print the summary."""
+    from ..estimate import analyse, results_dict
+    from ..estimate.results import results_json
+    from .progress import Progress
+
+    chosen: dict[str, Any] = {}
+    if options.seed is not None:
+        chosen["seed"] = options.seed
+    if options.resamples is not None:
+        chosen["n_resamples"] = options.resamples
+    with Progress() as progress:
+        analysis = analyse(options.campaign, geometry=options.geometry, progress=progress, **chosen)
+        results = results_dict(analysis)
+        if options.out is not None:
+            from ..report import write_report
+
+            write_report(analysis.campaign, results, options.out, progress=progress)
+    if options.json:
+        print(results_json(results))
+        return 0
+    from ..report.summary import summary
+
+    print(summary(results))
+    if options.out is not None:
+        print(f"Report: {options.out / 'report.html'}", file=sys.stderr)
+    return 0

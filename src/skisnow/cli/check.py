@@ -1,0 +1,51 @@
+"""``skisnow check``: every problem of a campaign, with file, row, column, value and what to do."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..field import Problem
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser("check", help="list every problem of a campaign")
+    parser.add_argument("campaign", type=Path, help="folder of the campaign")
+    parser.add_argument("--json", action="store_true", help="print the problems as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the problems; 1 if any is an error."""
+    problems = _problems(options.campaign)
+    errors, warnings, marks = (_count(problems, severity) for severity in ("error", "warning", "mark"))
+    if options.json:
+        entries = [problem.as_dict() for problem in problems]
+        print(json.dumps({"errors": errors, "warnings": warnings, "problems": entries}, ensure_ascii=False))
+    else:
+        for problem in problems:
+            print(problem)
+        print(f"{errors} errors, {warnings} warnings, {marks} marks")
+    return 1 if errors else 0
+
+
+def _problems(folder: Path) -> list[Problem]:
+    from ..errors import FieldDataError
+    from ..estimate import marks_of
+    from ..field import Problem, read_campaign
+    from .progress import Progress
+
+    with Progress() as progress:
+        try:
+            campaign = read_campaign(folder, progress=progress)
+        except FieldDataError as error:
+            return [problem for problem in error.problems if isinstance(problem, Problem)]
+        return [*campaign.problems, *marks_of(campaign)]
+
+
+def _count(problems: list[Problem], severity: str) -> int:
+    return sum(problem.severity == severity for problem in problems)

@@ -1,0 +1,237 @@
+"""The whole estimation of a campaign: records in, snow parameters with uncertainty out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..field import read_campaign
+from ..field.records import Campaign
+from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
+from .errors_in_depth import fit_models_with_depth_errors, pooled_scatter
+from .hardness import DEFINITIONS, Hardness, ReadingUncertainty, hardness
+from .model_choice import NestedRows, bootstrap_intervals, test_nested_rows
+from .models import Model, ModelFit, fit_models, select_model
+from .observations import (
+    DENSITY_KEY,
+    HARDNESS_KEY,
+    STRESS_KEY,
+    Observations,
+    penetration_observations,
+    shear_observations,
+    spot_observations,
+)
+from .readings import Readings, readings_of
+from .regressions import Regression, Source, regressions
+from .screening import Screened, screened_penetration, screened_shear
+from .seating import Seating, seating
+from .shear_stress import ShearStress, shear_stress
+from .sites import SiteComparison, compare_sites
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..geometry import GeometryForm
+
+FloatArray = npt.NDArray[np.float64]
+
+DEFAULT_RESAMPLES: Final = 2000
+"""Bootstrap resamples; the ends of a 95 % interval then move by a few percent of its width between seeds."""
+DEFAULT_SEED: Final = 1
+
+
+@dataclass(frozen=True)
+class ModelTable:
+    """The nine fitted rows with bootstrap intervals of a0, a1, b0, b1 by model ((4, 2) each)."""
+
+    fits: tuple[ModelFit, ...]
+    intervals: dict[Model, FloatArray]
+
+
+@dataclass(frozen=True)
+class PenetrationAnalysis:
+    """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
+
+    ``hardness`` holds each definition by its symbol. ``table``, ``errors_in_depth`` and ``selected`` are None where no
+    experiment is used.
+    """
+
+    screened: Screened
+    readings: Readings
+    hardness: dict[str, Hardness]
+    seating: Seating
+    table: ModelTable | None
+    nested: tuple[NestedRows, ...]
+    selected: ModelFit | None
+    errors_in_depth: ModelTable | None
+
+
+@dataclass(frozen=True)
+class ShearAnalysis:
+    """All that the shear experiments say, over all experiments."""
+
+    screened: Screened
+    stress: ShearStress
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """A campaign analysed. `skisnow.estimate.results_dict` gives it as the contents of results.json."""
+
+    campaign: Campaign
+    geometry: GeometryForm
+    seed: int
+    n_resamples: int
+    penetration: PenetrationAnalysis | None
+    shear: ShearAnalysis | None
+    regressions: tuple[Regression, ...]
+    site_comparisons: tuple[SiteComparison, ...]
+    comparisons: tuple[Comparison, ...]
+    own_hardness: OwnValue
+    own_stress: OwnValue
+
+
+def analyse(
+    campaign: Campaign | str | Path,
+    *,
+    geometry: GeometryForm = "extended",
+    seed: int = DEFAULT_SEED,
+    n_resamples: int = DEFAULT_RESAMPLES,
+    progress: Callable[[str], None] | None = None,
+) -> Analysis:
+    """Estimate H_V, S_f, the model table, regressions and comparisons of a campaign.
+
+    Parameters
+    ----------
+    campaign
+        A campaign, or the folder that holds one.
+    geometry
+        ``extended``: the ski piece with its trapezoid continuation; ``paper``: the plain wedge of Eqn 2.
+    seed
+        Seed of the bootstrap; the same seed gives the same numbers bit for bit on one machine.
+    n_resamples
+        Bootstrap resamples of whole experiments.
+    progress
+        Called with a line of text now and then.
+
+    Raises
+    ------
+    FieldDataError
+        The folder holds errors; the message lists every one.
+    """
+    read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
+    return _analysis(read, geometry, seed, n_resamples, progress)
+
+
+def _analysis(
+    campaign: Campaign,
+    geometry: GeometryForm,
+    seed: int,
+    n_resamples: int,
+    progress: Callable[[str], None] | None,
+) -> Analysis:
+    rng = np.random.default_rng(seed)
+    penetration = _penetration(campaign, geometry, rng, n_resamples, progress)
+    shear = _shear(campaign)
+    observations = _observations(campaign, penetration, shear)
+    own_hardness = own_mean(*observations["penetration"].known(HARDNESS_KEY), geometric=True)
+    own_stress = own_mean(*observations["shear"].known(STRESS_KEY), geometric=False)
+    return Analysis(
+        campaign=campaign,
+        geometry=geometry,
+        seed=seed,
+        n_resamples=n_resamples,
+        penetration=penetration,
+        shear=shear,
+        regressions=regressions(observations),
+        site_comparisons=(
+            *compare_sites("H_V", *observations["penetration"].known(HARDNESS_KEY)),
+            *compare_sites("S_f", *observations["shear"].known(STRESS_KEY)),
+        ),
+        comparisons=compare_with_published(
+            own_hardness,
+            own_stress,
+            _angle_term(penetration),
+            own_mean(*observations["shear"].known(DENSITY_KEY), geometric=False),
+        ),
+        own_hardness=own_hardness,
+        own_stress=own_stress,
+    )
+
+
+def _penetration(
+    campaign: Campaign,
+    geometry: GeometryForm,
+    rng: np.random.Generator,
+    n_resamples: int,
+    progress: Callable[[str], None] | None,
+) -> PenetrationAnalysis | None:
+    if campaign.penetration is None:
+        return None
+    screened = screened_penetration(campaign, geometry=geometry)
+    readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
+    uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
+    _say(progress, f"hardness of {readings.n_series} penetration experiments")
+    found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
+    offsets = seating(readings, found["H_V"].value, uncertainty)
+    if not screened.used.any():
+        return PenetrationAnalysis(screened, readings, found, offsets, None, (), None, None)
+
+    used = readings.of(screened.used)
+    _say(progress, f"model table over {used.n} readings")
+    by_last = {symbol: H.value[screened.used] for symbol, H in found.items()}
+    fits = fit_models(used, by_last)
+    intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
+    by_all = {symbol: H.fitted[screened.used] for symbol, H in found.items()}
+    scatter = pooled_scatter(found["H_V"].scatter[screened.used])
+    depth_fits, weights = fit_models_with_depth_errors(used, by_all, uncertainty, scatter)
+    depth_intervals = bootstrap_intervals(
+        used, by_all, rng, n_resamples=n_resamples, weights=weights, progress=progress
+    )
+    return PenetrationAnalysis(
+        screened=screened,
+        readings=readings,
+        hardness=found,
+        seating=offsets,
+        table=ModelTable(fits, intervals),
+        nested=test_nested_rows(fits),
+        selected=select_model(fits),
+        errors_in_depth=ModelTable(depth_fits, depth_intervals),
+    )
+
+
+def _shear(campaign: Campaign) -> ShearAnalysis | None:
+    if campaign.shear is None:
+        return None
+    return ShearAnalysis(screened_shear(campaign), shear_stress(campaign, campaign.shear))
+
+
+def _observations(
+    campaign: Campaign, penetration: PenetrationAnalysis | None, shear: ShearAnalysis | None
+) -> dict[Source, Observations]:
+    nothing = np.zeros(0), np.zeros(0, dtype=bool)
+    pressed = (penetration.hardness["H_V"].value, penetration.screened.used) if penetration else nothing
+    sheared = (shear.stress.value, shear.screened.used) if shear else nothing
+    first, second = penetration_observations(campaign, *pressed), shear_observations(campaign, *sheared)
+    return {"penetration": first, "shear": second, "spots": spot_observations(first, second)}
+
+
+def _angle_term(penetration: PenetrationAnalysis | None) -> tuple[OwnValue, OwnValue]:
+    """b0 and b1 of the row that Eqn 11 is, with their bootstrap intervals."""
+    unknown = OwnValue(*[float("nan")] * 5)
+    if penetration is None or penetration.table is None:
+        return unknown, unknown
+    model = Model("H_V", "none", "linear")
+    fit = next(fit for fit in penetration.table.fits if fit.model == model)
+    (low0, high0), (low1, high1) = penetration.table.intervals[model][2:].tolist()
+    nan = float("nan")
+    return OwnValue(fit.b0, low0, high0, nan, nan), OwnValue(fit.b1, low1, high1, nan, nan)
+
+
+def _say(progress: Callable[[str], None] | None, text: str) -> None:
+    if progress:
+        progress(text)

@@ -1,0 +1,194 @@
+"""Snow hardness of each penetration experiment (Eqn 1), with an interval.
+
+The three rival definitions share one form, H = F / M with a measure M of the contact: the depth e, the projected area A
+or the displaced volume V. A further definition is one more entry in ``DEFINITIONS``.
+
+Error model of a reading, used throughout this room: its departure from the law, ln F - ln(H M), has the variance
+
+    s² + (u_F / F)² + (k u_e / e)²,     k = d ln M / d ln e,
+
+with u_F the standard uncertainty of the load, u_e = (gauge step)/√12 that of the depth, and s the relative scatter of
+the snow, estimated from the series' own load steps (Paule and Mandel 1982). The parts with known u count as known; s
+has n - 1 degrees of freedom; both are joined as the GUM (JCGM 100:2008, G.4) does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..constants import CONFIDENCE
+from ..statistics.combined_uncertainty import expanded_factor
+from ..units import N_PER_MM, N_PER_MM2, N_PER_MM3
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .readings import Readings
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class HardnessDefinition:
+    """One way to define hardness.
+
+    Attributes
+    ----------
+    symbol
+        H_e, H_A or H_V.
+    unit, unit_key, si
+        Its unit in the paper as printed, as in keys and file headers, and as a factor to SI.
+    measure
+        M of each reading (SI).
+    growth
+        dM/de of each reading (SI).
+    """
+
+    symbol: str
+    unit: str
+    unit_key: str
+    si: float
+    measure: Callable[[Readings], FloatArray]
+    growth: Callable[[Readings], FloatArray]
+
+    @property
+    def key(self) -> str:
+        """Name of this hardness in files, with its unit."""
+        return f"{self.symbol}_{self.unit_key}"
+
+
+DEFINITIONS: Final = {
+    definition.symbol: definition
+    for definition in (
+        HardnessDefinition(
+            "H_e", "N/mm", "N_per_mm", N_PER_MM, lambda r: r.penetration_depth, lambda r: np.ones_like(r.load)
+        ),
+        HardnessDefinition("H_A", "N/mm²", "N_per_mm2", N_PER_MM2, lambda r: r.contact_area, lambda r: r.area_growth),
+        HardnessDefinition(
+            "H_V", "N/mm³", "N_per_mm3", N_PER_MM3, lambda r: r.displaced_volume, lambda r: r.contact_area
+        ),
+    )
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingUncertainty:
+    """Standard uncertainties of one reading: depth u_e (m) and load u_F (N); 0 where unknown."""
+
+    depth: float = 0.0
+    load: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Hardness:
+    """Hardness of m series by one definition, in SI; NaN where it does not exist.
+
+    Attributes
+    ----------
+    value
+        H from the reading under the largest load (Eqn 1).
+    interval
+        (m, 2), 95 %; carries gauge, load and scatter over the load steps. NaN where fewer than two readings in contact
+        leave the scatter unknown.
+    fitted, fitted_interval
+        H from all readings of the series with errors in depth and load, likewise.
+    scatter
+        s of each series.
+    """
+
+    value: FloatArray
+    interval: FloatArray
+    fitted: FloatArray
+    fitted_interval: FloatArray
+    scatter: FloatArray
+
+
+def hardness_at_largest_load(readings: Readings, definition: HardnessDefinition) -> FloatArray:
+    """H = F₇ / M₇ of each series (Eqn 1), SI; NaN where M₇ = 0: nothing was displaced."""
+    F, M = readings.load[readings.largest], definition.measure(readings)[readings.largest]
+    return np.divide(F, M, out=np.full(F.shape, np.nan), where=M > 0)
+
+
+def hardness(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> Hardness:
+    """Hardness of each series from its largest load and from all its readings, with intervals."""
+    M, e = definition.measure(readings), readings.penetration_depth
+    touching = (M > 0) & (e > 0)
+    logs = np.log(np.divide(readings.load, M, out=np.ones_like(M), where=touching))
+    known = known_variance(readings, definition, uncertainty)
+    n = readings.sums(touching.astype(float))
+    scatter2 = scatter_variance(readings, logs, known, touching)
+
+    value = hardness_at_largest_load(readings, definition)
+    last_known = known[readings.largest]
+    interval = _log_interval(np.log(value), scatter2, last_known, n - 1.0)
+
+    weight = np.where(touching, _reciprocal(scatter2[readings.series] + known), 0.0)
+    exact = readings.sums(weight) == 0.0  # no uncertainty at all: every reading counts alike
+    weight = np.where(touching & exact[readings.series], 1.0, weight)
+    total = readings.sums(weight)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = readings.sums(weight * logs) / total
+        from_scatter = readings.sums(weight**2) * scatter2 / total**2
+        from_known = readings.sums(weight**2 * np.where(touching, known, 0.0)) / total**2
+    fitted_interval = _log_interval(mean, from_scatter, from_known, n - 1.0)
+    return Hardness(value, interval, np.exp(mean), fitted_interval, np.sqrt(scatter2))
+
+
+def known_variance(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> FloatArray:
+    """Variance of ln(F/M) of each reading from the gauge and the load alone; 0 where the tool does not touch."""
+    M = definition.measure(readings)
+    touching = (M > 0) & (readings.penetration_depth > 0)
+    slope = np.divide(definition.growth(readings), M, out=np.zeros_like(M), where=touching)
+    known: FloatArray = (uncertainty.load / readings.load) ** 2 + (slope * uncertainty.depth) ** 2
+    return known
+
+
+def scatter_variance(readings: Readings, logs: FloatArray, known: FloatArray, touching: BoolArray) -> FloatArray:
+    """Between-reading variance s² of each series beyond the known one: Paule and Mandel (1982).
+
+    Solves Σ (x - x̄)²/(s² + v) = n - 1 for s² ≥ 0 in each series at once; 0 where the known variance already explains
+    the scatter, NaN with fewer than two readings in contact.
+    """
+    n = readings.sums(touching.astype(float))
+    use = touching.astype(float)
+
+    def excess(s2: FloatArray) -> tuple[FloatArray, FloatArray]:
+        weight = use * _reciprocal(s2[readings.series] + known)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = readings.sums(weight * logs) / readings.sums(weight)
+        deviation2 = (logs - mean[readings.series]) ** 2
+        return readings.sums(weight * deviation2), readings.sums(weight**2 * deviation2)
+
+    with np.errstate(invalid="ignore", divide="ignore"):
+        plain = readings.sums(use * logs) / n
+        s2 = readings.sums(use * (logs - plain[readings.series]) ** 2) / (n - 1.0)
+        for _ in range(40):
+            Q, slope = excess(s2)
+            # Newton on 1/Q, which is straight where the scatter dominates
+            step = np.where(slope > 0, (Q / (n - 1.0) - 1.0) * Q / slope, 0.0)
+            moved = np.maximum(s2 + step, 0.0)
+            settled = np.abs(moved - s2) <= 1e-12 * moved
+            s2 = moved
+            if settled[n > 1].all():
+                break
+    return np.where(n > 1, s2, np.nan)
+
+
+def _reciprocal(variance: FloatArray) -> FloatArray:
+    return np.divide(1.0, variance, out=np.zeros_like(variance), where=variance > 0)
+
+
+def _log_interval(
+    log_value: FloatArray, from_scatter: FloatArray, from_known: FloatArray, scatter_dof: FloatArray
+) -> FloatArray:
+    """Interval of exp(log_value) whose variance has a part from scatter (few degrees of freedom) and a known one."""
+    total = from_scatter + from_known
+    with np.errstate(invalid="ignore", divide="ignore"):
+        dof = np.where(from_scatter > 0, scatter_dof * (total / from_scatter) ** 2, np.inf)
+        half = expanded_factor(dof, CONFIDENCE) * np.sqrt(total)
+        return np.exp(np.stack((log_value - half, log_value + half), axis=-1))

@@ -1,0 +1,151 @@
+"""The readings of a campaign with the geometry of their tools: what every estimate starts from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..field.screening import reading_at_largest_load
+from ..geometry import in_form
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from ..field.records import PenetrationTests
+    from ..geometry import GeometryForm, Tool
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Readings:
+    """n readings of m series in SI, series after series, each in the order of loading.
+
+    Attributes
+    ----------
+    load, penetration_depth, contact_area, displaced_volume, area_growth
+        F (N), e (m), A (m²), V (m³), dA/de (m), one per reading.
+    edge_angle
+        ϑ (rad), one per series.
+    first
+        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to series i.
+    largest
+        Index of the reading under the largest load, one per series: the paper's seventh, which defines the hardness.
+    tool
+        The tool of each series, as an index into ``tools``.
+    tools
+        The geometries, in the chosen form.
+    """
+
+    load: FloatArray
+    penetration_depth: FloatArray
+    contact_area: FloatArray
+    displaced_volume: FloatArray
+    area_growth: FloatArray
+    edge_angle: FloatArray
+    first: IntArray
+    largest: IntArray
+    tool: IntArray
+    tools: tuple[Tool, ...]
+
+    @property
+    def n_series(self) -> int:
+        """Number of series m."""
+        return len(self.edge_angle)
+
+    @property
+    def n(self) -> int:
+        """Number of readings n."""
+        return len(self.load)
+
+    @cached_property
+    def series(self) -> IntArray:
+        """Index of the series of each reading."""
+        return np.repeat(np.arange(self.n_series, dtype=np.int64), np.diff(self.first))
+
+    @cached_property
+    def angle_of_reading(self) -> FloatArray:
+        """Edge angle of each reading (rad)."""
+        return self.edge_angle[self.series]
+
+    def sums(self, values: FloatArray) -> FloatArray:
+        """Sum a quantity of the readings over each series."""
+        return np.bincount(self.series, weights=values, minlength=self.n_series)
+
+    def depth_at_volume(self, displaced_volume: FloatArray) -> FloatArray:
+        """Depth (m) at which each reading's tool displaces the given volume (m³)."""
+        return self._by_tool(lambda tool, V, angle: tool.depth_at_volume(V, angle), displaced_volume, self.series)
+
+    def area_at_depth(self, penetration_depth: FloatArray) -> FloatArray:
+        """Contact area A (m²) of each reading's tool at another depth (m)."""
+        return self._by_tool(lambda tool, e, angle: tool.contact_area(e, angle), penetration_depth, self.series)
+
+    def volume_of_series(self, penetration_depth: FloatArray) -> FloatArray:
+        """Displaced volume V (m³) of each series' tool at one depth (m) per series."""
+        every = np.arange(self.n_series, dtype=np.int64)
+        return self._by_tool(lambda tool, e, angle: tool.displaced_volume(e, angle), penetration_depth, every)
+
+    def _by_tool(
+        self, form: Callable[[Tool, FloatArray, FloatArray], FloatArray], values: FloatArray, series: IntArray
+    ) -> FloatArray:
+        result = np.empty(len(values))
+        tool, angle = self.tool[series], self.edge_angle[series]
+        for index, shape in enumerate(self.tools):
+            mine = tool == index
+            result[mine] = form(shape, values[mine], angle[mine])
+        return result
+
+    def of(self, chosen: BoolArray) -> Readings:
+        """Keep the chosen series (mask over the m series)."""
+        if chosen.all():
+            return self
+        kept = chosen[self.series]
+        first = np.concatenate(([0], np.cumsum(np.diff(self.first)[chosen])))
+        moved = np.cumsum(kept) - 1
+        return Readings(
+            load=self.load[kept],
+            penetration_depth=self.penetration_depth[kept],
+            contact_area=self.contact_area[kept],
+            displaced_volume=self.displaced_volume[kept],
+            area_growth=self.area_growth[kept],
+            edge_angle=self.edge_angle[chosen],
+            first=first.astype(np.int64),
+            largest=moved[self.largest[chosen]].astype(np.int64),
+            tool=self.tool[chosen],
+            tools=self.tools,
+        )
+
+
+def readings_of(tests: PenetrationTests, tools: Mapping[str, Tool], *, geometry: GeometryForm) -> Readings:
+    """Compute A, V and dA/de of every reading with its own tool (Eqns 2, 3 and their continuations)."""
+    names = sorted(set(tests.tool))
+    shapes = tuple(in_form(tools[name], geometry) for name in names)
+    number = {name: index for index, name in enumerate(names)}
+    tool = np.array([number[name] for name in tests.tool], dtype=np.int64)
+    series = tests.series_of_reading
+    angle, tool_of_reading = tests.edge_angle[series], tool[series]
+    area, volume, growth = (np.empty(len(tests.load)) for _ in range(3))
+    for index, shape in enumerate(shapes):
+        mine = tool_of_reading == index
+        depth_angle = tests.penetration_depth[mine], angle[mine]
+        area[mine] = shape.contact_area(*depth_angle)
+        volume[mine] = shape.displaced_volume(*depth_angle)
+        growth[mine] = shape.area_growth(*depth_angle)
+    return Readings(
+        load=tests.load,
+        penetration_depth=tests.penetration_depth,
+        contact_area=area,
+        displaced_volume=volume,
+        area_growth=growth,
+        edge_angle=tests.edge_angle,
+        first=tests.first,
+        largest=reading_at_largest_load(tests),
+        tool=tool,
+        tools=shapes,
+    )

@@ -1,0 +1,98 @@
+"""The paper's regressions: S_f and H_V on edge angle, density, drop-cone depth and on each other.
+
+A further regression is one more entry in ``PLANS``. Variables carry their unit in their name and are regressed in it,
+as the paper prints them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import FitError
+from ..statistics.clusters import cluster_intervals
+from ..statistics.linear import LinearFit, linear_fit
+from .observations import ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY, HARDNESS_KEY, STRESS_KEY
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from .observations import Observations
+
+FloatArray = npt.NDArray[np.float64]
+Source: TypeAlias = Literal["penetration", "shear", "spots"]
+
+FEWEST_TESTS: Final = 5
+FEWEST_ANGLES: Final = 3
+
+
+@dataclass(frozen=True, slots=True)
+class RegressionPlan:
+    """Which response on which predictor, over which observations; ``by_site`` adds a regression for each site."""
+
+    source: Source
+    response: str
+    predictor: str
+    by_site: bool = False
+
+
+PLANS: Final = (
+    RegressionPlan("shear", STRESS_KEY, ANGLE_KEY, by_site=True),
+    RegressionPlan("shear", STRESS_KEY, DENSITY_KEY),
+    RegressionPlan("penetration", HARDNESS_KEY, DENSITY_KEY),
+    RegressionPlan("penetration", HARDNESS_KEY, DROP_CONE_KEY),
+    RegressionPlan("spots", STRESS_KEY, HARDNESS_KEY),
+)
+
+
+@dataclass(frozen=True)
+class Regression:
+    """A regression with intercept on one predictor; ``fit`` is None where the data do not determine it.
+
+    ``interval_by_site`` (2, 2) treats sites as clusters; None for a single site, NaN where sites do not tell.
+    """
+
+    plan: RegressionPlan
+    group: str
+    n: int
+    fit: LinearFit | None
+    interval_by_site: FloatArray | None
+
+
+def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression, ...]:
+    """All planned regressions: sites first where planned, then all together."""
+    found: list[Regression] = []
+    for plan in PLANS:
+        data = observations[plan.source]
+        x, y = data.columns[plan.predictor], data.columns[plan.response]
+        known = np.isfinite(x) & np.isfinite(y)
+        x, y = x[known], y[known]
+        sites = np.array(data.site, dtype=object)[known].astype(str)
+        if plan.by_site:
+            found += [
+                Regression(plan, str(site), int(np.sum(sites == site)), _fit(y[sites == site], x[sites == site]), None)
+                for site in np.unique(sites)
+                if np.sum(sites == site) >= FEWEST_TESTS and len(np.unique(x[sites == site])) >= FEWEST_ANGLES
+            ]
+        found.append(_pooled(plan, x, y, sites))
+    return tuple(found)
+
+
+def _pooled(plan: RegressionPlan, x: FloatArray, y: FloatArray, sites: npt.NDArray[np.str_]) -> Regression:
+    fit = _fit(y, x)
+    by_site = None
+    if fit is not None and len(np.unique(sites)) > 1:
+        by_site = cluster_intervals(y, x, sites).intervals
+    return Regression(plan, "all", len(y), fit, by_site)
+
+
+def _fit(response: FloatArray, predictor: FloatArray) -> LinearFit | None:
+    if len(response) < 2:
+        return None
+    try:
+        return linear_fit(response, predictor)
+    except FitError:  # the predictor does not vary: there is no slope, and the entry says so by its nulls
+        return None

@@ -1,0 +1,327 @@
+"""An analysis as the contents of results.json: the contract with users and other programs.
+
+Units stand in the keys; every interval is ``[low, high]`` at 95 %; what does not exist is None, never NaN; numbers are
+not rounded.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
+from .hardness import DEFINITIONS
+
+if TYPE_CHECKING:
+    from .analysis import Analysis, ModelTable, PenetrationAnalysis, ShearAnalysis
+    from .model_choice import NestedRows
+    from .models import Model, ModelFit
+    from .regressions import Regression
+
+FloatArray = npt.NDArray[np.float64]
+Json: TypeAlias = dict[str, Any]
+
+SCHEMA_VERSION = 1
+_ENCODER = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
+
+
+def results_dict(analysis: Analysis) -> Json:
+    """Give the analysis as plain dictionaries and lists, ready for JSON."""
+    results = {
+        "schema_version": SCHEMA_VERSION,
+        "campaign": _campaign(analysis),
+        "penetration": _penetration(analysis),
+        "shear": _shear(analysis),
+        "regressions": [_regression(regression) for regression in analysis.regressions],
+        "site_comparisons": [
+            {
+                "quantity": row.quantity,
+                "site_a": row.site_a,
+                "site_b": row.site_b,
+                "ratio": row.ratio,
+                "interval": row.interval.tolist(),
+                "p": row.p,
+                "n_for_10_percent": row.n_for_10_percent,
+            }
+            for row in analysis.site_comparisons
+        ],
+        "comparisons": [row.as_dict() for row in analysis.comparisons],
+        "provenance": _provenance(analysis),
+    }
+    cleaned: Json = _without_nan(results)
+    return cleaned
+
+
+def _without_nan(value: Any) -> Any:
+    """Replace every number that is not finite by None, and every interval that is not known at both ends as a whole."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list):
+        cleaned = [_without_nan(item) for item in value]
+        pair = len(value) == 2 and all(isinstance(item, float) for item in value)
+        return None if pair and None in cleaned else cleaned
+    return value
+
+
+def _campaign(analysis: Analysis) -> Json:
+    campaign = analysis.campaign
+    return {
+        "name": campaign.name,
+        "place": campaign.place,
+        "observers": list(campaign.observers),
+        "gauge_resolution_mm": None if campaign.gauge_resolution is None else campaign.gauge_resolution / MM,
+        "load_uncertainty_N": campaign.load_uncertainty,
+        "moment_uncertainty_Nm": campaign.moment_uncertainty,
+        "lever_arm_uncertainty_mm": None
+        if campaign.lever_arm_uncertainty is None
+        else campaign.lever_arm_uncertainty / MM,
+        "excluding": sorted(campaign.excluding),
+        "warnings": [problem.as_dict() for problem in campaign.problems],
+    }
+
+
+def _penetration(analysis: Analysis) -> Json:
+    found, tests = analysis.penetration, analysis.campaign.penetration
+    if found is None or tests is None:
+        return {
+            "experiments": [],
+            "models": _no_models(),
+            "tests": [],
+            "selected": None,
+            "seating": [],
+            "errors_in_depth": {"models": _no_models(), "experiments": []},
+        }
+    return {
+        "experiments": _penetration_experiments(analysis, found),
+        "models": _models(found.table),
+        "tests": [_nested(row) for row in found.nested],
+        "selected": _selected(found),
+        "seating": _seating(tests.experiment, found),
+        "errors_in_depth": {
+            "models": _models(found.errors_in_depth),
+            "experiments": _fitted_hardness(tests.experiment, found),
+        },
+    }
+
+
+def _penetration_experiments(analysis: Analysis, found: PenetrationAnalysis) -> list[Json]:
+    tests = analysis.campaign.penetration
+    assert tests is not None
+    columns: dict[str, list[Any]] = {
+        "experiment": list(tests.experiment),
+        "site": list(tests.site),
+        "tool": list(tests.tool),
+        "edge_angle_deg": _degrees(tests.edge_angle),
+        "n_loads": np.diff(tests.first).tolist(),
+        "used": found.screened.used.tolist(),
+        "flags": found.screened.flags(),
+    }
+    for symbol, definition in DEFINITIONS.items():
+        columns[definition.key] = (found.hardness[symbol].value / definition.si).tolist()
+    for symbol, definition in DEFINITIONS.items():
+        columns[f"{symbol}_interval_{definition.unit_key}"] = (found.hardness[symbol].interval / definition.si).tolist()
+    return _rows(columns)
+
+
+def _rows(columns: dict[str, list[Any]]) -> list[Json]:
+    keys = tuple(columns)
+    return [dict(zip(keys, values, strict=True)) for values in zip(*columns.values(), strict=True)]
+
+
+def _degrees(angle: FloatArray) -> list[float]:
+    """Degrees as a person wrote them: the last bits that the way over radians costs are taken off."""
+    degrees: list[float] = np.round(np.degrees(angle), 11).tolist()
+    return degrees
+
+
+def _models(table: ModelTable | None) -> list[Json]:
+    if table is None:
+        return _no_models()
+    return [_model(fit, table.intervals.get(fit.model)) for fit in table.fits]
+
+
+def _model_head(model: Model) -> Json:
+    return {"id": model.id, "hardness": model.hardness, "a": model.a, "b": model.b}
+
+
+def _no_models() -> list[Json]:
+    from .models import MODELS
+
+    nothing = dict.fromkeys(("a0", "a1", "b0", "b1"))
+    return [
+        _model_head(model)
+        | nothing
+        | {"n": 0, "n_series": 0, "n_parameters": model.n_parameters}
+        | {"rmse_N": None, "rmse_dof_N": None, "rmse_free_N": None, "at_bound": [], "intervals": dict(nothing)}
+        for model in MODELS
+    ]
+
+
+def _model(fit: ModelFit, intervals: FloatArray | None) -> Json:
+    """A row in the units of the table: A in mm², V in mm³, H in N/mm, N/mm² or N/mm³."""
+    si = DEFINITIONS[fit.model.hardness].si
+    factor_a, factor_b = si * MM2, si * MM3
+    factors = {"a0": factor_a, "a1": factor_a, "b0": factor_b, "b1": factor_b}
+    fitted = _fitted_coefficients(fit.model)
+    pairs: dict[str, list[float] | None] = dict.fromkeys(factors)
+    if intervals is not None:
+        for index, (name, factor) in enumerate(factors.items()):
+            pairs[name] = (intervals[index] * factor).tolist() if name in fitted else None
+    return (
+        _model_head(fit.model)
+        | {name: getattr(fit, name) * factor for name, factor in factors.items()}
+        | {
+            "n": fit.n,
+            "n_series": fit.n_series,
+            "n_parameters": fit.n_parameters,
+            "rmse_N": fit.rmse,
+            "rmse_dof_N": fit.rmse_dof,
+            "rmse_free_N": fit.rmse_free,
+            "at_bound": list(fit.at_bound),
+            "intervals": pairs,
+        }
+    )
+
+
+def _fitted_coefficients(model: Model) -> set[str]:
+    fitted = set()
+    for name, term in (("a", model.a), ("b", model.b)):
+        if term in ("constant", "linear"):
+            fitted.add(f"{name}0")
+        if term == "linear":
+            fitted.add(f"{name}1")
+    return fitted
+
+
+def _nested(row: NestedRows) -> Json:
+    return {
+        "full": row.full.id,
+        "reduced": row.reduced.id,
+        "F": row.F,
+        "df": [row.df1, row.df2],
+        "p": row.p,
+        "rmse_change_percent": row.rmse_change_percent,
+        "valid_classically": row.valid_classically,
+    }
+
+
+def _selected(found: PenetrationAnalysis) -> Json | None:
+    if found.selected is None or found.table is None:
+        return None
+    best = min(found.table.fits, key=lambda fit: fit.rmse)
+    chosen = found.selected
+    loss = 100.0 * (chosen.rmse / best.rmse - 1.0) if best.rmse > 0 else 0.0
+    return {
+        "id": chosen.model.id,
+        "reason": f"The simplest of the nine rows whose rmse is within 5 % of the best: {chosen.rmse:.4g} N with "
+        f"{chosen.n_parameters} fitted parameters against {best.rmse:.4g} N of {best.model.id} with "
+        f"{best.n_parameters}, {loss:.2g} % more.",
+    }
+
+
+def _seating(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Json]:
+    return _rows(
+        {
+            "experiment": list(experiment),
+            "depth_offset_mm": (found.seating.offset / MM).tolist(),
+            "interval_mm": (found.seating.interval / MM).tolist(),
+            "H_V_change_percent": (100.0 * found.seating.hardness_change).tolist(),
+        }
+    )
+
+
+def _fitted_hardness(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Json]:
+    H_V = found.hardness["H_V"]
+    return _rows(
+        {
+            "experiment": list(experiment),
+            "H_V_N_per_mm3": (H_V.fitted / N_PER_MM3).tolist(),
+            "H_V_interval_N_per_mm3": (H_V.fitted_interval / N_PER_MM3).tolist(),
+            "relative_scatter": H_V.scatter.tolist(),
+        }
+    )
+
+
+def _shear(analysis: Analysis) -> Json:
+    found: ShearAnalysis | None = analysis.shear
+    tests = analysis.campaign.shear
+    if found is None or tests is None:
+        return {"experiments": []}
+    return {
+        "experiments": _rows(
+            {
+                "experiment": list(tests.experiment),
+                "site": list(tests.site),
+                "plate": list(tests.plate),
+                "edge_angle_deg": _degrees(tests.edge_angle),
+                "F_t_N": found.stress.force.tolist(),
+                "S_f_N_per_mm2": (found.stress.value / N_PER_MM2).tolist(),
+                "S_f_interval_N_per_mm2": (found.stress.interval / N_PER_MM2).tolist(),
+                "used": found.screened.used.tolist(),
+                "flags": found.screened.flags(),
+            }
+        )
+    }
+
+
+def _regression(regression: Regression) -> Json:
+    fit = regression.fit
+    numbers: Json = dict.fromkeys(("b", "interval", "rmse", "rmse_dof", "r2", "F", "p"))
+    if fit is not None:
+        numbers = {
+            "b": fit.coefficients.tolist(),
+            "interval": [list(pair) for pair in fit.intervals.tolist()],
+            "rmse": float(fit.rmse),
+            "rmse_dof": float(fit.rmse_dof),
+            "r2": float(fit.r2),
+            "F": float(fit.F),
+            "p": float(fit.p),
+        }
+    by_site = regression.interval_by_site
+    return {
+        "response": regression.plan.response,
+        "terms": ["intercept", regression.plan.predictor],
+        "group": regression.group,
+        "n": regression.n,
+        **numbers,
+        "interval_by_site": None if by_site is None else [list(pair) for pair in by_site.tolist()],
+    }
+
+
+def _provenance(analysis: Analysis) -> Json:
+    packages = ("skisnow", "numpy", "scipy")
+    return {
+        "files": dict(sorted(analysis.campaign.file_hashes.items())),
+        "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},
+        "seed": analysis.seed,
+        "options": {"geometry": analysis.geometry, "n_resamples": analysis.n_resamples},
+        "time": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
+
+
+def results_json(results: Json) -> str:
+    """The text of results.json: one entry of a list to a line, so that people can search it and machines read it."""
+    return _lines(results, 0)
+
+
+def _lines(value: Any, depth: int) -> str:
+    pad = " " * (depth + 1)
+    if isinstance(value, dict) and value and depth < 3:
+        items = [f"{json.dumps(key)}: {_lines(item, depth + 1)}" for key, item in value.items()]
+        return "{\n" + ",\n".join(pad + item for item in items) + "\n" + " " * depth + "}"
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return "[\n" + ",\n".join(pad + _flat(item) for item in value) + "\n" + " " * depth + "]"
+    return _flat(value)
+
+
+def _flat(value: Any) -> str:
+    return _ENCODER.encode(value)

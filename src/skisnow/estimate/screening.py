@@ -1,0 +1,124 @@
+"""Which experiments take part: the marks of the field screening and the one that needs the hardness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..field.problems import Problem
+from ..field.screening import mark_problems, screen_penetration, screen_shear
+from ..units import N_PER_MM3
+from .hardness import DEFINITIONS, hardness_at_largest_load
+from .readings import readings_of
+from .shear_stress import shear_stress
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ..field.records import Campaign
+    from ..geometry import GeometryForm
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+FEWEST_FOR_OUTLIERS: Final = 5
+OUTLIER_DISTANCE: Final = 3.5
+"""Iglewicz and Hoaglin (1993): a modified z score above 3.5 is a potential outlier."""
+NORMAL_MAD: Final = 1.4826
+"""Standard deviation of a normal distribution over its median absolute deviation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Screened:
+    """Marks of each experiment by code, and which experiments are used (masks over the experiments)."""
+
+    marks: Mapping[str, BoolArray]
+    used: BoolArray
+
+    def flags(self) -> list[list[str]]:
+        """Codes of the marks of each experiment, in the order of the table of marks."""
+        found: list[list[str]] = [[] for _ in range(len(self.used))]
+        for code, mask in self.marks.items():
+            for index in np.flatnonzero(mask).tolist():
+                found[index].append(code)
+        return found
+
+
+def screened_penetration(campaign: Campaign, *, geometry: GeometryForm) -> Screened:
+    """Marks of the penetration experiments, ``hardness_outlier`` included, and which of them are used."""
+    tests = campaign.penetration
+    if tests is None:
+        return Screened({}, np.zeros(0, dtype=bool))
+    marks = dict(screen_penetration(campaign, geometry=geometry))
+    H_V = hardness_at_largest_load(readings_of(tests, campaign.tools, geometry=geometry), DEFINITIONS["H_V"])
+    used = _used(marks, campaign, len(tests)) & np.isfinite(H_V)
+    marks["hardness_outlier"] = hardness_outliers(H_V, used, tests.site)
+    return Screened(marks, _used(marks, campaign, len(tests)) & np.isfinite(H_V))
+
+
+def screened_shear(campaign: Campaign) -> Screened:
+    """Marks of the shear experiments and which of them are used."""
+    tests = campaign.shear
+    if tests is None:
+        return Screened({}, np.zeros(0, dtype=bool))
+    marks = dict(screen_shear(campaign))
+    defined = np.isfinite(shear_stress(campaign, tests).value)
+    return Screened(marks, _used(marks, campaign, len(tests)) & defined)
+
+
+def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]) -> BoolArray:
+    """Used series with |ln H_V - the site's median| > 3.5 × 1.4826 × MAD, at sites with five or more used series."""
+    outlier = np.zeros(len(hardness), dtype=bool)
+    logs = np.log(hardness, out=np.zeros_like(hardness), where=used)
+    names, site_of = np.unique(np.array(site, dtype=object).astype(str), return_inverse=True)
+    order = np.argsort(site_of, kind="stable")
+    bounds = np.searchsorted(site_of[order], np.arange(len(names) + 1))
+    for start, stop in pairwise(bounds.tolist()):
+        members = order[start:stop]
+        members = members[used[members]]
+        if len(members) < FEWEST_FOR_OUTLIERS:
+            continue
+        distance = np.abs(logs[members] - np.median(logs[members]))
+        mad = float(np.median(distance))
+        if mad > 0:
+            outlier[members] = distance > OUTLIER_DISTANCE * NORMAL_MAD * mad
+    return outlier
+
+
+def marks_of(campaign: Campaign, *, geometry: GeometryForm = "extended") -> list[Problem]:
+    """Every mark of a campaign as a problem of severity ``mark``, the one that needs the hardness included."""
+    penetration, shear = screened_penetration(campaign, geometry=geometry), screened_shear(campaign)
+    field_marks = {code: mask for code, mask in penetration.marks.items() if code != "hardness_outlier"}
+    problems = mark_problems(campaign, field_marks, dict(shear.marks))
+    tests = campaign.penetration
+    if tests is None:
+        return problems
+    readings = readings_of(tests, campaign.tools, geometry=geometry)
+    H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"]) / N_PER_MM3
+    for index in np.flatnonzero(penetration.marks["hardness_outlier"]).tolist():
+        problems.append(
+            Problem(
+                severity="mark",
+                code="hardness_outlier",
+                file="penetration.csv",
+                row=int(tests.row[readings.largest[index]]),
+                column=None,
+                experiment=tests.experiment[index],
+                value=f"H_V = {H_V[index]:.4g} N/mm³",
+                allowed="within 3.5 × 1.4826 × MAD of the site's median of ln H_V",
+                action=f"Look at it beside the others of site {tests.site[index]}; it stays in unless excluded.",
+            )
+        )
+    return problems
+
+
+def _used(marks: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:
+    excluded = np.zeros(count, dtype=bool)
+    for code, mask in marks.items():
+        if code in campaign.excluding:
+            excluded |= mask
+    return ~excluded

@@ -1,0 +1,61 @@
+"""Whether one site is harder than another, and how many tests would tell."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..statistics.two_groups import ratio_of_means, tests_per_group
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class SiteComparison:
+    """Ratio of the geometric means of two sites (a over b).
+
+    Attributes
+    ----------
+    quantity
+        ``H_V`` or ``S_f``.
+    ratio, interval, p
+        Welch's test on logarithms; NaN where a site has fewer than two tests.
+    n_for_10_percent
+        Tests at each site that would tell ±10 % with a power of 80 % at 5 %, given the scatter within these two sites;
+        None where the scatter is unknown.
+    """
+
+    quantity: str
+    site_a: str
+    site_b: str
+    ratio: float
+    interval: FloatArray
+    p: float
+    n_for_10_percent: int | None
+
+
+def compare_sites(quantity: str, values: FloatArray, site: Sequence[str]) -> tuple[SiteComparison, ...]:
+    """Compare every pair of sites by the used experiments (values above 0 alone), in alphabetical order."""
+    positive = values > 0
+    names = np.array(site, dtype=object)[positive].astype(str)
+    logs = np.log(values[positive])
+    groups = {str(name): logs[names == name] for name in np.unique(names)}
+    return tuple(_compare(quantity, (a, groups[a]), (b, groups[b])) for a, b in combinations(sorted(groups), 2))
+
+
+def _compare(quantity: str, a: tuple[str, FloatArray], b: tuple[str, FloatArray]) -> SiteComparison:
+    result = ratio_of_means(a[1], b[1])
+    dof = len(a[1]) + len(b[1]) - 2
+    pooled = float("nan")
+    if dof > 0:
+        squares = sum(float(np.sum((logs - logs.mean()) ** 2)) for logs in (a[1], b[1]))
+        pooled = float(np.sqrt(squares / dof))
+    needed = tests_per_group(pooled) if pooled > 0 else None
+    return SiteComparison(quantity, a[0], b[0], result.ratio, np.asarray(result.interval), result.p, needed)
