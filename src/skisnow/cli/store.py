@@ -1,0 +1,142 @@
+"""``skisnow store``: keep campaigns byte for byte, and give them back."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from ..errors import StoreError
+
+if TYPE_CHECKING:
+    from ..field.store import Store, StoredCampaign
+
+Json: TypeAlias = dict[str, object]
+Answer: TypeAlias = tuple[Json, str, int]
+"""What is printed with ``--json``, what is printed without, and the exit code."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add ``store`` and its actions to the command line."""
+    every = argparse.ArgumentParser(add_help=False)
+    every.add_argument("--store", type=Path, metavar="PATH", help="file of the store (default: the user's own)")
+    every.add_argument("--json", action="store_true", help="print JSON alone to standard output")
+    parser = subparsers.add_parser("store", help="keep campaigns byte for byte", description=__doc__)
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
+    add = actions.add_parser("add", parents=[every], help="keep all files of a campaign's folder")
+    add.add_argument("folder", type=Path, metavar="DIR", help="the campaign's folder")
+    actions.add_parser("list", parents=[every], help="list the campaigns")
+    show = actions.add_parser("show", parents=[every], help="list the files of a campaign")
+    export = actions.add_parser("export", parents=[every], help="give a campaign back as it came in")
+    for with_id in (show, export):
+        with_id.add_argument("id", metavar="ID", help="the campaign's id, or its first 4 digits or more")
+    export.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder to make")
+    actions.add_parser("verify", parents=[every], help="check every file in the store; exit code 1 if any is damaged")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Do what was asked; 0 if all went well, else 1."""
+    from ..field.store import Store
+
+    act = {"add": _add, "list": _list, "show": _show, "export": _export, "verify": _verify}[args.action]
+    try:
+        with Store.open(args.store, create=args.action == "add") as store:
+            answer, text, code = act(store, args)
+    except StoreError as error:
+        print(f"skisnow store {args.action}: {error}", file=sys.stderr)
+        return 1
+    print(json.dumps(answer, ensure_ascii=False, indent=2, allow_nan=False) if args.json else text)
+    return code
+
+
+def _add(store: Store, args: argparse.Namespace) -> Answer:
+    with _Progress("keeping") as progress:
+        added = store.add(args.folder, progress=progress)
+    if added.check_failure is not None:
+        print(f"The campaign is kept but could not be checked: {added.check_failure}", file=sys.stderr)
+    did = "was in the store already" if added.already_stored else "is kept"
+    text = f"{added.id}  {added.name}: {_amount(added.n_files, added.n_bytes)}, {did}"
+    if added.n_repaired:
+        text += f"; damaged files made whole: {added.n_repaired}"
+    if added.n_errors is not None:
+        text += f"\nchecked: errors {added.n_errors}, warnings {added.n_warnings}"
+        text += " (`skisnow check` lists them)" if added.n_errors or added.n_warnings else ""
+    return asdict(added), text, 0
+
+
+def _list(store: Store, _: argparse.Namespace) -> Answer:
+    campaigns = store.list()
+    lines = [_line(stored) for stored in campaigns] or ["The store holds no campaign."]
+    return {"campaigns": [_as_json(stored) for stored in campaigns]}, "\n".join(lines), 0
+
+
+def _show(store: Store, args: argparse.Namespace) -> Answer:
+    stored = store.show(args.id)
+    files = [asdict(file) for file in stored.files]
+    lines = [_line(stored), *(f"{file.sha256}  {file.size:>12}  {file.path}" for file in stored.files)]
+    return {**_as_json(stored), "files": files}, "\n".join(lines), 0
+
+
+def _export(store: Store, args: argparse.Namespace) -> Answer:
+    with _Progress("exporting") as progress:
+        stored = store.export(args.id, args.out, progress=progress)
+    text = f"{stored.id}  {stored.name}: {_amount(stored.n_files, stored.n_bytes)}, given back in {args.out}"
+    return {**_as_json(stored), "out": str(args.out)}, text, 0
+
+
+def _verify(store: Store, _: argparse.Namespace) -> Answer:
+    with _Progress("verifying") as progress:
+        findings = store.verify(progress=progress)
+    lines = [str(finding) for finding in findings] or ["All is sound."]
+    return {"findings": [asdict(finding) for finding in findings]}, "\n".join(lines), 1 if findings else 0
+
+
+def _as_json(stored: StoredCampaign) -> Json:
+    return {
+        "id": stored.id,
+        "name": stored.name,
+        "added_at": stored.added_at.isoformat(),
+        "n_files": stored.n_files,
+        "n_bytes": stored.n_bytes,
+        "sha256": stored.sha256,
+        "n_errors": stored.n_errors,
+        "n_warnings": stored.n_warnings,
+    }
+
+
+def _line(stored: StoredCampaign) -> str:
+    checked = "not checked" if stored.n_errors is None else f"errors {stored.n_errors}, warnings {stored.n_warnings}"
+    amount = _amount(stored.n_files, stored.n_bytes)
+    return f"{stored.id}  {stored.added_at:%Y-%m-%d %H:%M} UTC  {stored.name}: {amount}, {checked}"
+
+
+def _amount(n_files: int, n_bytes: int) -> str:
+    return f"{n_files} file{'' if n_files == 1 else 's'}, {n_bytes} bytes"
+
+
+class _Progress:
+    """Shows the share done on standard error, once a second, from the first second on."""
+
+    def __init__(self, doing: str) -> None:
+        self._doing = doing
+        self._next_s = time.monotonic() + 1.0
+        self._is_shown = False
+
+    def __enter__(self) -> _Progress:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._is_shown:
+            print(file=sys.stderr)
+
+    def __call__(self, done_bytes: int, total_bytes: int, /) -> None:
+        if time.monotonic() >= self._next_s:
+            share = 100 * done_bytes // max(total_bytes, 1)
+            print(f"\r{self._doing}: {share:3d} %", end="", file=sys.stderr, flush=True)
+            self._is_shown = True
+            self._next_s = time.monotonic() + 1.0

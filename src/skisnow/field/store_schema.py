@@ -1,0 +1,83 @@
+"""Tables of the store.
+
+A campaign is a list of paths, each pointing at a content; a content is a SHA-256 and its bytes, cut into chunks so that
+a file of any size needs the memory of one chunk. Two campaigns that share a file share its content.
+
+The tables here are what the migrations must lead to; a change of one needs a migration and a new ``REVISION``.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from sqlalchemy import (
+    CheckConstraint,
+    Column,
+    ForeignKey,
+    ForeignKeyConstraint,
+    Integer,
+    LargeBinary,
+    MetaData,
+    String,
+    Table,
+    Text,
+)
+
+REVISION: Final = "0001"
+"""Newest migration; tests hold it against the migrations themselves."""
+
+APPLICATION_ID: Final = 0x536B6953
+"""Number in the file's header ("SkiS") that tells a store from other people's SQLite files."""
+
+CHUNK_BYTES: Final = 1 << 20
+
+metadata = MetaData(
+    naming_convention={
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "ck": "ck_%(table_name)s_%(constraint_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+        "pk": "pk_%(table_name)s",
+    }
+)
+
+campaign = Table(
+    "campaign",
+    metadata,
+    Column("id", String(12), primary_key=True),
+    Column("sha256", String(64), nullable=False, unique=True),
+    Column("name", Text, nullable=False),
+    Column("added_at", String(20), nullable=False),
+    Column("n_errors", Integer),
+    Column("n_warnings", Integer),
+    CheckConstraint("id = substr(sha256, 1, 12)", name="id_from_sha256"),
+    CheckConstraint("(n_errors IS NULL) = (n_warnings IS NULL)", name="both_counts_or_none"),
+)
+"""``added_at``: UTC, ISO 8601. Counts are NULL where the campaign could not be checked."""
+
+content = Table(
+    "content",
+    metadata,
+    Column("sha256", String(64), primary_key=True),
+    Column("size", Integer, nullable=False),
+    CheckConstraint("size >= 0", name="size_not_negative"),
+)
+
+chunk = Table(
+    "chunk",
+    metadata,
+    Column("sha256", String(64), nullable=False, primary_key=True),
+    Column("position", Integer, nullable=False, primary_key=True),
+    Column("data", LargeBinary, nullable=False),
+    ForeignKeyConstraint(["sha256"], ["content.sha256"], ondelete="CASCADE"),
+)
+"""``position`` counts a content's chunks from 0; an empty file has none."""
+
+campaign_file = Table(
+    "campaign_file",
+    metadata,
+    Column("campaign_id", String(12), ForeignKey("campaign.id", ondelete="CASCADE"), primary_key=True),
+    Column("path", Text, primary_key=True),
+    Column("sha256", String(64), ForeignKey("content.sha256"), nullable=False, index=True),
+)
+"""``path``: relative to the campaign's folder, parts joined by ``/``."""
