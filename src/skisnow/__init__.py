@@ -1,1 +1,63 @@
-"""skisnow turns what was measured on a slope into what a ski does on it."""
+"""skisnow turns what was measured on a slope into what a ski does on it.
+
+The public names, loaded when first used:
+
+``read_campaign``, ``check_campaign``
+    A folder of field measurements to a checked `Campaign`, or to the list of its problems.
+``analyse``, ``results_dict``
+    A campaign to snow hardness, failure shear stress, the choice of the model and the regressions.
+``write_report``
+    Results to a self-contained report with figures and tables.
+``write_reference``
+    A synthetic campaign with the design of Mössner and others (2013).
+``SnowProperties``, ``snow_from_results``
+    Snow as the force laws need it.
+``regress``
+    Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .estimate import Analysis, analyse, results_dict
+    from .field import Campaign, Store, check_campaign, read_campaign, write_reference
+    from .report import write_report
+    from .snow import SnowProperties, snow_from_results
+    from .statistics import regress
+
+__all__ = [
+    "Analysis",
+    "Campaign",
+    "SnowProperties",
+    "Store",
+    "analyse",
+    "check_campaign",
+    "read_campaign",
+    "regress",
+    "results_dict",
+    "snow_from_results",
+    "write_reference",
+    "write_report",
+]
+
+_ROOMS = {
+    "estimate": ("Analysis", "analyse", "results_dict"),
+    "field": ("Campaign", "Store", "check_campaign", "read_campaign", "write_reference"),
+    "report": ("write_report",),
+    "snow": ("SnowProperties", "snow_from_results"),
+    "statistics": ("regress",),
+}
+_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _ROOM_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_ROOM_OF[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

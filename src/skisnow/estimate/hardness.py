@@ -8,8 +8,10 @@ Error model of a reading, used throughout this room: its departure from the law,
     s² + (u_F / F)² + (k u_e / e)²,     k = d ln M / d ln e,
 
 with u_F the standard uncertainty of the load, u_e = (gauge step)/√12 that of the depth, and s the relative scatter of
-the snow, estimated from the series' own load steps (Paule and Mandel 1982). The parts with known u count as known; s
-has n - 1 degrees of freedom; both are joined as the GUM (JCGM 100:2008, G.4) does.
+the snow, estimated from the series' own load steps (Paule and Mandel 1982). Intervals use Student's t with the degrees
+of freedom of s (Choice): the effective degrees of the GUM (JCGM 100:2008, G.4) take s = 0 for certain where the
+estimate happens to be 0, and then covered the truth in as few as 90 % of simulated series; this form covers it in
+92-96 %, and in more where the gauge alone limits.
 """
 
 from __future__ import annotations
@@ -93,10 +95,10 @@ class Hardness:
     value
         H from the reading under the largest load (Eqn 1).
     interval
-        (m, 2), 95 %; carries gauge, load and scatter over the load steps. NaN where fewer than two readings in contact
-        leave the scatter unknown.
+        (m, 2), 95 %; carries gauge, load and scatter over the load steps. The scatter is that of the *other* readings,
+        so that it is independent of the one judged: n - 2 degrees of freedom. NaN with fewer than two others.
     fitted, fitted_interval
-        H from all readings of the series with errors in depth and load, likewise.
+        H from all readings of the series with errors in depth and load, likewise; n - 1 degrees of freedom.
     scatter
         s of each series.
     """
@@ -116,27 +118,33 @@ def hardness_at_largest_load(readings: Readings, definition: HardnessDefinition)
 
 def hardness(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> Hardness:
     """Hardness of each series from its largest load and from all its readings, with intervals."""
-    M, e = definition.measure(readings), readings.penetration_depth
-    touching = (M > 0) & (e > 0)
+    M = definition.measure(readings)
+    touching = (M > 0) & (readings.penetration_depth > 0)
     logs = np.log(np.divide(readings.load, M, out=np.ones_like(M), where=touching))
     known = known_variance(readings, definition, uncertainty)
-    n = readings.sums(touching.astype(float))
-    scatter2 = scatter_variance(readings, logs, known, touching)
 
     value = hardness_at_largest_load(readings, definition)
-    last_known = known[readings.largest]
-    interval = _log_interval(np.log(value), scatter2, last_known, n - 1.0)
+    others = touching.copy()
+    others[readings.largest] = False
+    variance = scatter_variance(readings, logs, known, others) + known[readings.largest]
+    interval = _log_interval(np.log(value), variance, readings.sums(others.astype(float)) - 1.0)
 
-    weight = np.where(touching, _reciprocal(scatter2[readings.series] + known), 0.0)
-    exact = readings.sums(weight) == 0.0  # no uncertainty at all: every reading counts alike
-    weight = np.where(touching & exact[readings.series], 1.0, weight)
-    total = readings.sums(weight)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        mean = readings.sums(weight * logs) / total
-        from_scatter = readings.sums(weight**2) * scatter2 / total**2
-        from_known = readings.sums(weight**2 * np.where(touching, known, 0.0)) / total**2
-    fitted_interval = _log_interval(mean, from_scatter, from_known, n - 1.0)
+    scatter2 = scatter_variance(readings, logs, known, touching)
+    mean, variance = _weighted_mean(readings, logs, scatter2[readings.series] + known, touching)
+    fitted_interval = _log_interval(mean, variance, readings.sums(touching.astype(float)) - 1.0)
     return Hardness(value, interval, np.exp(mean), fitted_interval, np.sqrt(scatter2))
+
+
+def _weighted_mean(
+    readings: Readings, logs: FloatArray, variance: FloatArray, touching: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """Mean of each series weighted by 1/variance, and its variance; without any variance all readings count alike."""
+    weight = np.where(touching, _reciprocal(variance), 0.0)
+    exact = readings.sums(weight) == 0.0
+    weight = np.where(touching & exact[readings.series], 1.0, weight)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        total = readings.sums(weight)
+        return readings.sums(weight * logs) / total, np.where(exact, 0.0, 1.0 / total)
 
 
 def known_variance(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> FloatArray:
@@ -183,12 +191,8 @@ def _reciprocal(variance: FloatArray) -> FloatArray:
     return np.divide(1.0, variance, out=np.zeros_like(variance), where=variance > 0)
 
 
-def _log_interval(
-    log_value: FloatArray, from_scatter: FloatArray, from_known: FloatArray, scatter_dof: FloatArray
-) -> FloatArray:
-    """Interval of exp(log_value) whose variance has a part from scatter (few degrees of freedom) and a known one."""
-    total = from_scatter + from_known
-    with np.errstate(invalid="ignore", divide="ignore"):
-        dof = np.where(from_scatter > 0, scatter_dof * (total / from_scatter) ** 2, np.inf)
-        half = expanded_factor(dof, CONFIDENCE) * np.sqrt(total)
+def _log_interval(log_value: FloatArray, variance: FloatArray, dof: FloatArray) -> FloatArray:
+    """Interval of exp(log_value) by Student's t; NaN without a degree of freedom."""
+    with np.errstate(invalid="ignore"):
+        half = expanded_factor(np.where(dof >= 1.0, dof, np.nan), CONFIDENCE) * np.sqrt(variance)
         return np.exp(np.stack((log_value - half, log_value + half), axis=-1))

@@ -57,16 +57,15 @@ def seating(
     with np.errstate(all="ignore"):  # series without an answer run through as NaN and are told apart at the end
         for _ in range(n_iterations):
             line = _linearise(readings, log_H, offset, scatter2, uncertainty)
-            step, shift, _, _ = _solve(readings, line)
+            step, shift, _ = _solve(readings, line)
             step = np.clip(step, -0.5, 0.5)
             log_H, offset = log_H + step, offset + shift
             previous, scatter2 = scatter2, _scatter_step(readings, log_H, offset, scatter2, uncertainty, n)
             drift = np.abs(scatter2 - previous) / (scatter2 + 1e-12)
             if np.nanmax(np.maximum(np.abs(step), drift), initial=0.0) < 1e-9:
                 break
-        _, _, variance, known = _solve(readings, _linearise(readings, log_H, offset, scatter2, uncertainty))
-        dof = np.where(variance > known, (n - 2.0) * (variance / (variance - known)) ** 2, np.inf)
-        half = expanded_factor(np.where(n > 2, dof, np.nan), CONFIDENCE) * np.sqrt(variance)
+        _, _, variance = _solve(readings, _linearise(readings, log_H, offset, scatter2, uncertainty))
+        half = expanded_factor(np.where(n > 2, n - 2.0, np.nan), CONFIDENCE) * np.sqrt(variance)
     lost = (n < 3) | ~np.isfinite(half) | ~(np.abs(step) < 1e-5)
     offset = np.where(lost, np.nan, offset)
     interval = np.stack((offset - half, offset + half), axis=-1)
@@ -75,12 +74,11 @@ def seating(
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """The fit linearised: residual, d residual/d ln H, weight and known variance of each reading."""
+    """The fit linearised: residual, d residual/d ln H and weight of each reading."""
 
     residual: FloatArray
     slope: FloatArray
     weight: FloatArray
-    known: FloatArray
 
 
 def _linearise(
@@ -95,20 +93,18 @@ def _linearise(
     variance = known + per_log_force**2 * scatter2[series]
     weight = np.where(variance > 0, 1.0 / variance, 0.0)
     residual = readings.penetration_depth - depth - offset[series]
-    return _Line(residual, per_log_force, weight, known)
+    return _Line(residual, per_log_force, weight)
 
 
-def _solve(readings: Readings, line: _Line) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Steps in ln H and δ, the variance of δ and the part of it that known uncertainties make."""
+def _solve(readings: Readings, line: _Line) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Steps in ln H and δ, and the variance of δ."""
     w, J = line.weight, -line.slope  # d(prediction)/d ln H; d(prediction)/dδ = 1
     S_w, S_J, S_JJ = readings.sums(w), readings.sums(w * J), readings.sums(w * J * J)
     S_r, S_Jr = readings.sums(w * line.residual), readings.sums(w * J * line.residual)
     determinant = S_w * S_JJ - S_J**2
     step = (S_w * S_Jr - S_J * S_r) / determinant
     shift = (S_JJ * S_r - S_J * S_Jr) / determinant
-    # δ = Σ c r with c = w (S_JJ - S_J J)/determinant
-    share = w * (S_JJ[readings.series] - S_J[readings.series] * J) / determinant[readings.series]
-    return step, shift, S_JJ / determinant, readings.sums(share**2 * line.known)
+    return step, shift, S_JJ / determinant
 
 
 def _scatter_step(
