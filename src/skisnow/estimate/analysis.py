@@ -14,7 +14,7 @@ from ..field.records import Campaign
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import fit_models_with_depth_errors, pooled_scatter
 from .hardness import DEFINITIONS, Hardness, ReadingUncertainty, hardness
-from .model_choice import NestedRows, bootstrap_intervals, test_nested_rows
+from .model_choice import NestedRows, bootstrap_intervals, compare_nested_rows
 from .models import Model, ModelFit, fit_models, select_model
 from .observations import (
     DENSITY_KEY,
@@ -198,7 +198,7 @@ def _penetration(
         hardness=found,
         seating=offsets,
         table=ModelTable(fits, intervals),
-        nested=test_nested_rows(fits),
+        nested=compare_nested_rows(fits),
         selected=select_model(fits),
         errors_in_depth=ModelTable(depth_fits, depth_intervals),
     )

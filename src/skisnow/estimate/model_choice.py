@@ -42,7 +42,7 @@ class NestedRows:
     valid_classically: bool
 
 
-def test_nested_rows(fits: tuple[ModelFit, ...]) -> tuple[NestedRows, ...]:
+def compare_nested_rows(fits: tuple[ModelFit, ...]) -> tuple[NestedRows, ...]:
     """Compare all nested pairs of one hardness."""
     by_model = {fit.model: fit for fit in fits}
     return tuple(_compare(by_model[full], by_model[reduced]) for full, reduced in NESTED_PAIRS)
