@@ -76,7 +76,7 @@ def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearT
     depth = low + place_in_range * (np.minimum(high, reachable) - low)
     moment = np.maximum(stress * depth * design.PLATE_LENGTH * lever_arm + moment_error, 0.0)
     own_density: FloatArray = np.concatenate([np.full(count - further.size, np.nan), further])
-    return _shear_tests(angle, _on_gauge(depth, noise), np.round(moment, 2), own_density), stress
+    return _shear_tests(angle, _on_gauge(depth, noise), np.round(moment, 2).astype(np.float64), own_density), stress
 
 
 def density(generator: np.random.Generator) -> DensitySamples:
