@@ -1,1 +1,39 @@
 """Least squares with intervals, bounded fits, nested F tests, resampling. Knows no snow."""
+
+from .anova import Anova, one_way_anova
+from .bounded import NonNegativeFit, non_negative_fit, non_negative_fits
+from .clusters import ClusterIntervals, cluster_intervals
+from .combined_uncertainty import expanded_factor, welch_satterthwaite
+from .linear import LinearFit, linear_fit, polynomial_fit
+from .nested import NestedTest, nested_f_test
+from .nonlinear import NonlinearFit, nonlinear_fit
+from .regress import Regress, RegressStatistics, regress
+from .resampling import percentile_interval, resampling_counts
+from .two_groups import RatioOfMeans, ratio_of_means, tests_per_group
+
+__all__ = [
+    "Anova",
+    "ClusterIntervals",
+    "LinearFit",
+    "NestedTest",
+    "NonNegativeFit",
+    "NonlinearFit",
+    "RatioOfMeans",
+    "Regress",
+    "RegressStatistics",
+    "cluster_intervals",
+    "expanded_factor",
+    "linear_fit",
+    "nested_f_test",
+    "non_negative_fit",
+    "non_negative_fits",
+    "nonlinear_fit",
+    "one_way_anova",
+    "percentile_interval",
+    "polynomial_fit",
+    "ratio_of_means",
+    "regress",
+    "resampling_counts",
+    "tests_per_group",
+    "welch_satterthwaite",
+]

@@ -1,0 +1,268 @@
+"""Least squares with all coefficients ≥ 0, exact for the few coefficients of a material law.
+
+With at most six coefficients every set of active bounds can be tried. The one that meets the Karush-Kuhn-Tucker
+conditions is the answer: coefficients > 0 where free, and for a coefficient on its bound no gain in leaving it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import ParameterError
+from .least_squares import BoolArray, FloatArray, as_predictors, as_response, pivoted_qr, rank_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy.typing as npt
+
+MOST_COEFFICIENTS = 6
+_KKT_TOLERANCE = 1e-12
+"""Of the gradient, for columns of length one: some thousand roundings."""
+_DEPENDENT = 1e-13
+"""A pivot of a scaled Gram matrix not above this is zero but for rounding."""
+
+
+@dataclass(frozen=True)
+class NonNegativeFit:
+    """A least-squares fit with coefficients ≥ 0.
+
+    Attributes
+    ----------
+    coefficients
+        Shape (p,); exactly 0.0 on the bound.
+    at_bound
+        Shape (p,): whether the bound holds the coefficient.
+    sse
+        Σ w r², with the weights of the fit (1 where none were given).
+    residuals
+        Observed minus fitted, shape (n,), not weighted.
+    rank
+        Of the (weighted) design, bounds left aside.
+    """
+
+    coefficients: FloatArray
+    at_bound: BoolArray
+    sse: float
+    residuals: FloatArray
+    rank: int
+
+
+def non_negative_fit(
+    design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.ArrayLike | None = None
+) -> NonNegativeFit:
+    """Minimise Σ w (response - design β)² over β ≥ 0.
+
+    Parameters
+    ----------
+    design
+        Shape (n, p) or (n,), 1 ≤ p ≤ 6; no column is added.
+    response
+        Shape (n,).
+    weights
+        w ≥ 0, shape (n,), or None for all one.
+
+    Returns
+    -------
+    NonNegativeFit
+        Where columns depend on each other many β are equally good; of these, one with the fewest coefficients above
+        zero is returned, and ``rank`` tells that it was so.
+
+    Raises
+    ------
+    ParameterError
+        If shapes do not fit, values are not finite, a weight is below zero, or p is not between 1 and 6.
+
+    Notes
+    -----
+    The design is scaled by columns and factorised as QR; all sets of active bounds are solved in the p × p triangle.
+
+    Examples
+    --------
+    The free fit of y = b1 x + b2 would be b1 = 2, b2 = -1; with b2 held at 0, b1 = (1·1 + 2·3 + 3·5)/(1 + 4 + 9).
+
+    >>> fit = non_negative_fit([[1, 1], [2, 1], [3, 1]], [1, 3, 5])
+    >>> round(float(fit.coefficients[0]), 12) == round(22 / 14, 12), fit.at_bound.tolist()
+    (True, [False, True])
+    """
+    y = as_response(response)
+    A = as_predictors(design, len(y))
+    n, p = A.shape
+    _require_few(p)
+    root = _root_weights(weights, n)
+    weighted = A * root[:, None]
+    scale = np.linalg.norm(weighted, axis=0)
+    unit = np.where(scale > 0, scale, 1.0)
+    Q, R, order = pivoted_qr(weighted / unit)
+    triangle = np.empty_like(R)
+    triangle[:, order] = R
+    scaled = _best_support(triangle, Q.T @ (y * root), n)
+    coefficients = scaled / unit
+    residuals = y - A @ coefficients
+    sse = float(np.sum((root * residuals) ** 2))
+    return NonNegativeFit(coefficients, coefficients == 0.0, sse, residuals, rank_of(R, n))
+
+
+def _require_few(p: int) -> None:
+    if not 1 <= p <= MOST_COEFFICIENTS:
+        raise ParameterError(f"{p} coefficients; every set of bounds is tried, which is meant for 1 to 6 of them")
+
+
+def _root_weights(weights: npt.ArrayLike | None, n: int) -> FloatArray:
+    if weights is None:
+        return np.ones(n)
+    w = np.asarray(weights, dtype=float)
+    if w.shape != (n,) or not np.all(np.isfinite(w)) or np.any(w < 0):
+        raise ParameterError(f"weights of shape {w.shape}; {n} finite numbers ≥ 0 are needed, one for each response")
+    return np.sqrt(w)
+
+
+@cache
+def _supports(p: int) -> tuple[tuple[int, ...], ...]:
+    """All sets of free coefficients: the full one first, as the likeliest, then from the smallest up."""
+    everything = tuple(range(p))
+    return (everything, *(s for size in range(p) for s in combinations(everything, size)))
+
+
+def _best_support(A: FloatArray, z: FloatArray, n: int) -> FloatArray:
+    """Minimise ‖A x - z‖ over x ≥ 0 for a small A with columns of length one or zero."""
+    best, least = np.zeros(A.shape[1]), np.inf
+    for support in _supports(A.shape[1]):
+        x = _solved_on(A, z, support, n)
+        if x is None:
+            continue
+        gain = A.T @ (z - A @ x)
+        gain[list(support)] = 0.0
+        violation = max(float(np.max(gain, initial=0.0)), 0.0)
+        if violation <= _KKT_TOLERANCE * (float(np.linalg.norm(z)) + float(np.sum(x))):
+            return x
+        if violation < least:
+            best, least = x, violation
+    return best
+
+
+def _solved_on(A: FloatArray, z: FloatArray, support: tuple[int, ...], n: int) -> FloatArray | None:
+    """Least squares on the columns of the support; None where they depend on each other or a coefficient is not > 0."""
+    x = np.zeros(A.shape[1])
+    if support:
+        columns = list(support)
+        part = A[:, columns]
+        solution, _, rank, _ = np.linalg.lstsq(part, z, rcond=max(n, A.shape[1]) * np.finfo(float).eps)
+        if rank < len(columns):
+            return None
+        x[columns] = solution
+        if not np.all(x[columns] > 0):
+            return None
+    return x
+
+
+def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
+    """Minimise βᵀ G β - 2 mᵀ β over β ≥ 0 for a whole batch of normal equations.
+
+    Parameters
+    ----------
+    gram
+        G = AᵀA, shape (B, p, p), 1 ≤ p ≤ 6.
+    moment
+        m = Aᵀy, shape (B, p).
+
+    Returns
+    -------
+    array
+        β, shape (B, p); exactly 0.0 on the bound. NaN for a member that has a value that is not finite. Where G is
+        singular, a solution with the fewest coefficients above zero.
+
+    Notes
+    -----
+    For bootstrap samples, where the cross products are all there is. They hold half the digits of the design: for a
+    point estimate use `non_negative_fit`.
+
+    Examples
+    --------
+    >>> non_negative_fits([[[14.0, 6.0], [6.0, 3.0]]], [[22.0, 9.0]]).round(6).tolist()  # the example above
+    [[1.571429, 0.0]]
+    """
+    G, m = np.asarray(gram, dtype=float), np.asarray(moment, dtype=float)
+    if m.ndim != 2 or G.shape != (*m.shape, m.shape[1]):
+        raise ParameterError(f"gram has shape {G.shape}, moment {m.shape}; (B, p, p) and (B, p) are needed")
+    _require_few(m.shape[1])
+    known = np.isfinite(m).all(axis=1) & np.isfinite(G).all(axis=(1, 2))
+    result = np.full(m.shape, np.nan)
+    if not np.any(known):
+        return result
+    # the batch goes last: each step below is then one pass over contiguous memory
+    G, m = np.moveaxis(G[known], 0, -1), m[known].T
+    scale = np.sqrt(np.maximum(np.einsum("iib->ib", G), 0.0))
+    unit = np.where(scale > 0, scale, 1.0)
+    G = np.ascontiguousarray(G / (unit[:, None] * unit[None, :]))
+    result[known] = (_batch(G, m / unit) / unit).T
+    return result
+
+
+def _batch(G: FloatArray, m: FloatArray) -> FloatArray:
+    """Solve members G (p, p, B), m (p, B) with unit diagonal; those that meet the conditions leave the batch."""
+    p, B = m.shape
+    best, least = np.zeros((p, B)), np.full(B, np.inf)
+    open_ = np.arange(B)
+    for support in _supports(p):
+        here_G, here_m = G[:, :, open_], m[:, open_]
+        x, feasible = _solved_batch(here_G, here_m, support)
+        violation = _violation(here_G, here_m, x, support)
+        better = feasible & (violation < least[open_])
+        best[:, open_[better]] = x[:, better]
+        least[open_[better]] = violation[better]
+        allowed = _KKT_TOLERANCE * (np.max(np.abs(here_m), axis=0) + np.sum(x, axis=0))
+        open_ = open_[~(feasible & (violation <= allowed))]
+        if open_.size == 0:
+            break
+    return best
+
+
+def _violation(G: FloatArray, m: FloatArray, x: FloatArray, support: tuple[int, ...]) -> FloatArray:
+    """How much the objective would still fall per step of a coefficient that the support leaves at zero."""
+    worst = np.zeros(m.shape[1])
+    for j in set(range(len(m))) - set(support):
+        gain = m[j].copy()
+        for k in support:
+            gain -= G[j, k] * x[k]
+        np.maximum(worst, gain, out=worst)
+    return worst
+
+
+def _solved_batch(G: FloatArray, m: FloatArray, support: tuple[int, ...]) -> tuple[FloatArray, BoolArray]:
+    """Solve G x = m on the support by L D Lᵀ; the second result tells where it is regular with all x > 0."""
+    x, feasible = np.zeros_like(m), np.ones(m.shape[1], dtype=bool)
+    lower: dict[tuple[int, int], FloatArray] = {}
+    pivot: dict[int, FloatArray] = {}
+    for i, j in _lower_triangle(support):
+        earlier = [k for k in support if k < j]
+        entry = G[i, j].copy()
+        for k in earlier:
+            entry -= lower[i, k] * lower[j, k] * pivot[k]
+        if i > j:
+            lower[i, j] = entry / pivot[j]
+        else:
+            regular = entry > _DEPENDENT
+            feasible &= regular
+            pivot[j] = np.where(regular, entry, 1.0)
+    for i in support:
+        x[i] = m[i]
+        for k in (k for k in support if k < i):
+            x[i] -= lower[i, k] * x[k]
+    for i in reversed(support):
+        x[i] /= pivot[i]
+        for k in (k for k in support if k > i):
+            x[i] -= lower[k, i] * x[k]
+        feasible &= x[i] > 0
+    x[:, ~feasible] = 0.0
+    return x, feasible
+
+
+def _lower_triangle(support: tuple[int, ...]) -> Iterator[tuple[int, int]]:
+    """Entries on and below the diagonal, column by column."""
+    return ((i, j) for j in support for i in support if i >= j)

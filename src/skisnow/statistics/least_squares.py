@@ -1,0 +1,170 @@
+"""The one orthogonal factorisation behind the linear fits of this room.
+
+The columns are centred and scaled, factorised by Householder reflections with column exchange, and the coefficients are
+carried back to the columns as given. No normal equations: they would square the condition number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import qr, solve_triangular
+
+from ..errors import FitError, ParameterError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+IntArray: TypeAlias = npt.NDArray[np.int64]
+BoolArray: TypeAlias = npt.NDArray[np.bool_]
+
+_EPS = float(np.finfo(float).eps)
+_ROUNDING = 4.0 * _EPS
+"""A column whose spread is not above this share of its size is constant but for rounding."""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """A design in well-conditioned coordinates.
+
+    ``scaled`` (n, p) spans what the original columns X span; ``back`` (p, p) carries coefficients γ of the scaled
+    columns back to those of X: β = back γ.
+    """
+
+    scaled: FloatArray
+    back: FloatArray
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Factorisation:
+    """Full-rank design: β = loadings Qᵀy, so that the covariance of β is σ² loadings loadingsᵀ.
+
+    Attributes
+    ----------
+    orthogonal
+        Q, shape (n, p), with orthonormal columns.
+    loadings
+        Shape (p, p).
+    """
+
+    orthogonal: FloatArray
+    loadings: FloatArray
+    _scaled: FloatArray
+    _back: FloatArray
+    _inverse: FloatArray
+
+    def solve(self, response: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the coefficients β (p,) and residuals (n,), with one step of iterative refinement."""
+        gamma = np.zeros(self._scaled.shape[1])
+        residual = response
+        for _ in range(2):
+            gamma = gamma + self._inverse @ (self.orthogonal.T @ residual)
+            residual = response - self._scaled @ gamma
+        return self._back @ gamma, residual
+
+
+def as_response(response: npt.ArrayLike) -> FloatArray:
+    """Check a response: one dimension, at least one finite number, no others."""
+    y = np.asarray(response, dtype=float)
+    if y.ndim != 1 or y.size == 0:
+        raise ParameterError(f"response has shape {y.shape}; it must be a row of at least one number")
+    require_finite("response", y)
+    return y
+
+
+def as_predictors(predictors: npt.ArrayLike, n: int) -> FloatArray:
+    """Check predictors: (n,) or (n, k), finite; returned as (n, k)."""
+    X = np.asarray(predictors, dtype=float)
+    if X.ndim == 1:
+        X = X[:, None]
+    if X.ndim != 2 or len(X) != n:
+        raise ParameterError(f"predictors have shape {X.shape}; {n} rows are needed, one for each response")
+    require_finite("predictors", X)
+    return X
+
+
+def require_finite(name: str, values: FloatArray) -> None:
+    """Raise `ParameterError` with the place of the first value that is no finite number."""
+    bad = ~np.isfinite(values)
+    if np.any(bad):
+        place = tuple(int(i) for i in np.argwhere(bad)[0])
+        raise ParameterError(
+            f"{name}{list(place)} is {values[place]}; only finite numbers can be fitted: leave such rows out"
+        )
+
+
+def centre(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Shift columns (n, ...) by their means; a column that is constant but for rounding becomes exactly zero."""
+    middle = values.mean(axis=0)
+    shifted = values - middle
+    still = np.max(np.abs(shifted), axis=0) <= _ROUNDING * np.max(np.abs(values), axis=0)
+    return np.where(still, 0.0, shifted), middle
+
+
+def standardised(predictors: FloatArray, *, intercept: bool) -> Columns:
+    """Centre (only beside an intercept) and scale predictors (n, k); with an intercept a column of ones goes first."""
+    n, k = predictors.shape
+    shifted, middle = centre(predictors) if intercept and k else (predictors, np.zeros(k))
+    length = np.sqrt(np.mean(shifted**2, axis=0)) if k else np.zeros(0)
+    unit = np.where(length > 0, length, 1.0)
+    back = np.diag(1.0 / unit)
+    scaled = shifted / unit
+    names = tuple(f"predictor {j + 1}" for j in range(k))
+    if not intercept:
+        return Columns(scaled, back, names)
+    top = np.concatenate(([1.0], -middle / unit))
+    back = np.vstack((top, np.hstack((np.zeros((k, 1)), back))))
+    return Columns(np.hstack((np.ones((n, 1)), scaled)), back, ("intercept", *names))
+
+
+def pivoted_qr(columns: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Q (n, m), R (m, p) and the order of the columns, m = min(n, p), with columns[:, order] = Q R."""
+    Q, R, order = qr(columns, mode="economic", pivoting=True)
+    return np.asarray(Q, dtype=float), np.asarray(R, dtype=float), np.asarray(order, dtype=np.int64)
+
+
+def rank_of(triangle: FloatArray, n: int) -> int:
+    """Numerical rank from the triangle of a factorisation with column exchange."""
+    diagonal = np.abs(np.diag(triangle))
+    if diagonal.size == 0 or diagonal[0] == 0:
+        return 0
+    return int(np.sum(diagonal > max(n, triangle.shape[1]) * _EPS * diagonal[0]))
+
+
+def independent_columns(scaled: FloatArray) -> list[int]:
+    """Indices, ascending, of columns that span all of them and are independent of each other."""
+    _, R, order = pivoted_qr(scaled)
+    return sorted(order[: rank_of(R, len(scaled))].tolist())
+
+
+def factorise(columns: Columns) -> Factorisation:
+    """Factorise a design of full rank.
+
+    Raises
+    ------
+    FitError
+        If there are fewer rows than columns, or one column follows from the others.
+    """
+    n, p = columns.scaled.shape
+    if n < p:
+        raise FitError(f"{n} observations cannot determine {p} coefficients; at least {p} are needed")
+    Q, R, order = pivoted_qr(columns.scaled)
+    rank = rank_of(R, n)
+    if rank < p:
+        raise FitError(_dependence(columns.names, order[rank:].tolist(), rank))
+    inverse = np.empty((p, p))
+    inverse[order] = solve_triangular(R, np.eye(p))
+    return Factorisation(Q, columns.back @ inverse, columns.scaled, columns.back, inverse)
+
+
+def _dependence(names: Sequence[str], dependent: list[int], rank: int) -> str:
+    which = ", ".join(names[j] for j in sorted(dependent))
+    return (
+        f"the data determine only {rank} of {len(names)} coefficients: {which} does not vary or follows from the other "
+        "columns; leave it out, or measure at more settings of it"
+    )

@@ -1,0 +1,187 @@
+"""Linear least squares with standard errors, intervals, R², F and p; and polynomials of high degree.
+
+Holds the certified digits of the NIST sets Norris and Longley.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .combined_uncertainty import expanded_factor, require_confidence
+from .least_squares import Columns, as_predictors, as_response, centre, factorise, standardised
+from .nested import f_ratio, f_tail
+from .polynomial_basis import chebyshev_columns
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from .least_squares import FloatArray
+
+
+@dataclass(frozen=True)
+class LinearFit:
+    """A linear least-squares fit.
+
+    Attributes
+    ----------
+    n, n_parameters, rank
+        Observations n, coefficients p (an intercept counted), rank of the design (equal to p).
+    coefficients, standard_errors
+        Shape (p,), the intercept first.
+    intervals
+        Shape (p, 2): low and high, by Student's t with n - p degrees of freedom.
+    covariance
+        Of the coefficients, shape (p, p).
+    residuals
+        Observed minus fitted, shape (n,).
+    sse, rmse, rmse_dof
+        Sum of squared residuals; its root mean over n; its root mean over n - p (MATLAB's).
+    r2
+        1 - SSE / sum of squares about the mean; NaN without an intercept and where the response does not vary.
+    F, p
+        F test against the intercept-only model, p the chance of an F as large; NaN without an intercept, without a
+        predictor, and for n = p.
+
+    What needs n > p is NaN for n = p: standard_errors, intervals, covariance, rmse_dof, F, p.
+    """
+
+    n: int
+    n_parameters: int
+    rank: int
+    coefficients: FloatArray
+    standard_errors: FloatArray
+    intervals: FloatArray
+    covariance: FloatArray
+    residuals: FloatArray
+    sse: float
+    rmse: float
+    rmse_dof: float
+    r2: float
+    F: float
+    p: float
+
+
+def linear_fit(
+    response: npt.ArrayLike, predictors: npt.ArrayLike, *, intercept: bool = True, confidence: float = 0.95
+) -> LinearFit:
+    """Fit response = b0 + b1 x1 + … + bk xk + error by least squares.
+
+    Parameters
+    ----------
+    response
+        Shape (n,).
+    predictors
+        x, shape (n, k) or (n,), without a column of ones; (n, 0) fits the mean.
+    intercept
+        Whether b0 is fitted; it is then the first coefficient.
+    confidence
+        Of the intervals.
+
+    Raises
+    ------
+    ParameterError
+        If shapes do not fit or a value is not finite.
+    FitError
+        If n < p, or a predictor does not vary or follows from the others.
+
+    Notes
+    -----
+    Columns are centred and scaled and factorised as QR; no normal equations. Without an intercept R², F and p stay NaN:
+    about zero they would answer another question under the same name. `nested_f_test` compares such models.
+
+    Examples
+    --------
+    Through (0, 1), (1, 3), (2, 4), by hand: slope 3/2, intercept 7/6, SSE 1/6.
+
+    >>> fit = linear_fit([1.0, 3.0, 4.0], [0.0, 1.0, 2.0])
+    >>> [round(float(b), 12) for b in fit.coefficients], round(fit.sse, 12)
+    ([1.166666666667, 1.5], 0.166666666667)
+    """
+    require_confidence(confidence)
+    y = as_response(response)
+    X = as_predictors(predictors, len(y))
+    columns = standardised(X, intercept=intercept)
+    return _fit(y, columns, intercept=intercept, confidence=confidence)
+
+
+def polynomial_fit(x: npt.ArrayLike, y: npt.ArrayLike, degree: int, *, confidence: float = 0.95) -> LinearFit:
+    """Fit y = b0 + b1 x + … + b_d x^d + error by least squares; coefficients in ascending powers.
+
+    Parameters
+    ----------
+    x, y
+        Shape (n,).
+    degree
+        d ≥ 0.
+
+    Returns
+    -------
+    LinearFit
+        As of `linear_fit`, for the powers of x as given.
+
+    Notes
+    -----
+    The powers of x are nearly dependent columns: raised from -9 … -3 to the tenth they lose all digits of a double.
+    The fit is done in Chebyshev polynomials of x shifted and scaled to [-1, 1], and carried back to powers in rational
+    arithmetic, which loses nothing.
+
+    Examples
+    --------
+    >>> fit = polynomial_fit([0.0, 1.0, 2.0, 3.0], [1.0, 2.0, 5.0, 10.0], 2)  # 1 + x²
+    >>> [abs(round(float(b), 12)) for b in fit.coefficients]
+    [1.0, 0.0, 1.0]
+    """
+    require_confidence(confidence)
+    response = as_response(y)
+    columns = chebyshev_columns(as_predictors(x, len(response)), degree)
+    return _fit(response, columns, intercept=True, confidence=confidence)
+
+
+def _fit(response: FloatArray, columns: Columns, *, intercept: bool, confidence: float) -> LinearFit:
+    design = factorise(columns)
+    shifted, middle = centre(response) if intercept else (response, np.zeros(()))
+    coefficients, residuals = design.solve(shifted)
+    if intercept:
+        coefficients[0] += middle
+    n, p = design.orthogonal.shape
+    sse = float(residuals @ residuals)
+    variance = sse / (n - p) if n > p else float("nan")
+    errors = np.sqrt(variance) * np.linalg.norm(design.loadings, axis=1)
+    half = expanded_factor(float(n - p), confidence) * errors
+    r2, F, tail = _explained(shifted, residuals, p) if intercept else (float("nan"),) * 3
+    return LinearFit(
+        n=n,
+        n_parameters=p,
+        rank=p,
+        coefficients=coefficients,
+        standard_errors=errors,
+        intervals=np.stack((coefficients - half, coefficients + half), axis=-1),
+        covariance=variance * design.loadings @ design.loadings.T,
+        residuals=residuals,
+        sse=sse,
+        rmse=float(np.sqrt(sse / n)),
+        rmse_dof=float(np.sqrt(variance)),
+        r2=r2,
+        F=F,
+        p=tail,
+    )
+
+
+def _explained(shifted: FloatArray, residuals: FloatArray, p: int) -> tuple[float, float, float]:
+    """R² about the mean, F and p against the intercept-only model."""
+    n = len(shifted)
+    deviations = shifted - shifted.mean()
+    total, sse = float(deviations @ deviations), float(residuals @ residuals)
+    if total == 0:
+        return (float("nan"),) * 3
+    r2 = 1.0 - sse / total
+    if p == 1 or n <= p:
+        return r2, float("nan"), float("nan")
+    fitted = shifted - residuals
+    # the explained squares from the fitted values: total - sse would lose digits where little is explained
+    explained = float(np.sum((fitted - fitted.mean()) ** 2))
+    F = f_ratio(explained, p - 1, sse, n - p)
+    return r2, F, f_tail(F, p - 1, n - p)

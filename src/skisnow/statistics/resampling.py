@@ -1,0 +1,105 @@
+"""Bootstrap: how often each unit is drawn, and intervals from the resampled results.
+
+A unit is what was drawn independently, a whole experiment and not one of its readings.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import ParameterError
+from .combined_uncertainty import require_confidence
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy.typing as npt
+
+    from .least_squares import FloatArray
+
+_DRAWS_AT_ONCE = 2**18
+"""Draws of one chunk, some MB: what stays in the processor's cache."""
+
+
+def resampling_counts(
+    n_units: int, n_resamples: int, rng: np.random.Generator, *, chunk: int | None = None
+) -> Iterator[FloatArray]:
+    """Draw bootstrap resamples: n units from n units with replacement, as counts.
+
+    Parameters
+    ----------
+    n_units
+        Units, and draws in each resample, ≥ 1.
+    n_resamples
+        Resamples in all, ≥ 0.
+    rng
+        Source of random numbers; the counts depend on its state alone, not on ``chunk``.
+    chunk
+        Resamples in each array; left out, as many as make some MB.
+
+    Yields
+    ------
+    array
+        Shape (b, n_units), b ≤ chunk: how often each unit was drawn; every row sums to n_units. Floats, because what
+        follows is a product with the units' contributions: ``counts @ contributions``.
+
+    Examples
+    --------
+    >>> rows = np.vstack(list(resampling_counts(5, 3, np.random.default_rng(1))))
+    >>> rows.shape, rows.sum(axis=1).tolist()
+    ((3, 5), [5.0, 5.0, 5.0])
+    """
+    if n_units < 1 or n_resamples < 0 or (chunk is not None and chunk < 1):
+        raise ParameterError(
+            f"n_units = {n_units}, n_resamples = {n_resamples}, chunk = {chunk}; at least 1, 0 and 1 are needed"
+        )
+    return _drawn(n_units, n_resamples, rng, chunk or max(1, _DRAWS_AT_ONCE // n_units))
+
+
+def _drawn(n_units: int, n_resamples: int, rng: np.random.Generator, chunk: int) -> Iterator[FloatArray]:
+    for start in range(0, n_resamples, chunk):
+        b = min(chunk, n_resamples - start)
+        # 64-bit integers: narrower ones are drawn in words whose rest is thrown away at the end of each call, and the
+        # sequence would depend on the chunk
+        drawn = rng.integers(0, n_units, size=(b, n_units), dtype=np.int64)
+        if b > 1:
+            drawn += np.arange(b, dtype=np.int64)[:, None] * n_units
+        yield np.bincount(drawn.ravel(), minlength=b * n_units).reshape(b, n_units).astype(float)
+
+
+def percentile_interval(samples: npt.ArrayLike, *, confidence: float = 0.95) -> FloatArray:
+    """Percentile interval of resampled results: the quantiles (1 ± confidence)/2 over the first axis.
+
+    Parameters
+    ----------
+    samples
+        Shape (B, ...), one entry for each resample.
+    confidence
+        Between 0 and 1.
+
+    Returns
+    -------
+    array
+        Low and high, shape (..., 2). Nothing is left out: one NaN among the samples of a quantity makes its interval
+        NaN, for a resample without an answer is not one that may be forgotten. NaN for B = 0.
+
+    Notes
+    -----
+    Quantiles are linear between order statistics (type 7 of Hyndman and Fan, 1996).
+
+    Examples
+    --------
+    >>> percentile_interval(np.arange(101.0), confidence=0.9).round(9).tolist()
+    [5.0, 95.0]
+    """
+    require_confidence(confidence)
+    values = np.asarray(samples, dtype=float)
+    if values.ndim == 0:
+        raise ParameterError("samples must have at least one axis, that of the resamples")
+    if len(values) == 0:
+        return np.full((*values.shape[1:], 2), np.nan)
+    tail = 0.5 * (1.0 - confidence)
+    bounds: FloatArray = np.quantile(values, [tail, 1.0 - tail], axis=0)
+    return np.moveaxis(bounds, 0, -1)
