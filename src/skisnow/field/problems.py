@@ -51,3 +51,33 @@ class Problem:
     def as_dict(self) -> dict[str, str | int | None]:
         """Give the problem as the object of ``skisnow check --json``."""
         return asdict(self)
+
+
+def error(
+    code: str,
+    file: str,
+    *,
+    allowed: str,
+    action: str,
+    row: int | None = None,
+    column: str | None = None,
+    experiment: str | None = None,
+    value: str | None = None,
+) -> Problem:
+    """Make a problem that refuses the campaign."""
+    return Problem("error", code, file, row, column, experiment, value, allowed, action)
+
+
+def warning(
+    code: str,
+    file: str,
+    *,
+    allowed: str,
+    action: str,
+    row: int | None = None,
+    column: str | None = None,
+    experiment: str | None = None,
+    value: str | None = None,
+) -> Problem:
+    """Make a problem that is said and leaves the campaign usable."""
+    return Problem("warning", code, file, row, column, experiment, value, allowed, action)

@@ -1,0 +1,142 @@
+"""Marks told like problems: each with its experiment, file, row, value, what would not be marked, and what follows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..units import MM
+from .largest_load import greatest_depths, reading_at_largest_load
+from .marks import FEWEST_LOADS, MARKS, RESOLUTIONS
+from .problems import Problem
+from .table_forms import PENETRATION, SHEAR
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from ..geometry import GeometryForm
+    from .records import BoolArray, Campaign, PenetrationTests
+
+_UNMARKED_STATUS = "a blank status"
+_UNMARKED_ZERO = "a depth above 0 mm"
+_UNMARKED_OUTLIER = "a logarithm of the hardness nearer to its site's median"
+
+
+def mark_problems(
+    campaign: Campaign,
+    masks_penetration: Mapping[str, BoolArray],
+    masks_shear: Mapping[str, BoolArray],
+    *,
+    geometry: GeometryForm = "extended",
+) -> list[Problem]:
+    """List every mark as a problem of severity ``mark``.
+
+    Parameters
+    ----------
+    campaign
+        The campaign that was screened.
+    masks_penetration, masks_shear
+        Masks by code over the experiments, from screening; further codes of `MARKS` may have been added.
+    geometry
+        The form of the ski piece that was screened with.
+
+    Returns
+    -------
+    Penetration before shear, within them in the order of the file, then of `MARKS`.
+    """
+    problems: list[Problem] = []
+    if campaign.penetration is not None:
+        places = _PenetrationPlaces(campaign, campaign.penetration, geometry)
+        problems += [places.problem(index, code) for index, code in _marked(masks_penetration)]
+    if campaign.shear is not None:
+        problems += [_shear_problem(campaign, index, code) for index, code in _marked(masks_shear)]
+    return problems
+
+
+def _marked(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, str]]:
+    codes = [code for code in MARKS if code in masks]
+    if codes:
+        for index, which in np.argwhere(np.stack([masks[code] for code in codes], axis=1)).tolist():
+            yield index, codes[which]
+
+
+def _follows(campaign: Campaign, code: str) -> str:
+    if code in campaign.excluding:
+        return "The experiment is kept and counted, and takes no part in the estimates."
+    return "The experiment is only marked and takes part in the estimates; look at it."
+
+
+def _resolution_limit(campaign: Campaign) -> str:
+    step = 0.0 if campaign.gauge_resolution is None else campaign.gauge_resolution
+    return f"at least {RESOLUTIONS:g} steps of the gauge, {RESOLUTIONS * step / MM:.10g} mm"
+
+
+def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
+    tests = campaign.shear
+    assert tests is not None
+    depth = f"{tests.penetration_depth[index] / MM:.10g}"
+    column, value, allowed = {
+        "cancelled": ("status", tests.cancelled[index], _UNMARKED_STATUS),
+        "zero_depth": ("depth_mm", depth, _UNMARKED_ZERO),
+        "below_resolution": ("depth_mm", depth, _resolution_limit(campaign)),
+    }[code]
+    row, experiment = int(tests.row[index]), tests.experiment[index]
+    return Problem("mark", code, SHEAR.file, row, column, experiment, value, allowed, _follows(campaign, code))
+
+
+class _PenetrationPlaces:
+    """Finds the reading that a mark is about."""
+
+    def __init__(self, campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> None:
+        self._campaign = campaign
+        self._tests = tests
+        self._largest = reading_at_largest_load(tests)
+        self._limit = greatest_depths(campaign, tests, geometry)
+
+    def problem(self, index: int, code: str) -> Problem:
+        """Tell one mark."""
+        reading, column, value, allowed = getattr(self, f"_{code}")(index)
+        row = int(self._tests.row[reading])
+        experiment = self._tests.experiment[index]
+        follows = _follows(self._campaign, code)
+        return Problem("mark", code, PENETRATION.file, row, column, experiment, value, allowed, follows)
+
+    def _depth(self, reading: int) -> str:
+        return f"{self._tests.penetration_depth[reading] / MM:.10g}"
+
+    def _cancelled(self, index: int) -> tuple[int, str, str, str]:
+        return int(self._tests.first[index]), "status", self._tests.cancelled[index], _UNMARKED_STATUS
+
+    def _too_few_loads(self, index: int) -> tuple[int, str, str, str]:
+        first, end = self._tests.first[index : index + 2].tolist()
+        return first, "load_N", f"{end - first} load steps", f"at least {FEWEST_LOADS} load steps"
+
+    def _loads_not_rising(self, index: int) -> tuple[int, str, str, str]:
+        load = self._tests.series(index).load
+        step = int(np.flatnonzero(np.diff(load) <= 0)[0])
+        reading = int(self._tests.first[index]) + step + 1
+        return reading, "load_N", f"{load[step + 1]:.10g}", f"more than the {load[step]:.10g} N of the reading before"
+
+    def _depth_shrinks(self, index: int) -> tuple[int, str, str, str]:
+        step = int(np.flatnonzero(np.diff(self._tests.series(index).penetration_depth) < 0)[0])
+        before = int(self._tests.first[index]) + step
+        allowed = f"at least the {self._depth(before)} mm of the reading before"
+        return before + 1, "depth_mm", self._depth(before + 1), allowed
+
+    def _zero_depth(self, index: int) -> tuple[int, str, str, str]:
+        reading = int(self._largest[index])
+        return reading, "depth_mm", self._depth(reading), _UNMARKED_ZERO
+
+    def _beyond_tool(self, index: int) -> tuple[int, str, str, str]:
+        series = self._tests.series(index)
+        reading = int(self._tests.first[index]) + int(np.argmax(series.penetration_depth))
+        allowed = f"at most {self._limit[index] / MM:.10g} mm for the tool {series.tool!r} at this edge angle"
+        return reading, "depth_mm", self._depth(reading), allowed
+
+    def _below_resolution(self, index: int) -> tuple[int, str, str, str]:
+        reading = int(self._largest[index])
+        return reading, "depth_mm", self._depth(reading), _resolution_limit(self._campaign)
+
+    def _hardness_outlier(self, index: int) -> tuple[int, None, None, str]:
+        return int(self._largest[index]), None, None, _UNMARKED_OUTLIER

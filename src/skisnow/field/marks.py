@@ -1,0 +1,46 @@
+"""The marks that screening sets on single experiments: codes, sentences, limits, and which exclude by default."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+FEWEST_LOADS: Final = 3
+"""Fewer load steps do not show whether the law holds (Choice)."""
+RESOLUTIONS: Final = 5.0
+"""A depth of fewer gauge resolutions is read with more than some 6 % of standard uncertainty: 1/(5 √12) (Choice)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A mark: its code, the sentence that explains it in a report, and whether it excludes unless told otherwise."""
+
+    code: str
+    sentence: str
+    excludes_by_default: bool
+
+
+_ALL: Final = (
+    Mark("cancelled", "The experiment was cancelled by an entry in the column status.", True),
+    Mark("too_few_loads", f"The series has fewer than {FEWEST_LOADS} load steps.", True),
+    Mark("loads_not_rising", "A load of the series is not above the one before it.", True),
+    Mark("depth_shrinks", "A depth of the series is below the one before it, although the load was raised.", True),
+    Mark("zero_depth", "The depth is zero (of a series: at its largest load), so that no parameter follows.", True),
+    Mark("beyond_tool", "The tool went deeper than the geometry that its area and volume are computed with.", False),
+    Mark(
+        "below_resolution",
+        f"The depth (of a series: at its largest load) is below {RESOLUTIONS:g} steps of the gauge.",
+        False,
+    ),
+    Mark(
+        "hardness_outlier",
+        "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's median.",
+        False,
+    ),
+)
+MARKS: Final[Mapping[str, Mark]] = MappingProxyType({mark.code: mark for mark in _ALL})
+"""Every mark by its code, in the order in which they are listed."""

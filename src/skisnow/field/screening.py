@@ -1,0 +1,93 @@
+"""Screening of single experiments: what is suspicious about them. A mark never deletes; some exclude by default.
+
+The mark that needs the hardness, ``hardness_outlier``, is set where hardness is estimated.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from .largest_load import greatest_depths, reading_at_largest_load
+from .mark_problems import mark_problems
+from .marks import FEWEST_LOADS, MARKS, RESOLUTIONS, Mark
+
+if TYPE_CHECKING:
+    from ..geometry import GeometryForm
+    from .records import BoolArray, Campaign, FloatArray, PenetrationTests
+
+__all__ = [
+    "MARKS",
+    "Mark",
+    "greatest_depths",
+    "mark_problems",
+    "reading_at_largest_load",
+    "screen_penetration",
+    "screen_shear",
+]
+
+_ROUNDING: Final = 1e-9  # relative; limits and readings come from decimal millimetres
+
+
+def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended") -> dict[str, BoolArray]:
+    """Mark the penetration series.
+
+    Parameters
+    ----------
+    campaign
+        The campaign; without penetration tests the masks are empty.
+    geometry
+        Form of the ski piece, ``"extended"`` or ``"paper"``; it decides on ``beyond_tool``.
+
+    Returns
+    -------
+    For each code but ``hardness_outlier``, in the order of `MARKS`, a mask over the experiments.
+    """
+    tests = campaign.penetration
+    if tests is None:
+        return {code: np.zeros(0, dtype=np.bool_) for code in MARKS if code != "hardness_outlier"}
+    largest_depth = tests.penetration_depth[reading_at_largest_load(tests)]
+    deepest = np.maximum.reduceat(tests.penetration_depth, tests.first[:-1]) if len(tests) else np.zeros(0)
+    return {
+        "cancelled": _is_given(tests.cancelled),
+        "too_few_loads": np.diff(tests.first) < FEWEST_LOADS,
+        "loads_not_rising": _any_step(tests, _step(tests.load) <= 0),
+        "depth_shrinks": _any_step(tests, _step(tests.penetration_depth) < 0),
+        "zero_depth": largest_depth == 0,
+        "beyond_tool": deepest > greatest_depths(campaign, tests, geometry) * (1 + _ROUNDING),
+        "below_resolution": _is_below_resolution(largest_depth, campaign.gauge_resolution),
+    }
+
+
+def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:
+    """Mark the shear tests: masks over them for ``cancelled``, ``zero_depth`` and ``below_resolution``."""
+    tests = campaign.shear
+    depth = tests.penetration_depth if tests is not None else np.zeros(0)
+    return {
+        "cancelled": _is_given(tests.cancelled if tests is not None else ()),
+        "zero_depth": depth == 0,
+        "below_resolution": _is_below_resolution(depth, campaign.gauge_resolution),
+    }
+
+
+def _is_given(reasons: tuple[str, ...]) -> BoolArray:
+    return np.fromiter(map(bool, reasons), dtype=np.bool_, count=len(reasons))
+
+
+def _step(values: FloatArray) -> FloatArray:
+    """Difference to the reading before; the file's very first has none and counts as rising."""
+    return np.diff(values, prepend=-np.inf)
+
+
+def _any_step(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
+    within = bad.copy()
+    within[tests.first[:-1]] = False  # a step from one series into the next
+    counts = np.bincount(tests.series_of_reading[within], minlength=len(tests))
+    return counts > 0
+
+
+def _is_below_resolution(depth: FloatArray, resolution: float | None) -> BoolArray:
+    if resolution is None:
+        return np.zeros(len(depth), dtype=np.bool_)
+    return depth < RESOLUTIONS * resolution * (1 - _ROUNDING)

@@ -1,0 +1,199 @@
+"""Bytes of a file to text and records: encoding, separator, file lines.
+
+What any European laptop's spreadsheet program writes is read: UTF-8 with or without byte order mark, UTF-16,
+Windows-1252; comma, semicolon or tab; CR, LF or both. Nothing is interpreted here, and nothing is dropped but lines
+that hold no character other than separators and spaces.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+Records: TypeAlias = tuple[list[int], list[list[str]]]
+"""File lines at which records begin, and the records' cells."""
+
+RECORDS_AT_ONCE: Final = 16384
+SEPARATOR_NAMES: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
+
+_CONTROL_BYTES: Final = bytes(code for code in range(32) if code not in b"\t\n\v\f\r") + b"\x7f"
+_CONTROL_SHARE: Final = 0.01  # text has none; random bytes have a tenth
+_END: Final = "\0"  # a line that no text file holds: decode refuses the character
+_HEAD: Final = 1 << 16
+
+
+class UnreadableTextError(Exception):
+    """A file is not the text it should be. ``row`` is the file line, or None where no line can be named."""
+
+    def __init__(self, *, value: str | None, allowed: str, action: str, row: int | None = None) -> None:
+        super().__init__(allowed)
+        self.row, self.value, self.allowed, self.action = row, value, allowed, action
+
+
+@dataclass(frozen=True, slots=True)
+class DecodedText:
+    """Text and how it was encoded: the codec's name, and a name for people where it is not UTF-8."""
+
+    text: str
+    codec: str
+    foreign_encoding: str | None
+
+
+def decode(data: bytes) -> DecodedText:
+    """Decode a text file.
+
+    Parameters
+    ----------
+    data
+        The whole file.
+
+    Raises
+    ------
+    UnreadableTextError
+        Where the bytes are no text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
+    """
+    codec, foreign = _encoding(data)
+    try:
+        text = data.decode(codec)
+    except UnicodeDecodeError as error:
+        raise _binary(f"byte {error.start + 1} is no {foreign or 'UTF-8'} text") from None
+    plain = data if codec != "utf-16" else text.encode()
+    _refuse_control_characters(plain)
+    return DecodedText(text.lstrip("\ufeff"), codec, foreign)
+
+
+def _encoding(data: bytes) -> tuple[str, str | None]:
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16", "UTF-16"
+    if data.startswith(b"\xef\xbb\xbf"):
+        return "utf-8-sig", None
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return "cp1252", "Windows-1252"
+    return "utf-8", None
+
+
+def _refuse_control_characters(data: bytes) -> None:
+    if b"\0" in data:
+        raise _binary("a NUL character")
+    control = len(data) - len(data.translate(None, _CONTROL_BYTES))
+    if control > _CONTROL_SHARE * len(data):
+        raise _binary(f"{control} control characters among {len(data)} bytes")
+
+
+def _binary(found: str) -> UnreadableTextError:
+    return UnreadableTextError(
+        value=found,
+        allowed="text in UTF-8, UTF-16 with byte order mark, or Windows-1252",
+        action="This looks like a binary file, such as a spreadsheet's own format; save it as CSV in UTF-8.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class CsvText:
+    """A CSV file that was looked at but not yet cut into records.
+
+    Attributes
+    ----------
+    data
+        The file's bytes, held once.
+    codec, foreign_encoding
+        As in `DecodedText`.
+    separator
+        Comma, semicolon or tab.
+    separator_line
+        Whether line 1 is a spreadsheet program's ``sep=;``, so that the header begins below it.
+    """
+
+    data: bytes
+    codec: str
+    foreign_encoding: str | None
+    separator: str
+    separator_line: bool
+
+    def records(self) -> Iterator[Records]:
+        """Cut the file into records, some thousand at a time; the first record is the header.
+
+        Raises
+        ------
+        UnreadableTextError
+            At a quote that is never closed: all further lines would end in one cell.
+        """
+        stream = io.TextIOWrapper(io.BytesIO(self.data), encoding=self.codec, newline="")
+        skipped = len(stream.readline()[:1]) if self.separator_line else 0
+        reader = csv.reader(chain(stream, (_END,)), delimiter=self.separator, skipinitialspace=True)
+        lines: list[int] = []
+        rows: list[list[str]] = []
+        line = 1 + skipped
+        try:
+            for cells in reader:
+                if len(rows) >= RECORDS_AT_ONCE:
+                    yield lines, rows
+                    lines, rows = [], []
+                if len(cells) == 1 and cells[0] == _END:
+                    yield lines, rows
+                    return
+                if any(cells) and not _is_blank(cells):
+                    lines.append(line)
+                    rows.append(cells)
+                line = reader.line_num + 1 + skipped
+            line = lines.pop()  # its last cell swallowed the end
+            rows.pop()
+        except csv.Error:
+            pass  # a cell beyond the csv module's limit: an open quote swallows the file
+        yield lines, rows
+        raise _open_quote(line)
+
+
+def _is_blank(cells: Sequence[str]) -> bool:
+    return not cells[0].strip() and not any(map(str.strip, cells))
+
+
+def _open_quote(line: int) -> UnreadableTextError:
+    return UnreadableTextError(
+        row=line,
+        value='"',
+        allowed="quotes in pairs",
+        action="A quote opened in this row is never closed, so that the rest of the file was not read; close it.",
+    )
+
+
+def look_at_csv(data: bytes) -> CsvText:
+    """Find out how a CSV file is written.
+
+    The separator is the one found most often in the header, outside quotes, or the one that a first line like ``sep=;``
+    names.
+
+    Raises
+    ------
+    UnreadableTextError
+        Where the bytes are no text, or the first line names another separator.
+    """
+    decoded = decode(data)
+    head = decoded.text[:_HEAD]
+    first_line = re.split(r"[\r\n]", head, maxsplit=1)[0].strip(' "')
+    named = re.fullmatch(r"sep=(.)\1*", first_line, re.IGNORECASE)
+    separator = named[1] if named else _most_frequent_separator(head)
+    if separator not in SEPARATOR_NAMES:
+        raise UnreadableTextError(
+            row=1,
+            value=first_line,
+            allowed="comma, semicolon or tab between cells",
+            action="Save the file with one of these separators.",
+        )
+    return CsvText(data, decoded.codec, decoded.foreign_encoding, separator, named is not None)
+
+
+def _most_frequent_separator(head: str) -> str:
+    outside_quotes = re.sub(r'"[^"]*("|\Z)', "x", head)
+    lines = (line for line in re.split(r"[\r\n]+", outside_quotes) if line.strip(" ,;\t"))
+    header = next(lines, "")
+    return max(SEPARATOR_NAMES, key=header.count)  # the first of equals: the comma
