@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import itertools
+import re
 import tomllib
 from pathlib import Path
 
@@ -184,6 +185,18 @@ def test_shear_without_errors_gives_the_printed_regressions() -> None:
     assert np.degrees(tests.edge_angle[20:50]).min() == pytest.approx(30.0)
 
 
+@pytest.mark.parametrize(("name", "sd"), [("moment_sd", 0.2), ("lever_arm_sd", 1e-3)])
+def test_errors_of_the_moment_and_its_arm(name: str, sd: float) -> None:
+    errors = []
+    for seed in range(20):
+        drawn = reference_campaign(seed, noise=dataclasses.replace(QUIET, **{name: sd}))
+        force = drawn.failure_shear_stress * 0.1 * drawn.shear.penetration_depth  # N, on the 100 mm plate
+        exact = force * drawn.shear.lever_arm
+        errors.append((drawn.shear.moment - exact) / (1.0 if name == "moment_sd" else force))
+    # 2160 draws: four standard errors of an sd are 6.1 %; rounding the moment to 0.01 N m adds at most 1 %
+    assert np.std(np.concatenate(errors)) == pytest.approx(sd, rel=0.07)
+
+
 def test_scatter_of_shear_stress_over_many_campaigns() -> None:
     soft, further = [], []
     for seed in range(60):
@@ -282,12 +295,13 @@ def test_the_same_seed_writes_the_same_bytes(tmp_path: Path) -> None:
         assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
 
 
-def test_an_existing_campaign_is_not_overwritten(tmp_path: Path) -> None:
-    (tmp_path / "shear.csv").write_text("mine")
-    with pytest.raises(OutputError, match=r"already holds a campaign \(shear\.csv\)"):
+@pytest.mark.parametrize("name", ["campaign.toml", "shear.csv", "drop_cone.csv", "corrections.csv"])
+def test_an_existing_campaign_is_not_overwritten(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("mine")
+    with pytest.raises(OutputError, match=f"already holds a campaign .{re.escape(name)}."):
         write_reference(tmp_path, seed=1)
-    assert [path.name for path in tmp_path.iterdir()] == ["shear.csv"]
-    assert (tmp_path / "shear.csv").read_text() == "mine"
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text() == "mine"
 
 
 def test_other_files_in_the_folder_are_left_alone(tmp_path: Path) -> None:
