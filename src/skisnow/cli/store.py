@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import time
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from ..errors import StoreError
+from .progress import Progress
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from ..field.store import Store, StoredCampaign
 
 Json: TypeAlias = dict[str, object]
@@ -40,22 +42,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(args: argparse.Namespace) -> int:
-    """Do what was asked; 0 if all went well, else 1."""
+    """Do what was asked; 1 if verify found damage, else 0."""
     from ..field.store import Store
 
     act = {"add": _add, "list": _list, "show": _show, "export": _export, "verify": _verify}[args.action]
-    try:
-        with Store.open(args.store, create=args.action == "add") as store:
-            answer, text, code = act(store, args)
-    except StoreError as error:
-        print(f"skisnow store {args.action}: {error}", file=sys.stderr)
-        return 1
-    print(json.dumps(answer, ensure_ascii=False, indent=2, allow_nan=False) if args.json else text)
+    with Store.open(args.store, create=args.action == "add") as store:
+        answer, text, code = act(store, args)
+    print(json.dumps(answer, indent=2, allow_nan=False) if args.json else text)
     return code
 
 
 def _add(store: Store, args: argparse.Namespace) -> Answer:
-    with _Progress("keeping") as progress:
+    with _share_shown("keeping") as progress:
         added = store.add(args.folder, progress=progress)
     if added.check_failure is not None:
         print(f"The campaign is kept but could not be checked: {added.check_failure}", file=sys.stderr)
@@ -83,14 +81,14 @@ def _show(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _export(store: Store, args: argparse.Namespace) -> Answer:
-    with _Progress("exporting") as progress:
+    with _share_shown("exporting") as progress:
         stored = store.export(args.id, args.out, progress=progress)
     text = f"{stored.id}  {stored.name}: {_amount(stored.n_files, stored.n_bytes)}, given back in {args.out}"
     return {**_as_json(stored), "out": str(args.out)}, text, 0
 
 
 def _verify(store: Store, _: argparse.Namespace) -> Answer:
-    with _Progress("verifying") as progress:
+    with _share_shown("verifying") as progress:
         findings = store.verify(progress=progress)
     lines = [str(finding) for finding in findings] or ["All is sound."]
     return {"findings": [asdict(finding) for finding in findings]}, "\n".join(lines), 1 if findings else 0
@@ -119,24 +117,7 @@ def _amount(n_files: int, n_bytes: int) -> str:
     return f"{n_files} file{'' if n_files == 1 else 's'}, {n_bytes} bytes"
 
 
-class _Progress:
-    """Shows the share done on standard error, once a second, from the first second on."""
-
-    def __init__(self, doing: str) -> None:
-        self._doing = doing
-        self._next_s = time.monotonic() + 1.0
-        self._is_shown = False
-
-    def __enter__(self) -> _Progress:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._is_shown:
-            print(file=sys.stderr)
-
-    def __call__(self, done_bytes: int, total_bytes: int, /) -> None:
-        if time.monotonic() >= self._next_s:
-            share = 100 * done_bytes // max(total_bytes, 1)
-            print(f"\r{self._doing}: {share:3d} %", end="", file=sys.stderr, flush=True)
-            self._is_shown = True
-            self._next_s = time.monotonic() + 1.0
+@contextmanager
+def _share_shown(doing: str) -> Iterator[Callable[[int, int], None]]:
+    with Progress() as progress:
+        yield lambda done_bytes, total_bytes: progress(f"{doing}: {100 * done_bytes // max(total_bytes, 1)} %")

@@ -116,7 +116,7 @@ class Store:
         StoreError
             There is none, or it is something else, or it was written by a newer skisnow.
         """
-        place = default_path() if path is None else Path(path)
+        place = default_path() if path is None else Path(path).absolute()
         with files_told(place, "cannot be used as a store"):
             if place.is_dir():
                 raise StoreError(f"{place} is a folder, not a store; name a file.")

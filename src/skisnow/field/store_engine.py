@@ -72,8 +72,10 @@ def _primary_code(error: DBAPIError | sqlite3.Error) -> int:
 
 @contextmanager
 def reading(engine: Engine) -> Iterator[Connection]:
-    """Give a connection that sees the store as it is now, whatever others write meanwhile."""
-    with engine.connect() as connection, connection.begin():
+    """Give a connection that sees the store as it is now, whatever others write meanwhile; it cannot commit."""
+    with (
+        engine.connect() as connection
+    ):  # ended by a rollback, which works even on damaged files, where COMMIT does not
         yield connection
 
 

@@ -1,0 +1,138 @@
+"""``skisnow store`` as its users call it."""
+
+import hashlib
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from skisnow.cli import main
+from skisnow.field.store import Store
+
+RAW = b"experiment;site\r\nP1;Gr\xf6den\r\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    folder = tmp_path / "campaign"
+    (folder / "raw").mkdir(parents=True)
+    (folder / "campaign.toml").write_text('name = "Gröden"', encoding="utf-8")
+    (folder / "raw" / "penetration.csv").write_bytes(RAW)
+    return folder
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    return tmp_path / "store.sqlite3"
+
+
+class Shell:
+    def __init__(self, place: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        self.place, self.capsys = place, capsys
+
+    def text(self, *words: object, code: int = 0) -> tuple[str, str]:
+        assert main(["store", *map(str, words), "--store", str(self.place)]) == code
+        return self.capsys.readouterr()
+
+    def json(self, *words: object, code: int = 0) -> Any:
+        out, told = self.text(*words, "--json", code=code)
+        assert told == ""
+        return json.loads(out)
+
+
+@pytest.fixture
+def shell(place: Path, capsys: pytest.CaptureFixture[str]) -> Shell:
+    return Shell(place, capsys)
+
+
+def test_from_add_to_export_in_json(shell: Shell, folder: Path, tmp_path: Path) -> None:
+    added = shell.json("add", folder)
+    assert (added["name"], added["n_files"], added["already_stored"]) == ("Gröden", 2, False)
+    assert added["n_bytes"] == len(RAW) + len('name = "Gröden"'.encode())
+    assert added["n_errors"] >= 1  # no penetration.csv and no shear.csv where they should be
+    assert shell.json("add", folder) == {**added, "already_stored": True}
+    (listed,) = shell.json("list")["campaigns"]
+    shown = shell.json("show", added["id"][:5])
+    assert {**listed, "files": shown["files"]} == shown
+    for key in ("id", "name", "n_files", "n_bytes", "sha256", "n_errors", "n_warnings"):
+        assert listed[key] == added[key], key
+    assert listed["added_at"].endswith("+00:00")
+    sha256 = hashlib.sha256(RAW).hexdigest()
+    assert shown["files"][1] == {"path": "raw/penetration.csv", "size": len(RAW), "sha256": sha256}
+    out = tmp_path / "out"
+    assert shell.json("export", added["id"], "--out", out) == {**listed, "out": str(out)}
+    assert (out / "raw" / "penetration.csv").read_bytes() == RAW
+    assert shell.json("verify") == {"findings": []}
+
+
+def test_from_add_to_export_in_words(shell: Shell, folder: Path, tmp_path: Path) -> None:
+    out, told = shell.text("add", folder)
+    id_ = out.split()[0]
+    assert f"{id_}  Gröden: 2 files, 44 bytes, is kept\nchecked: errors" in out
+    assert told == ""
+    assert "was in the store already" in shell.text("add", folder)[0]
+    assert shell.text("list")[0].startswith(f"{id_}  2")
+    assert hashlib.sha256(RAW).hexdigest() in shell.text("show", id_)[0]
+    assert str(tmp_path / "out") in shell.text("export", id_, "--out", tmp_path / "out")[0]
+    assert shell.text("verify") == ("All is sound.\n", "")
+
+
+def test_an_empty_store(shell: Shell, place: Path) -> None:
+    Store.open(place).close()
+    assert shell.json("list") == {"campaigns": []}
+    assert shell.text("list") == ("The store holds no campaign.\n", "")
+
+
+@pytest.mark.parametrize("words", [["list"], ["show", "0123"], ["verify"], ["export", "0123", "--out", "x"]])
+def test_without_a_store(words: list[str], shell: Shell, place: Path) -> None:
+    out, told = shell.text(*words, "--json", code=1)
+    assert out == ""
+    assert "There is no store at" in told
+    assert not place.exists()
+
+
+def test_trouble_goes_to_stderr(shell: Shell, folder: Path, tmp_path: Path) -> None:
+    shell.text("add", folder)
+    out, told = shell.text("export", "ffff", "--out", tmp_path / "out", "--json", code=1)
+    assert out == ""
+    assert "No campaign begins with ffff" in told
+    assert "Gröden" in told
+    out, told = shell.text("add", tmp_path / "absent", code=1)
+    assert out == ""
+    assert "is no folder" in told
+
+
+def test_damage_is_exit_code_one(shell: Shell, folder: Path, place: Path) -> None:
+    id_ = shell.json("add", folder)["id"]
+    raw = bytearray(place.read_bytes())
+    raw[raw.index(RAW)] ^= 1
+    place.write_bytes(raw)
+    (finding,) = shell.json("verify", code=1)["findings"]
+    assert (finding["campaign"], finding["path"]) == (id_, "raw/penetration.csv")
+    assert "raw/penetration.csv: the bytes no longer" in shell.text("verify", code=1)[0]
+    assert "damaged files made whole: 1" in shell.text("add", folder)[0]
+    assert shell.json("verify") == {"findings": []}
+
+
+def test_a_check_that_breaks_is_told(shell: Shell, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def breaks(_: Path) -> None:
+        raise ZeroDivisionError("by zero")
+
+    monkeypatch.setattr("skisnow.field.reading.check_campaign", breaks)
+    out, told = shell.text("add", folder, "--json")
+    assert json.loads(out)["n_errors"] is None
+    assert "could not be checked: ZeroDivisionError: by zero" in told
+    assert "not checked" in shell.text("list")[0]
+
+
+def test_help_needs_no_database() -> None:
+    check = (
+        "import sys, skisnow.cli\n"
+        "try: skisnow.cli.main(['store', '--help'])\n"
+        "except SystemExit: pass\n"
+        "assert not {'sqlalchemy', 'alembic', 'numpy'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", check], check=True, capture_output=True)
