@@ -316,3 +316,18 @@ def test_opening_waits_for_the_one_who_makes_the_store(place: Path) -> None:
         assert store.list() == ()
     release.join()
     other.close()
+
+
+def test_switching_to_the_log_waits_for_writers(place: Path) -> None:
+    """Others can read the file then, and SQLite itself would not wait."""
+    place.parent.mkdir()
+    other = sqlite3.connect(place, isolation_level=None, check_same_thread=False)
+    other.execute("BEGIN IMMEDIATE")
+    with pytest.raises(StoreError, match="kept it locked for too long"):
+        Store.open(place, busy_timeout_s=0.05)
+    release = threading.Timer(0.3, other.rollback)
+    release.start()
+    with Store.open(place, busy_timeout_s=20.0) as store:
+        assert store.list() == ()
+    release.join()
+    other.close()

@@ -51,6 +51,13 @@ while line := sys.stdin.readline():
     print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), flush=True)
 """
 N_FILES, FILE_BYTES = 24, 200_000
+TABLES = ("campaign", "campaign_file", "content", "chunk")
+
+
+def rows(store: Store) -> list[int]:
+    """Count the rows of each table: a campaign of n files has 1, n, n, n, its files being smaller than a chunk."""
+    with store.engine.connect() as connection:
+        return [connection.exec_driver_sql(f"SELECT count(*) FROM {table}").scalar_one() for table in TABLES]
 
 
 @dataclass
@@ -143,8 +150,10 @@ def kill_many(nursery: Nursery, folder: Path, tmp_path: Path, n_kills: int) -> C
         log_bytes = log.stat().st_size if log.exists() else 0
         with Store.open(place) as store:
             assert store.verify() == ()
+            n_small = index % 2
+            assert rows(store) in ([n_small] * 4, [n_small + n for n in (1, N_FILES, N_FILES, N_FILES)])
             others = {stored.id: stored for stored in store.list()}
-            assert (others.pop(small_id, None) is not None) == bool(index % 2)
+            assert (others.pop(small_id, None) is not None) == bool(n_small)
             assert [stored.n_files for stored in others.values()] in ([], [N_FILES])
             if others:
                 assert next(iter(others.values())).n_bytes == N_FILES * FILE_BYTES

@@ -157,16 +157,14 @@ class Store:
             n_bytes = sum(state.size for state in before.values())
             files = _hashed_files(folder, before, lambda done: progress(done, 2 * n_bytes))
             name, check = campaign_name(folder), _check(folder)
+            sha256 = manifest_sha256(files)
             with database_told(self.path, "could not take the campaign in"), writing(self.engine) as connection:
                 n_repaired, done = 0, n_bytes
                 for file in files:
                     n_repaired += keep_content(connection, folder, file)
                     done += file.size
                     progress(done, 2 * n_bytes)
-                sha256 = manifest_sha256(files)
-                is_new = keep_campaign(
-                    connection, files, sha256=sha256, name=name, n_errors=check.n_errors, n_warnings=check.n_warnings
-                )
+                is_new = keep_campaign(connection, files, sha256, name, (check.n_errors, check.n_warnings))
                 refuse_changed(changed_files(before, listed_files(folder)))
         return AddedCampaign(
             id=sha256[:ID_DIGITS],

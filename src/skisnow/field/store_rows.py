@@ -165,15 +165,9 @@ def refuse_changed(paths: Sequence[str]) -> None:
 
 
 def keep_campaign(
-    connection: Connection,
-    files: Iterable[StoredFile],
-    *,
-    sha256: str,
-    name: str,
-    n_errors: int | None,
-    n_warnings: int | None,
+    connection: Connection, files: Iterable[StoredFile], sha256: str, name: str, counts: tuple[int | None, int | None]
 ) -> bool:
-    """Enter a campaign whose contents are kept already; False where it was there before."""
+    """Enter a campaign whose contents are kept already; False where it was there before. Counts: errors, warnings."""
     id_ = sha256[:ID_DIGITS]
     present = connection.execute(select(campaign.c.sha256).where(campaign.c.id == id_)).scalar_one_or_none()
     if present == sha256:
@@ -186,8 +180,8 @@ def keep_campaign(
             sha256=sha256,
             name=name,
             added_at=datetime.now(UTC).strftime(_TIME),
-            n_errors=n_errors,
-            n_warnings=n_warnings,
+            n_errors=counts[0],
+            n_warnings=counts[1],
         )
     )
     connection.execute(
