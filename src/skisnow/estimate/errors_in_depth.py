@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from ..statistics.bounded import non_negative_fits
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, fit_model
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def fit_models_with_depth_errors(
     uncertainty: ReadingUncertainty,
     scatter: float,
     *,
-    n_iterations: int = 8,
+    n_iterations: int = 12,
 ) -> tuple[tuple[ModelFit, ...], dict[Model, FloatArray]]:
     """Fit the nine rows by effective variance; ``hardnesses`` are the fitted ones (SI).
 
@@ -51,16 +52,26 @@ def fit_models_with_depth_errors(
         basis = bases[model.hardness]
         slopes = _depth_slopes(readings, basis, hardnesses[model.hardness])
         weight = _weights(readings, readings.load, np.zeros(readings.n), uncertainty, scatter)
-        fit, ends = fit_model(readings, basis, model, weights=weight)
+        previous = np.full(4, np.nan)
         for _ in range(n_iterations if model.n_parameters else 0):
+            ends = _weighted_ends(basis, model, readings.load, weight)
             weight = _weights(readings, basis.columns @ ends, slopes @ ends, uncertainty, scatter)
-            previous = ends
-            fit, ends = fit_model(readings, basis, model, weights=weight)
-            if np.allclose(ends, previous, rtol=1e-10, atol=0.0):
+            if np.allclose(ends, previous, rtol=1e-8, atol=0.0):
                 break
-        fits.append(fit)
+            previous = ends
+        fits.append(fit_model(readings, basis, model, weights=weight)[0])
         weights[model] = weight
     return tuple(fits), weights
+
+
+def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: FloatArray) -> FloatArray:
+    """End values of a weighted fit by its normal equations: good enough on the way to the final factorised fit."""
+    weighted = basis.columns * weight[:, None]
+    projection, fixed = basis.projection(model), basis.offset(model)
+    gram = weighted.T @ basis.columns
+    moment = weighted.T @ load - gram @ fixed
+    fitted = non_negative_fits((projection.T @ gram @ projection)[None], (moment @ projection)[None])[0]
+    return fixed + projection @ fitted
 
 
 def _depth_slopes(readings: Readings, basis: EndBasis, hardness: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ intervals from a bootstrap that draws whole experiments.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 _UPPER = np.triu_indices(4)
+MOST_UNITS: Final = 5000
+"""Experiments, or groups of them, that the bootstrap draws."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +75,9 @@ def bootstrap_intervals(
     """95 % percentile intervals (4, 2) of a0, a1, b0, b1 of each row, drawing whole experiments.
 
     Each experiment enters by its 4 × 4 cross products alone, so a resample costs a few hundred operations. The same
-    draws serve all rows. ``weights`` gives the readings' weights row by row where a fit is weighted.
+    draws serve all rows. ``weights`` gives the readings' weights row by row where a fit is weighted. Above
+    ``MOST_UNITS`` experiments, random groups of them are drawn in their place: experiments are independent, so groups
+    are too, and their number still is large.
     """
     bases = {symbol: end_basis(readings, hardnesses[symbol]) for symbol in DEFINITIONS}
     groups: dict[str, list[Model]] = {}
@@ -84,11 +88,11 @@ def bootstrap_intervals(
         _cross_products(readings, bases[members[0].hardness], weights[members[0]] if weights else None)
         for members in groups.values()
     ]
-    stacked = np.hstack(products)
+    stacked = _in_groups(np.hstack(products), rng)
     width = products[0].shape[1]
     samples: dict[Model, list[FloatArray]] = {model: [] for members in groups.values() for model in members}
     done = 0
-    for counts in resampling_counts(readings.n_series, n_resamples, rng):
+    for counts in resampling_counts(len(stacked), n_resamples, rng):
         totals = counts @ stacked
         for index, members in enumerate(groups.values()):
             part = totals[:, index * width : (index + 1) * width]
@@ -98,6 +102,15 @@ def bootstrap_intervals(
         if progress:
             progress(f"bootstrap of the model table: {done} of {n_resamples} resamples")
     return {model: percentile_interval(np.vstack(drawn)) for model, drawn in samples.items()}
+
+
+def _in_groups(products: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Sum the experiments' products over random groups of equal size (± 1) where there are very many experiments."""
+    m = len(products)
+    if m <= MOST_UNITS:
+        return products
+    shuffled = products[rng.permutation(m)]
+    return np.add.reduceat(shuffled, np.arange(MOST_UNITS) * m // MOST_UNITS, axis=0)
 
 
 def _cross_products(readings: Readings, basis: EndBasis, weights: FloatArray | None) -> FloatArray:

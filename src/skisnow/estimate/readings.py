@@ -76,7 +76,10 @@ class Readings:
 
     def sums(self, values: FloatArray) -> FloatArray:
         """Sum a quantity of the readings over each series."""
-        return np.bincount(self.series, weights=values, minlength=self.n_series)
+        total: FloatArray = np.bincount(self.series, weights=values, minlength=self.n_series).astype(
+            np.float64, copy=False
+        )
+        return total
 
     def depth_at_volume(self, displaced_volume: FloatArray) -> FloatArray:
         """Depth (m) at which each reading's tool displaces the given volume (m³)."""

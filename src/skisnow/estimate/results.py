@@ -61,6 +61,8 @@ def results_dict(analysis: Analysis) -> Json:
 
 def _without_nan(value: Any) -> Any:
     """Replace every number that is not finite by None, and every interval that is not known at both ends as a whole."""
+    if isinstance(value, _Rows):
+        return value
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):
@@ -70,6 +72,24 @@ def _without_nan(value: Any) -> Any:
         pair = len(value) == 2 and all(isinstance(item, float) for item in value)
         return None if pair and None in cleaned else cleaned
     return value
+
+
+class _Rows(list[Json]):
+    """Rows made from columns by `_rows`, in which what does not exist already is None."""
+
+
+def _rows(columns: dict[str, list[Any]]) -> _Rows:
+    keys = tuple(columns)
+    return _Rows(dict(zip(keys, values, strict=True)) for values in zip(*columns.values(), strict=True))
+
+
+def _numbers(values: FloatArray) -> list[Any]:
+    """A column of numbers (m,) or intervals (m, 2) with None for what is not finite."""
+    listed: list[Any] = values.tolist()
+    finite = np.isfinite(values).reshape(len(values), -1).all(axis=1)
+    for index in np.flatnonzero(~finite).tolist():
+        listed[index] = None
+    return listed
 
 
 def _campaign(analysis: Analysis) -> Json:
@@ -126,15 +146,10 @@ def _penetration_experiments(analysis: Analysis, found: PenetrationAnalysis) -> 
         "flags": found.screened.flags(),
     }
     for symbol, definition in DEFINITIONS.items():
-        columns[definition.key] = (found.hardness[symbol].value / definition.si).tolist()
+        columns[definition.key] = _numbers(found.hardness[symbol].value / definition.si)
     for symbol, definition in DEFINITIONS.items():
-        columns[f"{symbol}_interval_{definition.unit_key}"] = (found.hardness[symbol].interval / definition.si).tolist()
+        columns[f"{symbol}_interval_{definition.unit_key}"] = _numbers(found.hardness[symbol].interval / definition.si)
     return _rows(columns)
-
-
-def _rows(columns: dict[str, list[Any]]) -> list[Json]:
-    keys = tuple(columns)
-    return [dict(zip(keys, values, strict=True)) for values in zip(*columns.values(), strict=True)]
 
 
 def _degrees(angle: FloatArray) -> list[float]:
@@ -232,9 +247,9 @@ def _seating(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Js
     return _rows(
         {
             "experiment": list(experiment),
-            "depth_offset_mm": (found.seating.offset / MM).tolist(),
-            "interval_mm": (found.seating.interval / MM).tolist(),
-            "H_V_change_percent": (100.0 * found.seating.hardness_change).tolist(),
+            "depth_offset_mm": _numbers(found.seating.offset / MM),
+            "interval_mm": _numbers(found.seating.interval / MM),
+            "H_V_change_percent": _numbers(100.0 * found.seating.hardness_change),
         }
     )
 
@@ -244,9 +259,9 @@ def _fitted_hardness(experiment: tuple[str, ...], found: PenetrationAnalysis) ->
     return _rows(
         {
             "experiment": list(experiment),
-            "H_V_N_per_mm3": (H_V.fitted / N_PER_MM3).tolist(),
-            "H_V_interval_N_per_mm3": (H_V.fitted_interval / N_PER_MM3).tolist(),
-            "relative_scatter": H_V.scatter.tolist(),
+            "H_V_N_per_mm3": _numbers(H_V.fitted / N_PER_MM3),
+            "H_V_interval_N_per_mm3": _numbers(H_V.fitted_interval / N_PER_MM3),
+            "relative_scatter": _numbers(H_V.scatter),
         }
     )
 
@@ -263,9 +278,9 @@ def _shear(analysis: Analysis) -> Json:
                 "site": list(tests.site),
                 "plate": list(tests.plate),
                 "edge_angle_deg": _degrees(tests.edge_angle),
-                "F_t_N": found.stress.force.tolist(),
-                "S_f_N_per_mm2": (found.stress.value / N_PER_MM2).tolist(),
-                "S_f_interval_N_per_mm2": (found.stress.interval / N_PER_MM2).tolist(),
+                "F_t_N": _numbers(found.stress.force),
+                "S_f_N_per_mm2": _numbers(found.stress.value / N_PER_MM2),
+                "S_f_interval_N_per_mm2": _numbers(found.stress.interval / N_PER_MM2),
                 "used": found.screened.used.tolist(),
                 "flags": found.screened.flags(),
             }
