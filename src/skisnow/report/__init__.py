@@ -1,1 +1,21 @@
-"""Tables, figures and the self-contained report."""
+"""Tables, figures and the self-contained report of an analysed campaign.
+
+``write_report`` is fetched on first use: the terminal's summary must not wait for the drawing library.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .write import write_report
+
+__all__ = ["write_report"]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "write_report":
+        from .write import write_report
+
+        return write_report
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,0 +1,67 @@
+"""A figure of the report, or why there is none."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+    from matplotlib.figure import Figure
+
+_NO_DATE: Final = {"Date": None, "Creator": None, "Format": None, "Type": None}
+_FAMILY: Final = re.compile(r"'DejaVu Sans'(?!,)")
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure with its words. ``wide``: two columns of a journal."""
+
+    name: str
+    caption: Markup
+    alt: str
+    figure: Figure
+    wide: bool = False
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A figure that the campaign has no data for. ``what`` and ``reason`` make a sentence: what: reason."""
+
+    name: str
+    what: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawing as files."""
+
+    name: str
+    caption: Markup
+    alt: str
+    wide: bool
+    svg: str
+    png: bytes
+
+    @property
+    def data_uri(self) -> str:
+        """The SVG inside an attribute of the HTML."""
+        return "data:image/svg+xml;base64," + base64.b64encode(self.svg.encode()).decode("ascii")
+
+
+def pictured(drawing: Drawing) -> Picture:
+    """Draw it, the same bytes for the same data."""
+    svg, png = io.StringIO(), io.BytesIO()
+    with warnings.catch_warnings():
+        # a site's name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
+        warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
+        drawing.figure.savefig(svg, format="svg", metadata=_NO_DATE)
+        drawing.figure.savefig(png, format="png", metadata={"Software": None})
+    # Verdana has the widths of DejaVu Sans where that is not installed
+    text = _FAMILY.sub("'DejaVu Sans', Verdana, sans-serif", svg.getvalue())
+    return Picture(drawing.name, drawing.caption, drawing.alt, drawing.wide, text, png.getvalue())

@@ -1,0 +1,209 @@
+"""How the figures look: journal widths, 8 pt, colours that colour-blind readers tell apart, a symbol for each site."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from ..numerals import counted
+from ..symbols import figure_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from matplotlib.axes import Axes
+
+    from ..material import BoolArray, FloatArray, Material, TextArray
+
+MM_PER_INCH: Final = 25.4
+SINGLE_MM: Final = 85.0
+DOUBLE_MM: Final = 180.0
+RASTERISE_FROM: Final = 2000
+"""Points above which a cloud is drawn as an image inside the SVG."""
+
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
+GREY: Final = "#767676"
+PALE: Final = "#B8B8B8"
+COLOURS: Final = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+"""Okabe and Ito (2008), without the yellow that white paper swallows."""
+MARKERS: Final = ("o", "^", "s", "D", "v", "P", "X", "<", "p", ">", "*", "h", "d", "8")
+NAMED_SITES: Final = 14
+_LETTER_MM: Final = 1.4
+_HANDLE_MM: Final = 9.0
+
+_RC: Final[dict[str, Any]] = {
+    "font.family": "DejaVu Sans",  # comes with the drawing library: the same picture on every machine
+    "font.size": 8.0,
+    "axes.labelsize": 8.0,
+    "axes.titlesize": 8.0,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "legend.fontsize": 7.0,
+    "mathtext.fontset": "dejavusans",
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.unicode_minus": True,
+    "axes.labelpad": 3.0,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 3.0,
+    "xtick.minor.size": 1.6,
+    "ytick.minor.size": 1.6,
+    "lines.linewidth": 1.0,
+    "lines.markersize": 3.8,
+    "lines.markeredgewidth": 0.7,
+    "legend.frameon": False,
+    "legend.handletextpad": 0.3,
+    "legend.columnspacing": 1.1,
+    "legend.borderaxespad": 0.2,
+    "savefig.dpi": 300,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "skisnow",
+}
+
+
+@contextmanager
+def journal_style() -> Iterator[None]:
+    """The library's own defaults plus ours while drawing and writing, whatever the user has set; put back after."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_RC)
+        yield
+
+
+def new_figure(*, width_mm: float = SINGLE_MM, height_mm: float = 68.0) -> Figure:
+    """An empty figure of a journal's width."""
+    return Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), layout="constrained")
+
+
+@dataclass(frozen=True, slots=True)
+class SiteStyle:
+    """How a site is drawn; ``sites`` are the ones that share it."""
+
+    label: str
+    colour: str
+    marker: str
+    sites: tuple[str, ...]
+
+
+def site_styles(material: Material) -> tuple[SiteStyle, ...]:
+    """A symbol and a colour for each site; with many, the ones with most experiments, the rest together in grey."""
+    counts = dict.fromkeys(material.sites, 0)
+    for names in (material.penetration_site, material.shear_site):
+        for name, count in zip(*np.unique(names, return_counts=True), strict=True):
+            counts[str(name)] += int(count)
+    order = sorted(material.sites, key=lambda site: (-counts[site], site))
+    named = sorted(order[: NAMED_SITES if len(order) > NAMED_SITES + 1 else NAMED_SITES + 1])
+    styles = [
+        SiteStyle(figure_text(site), COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)], (site,))
+        for index, site in enumerate(named)
+    ]
+    rest = tuple(sorted(set(order) - set(named)))
+    if rest:
+        styles.insert(0, SiteStyle(counted(len(rest), "other site"), PALE, ".", rest))
+    return tuple(styles)
+
+
+def masks(styles: Sequence[SiteStyle], site: TextArray) -> Iterator[tuple[SiteStyle, BoolArray]]:
+    """Which observations belong to each style; styles without one are left out."""
+    names, inverse = np.unique(site, return_inverse=True)
+    for style in styles:
+        mask = np.isin(names, style.sites)[inverse]
+        if mask.any():
+            yield style, mask
+
+
+def scatter(
+    axes: Axes, x: FloatArray, y: FloatArray, site: TextArray, styles: Sequence[SiteStyle], *, size: float | None = None
+) -> list[Line2D]:
+    """Points by site; returns the handles of the legend."""
+    many = len(x) > RASTERISE_FROM
+    handles = []
+    for style, mask in masks(styles, site):
+        axes.plot(
+            x[mask], y[mask], linestyle="none", rasterized=many, zorder=3, **_marker(style, size or (2.5 if many else None))
+        )
+        handles.append(Line2D([], [], linestyle="none", label=style.label, **_marker(style, None)))
+    return handles
+
+
+def _marker(style: SiteStyle, size: float | None) -> dict[str, Any]:
+    look: dict[str, Any] = {"marker": style.marker, "color": style.colour, "markerfacecolor": "none"}
+    return look if size is None else look | {"markersize": size}
+
+
+def error_bars(
+    axes: Axes, x: FloatArray, y: FloatArray, ends: FloatArray, site: TextArray, styles: Sequence[SiteStyle]
+) -> None:
+    """Intervals behind the points; left away where they would be a cloud of ink."""
+    if len(x) > RASTERISE_FROM:
+        return
+    known = np.isfinite(ends).all(axis=1)
+    for style, mask in masks(styles, site):
+        chosen = mask & known
+        axes.vlines(x[chosen], ends[chosen, 0], ends[chosen, 1], color=style.colour, linewidth=0.5, alpha=0.5, zorder=2)
+
+
+def legend_below(figure: Figure, handles: Sequence[Line2D]) -> None:
+    """The entries below the axes, where they cover nothing, in as many even columns as fit."""
+    if not handles:
+        return
+    room_mm = figure.get_figwidth() * MM_PER_INCH - 4.0
+    widths = [_LETTER_MM * len(str(handle.get_label())) + _HANDLE_MM for handle in handles]
+    columns = next(n for n in range(len(handles), 0, -1) if n == 1 or _width(widths, n) <= room_mm)
+    rows = -(-len(handles) // columns)
+    figure.legend(handles=list(handles), loc="outside lower center", ncols=-(-len(handles) // rows))
+
+
+def _width(widths: list[float], columns: int) -> float:
+    """Width of a legend that is filled column by column, as the library does."""
+    rows = -(-len(widths) // columns)
+    return sum(max(widths[start : start + rows]) for start in range(0, len(widths), rows))
+
+
+def mark_synthetic(material: Material, axes: Axes) -> None:
+    """Say inside the picture that nobody measured this."""
+    if material.synthetic:
+        axes.set_title("synthetic data", loc="right", fontsize=7.0, color=GREY, fontstyle="italic", pad=3.0)
+
+
+def spans_a_decade(values: FloatArray) -> bool:
+    """Whether positive values ask for a logarithmic axis."""
+    known = values[np.isfinite(values) & (values > 0)]
+    return bool(known.size and known.max() > 10.0 * known.min())
+
+
+def logarithmic(axes: Axes, which: str, values: FloatArray) -> None:
+    """A logarithmic axis just around the values, labelled with plain numbers, within two decades at 2 and 5 too."""
+    known = values[np.isfinite(values) & (values > 0)]
+    low, high = float(known.min()) / 1.3, float(known.max()) * 1.3
+    if which == "x":
+        axes.set_xscale("log")
+        axes.set_xlim(low, high)
+    else:
+        axes.set_yscale("log")
+        axes.set_ylim(low, high)
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    if high < 200.0 * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(plain_number)
+    axis.set_minor_formatter(NullFormatter())
+
+
+def plain_number(value: float, _place: int | None = None) -> str:
+    """A tick's label: 0.05 and not 5 × 10⁻², with a true minus."""
+    if value != 0 and not 1e-4 <= abs(value) < 1e5:
+        return f"$10^{{{np.log10(abs(value)):.0f}}}$"
+    return f"{value:g}".replace("-", "−")

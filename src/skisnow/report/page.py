@@ -1,0 +1,122 @@
+"""The report as one HTML file that needs nothing else: style, figures and tables are inside it."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, Final
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from .numerals import counted, significant
+from .sentences.caveats import caveats
+from .sentences.key_results import key_results
+from .sentences.penetration import procedures_compared, readings_used, seating_found
+from .sentences.regressions import regression_sentences
+from .table_html import table_html
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from .figures import LeftOut, Picture
+    from .material import Material
+    from .table import Table
+
+SECTIONS: Final = {
+    "key-results": "Key results",
+    "caveats": "Warnings, and what was not stated",
+    "law": "The law of the penetration force",
+    "seating": "Seating: offsets of the depth zero",
+    "relations": "Relations between snow parameters",
+    "sites": "Sites compared",
+    "published": "Beside published values",
+    "marks": "Marks of the screening",
+    "experiments": "All experiments",
+    "methods": "Methods",
+    "provenance": "Provenance",
+}
+_ONLY_WITH_PENETRATION: Final = ("law", "seating")
+
+
+def page(
+    material: Material, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]
+) -> str:
+    """The HTML of the whole report."""
+    environment = Environment(
+        loader=PackageLoader("skisnow.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    return environment.get_template("report.html").render(
+        **_frame(material),
+        **_words(material),
+        tables=_Tables(tables),
+        pictures=pictures,
+        missing=missing,
+        figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
+        matplotlib_version=version("matplotlib"),
+    )
+
+
+class _Tables:
+    """Tables by name as HTML, numbered as they stand; nothing for one without rows."""
+
+    def __init__(self, tables: Mapping[str, Table]) -> None:
+        in_html = [table for table in tables.values() if table.rows_in_html]
+        self._html = {table.name: table_html(table, number=i) for i, table in enumerate(in_html, start=1)}
+
+    def __getitem__(self, name: str) -> Markup:
+        return self._html.get(name, Markup(""))
+
+
+def _frame(material: Material) -> dict[str, Any]:
+    results, has_penetration = material.results, bool(material.penetration)
+    ids = [name for name in SECTIONS if has_penetration or name not in _ONLY_WITH_PENETRATION]
+    return {
+        "campaign": results["campaign"],
+        "provenance": results["provenance"],
+        "geometry": results["provenance"]["options"]["geometry"],
+        "shapes": {type(tool).__name__ for tool in material.campaign.tools.values()},
+        "stated": _stated(results["campaign"]),
+        "synthetic": material.synthetic,
+        "dates": material.dates,
+        "counts": _counts(material),
+        "has_penetration": has_penetration,
+        "selected": results["penetration"]["selected"],
+        "sections": [(name, SECTIONS[name]) for name in ids],
+        "titles": SECTIONS,
+        "numbers": {name: number for number, name in enumerate(ids, start=1)},
+        "css": Markup(files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")),
+    }
+
+
+def _counts(material: Material) -> str:
+    return (
+        f"{counted(len(material.penetration), 'penetration experiment')} ({int(material.penetration_used.sum())} used), "
+        f"{counted(len(material.shear), 'shear experiment')} ({int(material.shear_used.sum())} used), "
+        f"{counted(len(material.sites), 'site')}"
+    )
+
+
+def _stated(campaign: dict[str, Any]) -> dict[str, str]:
+    def said(key: str, unit: str) -> str:
+        value = campaign[key]
+        return "not stated, counted as 0" if value is None else f"{significant(value)} {unit}"
+
+    gauge = campaign["gauge_resolution_mm"]
+    return {
+        "gauge": "not stated, so that no depth uncertainty is counted" if gauge is None else f"{significant(gauge)} mm",
+        "load": said("load_uncertainty_N", "N"),
+        "moment": said("moment_uncertainty_Nm", "N m"),
+        "lever_arm": said("lever_arm_uncertainty_mm", "mm"),
+    }
+
+
+def _words(material: Material) -> dict[str, Any]:
+    return {
+        "key_results": key_results(material),
+        "caveats": caveats(material),
+        "readings_used": readings_used(material),
+        "procedures_compared": procedures_compared(material),
+        "seating_found": seating_found(material),
+        "regression_sentences": regression_sentences(material),
+    }

@@ -1,0 +1,131 @@
+"""The results in a few sentences: hardness, shear stress, law, relations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from markupsafe import Markup
+
+from ..numerals import counted, interval, p_equals, significant, whole
+from ..symbols import html, prose
+from ..tables.models import law
+from ..tables.regressions import QUANTITY
+
+if TYPE_CHECKING:
+    from ..material import Json, Material
+
+SIGNIFICANT: Final = 0.05
+LISTED: Final = 12
+
+
+def key_results(material: Material) -> list[Markup]:
+    """One sentence for each result that the campaign has."""
+    found = [_hardness(material), _stress(material), _law(material), _relations(material)]
+    return [sentence for sentence in found if sentence is not None]
+
+
+def own_value(material: Material, quantity: str) -> Json | None:
+    """The campaign's own mean, interval and range of a quantity, as they stand beside the published range."""
+    for row in material.results["comparisons"]:
+        if row["quantity"] == quantity and row["own"] is not None:
+            return row
+    return None
+
+
+def _hardness(material: Material) -> Markup | None:
+    if not material.penetration:
+        return None
+    n, used = len(material.penetration), len(material.hardness)
+    row = own_value(material, "H_V_N_per_mm3")
+    if row is None:
+        return prose("None of the {n} can be used, so there is no H_V.", n=counted(n, "penetration experiment"))
+    sites = len(set(material.penetration_site.tolist()))
+    return prose(
+        "Snow hardness H_V: geometric mean {value} N/mm³{ends}, single experiments {low} to {high} N/mm³; {used} of {n} "
+        "used, at {sites}.",
+        value=_strong(row["own"]),
+        ends=_ends(row["own_interval"], "N/mm³", sites),
+        low=significant(row["own_range"][0]),
+        high=significant(row["own_range"][1]),
+        used=whole(used),
+        n=counted(n, "penetration experiment"),
+        sites=counted(sites, "site"),
+    )
+
+
+def _stress(material: Material) -> Markup | None:
+    if not material.shear:
+        return None
+    n, used = len(material.shear), len(material.stress)
+    row = own_value(material, "S_f_N_per_mm2")
+    if row is None:
+        return prose("None of the {n} can be used, so there is no S_f.", n=counted(n, "shear experiment"))
+    sites = len(set(material.shear_site.tolist()))
+    return prose(
+        "Failure shear stress S_f: mean {value} N/mm²{ends}, single experiments {low} to {high} N/mm²; {used} of {n} "
+        "used, at {sites}.",
+        value=_strong(row["own"]),
+        ends=_ends(row["own_interval"], "N/mm²", sites),
+        low=significant(row["own_range"][0]),
+        high=significant(row["own_range"][1]),
+        used=whole(used),
+        n=counted(n, "shear experiment"),
+        sites=counted(sites, "site"),
+    )
+
+
+def _strong(value: float) -> Markup:
+    return Markup("<strong>{}</strong>").format(significant(value))
+
+
+def _ends(pair: list[float] | None, unit: str, sites: int) -> Markup:
+    if pair is None:
+        return html(" (no interval: the scatter is not known)")
+    source = "from the scatter between sites" if sites > 1 else "from the scatter between experiments"
+    return prose(" (95 % interval {pair} {unit}, {source})", pair=interval(pair), unit=unit, source=source)
+
+
+def _law(material: Material) -> Markup | None:
+    selected = material.results["penetration"]["selected"]
+    if selected is None:
+        return None
+    same = " This is the law that the paper proposes (its Eqn 12)." if selected["id"] == "H_V:a=none,b=one" else ""
+    return prose(
+        "Selected law of the penetration force: {law}. {reason}{same}",
+        law=_strong_law(selected["id"]),
+        reason=selected["reason"],
+        same=same,
+    )
+
+
+def _strong_law(model_id: str) -> Markup:
+    return Markup("<strong>F = {}</strong>").format(html(law(model_id)))
+
+
+def _relations(material: Material) -> Markup | None:
+    judged = [row for row in material.results["regressions"] if row["p"] is not None]
+    if not judged:
+        return None
+    return prose(
+        "Relations: significant at 5 %: {yes}; not significant: {no}. How large each slope could still be stands with "
+        "the regressions.",
+        yes=_listed([row for row in judged if row["p"] < SIGNIFICANT]),
+        no=_listed([row for row in judged if row["p"] >= SIGNIFICANT]),
+    )
+
+
+def _listed(rows: list[Json]) -> Markup:
+    named = [
+        prose(
+            "{response} on {predictor}{group} ({p})",
+            response=html(QUANTITY[row["response"]][0]),
+            predictor=html(QUANTITY[row["terms"][1]][0]),
+            group="" if row["group"] == "all" else f" at {row['group']}",
+            p=p_equals(row["p"]),
+        )
+        for row in rows[:LISTED]
+    ]
+    if len(rows) > LISTED:
+        named.append(html(f"{whole(len(rows) - LISTED)} more"))
+    return html(", ").join(named) if named else html("none")
+

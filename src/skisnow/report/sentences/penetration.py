@@ -1,0 +1,73 @@
+"""What the nine rows, their tests, both procedures and the seating say."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from markupsafe import Markup
+
+from ..material import numbers, pairs
+from ..numerals import counted, significant, whole
+from ..symbols import html, prose
+from ..tables.seating import offsets_that_show, seating_of_used
+
+if TYPE_CHECKING:
+    from ..material import Material
+
+
+def readings_used(material: Material) -> Markup:
+    """How many readings and series the nine rows rest on."""
+    row = material.results["penetration"]["models"][0]
+    return prose(
+        "All nine rows are fitted to the same {n} of {m}. With b = 1 the last residual of a series is zero by "
+        "definition, because its reading defines the hardness: the rmse over the free points leaves these out and "
+        "divides by n − m = {free}.",
+        n=counted(row["n"], "reading"),
+        m=counted(row["n_series"], "series", "series"),
+        free=whole(row["n"] - row["n_series"]),
+    )
+
+
+def procedures_compared(material: Material) -> Markup:
+    """How H_V of the used series differs between the two procedures."""
+    own = numbers(material.penetration, "H_V_N_per_mm3")
+    fitted = numbers(material.results["penetration"]["errors_in_depth"]["experiments"], "H_V_N_per_mm3")
+    known = material.penetration_used & np.isfinite(own) & np.isfinite(fitted)
+    if not known.any():
+        return html("")
+    ratio = np.percentile(fitted[known] / own[known], (5.0, 50.0, 95.0))
+    return prose(
+        "H_V from all readings over H_V from the largest load: median {middle}, 90 % of the series between {low} and "
+        "{high}. Each experiment's two values stand in {file}.",
+        low=significant(float(ratio[0])),
+        middle=significant(float(ratio[1])),
+        high=significant(float(ratio[2])),
+        file=_file("hardness_by_procedure", material),
+    )
+
+
+def seating_found(material: Material) -> list[Markup]:
+    """How large the offsets are and how many of them show."""
+    rows = seating_of_used(material)
+    without = int(material.penetration_used.sum()) - len(rows)
+    if not rows:
+        return [html("No used series has the readings that an offset can be estimated from.")]
+    half = np.diff(pairs(rows, "interval_mm"), axis=1) / 2.0
+    found = [
+        prose(
+            "{shown} of {all} have an offset whose 95 % interval leaves out zero; the median half-width of the intervals "
+            "is {half} mm. Every offset stands in {file}.",
+            shown=whole(offsets_that_show(rows)),
+            all=counted(len(rows), "used series", "used series"),
+            half=significant(float(np.nanmedian(half))),
+            file=_file("seating", material),
+        )
+    ]
+    if without:
+        found.append(prose("For {n} no offset could be estimated.", n=counted(without, "used series", "used series")))
+    return found
+
+
+def _file(name: str, material: Material) -> Markup:
+    return Markup("<code>tables/{}{}.csv</code>").format(name, "_synthetic" if material.synthetic else "")

@@ -1,0 +1,116 @@
+"""The results as a compact text for a terminal; every sign of it prints on any of them, but for the users' names."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from .numerals import interval, p_equals, significant
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+Json = dict[str, Any]
+
+MOST_REGRESSIONS: Final = 20
+
+
+def summary(results: Json) -> str:
+    """Campaign, experiments, H_V, S_f, the nine rows, the selected law and the regressions.
+
+    Parameters
+    ----------
+    results
+        What `skisnow.estimate.results_dict` gives.
+    """
+    return "\n".join(_lines(results))
+
+
+def _lines(results: Json) -> Iterator[str]:
+    name = results["campaign"]["name"]
+    # said here too, because numbers are copied line by line
+    tag = " (synthetic)" if "synthetic" in name.casefold() else ""
+    yield f"{name}, {results['campaign']['place']}" if results["campaign"]["place"] else name
+    yield ""
+    yield from _experiments(results)
+    yield _mean(results, "H_V_N_per_mm3", f"H_V{tag}", "N/mm³", "geometric mean")
+    yield _mean(results, "S_f_N_per_mm2", f"S_f{tag}", "N/mm²", "mean")
+    yield from _not_stated(results["campaign"])
+    if results["penetration"]["selected"]:
+        yield ""
+        yield from _models(results["penetration"], tag)
+    judged = [row for row in results["regressions"] if row["p"] is not None]
+    if judged:
+        yield ""
+        yield f"Regressions{tag}, slope with 95 % interval:"
+        yield from map(_regression, judged[:MOST_REGRESSIONS])
+        if len(judged) > MOST_REGRESSIONS:
+            yield f"  and {len(judged) - MOST_REGRESSIONS} more in results.json"
+
+
+def _experiments(results: Json) -> Iterator[str]:
+    for kind in ("penetration", "shear"):
+        rows = results[kind]["experiments"]
+        if not rows:
+            yield f"{kind} experiments: none"
+            continue
+        used, marked = sum(row["used"] for row in rows), sum(bool(row["flags"]) for row in rows)
+        yield f"{kind} experiments: {len(rows)}, used {used}, marked {marked}{_codes(rows)}"
+
+
+def _codes(rows: list[Json]) -> str:
+    counts: dict[str, int] = {}
+    for row in rows:
+        for code in row["flags"]:
+            counts[code] = counts.get(code, 0) + 1
+    return f" ({', '.join(f'{code} {count}' for code, count in counts.items())})" if counts else ""
+
+
+def _mean(results: Json, quantity: str, symbol: str, unit: str, kind: str) -> str:
+    row = next((row for row in results["comparisons"] if row["quantity"] == quantity), None)
+    if row is None or row["own"] is None:
+        return f"{symbol}: none"
+    source = "penetration" if quantity.startswith("H") else "shear"
+    sites = {item["site"] for item in results[source]["experiments"] if item["used"]}
+    over = f"over {len(sites)} sites" if len(sites) > 1 else "over the experiments of one site"
+    ends = row["own_interval"]
+    known = f"95 % interval {interval(ends, style='plain')} {over}" if ends else "interval not known"
+    spread = " to ".join(significant(end, style="plain") for end in row["own_range"])
+    return f"{symbol}: {kind} {significant(row['own'], style='plain')} {unit}, {known}, range {spread}"
+
+
+def _not_stated(campaign: Json) -> Iterator[str]:
+    if campaign["gauge_resolution_mm"] is None:
+        yield "gauge_resolution_mm is not stated: no depth uncertainty in any interval"
+    keys = ("load_uncertainty_N", "moment_uncertainty_Nm", "lever_arm_uncertainty_mm")
+    missing = [key for key in keys if campaign[key] is None]
+    if missing:
+        yield f"not stated, counted as 0: {', '.join(missing)}"
+
+
+def _models(penetration: Json, tag: str) -> Iterator[str]:
+    yield f"{f'Laws of the force{tag}':<34}{'rmse (N)':>9}{'n - p':>9}{'free':>9}   coefficients"
+    chosen = penetration["selected"]["id"]
+    for row in penetration["models"]:
+        mark = "*" if row["id"] == chosen else " "
+        rmse = "".join(
+            f"{significant(row[key], 4, style='plain'):>9}" for key in ("rmse_N", "rmse_dof_N", "rmse_free_N")
+        )
+        yield f"{mark} {row['id']:<32}{rmse}   {_coefficients(row)}".rstrip()
+    yield f"* {penetration['selected']['reason']}"
+
+
+def _coefficients(row: Json) -> str:
+    fitted = [name for name in ("a0", "a1", "b0", "b1") if row["intervals"][name] is not None]
+    text = ", ".join(f"{name} = {significant(row[name], style='plain')}" for name in fitted)
+    bounds = f"; at bound: {', '.join(row['at_bound'])}" if row["at_bound"] else ""
+    return text + bounds
+
+
+def _regression(row: Json) -> str:
+    by_site = row["interval_by_site"]
+    clustered = f", by site {interval(by_site[1], style='plain')}" if by_site and by_site[1] else ""
+    return (
+        f"  {row['response']} on {row['terms'][1]}, {row['group']}, n = {row['n']}: "
+        f"{significant(row['b'][1], style='plain')} {interval(row['interval'][1], style='plain')}{clustered}, "
+        f"{p_equals(row['p'], style='plain')}"
+    )

@@ -1,0 +1,102 @@
+"""Symbols of the field in the three languages of a report: HTML, LaTeX and the figures' mathtext.
+
+Texts written here carry symbols as ``H_V``, ``S_f``, ``b_0``. Text that users wrote is never looked through for them;
+it is escaped.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Final
+
+from markupsafe import Markup
+
+_SYMBOL: Final = re.compile(r"(?<![\w<>/])([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
+_LATEX_SPECIAL: Final = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "[": "{[}",  # a line break in front of it would take it for an option, as it would a star
+    "*": "{*}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    '"': r"\textquotedbl{}",
+    "²": r"\textsuperscript{2}",
+    "³": r"\textsuperscript{3}",
+    "⁻": r"\textsuperscript{-}",
+    "°": r"\textdegree{}",
+    "·": r"\textperiodcentered{}",
+    "−": "$-$",
+    "×": r"$\times$",
+    "±": r"$\pm$",
+    "≤": r"$\le$",
+    "≥": r"$\ge$",
+    "ϑ": r"$\vartheta$",
+    "β": r"$\beta$",
+    "ρ": r"$\rho$",
+    "δ": r"$\delta$",
+    "–": "--",
+    "\u202f": r"\,",
+    "\n": " ",
+    "\r": " ",
+}
+
+
+def prose(template: str, **values: Any) -> Markup:
+    """A sentence as HTML: symbols of the template are set, ``{values}`` are escaped unless they are Markup.
+
+    >>> str(prose("H_V at {site}", site="a_b <i>"))
+    '<i>H</i><sub>V</sub> at a_b &lt;i&gt;'
+    """
+    return html(template).format(**values)
+
+
+def html(text: str) -> Markup:
+    """Our own words with their symbols set in HTML."""
+    return Markup(_SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", str(Markup.escape(text))))
+
+
+def latex(text: str) -> str:
+    r"""Our own words with their symbols set in LaTeX.
+
+    >>> latex("S_f in N/mm²")
+    '$S_\\mathrm{f}$ in N/mm\\textsuperscript{2}'
+    """
+    pieces, end = [], 0
+    for found in _SYMBOL.finditer(text):
+        pieces += [latex_escaped(text[end : found.start()]), rf"${found[1]}_\mathrm{{{found[2]}}}$"]
+        end = found.end()
+    return "".join([*pieces, latex_escaped(text[end:])])
+
+
+def latex_escaped(text: str) -> str:
+    r"""Text that a user wrote, safe in LaTeX.
+
+    >>> latex_escaped("a & b_c 100%")
+    'a \\& b\\_c 100\\%'
+    """
+    return "".join(_LATEX_SPECIAL.get(letter, letter) for letter in text if letter.isprintable() or letter in "\n\r\u202f")
+
+
+def mathtext(text: str) -> str:
+    """Our own words with their symbols set for a figure."""
+    return _SYMBOL.sub(r"$\1_\\mathrm{\2}$", text)
+
+
+def figure_text(text: str, *, longest: int = 28) -> str:
+    """Text that a user wrote, as it stands in a figure: no mathtext, one line, not endless.
+
+    A leading underscore would hide a legend's entry; a thin space before it does not show.
+    """
+    line = " ".join("".join(letter if letter.isprintable() else " " for letter in text).split()) or "(no name)"
+    short = line if len(line) <= longest else line[: longest - 1].rstrip() + "…"
+    escaped = short.replace("\\", "\u29f5").replace("$", r"\$")
+    return f" {escaped}" if escaped.startswith("_") else escaped

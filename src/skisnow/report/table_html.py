@@ -1,0 +1,111 @@
+"""A table as HTML: caption, header cells with scope, numbers to a few digits, long tables cut with a sentence."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from markupsafe import Markup
+
+from . import numerals
+from .symbols import html, prose
+
+if TYPE_CHECKING:
+    from .table import Column, Table
+
+LISTED_NAMES = 20
+
+
+def table_html(table: Table, *, number: int) -> Markup:
+    """The table in a box that scrolls sideways by itself on a narrow screen."""
+    head = Markup("").join(_header(column) for column in table.columns)
+    shown = table.rows[: table.rows_in_html]
+    body = Markup("\n").join(
+        Markup("<tr>") + Markup("").join(_cell(column, value, index) for index, (column, value) in _pairs(table, row))
+        + Markup("</tr>")
+        for row in shown
+    )
+    return Markup(
+        '<div class="table" id="table-{name}" role="region" aria-label="{label}" tabindex="0"><table>\n'
+        "<caption><b>Table {number}.</b> {caption}</caption>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>"
+        "</table></div>\n{below}"
+    ).format(
+        name=table.name,
+        label=f"Table {number}",
+        number=number,
+        caption=html(table.full_caption),
+        head=head,
+        body=body,
+        below=_below(table),
+    )
+
+
+def _pairs(table: Table, row: tuple[Any, ...]) -> enumerate[tuple[Column, Any]]:
+    return enumerate(zip(table.columns, row, strict=True))
+
+
+def _header(column: Column) -> Markup:
+    unit = Markup(" <small>{}</small>").format(html(column.unit)) if column.unit else Markup("")
+    return Markup('<th scope="col"{kind}>{text}{unit}</th>').format(
+        kind=Markup(' class="n"') if column.numeric else Markup(""), text=html(column.header), unit=unit
+    )
+
+
+def _cell(column: Column, value: Any, index: int) -> Markup:
+    content = cell_html(column, value)
+    if index == 0:
+        return Markup('<th scope="row">{}</th>').format(content)
+    return Markup('<td class="n">{}</td>' if column.numeric else "<td>{}</td>").format(content)
+
+
+def cell_html(column: Column, value: Any) -> Markup:
+    """The content of a cell."""
+    if value is None:
+        return Markup(numerals.ABSENT["typeset"])
+    match column.kind:
+        case "words":
+            return html(value)
+        case "codes":
+            return _names(value)
+        case "yes":
+            return Markup("yes" if value else "no")
+        case "count":
+            return Markup(numerals.whole(value))
+        case "number":
+            return Markup(numerals.significant(value, column.digits))
+        case "p":
+            return Markup.escape(numerals.probability(value))
+        case "interval":
+            return Markup(numerals.interval(value, column.digits))
+        case "estimate":
+            return _estimate(value, column.digits)
+    return Markup.escape(value)
+
+
+def _estimate(value: tuple[float | None, Any], digits: int) -> Markup:
+    number, pair = value
+    if pair is None:
+        return Markup(numerals.significant(number, digits))
+    return Markup('{} <span class="i">{}</span>').format(
+        numerals.significant(number, digits), numerals.interval(pair, digits)
+    )
+
+
+def _names(names: list[str]) -> Markup:
+    listed = Markup(", ").join(names[:LISTED_NAMES])
+    more = len(names) - LISTED_NAMES
+    return listed + f" and {numerals.whole(more)} more" if more > 0 else listed
+
+
+def _below(table: Table) -> Markup:
+    cut = len(table.rows) - table.rows_in_html
+    sentences = [html(table.note)] if table.note else []
+    if cut > 0:
+        sentences.append(
+            prose(
+                "The first {shown} of {all} rows; {file} holds them all.",
+                shown=numerals.whole(table.rows_in_html),
+                all=numerals.whole(len(table.rows)),
+                file=Markup("<code>tables/{}.csv</code>").format(table.file_stem),
+            )
+        )
+    return Markup('<p class="note">{}</p>').format(Markup(" ").join(sentences)) if sentences else Markup("")

@@ -1,0 +1,45 @@
+"""The tables of a report, one subject per file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from .comparisons import published_table, site_comparison_table
+from .experiments import penetration_table, shear_table
+from .marks import marks_table
+from .models import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
+from .provenance import files_table, warnings_table
+from .regressions import regressions_table
+from .seating import seating_largest_table, seating_quantiles_table, seating_table
+from .sites import sites_table
+
+if TYPE_CHECKING:
+    from ..material import Material
+    from ..table import Table
+
+BUILDERS = (
+    sites_table,
+    warnings_table,
+    models_table,
+    nested_table,
+    errors_in_depth_table,
+    fitted_hardness_table,
+    seating_quantiles_table,
+    seating_largest_table,
+    seating_table,
+    regressions_table,
+    site_comparison_table,
+    published_table,
+    marks_table,
+    penetration_table,
+    shear_table,
+    files_table,
+)
+"""In the order of the report. A further table is one more function here."""
+
+
+def tables_of(material: Material) -> dict[str, Table]:
+    """All tables by name, those without a row too."""
+    built = (replace(build(material), synthetic=material.synthetic) for build in BUILDERS)
+    return {table.name: table for table in built}

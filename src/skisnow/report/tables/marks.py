@@ -1,0 +1,49 @@
+"""Marks of the screening: what each says, how often it was set, on which experiments."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ...field import MARKS
+from ..table import Column, Table
+
+if TYPE_CHECKING:
+    from ..material import Json, Material
+
+
+def marks_table(material: Material) -> Table:
+    """A row for each mark, those never set too."""
+    pressed, sheared = _by_code(material.penetration), _by_code(material.shear)
+    excluding = material.results["campaign"]["excluding"]
+    rows = [
+        (
+            code,
+            mark.sentence,
+            code in excluding,
+            len(pressed.get(code, ())),
+            len(sheared.get(code, ())),
+            pressed.get(code, []) + sheared.get(code, []),
+        )
+        for code, mark in MARKS.items()
+    ]
+    return Table(
+        "marks",
+        "Marks of the screening. A mark deletes nothing; one that excludes keeps its experiments out of every estimate.",
+        (
+            Column("code", "Code", "text"),
+            Column("sentence", "What it says", "words"),
+            Column("excludes", "excludes", "yes"),
+            Column("penetration_n", "penetration", "count"),
+            Column("shear_n", "shear", "count"),
+            Column("experiments", "experiments", "codes"),
+        ),
+        rows,
+    )
+
+
+def _by_code(rows: list[Json]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for row in rows:
+        for code in row["flags"]:
+            found.setdefault(code, []).append(row["experiment"])
+    return found

@@ -1,0 +1,33 @@
+"""Which files the numbers come from, and what was said when they were read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..table import Column, Table
+
+if TYPE_CHECKING:
+    from ..material import Material
+
+
+def files_table(material: Material) -> Table:
+    """Every file that was read."""
+    return Table(
+        "files",
+        "Files read, with the SHA-256 of their bytes.",
+        (Column("file", "File", "text"), Column("sha256", "SHA-256", "text")),
+        list(material.results["provenance"]["files"].items()),
+    )
+
+
+def warnings_table(material: Material) -> Table:
+    """What the reader of the files warned of."""
+    keys = ("severity", "code", "file", "row", "column", "experiment", "value", "allowed", "action")
+    rows = [tuple(row[key] for key in keys) for row in material.results["campaign"]["warnings"]]
+    return Table(
+        "warnings",
+        "Warnings of reading the campaign's files.",
+        tuple(Column(key, key, "count" if key == "row" else "text") for key in keys),
+        rows,
+        rows_in_html=50,
+    )

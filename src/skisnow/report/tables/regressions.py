@@ -1,0 +1,71 @@
+"""The regressions: coefficients, intervals, F tests."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from ..table import Column, Table
+
+if TYPE_CHECKING:
+    from ..material import Json, Material
+
+QUANTITY: Final = {
+    "S_f_N_per_mm2": ("S_f", "N/mm²"),
+    "H_V_N_per_mm3": ("H_V", "N/mm³"),
+    "edge_angle_rad": ("edge angle ϑ", "rad"),
+    "snow_density_kg_per_m3": ("snow density ρ", "kg/m³"),
+    "drop_cone_depth_mm": ("drop-cone depth H_p", "mm"),
+}
+"""Symbol and unit of each key that a regression knows."""
+
+
+def slope_unit(row: Json) -> str:
+    """Unit of a regression's slope: N/mm² per kg/m³."""
+    response, predictor = row["response"], row["terms"][1]
+    return f"{QUANTITY[response][1]} per {QUANTITY[predictor][1]}"
+
+
+def regressions_table(material: Material) -> Table:
+    """A row for each regression, those without data too."""
+    return Table(
+        "regressions",
+        "Linear regressions with intercept: coefficients with 95 % intervals, goodness of fit and F test of the slope.",
+        (
+            Column("response", "Response", "words"),
+            Column("predictor", "on", "words"),
+            Column("group", "group", "text"),
+            Column("n", "n", "count"),
+            Column("intercept", "intercept", "estimate"),
+            Column("slope", "slope", "estimate"),
+            Column("slope_by_site", "slope, sites as clusters", "interval"),
+            Column("slope_unit", "unit of the slope", "words"),
+            Column("rmse", "rmse over n"),
+            Column("rmse_dof", "over n − 2"),
+            Column("r2", "R²"),
+            Column("F", "F"),
+            Column("p", "p", "p"),
+        ),
+        [_row(row) for row in material.results["regressions"]],
+        note="Intercept and rmse are in the unit of the response. Sites as clusters: the interval that knows that "
+        "experiments of one site belong together; it is absent for a single site and where the sites do not tell.",
+    )
+
+
+def _row(row: Json) -> tuple[Any, ...]:
+    b, ends = row["b"] or (None, None), row["interval"] or (None, None)
+    by_site = row["interval_by_site"]
+    return (
+        QUANTITY[row["response"]][0],
+        QUANTITY[row["terms"][1]][0],
+        row["group"],
+        row["n"],
+        (b[0], ends[0]),
+        (b[1], ends[1]),
+        by_site[1] if by_site else None,
+        slope_unit(row),
+        row["rmse"],
+        row["rmse_dof"],
+        row["r2"],
+        row["F"],
+        row["p"],
+    )
