@@ -31,7 +31,7 @@ class Header:
     @property
     def position(self) -> dict[str, int]:
         """Where each named column stands; of equal names the first."""
-        return {name: index for index, name in reversed(list(enumerate(self.columns))) if name}
+        return {name: self.columns.index(name) for name in dict.fromkeys(self.columns) if name}
 
     @property
     def unnamed(self) -> tuple[int, ...]:

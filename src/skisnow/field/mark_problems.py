@@ -110,7 +110,7 @@ class _PenetrationPlaces:
 
     def _too_few_loads(self, index: int) -> tuple[int, str, str, str]:
         first, end = self._tests.first[index : index + 2].tolist()
-        return first, "load_N", f"{end - first} load steps", f"at least {FEWEST_LOADS} load steps"
+        return first, "load_N", str(end - first), f"at least {FEWEST_LOADS} load steps"
 
     def _loads_not_rising(self, index: int) -> tuple[int, str, str, str]:
         load = self._tests.series(index).load

@@ -15,12 +15,12 @@ from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
 Records: TypeAlias = tuple[list[int], list[list[str]]]
 """File lines at which records begin, and the records' cells."""
 
-RECORDS_AT_ONCE: Final = 16384
+RECORDS_AT_ONCE: Final = 4096  # more at once is slower: the garbage collector walks them
 SEPARATOR_NAMES: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
 
 _CONTROL_BYTES: Final = bytes(code for code in range(32) if code not in b"\t\n\v\f\r") + b"\x7f"
@@ -138,10 +138,11 @@ class CsvText:
                 if len(rows) >= RECORDS_AT_ONCE:
                     yield lines, rows
                     lines, rows = [], []
-                if len(cells) == 1 and cells[0] == _END:
+                if len(cells) == 1 and cells[0] == _END and reader.line_num + skipped == line:
                     yield lines, rows
                     return
-                if any(cells) and not _is_blank(cells):
+                first = cells[0] if cells else ""
+                if (first and not first.isspace()) or any(map(str.strip, cells)):
                     lines.append(line)
                     rows.append(cells)
                 line = reader.line_num + 1 + skipped
@@ -151,10 +152,6 @@ class CsvText:
             pass  # a cell beyond the csv module's limit: an open quote swallows the file
         yield lines, rows
         raise _open_quote(line)
-
-
-def _is_blank(cells: Sequence[str]) -> bool:
-    return not cells[0].strip() and not any(map(str.strip, cells))
 
 
 def _open_quote(line: int) -> UnreadableTextError:
