@@ -81,8 +81,8 @@ def nonlinear_fit(
     y
         Response, shape (n,).
     start
-        Starting values, shape (p,). Their sizes also set the steps of the derivatives, so a parameter should not
-        start at 0 where its scale is far from 1.
+        Starting values, shape (p,). Where a parameter comes to lie at 0 its starting value (1 for a start at 0) also
+        sets the step of the derivatives; elsewhere its own size does.
     confidence
         Of the intervals.
     names
@@ -166,7 +166,7 @@ def _derivatives(values: _Values, b: FloatArray, scale: FloatArray) -> FloatArra
     """Jacobian (n, p) by central differences of sixth order."""
     columns = []
     for j in range(len(b)):
-        size = _STEP * (abs(b[j]) if b[j] != 0 else scale[j])
+        size = _STEP * (abs(b[j]) if abs(b[j]) > _SETTLED * scale[j] else scale[j])
         # the step that is really taken, a number both b + h and b - h can hold
         h = float((b[j] + size) - b[j])
         slope = sum(
@@ -192,7 +192,7 @@ def _polished(
         residual = observed - values(b)
         step, _ = design.solve(residual)
         error = np.linalg.norm(design.loadings, axis=1) * np.linalg.norm(residual)
-        size = float(np.max(np.abs(step) / (np.abs(b) + error + np.finfo(float).eps * scale)))
+        size = float(np.max(np.abs(step) / (np.abs(b) + error + _SETTLED * scale)))
         if size >= least:  # no smaller than the step before: rounding is reached
             break
         least = size

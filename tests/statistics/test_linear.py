@@ -1,0 +1,190 @@
+"""Linear fits against certified data, rational arithmetic and hand calculation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow.errors import FitError, ParameterError
+from skisnow.statistics import linear_fit, polynomial_fit
+
+FloatArray = npt.NDArray[np.float64]
+NINE = 9.0  # digits asked for; the certified values have fifteen
+
+
+def test_norris(nist: Callable[[str], Any], digits: Callable[..., float]) -> None:
+    norris = nist("Norris")
+    fit = linear_fit(norris.data[:, 0], norris.data[:, 1])
+    certified = np.array([norris.numbers_after("B0  "), norris.numbers_after("B1  ")])
+    assert digits(fit.coefficients, certified[:, 0]) >= NINE
+    assert digits(fit.standard_errors, certified[:, 1]) >= NINE
+    assert digits(fit.rmse_dof, norris.numbers_after("Standard Deviation  ")) >= NINE
+    assert digits(fit.r2, norris.numbers_after("R-Squared")) >= NINE
+    assert digits(fit.F, norris.numbers_after("Regression  ")[-1]) >= NINE
+    assert digits(fit.sse, norris.numbers_after("Residual  ")[1]) >= NINE
+    assert fit.p < 1e-80
+
+
+def test_longley(table: Callable[[str], list[list[str]]], digits: Callable[..., float]) -> None:
+    data = np.array([[float(cell) for cell in row[1:]] for row in table("longley_statsmodels.csv")[1:]])
+    fit = linear_fit(data[:, 0], data[:, 1:])
+    certified = np.array([[float(cell) for cell in row[1:]] for row in table("Longley_certified.csv")[1:]])
+    anova = {row[0]: float(row[1]) for row in table("Longley_certified_anova.csv")[1:]}
+    assert digits(fit.coefficients, certified[:, 0]) >= NINE
+    assert digits(fit.standard_errors, certified[:, 1]) >= NINE
+    assert digits(fit.rmse_dof, anova["residual_standard_deviation"]) >= NINE
+    assert digits(fit.r2, anova["r_squared"]) >= NINE
+    assert digits(fit.F, anova["f_statistic"]) >= NINE
+
+
+def exact_polynomial(x: FloatArray, y: FloatArray, degree: int) -> tuple[FloatArray, FloatArray, float]:
+    """Coefficients, standard errors and SSE by normal equations in rational arithmetic, rounded at the end alone."""
+    p, n = degree + 1, len(x)
+    powers = [[Fraction(value) ** j for j in range(2 * degree + 1)] for value in x.tolist()]
+    response = [Fraction(value) for value in y.tolist()]
+    sums = [sum((row[j] for row in powers), Fraction(0)) for j in range(2 * degree + 1)]
+    moments = [sum((row[i] * v for row, v in zip(powers, response, strict=True)), Fraction(0)) for i in range(p)]
+    system = [
+        [sums[i + j] for j in range(p)] + [moments[i]] + [Fraction(int(i == j)) for j in range(p)] for i in range(p)
+    ]
+    for i in range(p):  # Gauss-Jordan; the Gram matrix is positive definite, so no pivot is zero
+        system[i] = [entry / system[i][i] for entry in system[i]]
+        for k in range(p):
+            if k != i:
+                factor = system[k][i]
+                system[k] = [a - factor * b for a, b in zip(system[k], system[i], strict=True)]
+    b = [row[p] for row in system]
+    misses = [
+        v - sum((c * row[j] for j, c in enumerate(b)), Fraction(0)) for row, v in zip(powers, response, strict=True)
+    ]
+    sse = sum((miss**2 for miss in misses), Fraction(0))
+    errors = [float(sse * system[i][p + 1 + i] / (n - p)) ** 0.5 for i in range(p)]
+    return np.array([float(c) for c in b]), np.array(errors), float(sse)
+
+
+@pytest.mark.parametrize(("low", "high"), [(-9.0, -3.0), (0.0, 1.0), (40.0, 60.0), (1000.0, 1010.0)])
+def test_polynomial_of_degree_ten_keeps_nine_digits(low: float, high: float, digits: Callable[..., float]) -> None:
+    # 82 points on -9 … -3 are the layout of NIST's Filip; the powers there have a condition number near 10^15
+    rng = np.random.default_rng(20130)
+    x = np.round(rng.uniform(low, high, 82), 6)
+    t = (x - low) / (high - low)
+    y = np.round(0.8 + 0.1 * np.sin(9.0 * t) + 0.003 * rng.normal(size=82), 4)
+    b, errors, sse = exact_polynomial(x, y, 10)
+    fit = polynomial_fit(x, y, 10)
+    assert digits(fit.coefficients, b) >= NINE
+    assert digits(fit.standard_errors, errors) >= NINE
+    assert digits(fit.sse, sse) >= NINE
+    assert fit.F > 1
+    np.testing.assert_allclose(np.sqrt(np.diag(fit.covariance)), fit.standard_errors, rtol=1e-12)
+
+
+def test_a_polynomial_of_degree_one_is_the_line(digits: Callable[..., float]) -> None:
+    rng = np.random.default_rng(5)
+    x, y = rng.uniform(3, 4, 20), rng.normal(size=20)
+    line, polynomial = linear_fit(y, x), polynomial_fit(x, y, 1)
+    assert digits(polynomial.coefficients, line.coefficients) > 12
+    assert digits(polynomial.intervals, line.intervals) > 12
+    assert digits([polynomial.F, polynomial.p, polynomial.r2], [line.F, line.p, line.r2]) > 11
+
+
+def test_degree_zero_is_the_mean_and_one_x_cannot_carry_a_slope() -> None:
+    assert polynomial_fit([2.0, 2.0, 2.0], [1.0, 2.0, 6.0], 0).coefficients.tolist() == [3.0]
+    with pytest.raises(FitError, match="determine only 1 of 2"):
+        polynomial_fit([2.0, 2.0, 2.0], [1.0, 2.0, 6.0], 1)
+    with pytest.raises(ParameterError, match="degree"):
+        polynomial_fit([1.0, 2.0], [1.0, 2.0], -1)
+
+
+def test_line_by_hand() -> None:
+    # x = 0 1 2 3, y = 1 2 4 4: b1 = 11/10, b0 = 11/10, SSE = 7/10, SST = 27/4
+    fit = linear_fit([1.0, 2.0, 4.0, 4.0], [0.0, 1.0, 2.0, 3.0])
+    np.testing.assert_allclose(fit.coefficients, [1.1, 1.1], rtol=1e-14)
+    np.testing.assert_allclose(fit.residuals, [-0.1, -0.2, 0.7, -0.4], atol=1e-14)
+    np.testing.assert_allclose([fit.sse, fit.rmse**2, fit.rmse_dof**2], [0.7, 0.175, 0.35], rtol=1e-13)
+    # Sxx = 5: var b1 = 0.35/5, var b0 = 0.35 (1/4 + 1.5²/5), cov = -0.35·1.5/5
+    np.testing.assert_allclose(fit.covariance, [[0.245, -0.105], [-0.105, 0.07]], rtol=1e-13)
+    # t(0.975; 2) is elementary: c √(2/(1 - c²)), c = 0.95
+    half = 0.95 * np.sqrt(2 / (1 - 0.95**2)) * np.sqrt([0.245, 0.07])
+    np.testing.assert_allclose(fit.intervals, np.stack((1.1 - half, 1.1 + half), axis=1), rtol=1e-12)
+    np.testing.assert_allclose([fit.r2, fit.F], [1 - 0.7 / 6.75, 6.05 / 0.35], rtol=1e-13)
+    # with one slope F is its t squared; the t distribution with 2 degrees of freedom is elementary
+    t = np.sqrt(fit.F)
+    np.testing.assert_allclose(fit.p, 1 - t / np.sqrt(2 + t * t), rtol=1e-12)
+    assert (fit.n, fit.n_parameters, fit.rank) == (4, 2, 2)
+
+
+def test_against_statsmodels_with_two_predictors_and_another_confidence() -> None:
+    from statsmodels.api import OLS, add_constant
+
+    rng = np.random.default_rng(7)
+    X = rng.normal(size=(40, 2)) * [1.0, 300.0] + [5.0, 450.0]
+    y = 0.05 + X @ [0.01, 2e-4] + 0.01 * rng.normal(size=40)
+    fit, peer = linear_fit(y, X, confidence=0.9), OLS(y, add_constant(X)).fit()
+    np.testing.assert_allclose(fit.coefficients, peer.params, rtol=1e-9)  # the peer works on raw columns
+    np.testing.assert_allclose(fit.standard_errors, peer.bse, rtol=1e-9)
+    np.testing.assert_allclose(fit.intervals, peer.conf_int(alpha=0.1), rtol=1e-8)
+    np.testing.assert_allclose([fit.r2, fit.F, fit.p], [peer.rsquared, peer.fvalue, peer.f_pvalue], rtol=1e-8)
+
+
+def test_without_intercept() -> None:
+    # through the origin: b = Σxy/Σx² = 14/14, residuals 1, 1, -1
+    fit = linear_fit([2.0, 3.0, 2.0], [1.0, 2.0, 3.0], intercept=False)
+    np.testing.assert_allclose(
+        [fit.coefficients[0], fit.sse, fit.standard_errors[0] ** 2], [1.0, 3.0, 1.5 / 14], rtol=1e-13
+    )
+    assert np.isnan([fit.r2, fit.F, fit.p]).all()
+
+
+def test_as_many_coefficients_as_observations() -> None:
+    fit = linear_fit([1.0, 3.0], [0.0, 2.0])
+    np.testing.assert_allclose(fit.coefficients, [1.0, 1.0], rtol=1e-14)
+    assert np.isnan(fit.intervals).all()
+    assert np.isnan(fit.standard_errors).all()
+    assert np.isnan([fit.rmse_dof, fit.F, fit.p]).all()
+    assert fit.sse < 1e-28
+
+
+def test_mean_alone() -> None:
+    fit = linear_fit([1.0, 2.0, 6.0], np.empty((3, 0)))
+    assert fit.coefficients.tolist() == [3.0]
+    np.testing.assert_allclose(fit.standard_errors[0] ** 2, 7 / 3, rtol=1e-14)
+    assert np.isnan([fit.F, fit.p]).all()
+
+
+def test_perfect_and_constant_responses() -> None:
+    perfect = linear_fit([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])
+    assert perfect.r2 == 1.0
+    assert perfect.p < 1e-10
+    still = linear_fit([0.3, 0.1 + 0.2, 0.3, 0.3], [0.0, 1.0, 2.0, 4.0])
+    np.testing.assert_allclose(still.coefficients, [0.3, 0.0], atol=1e-15)
+    assert np.isnan([still.r2, still.F, still.p]).all()
+
+
+@pytest.mark.parametrize(
+    ("predictors", "message"),
+    [
+        ([[0.1], [0.1], [0.1], [0.1]], "predictor 1 does not vary"),
+        ([[0.3], [0.1 + 0.2], [0.3], [0.3]], "predictor 1 does not vary"),
+        ([[1.0, 10.3], [2.0, 20.3], [4.0, 40.3], [5.0, 50.3]], "only 2 of 3"),
+        (np.eye(4), "4 observations cannot determine 5"),
+    ],
+)
+def test_undetermined_coefficients_are_an_error(predictors: npt.ArrayLike, message: str) -> None:
+    with pytest.raises(FitError, match=message):
+        linear_fit([1.0, 2.0, 2.5, 4.0], predictors)
+
+
+def test_bad_input_is_named() -> None:
+    with pytest.raises(ParameterError, match=r"predictors\[1, 0\] is nan"):
+        linear_fit([1.0, 2.0, 3.0], [1.0, float("nan"), 2.0])
+    with pytest.raises(ParameterError, match=r"response\[2\] is inf"):
+        linear_fit([1.0, 2.0, float("inf")], [1.0, 4.0, 2.0])
+    with pytest.raises(ParameterError, match="one for each response"):
+        linear_fit([1.0, 2.0, 3.0], [1.0, 2.0])
+    with pytest.raises(ParameterError, match="confidence is 95"):
+        linear_fit([1.0, 2.0, 3.0], [1.0, 2.0, 4.0], confidence=95)

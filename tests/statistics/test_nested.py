@@ -1,0 +1,85 @@
+"""Nested F test: statsmodels, the values that follow from the paper's printed rmse, and the undefined cases."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.statistics import nested_f_test
+
+READINGS = 1652  # 236 series of 7 loads
+
+
+def test_against_statsmodels() -> None:
+    from statsmodels.api import OLS
+
+    rng = np.random.default_rng(2)
+    X = rng.normal(size=(50, 4))  # no intercept, as Eqn 6 has none
+    y = X @ [1.0, 0.5, 0.1, 0.0] + rng.normal(size=50)
+    full, reduced = OLS(y, X).fit(), OLS(y, X[:, :2]).fit()
+    F, p, df1 = full.compare_f_test(reduced)
+    test = nested_f_test(full.ssr, reduced.ssr, n=50, n_parameters_full=4, n_parameters_reduced=2)
+    np.testing.assert_allclose([test.F, test.p, test.df1, test.df2], [F, p, df1, 46], rtol=1e-12)
+
+
+def from_rmse(full: float, reduced: float, p_full: int, p_reduced: int) -> float:
+    sums = READINGS * full**2, READINGS * reduced**2  # rmse over n
+    test = nested_f_test(*sums, n=READINGS, n_parameters_full=p_full, n_parameters_reduced=p_reduced)
+    assert (test.df1, test.df2) == (p_full - p_reduced, READINGS - p_full)
+    return test.F
+
+
+def test_values_that_follow_from_the_printed_rmse() -> None:
+    # (Mössner and others 2013) H_V with linear a and b 53.6 N, with linear b alone 53.8, constant b 54.9, b = 1 56.1
+    assert from_rmse(53.6, 53.8, 4, 2) == pytest.approx(6.2, abs=0.05)
+    assert from_rmse(53.8, 54.9, 2, 1) == pytest.approx(68, abs=0.5)
+    assert from_rmse(53.8, 56.1, 2, 0) == pytest.approx(72, abs=0.5)
+    # printed to 0.1 N: what the rounding leaves open
+    assert from_rmse(53.65, 53.75, 4, 2) == pytest.approx(3.1, abs=0.05)
+    assert from_rmse(53.55, 53.85, 4, 2) == pytest.approx(9.3, abs=0.05)
+
+
+def test_all_those_simpler_models_are_rejected() -> None:
+    for full, reduced, p_full, p_reduced in ((53.6, 53.8, 4, 2), (53.8, 54.9, 2, 1), (53.8, 56.1, 2, 0)):
+        test = nested_f_test(
+            full**2 * READINGS,
+            reduced**2 * READINGS,
+            n=READINGS,
+            n_parameters_full=p_full,
+            n_parameters_reduced=p_reduced,
+        )
+        assert test.p < 0.01
+
+
+def test_two_numerator_degrees_of_freedom_have_an_elementary_p() -> None:
+    # P(F(2, m) > F) = (1 + 2 F/m)^(-m/2)
+    test = nested_f_test(10.0, 14.0, n=24, n_parameters_full=4, n_parameters_reduced=2)
+    np.testing.assert_allclose(test.F, 4.0, rtol=1e-14)
+    assert test.p == pytest.approx((1 + 8 / 20) ** -10, rel=1e-12)
+
+
+@pytest.mark.parametrize(("n", "p_full", "p_reduced"), [(10, 2, 2), (4, 4, 2), (3, 4, 2)])
+def test_undefined_tests_are_nan(n: int, p_full: int, p_reduced: int) -> None:
+    test = nested_f_test(1.0, 2.0, n=n, n_parameters_full=p_full, n_parameters_reduced=p_reduced)
+    assert np.isnan([test.F, test.p]).all()
+    assert (test.df1, test.df2) == (p_full - p_reduced, n - p_full)
+
+
+def test_perfect_fits() -> None:
+    found = nested_f_test(0.0, 1.0, n=9, n_parameters_full=2, n_parameters_reduced=1)
+    assert (found.F, found.p) == (float("inf"), 0.0)
+    both = nested_f_test(0.0, 0.0, n=9, n_parameters_full=2, n_parameters_reduced=1)
+    assert np.isnan([both.F, both.p]).all()
+
+
+def test_rounding_below_zero_counts_as_equal() -> None:
+    found = nested_f_test(1.0, 1.0 - 1e-15, n=9, n_parameters_full=2, n_parameters_reduced=1)
+    assert (found.F, found.p) == (0.0, 1.0)
+
+
+def test_swapped_models_are_an_error() -> None:
+    with pytest.raises(ParameterError, match="swapped"):
+        nested_f_test(2.0, 1.0, n=9, n_parameters_full=1, n_parameters_reduced=2)
+    with pytest.raises(ParameterError, match="below 0"):
+        nested_f_test(-2.0, 1.0, n=9, n_parameters_full=2, n_parameters_reduced=1)

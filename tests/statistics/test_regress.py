@@ -1,0 +1,140 @@
+"""MATLAB's regress: the published vector, rational arithmetic, habits with NaN, rank and a missing constant."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.errors import FitError, ParameterError
+from skisnow.statistics import linear_fit, regress
+
+X1, X2, Y = [1, 2, 3, 3], [1, 3, 2, 5], [7, 15, 12, 20]
+T9 = 2.2621571627982  # t(0.975; 9)
+DESIGN = np.column_stack(([1] * 4, X1, X2)).astype(float)
+
+
+def test_the_published_vector() -> None:
+    b, bint, r, rint, stats = regress(Y, DESIGN)
+    np.testing.assert_allclose(b, [3.8333, 0.8333, 2.8333], atol=5e-5)  # as printed
+    np.testing.assert_allclose(stats, [0.98315, 29.1667, 0.12982, 1.5], atol=5e-5)
+    assert bint.shape == (3, 2)
+    assert (r.shape, rint.shape) == ((4,), (4, 2))
+
+
+def test_the_vector_exactly() -> None:
+    # b = (23, 5, 17)/6 is the answer because its residuals are orthogonal to all three columns
+    b = [Fraction(23, 6), Fraction(5, 6), Fraction(17, 6)]
+    residual = [y - (b[0] + b[1] * u + b[2] * v) for u, v, y in zip(X1, X2, Y, strict=True)]
+    for column in ([1] * 4, X1, X2):
+        assert sum(c * e for c, e in zip(column, residual, strict=True)) == 0
+    sse = sum((e * e for e in residual), Fraction(0))
+    sst = sum(Fraction(y) ** 2 for y in Y) - Fraction(sum(Y)) ** 2 / 4
+    F = (sst - sse) / 2 / sse
+    found = regress(Y, DESIGN)
+    np.testing.assert_allclose(found.b, [float(c) for c in b], rtol=1e-13)
+    np.testing.assert_allclose(found.r, [float(e) for e in residual], atol=1e-13)
+    # F with (2, 1) degrees of freedom: P(> F) = 1/√(1 + 2 F)
+    expected = [float(1 - sse / sst), float(F), 1 / np.sqrt(1 + 2 * float(F)), float(sse)]
+    np.testing.assert_allclose(found.stats, expected, rtol=1e-12)
+    # t(0.975; 1) = tan(0.475 π); the diagonal of (XᵀX)^-1 in rational arithmetic: (113, 35, 11)/54
+    half = np.tan(0.475 * np.pi) * np.sqrt(1.5 * np.array([113, 35, 11]) / 54)
+    np.testing.assert_allclose(found.bint, np.column_stack((found.b - half, found.b + half)), rtol=1e-10)
+
+
+def test_the_place_of_the_ones_and_alpha_do_as_in_matlab() -> None:
+    first, last = regress(Y, DESIGN, 0.1), regress(np.array(Y)[:, None], DESIGN[:, [1, 2, 0]], 0.1)
+    np.testing.assert_allclose(last.b, first.b[[1, 2, 0]], rtol=1e-12)
+    np.testing.assert_allclose(last.bint, first.bint[[1, 2, 0]], rtol=1e-12)
+    wide = regress(Y, DESIGN, 0.05)
+    ratio = np.diff(wide.bint) / np.diff(first.bint)
+    np.testing.assert_allclose(ratio, np.tan(0.475 * np.pi) / np.tan(0.45 * np.pi), rtol=1e-10)
+
+
+def test_longley_through_regress(table: Callable[[str], list[list[str]]], digits: Callable[..., float]) -> None:
+    data = np.array([[float(cell) for cell in row[1:]] for row in table("longley_statsmodels.csv")[1:]])
+    certified = [[float(cell) for cell in row[1:]] for row in table("Longley_certified.csv")[1:]]
+    found = regress(data[:, 0], np.column_stack((np.ones(len(data)), data[:, 1:])))
+    assert digits(found.b, [row[0] for row in certified]) >= 9
+    assert digits(np.diff(found.bint)[:, 0], [2 * T9 * row[1] for row in certified]) >= 9
+
+
+def test_residual_intervals_come_from_the_fit_without_the_observation() -> None:
+    rng = np.random.default_rng(3)
+    x = rng.uniform(0, 1, 12)
+    y = 2 + x + 0.1 * rng.normal(size=12)
+    found = regress(y, np.column_stack((np.ones(12), x)))
+    h = 1 / 12 + (x - x.mean()) ** 2 / np.sum((x - x.mean()) ** 2)
+    for i in range(12):
+        rest = np.arange(12) != i
+        s = linear_fit(y[rest], x[rest]).rmse_dof
+        half = T9 * s * np.sqrt(1 - h[i])
+        np.testing.assert_allclose(found.rint[i], [found.r[i] - half, found.r[i] + half], rtol=1e-9)
+
+
+def test_rows_with_nan_take_no_part() -> None:
+    y = [7, 15, float("nan"), 12, 20, 9]
+    X = np.vstack((DESIGN[:2], [1, 9, 9], DESIGN[2:], [1, float("nan"), 2]))
+    found, plain = regress(y, X), regress(Y, DESIGN)
+    np.testing.assert_allclose(found.b, plain.b, rtol=1e-13)
+    np.testing.assert_allclose(found.stats, plain.stats, rtol=1e-13)
+    assert np.flatnonzero(np.isnan(found.r)).tolist() == [2, 5]
+    np.testing.assert_allclose(found.r[[0, 1, 3, 4]], plain.r, atol=1e-13)
+    assert np.isnan(found.rint[[2, 5]]).all()
+
+
+def test_no_constant_is_warned_of_and_an_implied_one_is_not() -> None:
+    with pytest.warns(UserWarning, match="column of ones"):
+        found = regress([1.0, 2.0, 2.0], [1.0, 2.0, 3.0])
+    np.testing.assert_allclose(found.b, [11 / 14], rtol=1e-13)
+    # R² = 1 - SSE/SST is what MATLAB gives there: SSE = 9 - 121/14, SST = 2/3
+    np.testing.assert_allclose(found.stats.r2, 1 - (9 - 121 / 14) / (2 / 3), rtol=1e-12)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        groups = regress([1.0, 3.0, 4.0, 6.0], [[1, 0], [1, 0], [0, 1], [0, 1]])
+    np.testing.assert_allclose(groups.b, [2, 5], rtol=1e-13)
+    np.testing.assert_allclose(groups.stats.F, 4.5, rtol=1e-12)  # the analysis of variance of the two groups
+
+
+def test_dependent_columns_get_zero_with_a_warning() -> None:
+    X = np.column_stack((DESIGN[:, :2], 2 * DESIGN[:, 1]))
+    with pytest.warns(UserWarning, match="rank 2"):
+        found = regress(Y, X)
+    plain = regress(Y, DESIGN[:, :2])
+    assert np.sum(found.b == 0) == 1
+    np.testing.assert_allclose(Y - X @ found.b, plain.r, atol=1e-12)
+    np.testing.assert_allclose(found.stats, plain.stats, rtol=1e-10)
+
+
+def test_nothing_left_to_judge_by() -> None:
+    found = regress([1.0, 3.0], [[1, 0], [1, 2]])
+    np.testing.assert_allclose(found.b, [1, 1], rtol=1e-13)
+    assert np.isnan(found.bint).all()
+    assert np.isnan(found.rint).all()
+    assert np.isnan(found.stats[1:]).all()
+
+
+def test_the_constant_alone() -> None:
+    found = regress([1.0, 2.0, 6.0], [1.0, 1.0, 1.0])
+    np.testing.assert_allclose(found.b, [3.0], rtol=1e-14)
+    assert found.stats.r2 == pytest.approx(0.0, abs=1e-15)
+    assert np.isnan([found.stats.F, found.stats.p]).all()
+    assert found.stats.error_variance == pytest.approx(7.0)
+
+
+@pytest.mark.parametrize(
+    ("y", "X", "error"),
+    [
+        ([1.0, 2.0], [[1.0], [1.0], [1.0]], ParameterError),
+        ([1.0, float("inf")], [1.0, 1.0], ParameterError),
+        ([float("nan")], [1.0], FitError),
+        ([1.0, 2.0], [0.0, 0.0], FitError),
+    ],
+)
+def test_bad_input(y: Any, X: Any, error: type[Exception]) -> None:
+    with pytest.raises(error):
+        regress(y, X)
