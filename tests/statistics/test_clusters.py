@@ -13,7 +13,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def textbook(y: FloatArray, X: FloatArray, cluster: npt.NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:
-    """CR2 standard errors and degrees of freedom, n × n matrices and all (Imbens and Kolesár 2016, section III)."""
+    """CR2 standard errors and degrees of freedom, n × n matrices and all (Imbens and Kolesár 2016)."""
     n, p = X.shape
     bread = np.linalg.inv(X.T @ X)
     M = np.eye(n) - X @ bread @ X.T

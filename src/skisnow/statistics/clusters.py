@@ -1,7 +1,7 @@
 """Intervals of a regression whose observations come in clusters, such as tests at a few sites.
 
 Bias-reduced covariance CR2 (Bell and McCaffrey, 2002, Survey Methodology 28, 169-181) with Satterthwaite degrees of
-freedom for each coefficient (the same; Imbens and Kolesár, 2016, Rev. Econ. Stat. 98, 701-712, section III).
+freedom for each coefficient (the same; Imbens and Kolesár, 2016, Rev. Econ. Stat. 98, 701-712).
 """
 
 from __future__ import annotations

@@ -97,9 +97,8 @@ def nonlinear_fit(
 
     Notes
     -----
-    A trust-region search (scipy) goes first; Gauss-Newton steps with derivatives of sixth order finish. scipy's own
-    stopping rules leave 5 to 8 digits; at the end of the steps the residuals are orthogonal to the derivatives but for
-    rounding.
+    A trust-region search (scipy) goes first; Gauss-Newton steps with derivatives of sixth order finish. At the end of
+    the steps the residuals are orthogonal to the derivatives but for rounding.
 
     Examples
     --------
