@@ -8,6 +8,8 @@ The public names, loaded when first used:
     A campaign to snow hardness, failure shear stress, the choice of the model and the regressions.
 ``write_report``
     Results to a self-contained report with figures and tables.
+``Store``
+    The embedded store that keeps campaigns byte for byte.
 ``write_reference``
     A synthetic campaign with the design of Mössner and others (2013).
 ``SnowProperties``, ``snow_from_results``
@@ -23,7 +25,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .estimate import Analysis, analyse, results_dict
-    from .field import Campaign, Store, check_campaign, read_campaign, write_reference
+    from .field import Campaign, check_campaign, read_campaign, write_reference
+    from .field.store import Store
     from .report import write_report
     from .snow import SnowProperties, snow_from_results
     from .statistics import regress
@@ -45,7 +48,8 @@ __all__ = [
 
 _ROOMS = {
     "estimate": ("Analysis", "analyse", "results_dict"),
-    "field": ("Campaign", "Store", "check_campaign", "read_campaign", "write_reference"),
+    "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
+    "field.store": ("Store",),
     "report": ("write_report",),
     "snow": ("SnowProperties", "snow_from_results"),
     "statistics": ("regress",),

@@ -7,7 +7,7 @@ import pytest
 from scipy import optimize, stats
 
 from skisnow.estimate.hardness import DEFINITIONS, Hardness, ReadingUncertainty, hardness
-from skisnow.estimate.readings import Readings, readings_of
+from skisnow.estimate.readings import Readings
 from skisnow.geometry import Disc, LyingCylinder, SkiPiece, Tool
 from skisnow.units import N_PER_MM, N_PER_MM2, N_PER_MM3
 
@@ -21,9 +21,6 @@ def pressed(tool: Tool, angle: float, depth: np.ndarray, load: np.ndarray) -> Re
     return Readings(
         load=np.broadcast_to(load, depth.shape).ravel().astype(float),
         penetration_depth=flat,
-        contact_area=tool.contact_area(flat, angle),
-        displaced_volume=tool.displaced_volume(flat, angle),
-        area_growth=tool.area_growth(flat, angle),
         edge_angle=np.full(m, angle),
         first=np.arange(m + 1) * k,
         largest=np.arange(m) * k + k - 1,

@@ -26,13 +26,9 @@ def simulated(seed: int, angles_deg: tuple[float, ...], *, exponent: float = 1.0
     force = np.tile(LOADS, (m, 1)) * np.exp(rng.normal(0, 0.05, (m, 7)))
     volume = (force / LOADS[-1]) ** (1 / exponent) * LOADS[-1] / H[:, None]
     depth = TOOL.depth_at_volume(volume, angle[:, None]).ravel()
-    each = np.repeat(angle, 7)
     return Readings(
         load=np.tile(LOADS, m),
         penetration_depth=depth,
-        contact_area=TOOL.contact_area(depth, each),
-        displaced_volume=TOOL.displaced_volume(depth, each),
-        area_growth=TOOL.area_growth(depth, each),
         edge_angle=angle,
         first=np.arange(m + 1) * 7,
         largest=np.arange(m) * 7 + 6,
@@ -72,7 +68,7 @@ def independent_fit(readings: Readings, H: np.ndarray, model: Model) -> tuple[np
         return fixed / scale, sse(np.zeros(0))
     best = min(
         (
-            optimize.minimize(
+            optimize.minimize(  # type: ignore[call-overload]
                 sse, start, method="SLSQP", constraints={"type": "ineq", "fun": bounds},
                 options={"ftol": 1e-15, "maxiter": 2000},
             )
@@ -130,9 +126,8 @@ def test_a_true_law_gives_its_own_coefficients_back() -> None:
     depth = np.tile(np.linspace(0.001, 0.009, 7), 30)
     A, V = TOOL.contact_area(depth, each), TOOL.displaced_volume(depth, each)
     readings = Readings(
-        load=H * (1.5e-3 * A + (0.8 + 0.1 * each) * V), penetration_depth=depth, contact_area=A, displaced_volume=V,
-        area_growth=TOOL.area_growth(depth, each), edge_angle=angle, first=np.arange(31) * 7,
-        largest=np.arange(30) * 7 + 6, tool=np.zeros(30, dtype=np.int64), tools=(TOOL,),
+        load=H * (1.5e-3 * A + (0.8 + 0.1 * each) * V), penetration_depth=depth, edge_angle=angle,
+        first=np.arange(31) * 7, largest=np.arange(30) * 7 + 6, tool=np.zeros(30, dtype=np.int64), tools=(TOOL,),
     )  # fmt: skip
     fit = fit_models(readings, dict.fromkeys(DEFINITIONS, H[::7]))[2]
     assert (fit.a0, fit.a1, fit.b0, fit.b1) == pytest.approx((1.5e-3, 0.0, 0.8, 0.1), abs=1e-9)
@@ -213,9 +208,8 @@ def test_bootstrap_agrees_with_refitting_drawn_experiments_one_by_one() -> None:
         rows = np.concatenate([np.arange(7) + 7 * i for i in drawn])
         part = Readings(
             load=readings.load[rows], penetration_depth=readings.penetration_depth[rows],
-            contact_area=readings.contact_area[rows], displaced_volume=readings.displaced_volume[rows],
-            area_growth=readings.area_growth[rows], edge_angle=readings.edge_angle[drawn],
-            first=readings.first, largest=readings.largest, tool=readings.tool, tools=readings.tools,
+            edge_angle=readings.edge_angle[drawn], first=readings.first, largest=readings.largest,
+            tool=readings.tool, tools=readings.tools,
         )  # fmt: skip
         fit = next(f for f in fit_models(part, {s: h[drawn] for s, h in H.items()}) if f.model.id == MODELS[2].id)
         drawn_coefficients.append((fit.a0, fit.a1, fit.b0, fit.b1))

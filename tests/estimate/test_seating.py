@@ -19,9 +19,6 @@ def seated(tool: Tool, angle: float, depth: np.ndarray) -> Readings:
     return Readings(
         load=np.tile(LOADS[:k], m),
         penetration_depth=flat,
-        contact_area=tool.contact_area(flat, angle),
-        displaced_volume=tool.displaced_volume(flat, angle),
-        area_growth=tool.area_growth(flat, angle),
         edge_angle=np.full(m, angle),
         first=np.arange(m + 1) * k,
         largest=np.arange(m) * k + k - 1,

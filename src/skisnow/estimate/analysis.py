@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ..field import read_campaign
 from ..field.records import Campaign
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
-from .errors_in_depth import fit_models_with_depth_errors, pooled_scatter
+from .errors_in_depth import FittedHardness, fit_models_with_depth_errors, fitted_hardness
 from .hardness import DEFINITIONS, Hardness, ReadingUncertainty, hardness
 from .model_choice import NestedRows, bootstrap_intervals, compare_nested_rows
 from .models import Model, ModelFit, fit_models, select_model
@@ -56,14 +56,15 @@ class ModelTable:
 class PenetrationAnalysis:
     """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
 
-    ``hardness`` holds each definition by its symbol. ``table``, ``errors_in_depth`` and ``selected`` are None where no
-    experiment is used.
+    ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say. ``table``,
+    ``errors_in_depth`` and ``selected`` are None where no experiment is used.
     """
 
     screened: Screened
     readings: Readings
     hardness: dict[str, Hardness]
     seating: Seating
+    fitted: FittedHardness
     table: ModelTable | None
     nested: tuple[NestedRows, ...]
     selected: ModelFit | None
@@ -178,25 +179,26 @@ def _penetration(
     _say(progress, f"hardness of {readings.n_series} penetration experiments")
     found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
     offsets = seating(readings, found["H_V"].value, uncertainty)
+    fitted = fitted_hardness(readings, offsets, uncertainty)
     if not screened.used.any():
-        return PenetrationAnalysis(screened, readings, found, offsets, None, (), None, None)
+        return PenetrationAnalysis(screened, readings, found, offsets, fitted, None, (), None, None)
 
     used = readings.of(screened.used)
     _say(progress, f"model table over {used.n} readings")
     by_last = {symbol: H.value[screened.used] for symbol, H in found.items()}
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
-    by_all = {symbol: H.fitted[screened.used] for symbol, H in found.items()}
-    scatter = pooled_scatter(found["H_V"].scatter[screened.used])
-    depth_fits, weights = fit_models_with_depth_errors(used, by_all, uncertainty, scatter)
+    fitted_used = fitted.of(screened.used)
+    depth_fits, weights = fit_models_with_depth_errors(fitted_used, uncertainty)
     depth_intervals = bootstrap_intervals(
-        used, by_all, rng, n_resamples=n_resamples, weights=weights, progress=progress
+        fitted_used.readings, fitted_used.value, rng, n_resamples=n_resamples, weights=weights, progress=progress
     )
     return PenetrationAnalysis(
         screened=screened,
         readings=readings,
         hardness=found,
         seating=offsets,
+        fitted=fitted,
         table=ModelTable(fits, intervals),
         nested=compare_nested_rows(fits),
         selected=select_model(fits),

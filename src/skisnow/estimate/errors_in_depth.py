@@ -1,29 +1,86 @@
 """The model table with the error where it is: in depth as well as in load.
 
 The paper's fit takes H of each series from its last reading, as if that were exact, and puts all error into the load.
-Here H of each series comes from all its readings (`hardness.Hardness.fitted`), and a reading's residual is weighed by
-its effective variance (Orear 1982),
+Here H_V of each series is fitted to all its readings together with the offset of its depth zero (`seating`), with
+errors in depth and load. H_e and H_A come from all readings likewise, at the depths less the offset. The rows are then
+fitted to these depths, each reading weighed by its effective variance (Orear 1982),
 
     (s F̂)² + u_F² + (dF̂/de · u_e)²,
 
 with the campaign's own relative scatter s. Rows, bounds and units are those of `models`.
+
+Notes
+-----
+H of a series absorbs the level of b(ϑ) at its own edge angle, here as in the paper: the rows tell how the *shape* of
+the force over depth changes with the angle, not how the force does.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..statistics.bounded import non_negative_fits
+from .hardness import DEFINITIONS, hardness
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, fit_model
 
 if TYPE_CHECKING:
     from .hardness import ReadingUncertainty
     from .readings import Readings
+    from .seating import Seating
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+
+FEWEST_READINGS: Final = 4
+"""A series needs so many readings for its offset to be fitted: two parameters, and two degrees of freedom left."""
+
+
+@dataclass(frozen=True)
+class FittedHardness:
+    """Hardness of m series from all their readings.
+
+    Attributes
+    ----------
+    readings
+        The readings at the depths less the offset of their series.
+    offset
+        δ (m) that was taken off; 0 where too few readings, or no answer, leave it unknown.
+    value
+        H by definition (SI).
+    interval
+        (m, 2), 95 %, of H_V (N/m³).
+    scatter
+        Relative scatter s of each series about F = H_V V.
+    """
+
+    readings: Readings
+    offset: FloatArray
+    value: dict[str, FloatArray]
+    interval: FloatArray
+    scatter: FloatArray
+
+    def of(self, chosen: BoolArray) -> FittedHardness:
+        """Keep the chosen series."""
+        value = {symbol: H[chosen] for symbol, H in self.value.items()}
+        readings = self.readings.of(chosen)
+        return FittedHardness(readings, self.offset[chosen], value, self.interval[chosen], self.scatter[chosen])
+
+
+def fitted_hardness(readings: Readings, seated: Seating, uncertainty: ReadingUncertainty) -> FittedHardness:
+    """Fit the hardness of each series to all its readings, the offset of its depth zero taken off where it is known."""
+    enough = (readings.sums(np.ones(readings.n)) >= FEWEST_READINGS) & np.isfinite(seated.offset)
+    offset = np.where(enough, seated.offset, 0.0)
+    moved = readings.less_offset(offset)
+    found = {symbol: hardness(moved, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
+    value = {symbol: H.fitted for symbol, H in found.items()}
+    value["H_V"] = np.where(enough, seated.hardness, value["H_V"])
+    interval = np.where(enough[:, None], seated.hardness_interval, found["H_V"].fitted_interval)
+    return FittedHardness(moved, offset, value, interval, found["H_V"].scatter)
 
 
 def pooled_scatter(scatter: FloatArray) -> float:
@@ -33,18 +90,14 @@ def pooled_scatter(scatter: FloatArray) -> float:
 
 
 def fit_models_with_depth_errors(
-    readings: Readings,
-    hardnesses: dict[str, FloatArray],
-    uncertainty: ReadingUncertainty,
-    scatter: float,
-    *,
-    n_iterations: int = 12,
+    fitted: FittedHardness, uncertainty: ReadingUncertainty, *, n_iterations: int = 12
 ) -> tuple[tuple[ModelFit, ...], dict[Model, FloatArray]]:
-    """Fit the nine rows by effective variance; ``hardnesses`` are the fitted ones (SI).
+    """Fit the nine rows by effective variance.
 
     Returns the rows and the final weights of the readings (1/N²) of each, for the bootstrap. The rmse are in force and
     unweighted, to stand beside those of `models.fit_models`.
     """
+    readings, hardnesses, scatter = fitted.readings, fitted.value, pooled_scatter(fitted.scatter)
     fits: list[ModelFit] = []
     weights: dict[Model, FloatArray] = {}
     bases = {symbol: end_basis(readings, H) for symbol, H in hardnesses.items()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -29,8 +29,8 @@ class Readings:
 
     Attributes
     ----------
-    load, penetration_depth, contact_area, displaced_volume, area_growth
-        F (N), e (m), A (m²), V (m³), dA/de (m), one per reading.
+    load, penetration_depth
+        F (N) and e (m), one per reading.
     edge_angle
         ϑ (rad), one per series.
     first
@@ -45,9 +45,6 @@ class Readings:
 
     load: FloatArray
     penetration_depth: FloatArray
-    contact_area: FloatArray
-    displaced_volume: FloatArray
-    area_growth: FloatArray
     edge_angle: FloatArray
     first: IntArray
     largest: IntArray
@@ -81,13 +78,30 @@ class Readings:
         )
         return total
 
-    def depth_at_volume(self, displaced_volume: FloatArray) -> FloatArray:
-        """Depth (m) at which each reading's tool displaces the given volume (m³)."""
-        return self._by_tool(lambda tool, V, angle: tool.depth_at_volume(V, angle), displaced_volume, self.series)
+    @cached_property
+    def contact_area(self) -> FloatArray:
+        """Contact area A of each reading (m²)."""
+        return self.area_at_depth(self.penetration_depth)
+
+    @cached_property
+    def displaced_volume(self) -> FloatArray:
+        """Displaced volume V of each reading (m³)."""
+        return self._by_tool(
+            lambda tool, e, angle: tool.displaced_volume(e, angle), self.penetration_depth, self.series
+        )
+
+    @cached_property
+    def area_growth(self) -> FloatArray:
+        """Growth dA/de of the contact area of each reading (m)."""
+        return self._by_tool(lambda tool, e, angle: tool.area_growth(e, angle), self.penetration_depth, self.series)
 
     def area_at_depth(self, penetration_depth: FloatArray) -> FloatArray:
         """Contact area A (m²) of each reading's tool at another depth (m)."""
         return self._by_tool(lambda tool, e, angle: tool.contact_area(e, angle), penetration_depth, self.series)
+
+    def depth_at_volume(self, displaced_volume: FloatArray) -> FloatArray:
+        """Depth (m) at which each reading's tool displaces the given volume (m³)."""
+        return self._by_tool(lambda tool, V, angle: tool.depth_at_volume(V, angle), displaced_volume, self.series)
 
     def volume_of_series(self, penetration_depth: FloatArray) -> FloatArray:
         """Displaced volume V (m³) of each series' tool at one depth (m) per series."""
@@ -104,6 +118,10 @@ class Readings:
             result[mine] = form(shape, values[mine], angle[mine])
         return result
 
+    def less_offset(self, offset: FloatArray) -> Readings:
+        """The same readings with an offset of the depth zero (m, one per series) taken off; depths stay ≥ 0."""
+        return replace(self, penetration_depth=np.maximum(self.penetration_depth - offset[self.series], 0.0))
+
     def of(self, chosen: BoolArray) -> Readings:
         """Keep the chosen series (mask over the m series)."""
         if chosen.all():
@@ -114,9 +132,6 @@ class Readings:
         return Readings(
             load=self.load[kept],
             penetration_depth=self.penetration_depth[kept],
-            contact_area=self.contact_area[kept],
-            displaced_volume=self.displaced_volume[kept],
-            area_growth=self.area_growth[kept],
             edge_angle=self.edge_angle[chosen],
             first=first.astype(np.int64),
             largest=moved[self.largest[chosen]].astype(np.int64),
@@ -126,29 +141,15 @@ class Readings:
 
 
 def readings_of(tests: PenetrationTests, tools: Mapping[str, Tool], *, geometry: GeometryForm) -> Readings:
-    """Compute A, V and dA/de of every reading with its own tool (Eqns 2, 3 and their continuations)."""
+    """The readings of all tests, each series with its own tool in the chosen form."""
     names = sorted(set(tests.tool))
-    shapes = tuple(in_form(tools[name], geometry) for name in names)
     number = {name: index for index, name in enumerate(names)}
-    tool = np.array([number[name] for name in tests.tool], dtype=np.int64)
-    series = tests.series_of_reading
-    angle, tool_of_reading = tests.edge_angle[series], tool[series]
-    area, volume, growth = (np.empty(len(tests.load)) for _ in range(3))
-    for index, shape in enumerate(shapes):
-        mine = tool_of_reading == index
-        depth_angle = tests.penetration_depth[mine], angle[mine]
-        area[mine] = shape.contact_area(*depth_angle)
-        volume[mine] = shape.displaced_volume(*depth_angle)
-        growth[mine] = shape.area_growth(*depth_angle)
     return Readings(
         load=tests.load,
         penetration_depth=tests.penetration_depth,
-        contact_area=area,
-        displaced_volume=volume,
-        area_growth=growth,
         edge_angle=tests.edge_angle,
         first=tests.first,
         largest=reading_at_largest_load(tests),
-        tool=tool,
-        tools=shapes,
+        tool=np.array([number[name] for name in tests.tool], dtype=np.int64),
+        tools=tuple(in_form(tools[name], geometry) for name in names),
     )

@@ -255,13 +255,13 @@ def _seating(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Js
 
 
 def _fitted_hardness(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Json]:
-    H_V = found.hardness["H_V"]
+    fitted = found.fitted
     return _rows(
         {
             "experiment": list(experiment),
-            "H_V_N_per_mm3": _numbers(H_V.fitted / N_PER_MM3),
-            "H_V_interval_N_per_mm3": _numbers(H_V.fitted_interval / N_PER_MM3),
-            "relative_scatter": _numbers(H_V.scatter),
+            "H_V_N_per_mm3": _numbers(fitted.value["H_V"] / N_PER_MM3),
+            "H_V_interval_N_per_mm3": _numbers(fitted.interval / N_PER_MM3),
+            "relative_scatter": _numbers(fitted.scatter),
         }
     )
 

@@ -31,8 +31,8 @@ class Seating:
     ----------
     offset, interval
         δ (m) and its 95 % interval (m, 2); NaN with fewer than three readings or where the fit found no answer.
-    hardness
-        H_V (N/m³) fitted together with δ.
+    hardness, hardness_interval
+        H_V (N/m³) fitted together with δ, and its 95 % interval (m, 2); NaN as above.
     hardness_change
         Relative change of the largest-load H_V when δ is taken off its depth; NaN where nothing of the depth is left.
     """
@@ -40,6 +40,7 @@ class Seating:
     offset: FloatArray
     interval: FloatArray
     hardness: FloatArray
+    hardness_interval: FloatArray
     hardness_change: FloatArray
 
 
@@ -57,19 +58,26 @@ def seating(
     with np.errstate(all="ignore"):  # series without an answer run through as NaN and are told apart at the end
         for _ in range(n_iterations):
             line = _linearise(readings, log_H, offset, scatter2, uncertainty)
-            step, shift, _ = _solve(readings, line)
+            step, shift, _, _ = _solve(readings, line)
             step = np.clip(step, -0.5, 0.5)
             log_H, offset = log_H + step, offset + shift
             previous, scatter2 = scatter2, _scatter_step(readings, log_H, offset, scatter2, uncertainty, n)
             drift = np.abs(scatter2 - previous) / (scatter2 + 1e-12)
             if np.nanmax(np.maximum(np.abs(step), drift), initial=0.0) < 1e-9:
                 break
-        _, _, variance = _solve(readings, _linearise(readings, log_H, offset, scatter2, uncertainty))
-        half = expanded_factor(np.where(n > 2, n - 2.0, np.nan), CONFIDENCE) * np.sqrt(variance)
+        line = _linearise(readings, log_H, offset, scatter2, uncertainty)
+        _, _, variance_H, variance_offset = _solve(readings, line)
+        factor = expanded_factor(np.where(n > 2, n - 2.0, np.nan), CONFIDENCE)
+        half_H, half = factor * np.sqrt(variance_H), factor * np.sqrt(variance_offset)
     lost = (n < 3) | ~np.isfinite(half) | ~(np.abs(step) < 1e-5)
-    offset = np.where(lost, np.nan, offset)
-    interval = np.stack((offset - half, offset + half), axis=-1)
-    return Seating(offset, interval, np.where(lost, np.nan, np.exp(log_H)), _hardness_change(readings, offset))
+    offset, log_H = np.where(lost, np.nan, offset), np.where(lost, np.nan, log_H)
+    return Seating(
+        offset=offset,
+        interval=np.stack((offset - half, offset + half), axis=-1),
+        hardness=np.exp(log_H),
+        hardness_interval=np.exp(np.stack((log_H - half_H, log_H + half_H), axis=-1)),
+        hardness_change=_hardness_change(readings, offset),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,15 +104,15 @@ def _linearise(
     return _Line(residual, per_log_force, weight)
 
 
-def _solve(readings: Readings, line: _Line) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Steps in ln H and δ, and the variance of δ."""
+def _solve(readings: Readings, line: _Line) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Steps in ln H and in δ, variances of ln H and of δ."""
     w, J = line.weight, -line.slope  # d(prediction)/d ln H; d(prediction)/dδ = 1
     S_w, S_J, S_JJ = readings.sums(w), readings.sums(w * J), readings.sums(w * J * J)
     S_r, S_Jr = readings.sums(w * line.residual), readings.sums(w * J * line.residual)
     determinant = S_w * S_JJ - S_J**2
     step = (S_w * S_Jr - S_J * S_r) / determinant
     shift = (S_JJ * S_r - S_J * S_Jr) / determinant
-    return step, shift, S_JJ / determinant
+    return step, shift, S_w / determinant, S_JJ / determinant
 
 
 def _scatter_step(
