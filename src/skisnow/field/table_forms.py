@@ -87,7 +87,8 @@ class TableForm:
     @property
     def known(self) -> tuple[str, ...]:
         """Every column that this file may have without being asked about it."""
-        return self.names + tuple(column.name for column in self.numbers) + self.texts + self.optional + self.further
+        numbers = tuple(column.name for column in self.numbers)
+        return tuple(dict.fromkeys(self.names + numbers + self.texts + self.optional + self.further))
 
 
 def _density(*, required: bool) -> NumberColumn:
