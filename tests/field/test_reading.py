@@ -334,3 +334,14 @@ def test_damaged_files_give_problems(
     start = int(place * len(whole))
     damaged = whole[:start] + content[:length] + whole[start + length :]
     assert_told_and_not_raised(write_campaign({**small_campaign, name: damaged}))
+
+
+@pytest.mark.parametrize(("content", "code"), [(None, "bad_toml"), ("", "empty_file"), (" \r\n", "empty_file")])
+def test_no_campaign_toml_is_one_problem(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], content: str | None, code: str
+) -> None:
+    """Not one more for every tool that it would have described."""
+    del small_campaign["campaign.toml"]
+    folder = write_campaign(small_campaign if content is None else {**small_campaign, "campaign.toml": content})
+    (problem,) = check_campaign(folder)
+    assert (problem.severity, problem.code, problem.file) == ("error", code, "campaign.toml")
