@@ -26,12 +26,16 @@ class FieldDataError(SkisnowError):
     Parameters
     ----------
     problems
-        Every problem found, errors and others, each printable as one sentence.
+        Every problem found, errors and others, each printable as one sentence. The message holds the first of them.
     """
+
+    SHOWN = 20
 
     def __init__(self, problems: Sequence[object]) -> None:
         self.problems = tuple(problems)
-        super().__init__("\n".join(str(problem) for problem in self.problems))
+        shown = [str(problem) for problem in self.problems[: self.SHOWN]]
+        more = len(self.problems) - len(shown)
+        super().__init__("\n".join([*shown, f"… and {more} more problems"] if more else shown))
 
 
 class FitError(SkisnowError):

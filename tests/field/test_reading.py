@@ -345,3 +345,14 @@ def test_no_campaign_toml_is_one_problem(
     folder = write_campaign(small_campaign if content is None else {**small_campaign, "campaign.toml": content})
     (problem,) = check_campaign(folder)
     assert (problem.severity, problem.code, problem.file) == ("error", code, "campaign.toml")
+
+
+def test_a_table_in_capitals_is_not_passed_over(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    """Only where the file system tells capitals apart; elsewhere the file simply is the table."""
+    small_campaign["Density.csv"] = "sample,site,snow_density_kg_per_m3\n1,A,400\n"
+    small_campaign.pop("density.csv", None)
+    folder = write_campaign(small_campaign)
+    if (folder / "density.csv").exists():
+        pytest.skip("the file system does not tell capitals apart")
+    problems = [p for p in check_campaign(folder) if p.severity == "error"]
+    assert [(p.code, p.file, p.allowed) for p in problems] == [("unreadable_file", "Density.csv", "density.csv")]

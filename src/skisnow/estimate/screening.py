@@ -93,7 +93,7 @@ def marks_of(campaign: Campaign, *, geometry: GeometryForm = "extended") -> list
     """Every mark of a campaign as a problem of severity ``mark``, the one that needs the hardness included."""
     penetration, shear = screened_penetration(campaign, geometry=geometry), screened_shear(campaign)
     field_marks = {code: mask for code, mask in penetration.marks.items() if code != "hardness_outlier"}
-    problems = mark_problems(campaign, field_marks, dict(shear.marks))
+    problems = mark_problems(campaign, field_marks, dict(shear.marks), geometry=geometry)
     tests = campaign.penetration
     if tests is None:
         return problems
@@ -117,8 +117,9 @@ def marks_of(campaign: Campaign, *, geometry: GeometryForm = "extended") -> list
 
 
 def _used(marks: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:
+    """A cancelled experiment never takes part; the other marks exclude as the campaign says."""
     excluded = np.zeros(count, dtype=bool)
     for code, mask in marks.items():
-        if code in campaign.excluding:
+        if code in campaign.excluding or code == "cancelled":
             excluded |= mask
     return ~excluded

@@ -85,6 +85,7 @@ def _read(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
         if table is not None:
             tables[form.file] = table
             files.found.extend(check_together(table, described))
+    files.found.extend(_misnamed(folder, files.absent))
     if {PENETRATION.file, SHEAR.file} <= files.absent:
         files.found.append(_no_measurements())
     return _Contents(folder, described, tables, files.hashes, _in_order(files.found))
@@ -92,7 +93,17 @@ def _read(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
 
 def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
     place = {name: index for index, name in enumerate(_FILES)}
-    return tuple(sorted(problems, key=lambda problem: (place[problem.file], problem.row or 0)))
+    return tuple(sorted(problems, key=lambda problem: (place.get(problem.file, len(place)), problem.row or 0)))
+
+
+def _misnamed(folder: Path, absent: set[str]) -> list[Problem]:
+    """Files whose names differ from the campaign's by capitals alone: they would be passed over without a word."""
+    names = sorted(path.name for path in folder.iterdir())
+    return [
+        error("unreadable_file", name, value=name, allowed=name.lower(), action=f"Rename it to {name.lower()}.")
+        for name in names
+        if name not in _FILES and name.lower() in absent
+    ]
 
 
 def _no_measurements() -> Problem:

@@ -1,0 +1,71 @@
+"""Site comparisons and comparisons with published values."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from skisnow.estimate.comparisons import compare_with_published, own_mean
+from skisnow.estimate.sites import compare_sites
+
+
+def test_ratio_of_sites_is_welch_on_logarithms() -> None:
+    rng = np.random.default_rng(2)
+    a, b = 2.0 * np.exp(rng.normal(0, 0.2, 12)), np.exp(rng.normal(0, 0.4, 8))
+    (row,) = compare_sites("H_V", np.concatenate((b, a)), ["B"] * 8 + ["A"] * 12)
+    assert (row.site_a, row.site_b) == ("A", "B")
+    assert row.ratio == pytest.approx(math.exp(np.log(a).mean() - np.log(b).mean()), rel=1e-12)
+    assert row.p == pytest.approx(stats.ttest_ind(np.log(a), np.log(b), equal_var=False).pvalue, rel=1e-9)
+    assert row.interval[0] < row.ratio < row.interval[1]
+
+
+def test_number_of_tests_that_tell_ten_percent() -> None:
+    """Normal approximation n = 2 (z₀.₉₇₅ + z₀.₈)² s²/ln²1.1; Student's t asks for one or two more."""
+    rng = np.random.default_rng(3)
+    logs = rng.normal(0, 0.2, (2, 30))
+    (row,) = compare_sites("S_f", np.exp(logs).ravel(), ["A"] * 30 + ["B"] * 30)
+    pooled = math.sqrt((logs[0].var(ddof=1) + logs[1].var(ddof=1)) / 2)
+    normal = 2 * (1.959964 + 0.841621) ** 2 * pooled**2 / math.log(1.1) ** 2
+    assert row.n_for_10_percent is not None
+    assert normal < row.n_for_10_percent < normal + 3
+
+
+def test_a_site_with_one_test_has_no_interval() -> None:
+    (row,) = compare_sites("H_V", np.array([1.0, 2.0, 3.0]), ["A", "B", "B"])
+    assert math.isnan(row.p)
+    assert np.isnan(row.interval).all()
+
+
+def test_own_mean_over_one_site_is_the_classical_interval() -> None:
+    values = np.array([0.1, 0.2, 0.15, 0.3])
+    own = own_mean(values, ["A"] * 4, geometric=True)
+    logs = np.log(values)
+    low, high = np.exp(stats.t.interval(0.95, 3, logs.mean(), logs.std(ddof=1) / 2))
+    assert (own.value, own.low, own.high) == pytest.approx((math.exp(logs.mean()), low, high))
+    assert (own.least, own.greatest) == (0.1, 0.3)
+
+
+def test_own_mean_over_balanced_sites_is_the_interval_of_their_means() -> None:
+    values, sites = np.array([1.0, 1.2, 2.0, 2.2, 4.0, 4.4]), ["A", "A", "B", "B", "C", "C"]
+    own = own_mean(values, sites, geometric=False)
+    means = values.reshape(3, 2).mean(axis=1)
+    low, high = stats.t.interval(0.95, 2, means.mean(), means.std(ddof=1) / math.sqrt(3))
+    assert (own.value, own.low, own.high) == pytest.approx((means.mean(), low, high))
+
+
+def test_published_values_are_those_that_the_paper_prints() -> None:
+    own = own_mean(np.array([1.0, 2.0]), ["A", "A"], geometric=False)
+    density = own_mean(np.array([500.0, 500.0]), ["A", "A"], geometric=False)
+    rows = compare_with_published(own, own, (own, own), density)
+    values = {(row.source, row.quantity): row.published for row in rows}
+    hardness = [v for (s, q), v in values.items() if "Federolf" in s and q == "H_V_N_per_mm3"]
+    stress = [v for (s, q), v in values.items() if "Federolf" in s and q == "S_f_N_per_mm2"]
+    # as many digits as are printed
+    assert [f"{value:.2g}" for value in hardness if isinstance(value, float)] == ["0.21", "0.16", "0.022"]
+    assert [f"{value:.2g}" for value in stress if isinstance(value, float)] == ["0.52", "0.086", "0.094"]
+    domine = next(v for (s, _), v in values.items() if "Domine" in s)
+    assert domine == pytest.approx(1585e-6, rel=1e-3)
+    eqn_14 = next(v for (s, _), v in values.items() if "Eqn 14" in s)
+    assert eqn_14 == pytest.approx(0.108, abs=1e-6)
+    assert values["Mössner and others 2013, range", "H_V_N_per_mm3"] == (0.04, 90.0)
