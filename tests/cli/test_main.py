@@ -1,0 +1,129 @@
+"""The command line as a user meets it."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+import skisnow
+from skisnow.cli import main
+
+CHECK_SCHEMA = json.loads((Path(skisnow.__file__).parent / "field/schemas/check.schema.json").read_text("utf-8"))
+
+
+@pytest.fixture
+def campaign(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
+    folder = tmp_path / "campaign"
+    assert main(["reference", str(folder), "--seed", "3"]) == 0
+    assert "ynthetic" in capsys.readouterr().out
+    return folder
+
+
+def files_below(folder: Path) -> set[str]:
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_check_of_a_good_campaign(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = files_below(campaign.parent)
+    assert main(["check", str(campaign), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    jsonschema.validate(found, CHECK_SCHEMA)
+    assert found["errors"] == 0
+    assert all(problem["severity"] == "mark" for problem in found["problems"])
+    assert files_below(campaign.parent) == before
+
+
+def test_check_lists_every_error_and_exits_1(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = campaign / "penetration.csv"
+    lines = path.read_text(encoding="utf-8").splitlines()
+    column = lines[0].split(",").index("depth_mm")
+    for row, cell in ((3, "-1"), (5, "deep")):
+        cells = lines[row - 1].split(",")
+        cells[column] = cell
+        lines[row - 1] = ",".join(cells)
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    assert main(["check", str(campaign), "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    jsonschema.validate(found, CHECK_SCHEMA)
+    errors = [(p["code"], p["row"], p["column"], p["value"]) for p in found["problems"] if p["severity"] == "error"]
+    assert errors == [("out_of_range", 3, "depth_mm", "-1"), ("not_a_number", 5, "depth_mm", "deep")]
+    assert found["errors"] == 2
+    assert main(["check", str(campaign)]) == 1
+    text = capsys.readouterr().out
+    assert "row 3, column depth_mm" in text
+    assert "2 errors" in text
+
+
+def test_analyse_refuses_a_campaign_with_errors_and_writes_nothing(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (campaign / "shear.csv").write_bytes(b"")
+    assert main(["analyse", str(campaign), "--out", str(tmp_path / "out"), "--json"]) == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "empty_file" in printed.err
+    assert not (tmp_path / "out").exists()
+
+
+def test_analyse_prints_json_alone_and_writes_nothing_without_out(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = files_below(tmp_path)
+    assert main(["analyse", str(campaign), "--json", "--resamples", "50", "--seed", "7"]) == 0
+    results = json.loads(capsys.readouterr().out)
+    assert results["provenance"]["seed"] == 7
+    assert results["provenance"]["options"] == {"geometry": "extended", "n_resamples": 50}
+    assert files_below(tmp_path) == before
+
+
+def test_analyse_writes_the_report(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["analyse", str(campaign), "--out", str(out), "--resamples", "50", "--geometry", "paper"]) == 0
+    assert "H_V" in capsys.readouterr().out
+    written = files_below(out)
+    assert {"results.json", "report.html"} <= written
+    assert any(name.endswith(".svg") for name in written)
+    assert any(name.endswith(".tex") for name in written)
+    assert not [name for name in written if "partial" in name]
+    results = json.loads((out / "results.json").read_text(encoding="utf-8"))
+    assert results["provenance"]["options"]["geometry"] == "paper"
+
+
+def test_reference_never_overwrites(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = (campaign / "penetration.csv").read_bytes()
+    assert main(["reference", str(campaign), "--seed", "4"]) == 1
+    assert "campaign" in capsys.readouterr().err
+    assert (campaign / "penetration.csv").read_bytes() == before
+
+
+@pytest.mark.parametrize("words", [[], ["no-such-command"], ["analyse"], ["analyse", "x", "--geometry", "flat"]])
+def test_wrong_words_exit_2(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(words)
+    assert stop.value.code == 2
+    assert "usage" in capsys.readouterr().err
+
+
+def test_help_imports_nothing_heavy() -> None:
+    code = (
+        "import sys, skisnow.cli\n"
+        "try: skisnow.cli.main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'matplotlib', 'sqlalchemy', 'jinja2'} & set(sys.modules)\n"
+        "assert not heavy, heavy"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, env=os.environ)
+
+
+def test_a_place_that_cannot_be_written_is_a_sentence(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A file stands where the folder should be."""
+    (tmp_path / "out").write_text("a file", encoding="utf-8")
+    assert main(["analyse", str(campaign), "--out", str(tmp_path / "out"), "--resamples", "20"]) == 1
+    assert "cannot be written" in capsys.readouterr().err
+    assert (tmp_path / "out").read_text(encoding="utf-8") == "a file"

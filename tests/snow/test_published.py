@@ -1,0 +1,59 @@
+"""Published relations against the numbers that their papers print."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.snow import SnowProperties
+from skisnow.snow.published import domine_2011, federolf_2006, moessner_2013
+
+LITERATURE = Path(__file__).resolve().parents[3] / "shared" / "data" / "literature"
+
+
+def test_equation_13_in_radians() -> None:
+    """At 90° 0.0344 N/mm² (0.0343 by the printed digits); in degrees it would be negative."""
+    assert float(moessner_2013.failure_shear_stress_from_angle(math.pi / 2)) == pytest.approx(0.0344e6, rel=0.003)
+    assert float(moessner_2013.failure_shear_stress_from_angle(0.0)) == pytest.approx(0.059e6)
+
+
+def test_equation_14_and_domine_at_500() -> None:
+    assert float(moessner_2013.failure_shear_stress_from_density(500.0)) == pytest.approx(0.108e6)
+    assert float(domine_2011.failure_shear_stress_from_density(500.0)) == pytest.approx((51.35 - 11.5323) ** 2)
+
+
+def test_only_about_55_degrees_reproduces_all_six_converted_values() -> None:
+    def printed(angle_deg: float) -> list[str]:
+        pairs = [
+            federolf_2006.converted(A, B, math.radians(angle_deg)) for A, B in federolf_2006.PRESSURE_LAWS.values()
+        ]
+        return [f"{value:.2g}" for pair in pairs for value in pair]
+
+    paper = ["0.21", "0.52", "0.16", "0.086", "0.022", "0.094"]
+    fitting = [angle for angle in np.arange(50.0, 60.0, 0.01) if printed(angle) == paper]
+    assert (round(min(fitting), 2), round(max(fitting), 2)) == (54.98, 55.17)
+    assert printed(math.degrees(federolf_2006.CONVERSION_ANGLE)) == paper
+
+
+def test_printed_values_are_those_of_the_literature_table() -> None:
+    if not LITERATURE.exists():
+        pytest.skip("the table of literature values is not beside the repository")
+    lines = (LITERATURE / "seed_paper_values.csv").read_text(encoding="utf-8").splitlines()[1:]
+    values = [line.split(",")[:3] for line in lines]
+    rmse = sorted(float(value) for quantity, _, value in values if quantity == "rmse")
+    assert sorted(moessner_2013.PRINTED_RMSE_N.values()) == rmse
+    one = {quantity: float(value) for quantity, _, value in values}
+    assert (one["b0"], one["b1"]) == moessner_2013.ANGLE_TERM
+    assert (one["H_V_min"], one["H_V_max"]) == moessner_2013.SNOW_HARDNESS_RANGE_N_PER_MM3
+    assert (one["S_f_min"], one["S_f_max"]) == moessner_2013.FAILURE_SHEAR_STRESS_RANGE_N_PER_MM2
+    assert (one["tool_length"], one["tool_width"]) == (moessner_2013.TOOL_LENGTH_MM, moessner_2013.TOOL_WIDTH_MM)
+
+
+@pytest.mark.parametrize(
+    ("hardness", "stress"), [(0.0, 1.0), (-1.0, 1.0), (math.nan, 1.0), (1.0, 0.0), (math.inf, 1.0)]
+)
+def test_a_snow_needs_values_above_zero(hardness: float, stress: float) -> None:
+    with pytest.raises(ParameterError, match="above 0"):
+        SnowProperties(hardness, stress, "a test")
