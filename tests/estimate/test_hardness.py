@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from scipy import optimize, stats
 
-from skisnow.estimate.hardness import DEFINITIONS, Hardness, ReadingUncertainty, hardness
+from skisnow.estimate.hardness import (
+    DEFINITIONS,
+    Hardness,
+    ReadingUncertainty,
+    hardness,
+    hardness_of_all_readings,
+)
 from skisnow.estimate.readings import Readings
 from skisnow.geometry import Disc, LyingCylinder, SkiPiece, Tool
 from skisnow.units import N_PER_MM, N_PER_MM2, N_PER_MM3
@@ -96,14 +102,15 @@ def test_scatter_alone_is_the_classical_interval_of_one_more_reading() -> None:
     found = hardness(readings, DEFINITIONS["H_V"], ReadingUncertainty())
     logs = np.log(load / readings.displaced_volume)
     s = logs.std(ddof=1)
-    assert found.scatter[0] == pytest.approx(s, rel=1e-9)
+    every = hardness_of_all_readings(readings, DEFINITIONS["H_V"], ReadingUncertainty())
+    assert every.scatter[0] == pytest.approx(s, rel=1e-9)
     np.testing.assert_allclose(
         np.log(found.interval[0]),
         logs[-1] + np.array([-1, 1]) * stats.t.ppf(0.975, 5) * logs[:-1].std(ddof=1),
         rtol=1e-9,
     )
     np.testing.assert_allclose(
-        np.log(found.fitted_interval[0]),
+        np.log(every.interval[0]),
         stats.t.interval(0.95, 6, logs.mean(), s / math.sqrt(7)),
         rtol=1e-9,
     )
@@ -117,7 +124,7 @@ def test_scatter_solves_the_equation_of_paule_and_mandel() -> None:
     depth = truth * np.exp(rng.normal(0, 0.03, (40, 7))) + rng.normal(0, 1e-5, (40, 7))
     readings = pressed(tool, angle, depth, LOADS)
     uncertainty = ReadingUncertainty(1e-5, 0.5)
-    found = hardness(readings, DEFINITIONS["H_V"], uncertainty)
+    found = hardness_of_all_readings(readings, DEFINITIONS["H_V"], uncertainty)
     logs = np.log(readings.load / readings.displaced_volume).reshape(40, 7)
     known = (0.5 / LOADS) ** 2 + ((readings.contact_area / readings.displaced_volume).reshape(40, 7) * 1e-5) ** 2
 
@@ -147,12 +154,14 @@ def test_intervals_cover_the_truth_as_often_as_they_claim(scatter: float, gauge:
     H = 20e9 * np.exp(rng.normal(0, 0.2, (m, 1)))  # so that rounding falls differently in each series
     force = LOADS * np.exp(rng.normal(0, scatter, (m, 7)))
     depth = np.round(tool.depth_at_volume(force / H, angle) / gauge) * gauge
-    found = hardness(pressed(tool, angle, depth, LOADS), DEFINITIONS["H_V"], ReadingUncertainty(gauge / math.sqrt(12)))
+    readings, uncertainty = pressed(tool, angle, depth, LOADS), ReadingUncertainty(gauge / math.sqrt(12))
+    last = hardness(readings, DEFINITIONS["H_V"], uncertainty)
+    every = hardness_of_all_readings(readings, DEFINITIONS["H_V"], uncertainty)
     deviation = 3 * math.sqrt(0.95 * 0.05 / m)
-    for interval in (found.interval, found.fitted_interval):
+    for interval in (last.interval, every.interval):
         covered = float(np.mean((interval[:, 0] <= H[:, 0]) & (interval[:, 1] >= H[:, 0])))
         assert covered > (0.92 if scatter > 0 and gauge > 1e-6 else 0.95) - deviation
         if scatter > 0:
             assert covered < 0.96 + deviation
     # the mean of 4,000 series with 1.2-3 % each
-    assert abs(float(np.mean(np.log(found.fitted / H[:, 0])))) < 0.005
+    assert abs(float(np.mean(np.log(every.value / H[:, 0])))) < 0.005

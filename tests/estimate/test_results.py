@@ -21,7 +21,7 @@ Json = dict[str, Any]
 
 def results_of(campaign: Campaign | Path, **options: Any) -> Json:
     """Analyse, go through JSON, hold against the schema."""
-    text = results_json(skisnow.results_dict(skisnow.analyse(campaign, n_resamples=200, **options)))
+    text = results_json(skisnow.results_dict(skisnow.analyse(campaign, n_resamples=200, **options))).decode("utf-8")
     assert "NaN" not in text
     assert "Infinity" not in text
     results: Json = json.loads(text)
@@ -196,3 +196,11 @@ def test_snow_from_results(results: Json, tmp_path: Path) -> None:
     assert snow.snow_hardness == pytest.approx(mean * 1e9, rel=1e-12)
     with pytest.raises(skisnow.errors.ParameterError, match="site A"):
         skisnow.snow_from_results(path, site="nowhere")
+
+
+@pytest.mark.parametrize("name", ["plain", 'a"},{"b', "ϑ, ü"])
+def test_names_of_any_kind_survive_the_writing(make_campaign: MakeCampaign, name: str) -> None:
+    quoted = '"' + name.replace('"', '""') + '"'
+    rows = [(quoted, "A", "ski", 0, load, load / 100) for load in (100, 200, 300)]
+    results = results_of(make_campaign(rows, [("s1", "A", "blade", 90, 6, 250, 30)]))
+    assert [row["experiment"] for row in results["penetration"]["experiments"]] == [name]

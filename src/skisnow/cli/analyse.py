@@ -44,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
 
             write_report(analysis.campaign, results, options.out, progress=progress)
     if options.json:
-        print(results_json(results))
+        print(results_json(results).decode("utf-8"), end="")
         return 0
     from ..report.summary import summary
 

@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..statistics.bounded import non_negative_fits
-from .hardness import DEFINITIONS, hardness
+from .hardness import DEFINITIONS, hardness_of_all_readings
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, fit_model
 
 if TYPE_CHECKING:
@@ -76,10 +76,12 @@ def fitted_hardness(readings: Readings, seated: Seating, uncertainty: ReadingUnc
     enough = (readings.sums(np.ones(readings.n)) >= FEWEST_READINGS) & np.isfinite(seated.offset)
     offset = np.where(enough, seated.offset, 0.0)
     moved = readings.less_offset(offset)
-    found = {symbol: hardness(moved, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
-    value = {symbol: H.fitted for symbol, H in found.items()}
+    found = {
+        symbol: hardness_of_all_readings(moved, definition, uncertainty) for symbol, definition in DEFINITIONS.items()
+    }
+    value = {symbol: H.value for symbol, H in found.items()}
     value["H_V"] = np.where(enough, seated.hardness, value["H_V"])
-    interval = np.where(enough[:, None], seated.hardness_interval, found["H_V"].fitted_interval)
+    interval = np.where(enough[:, None], seated.hardness_interval, found["H_V"].interval)
     return FittedHardness(moved, offset, value, interval, found["H_V"].scatter)
 
 
@@ -101,9 +103,10 @@ def fit_models_with_depth_errors(
     fits: list[ModelFit] = []
     weights: dict[Model, FloatArray] = {}
     bases = {symbol: end_basis(readings, H) for symbol, H in hardnesses.items()}
+    slopes_of = {symbol: _depth_slopes(readings, basis, hardnesses[symbol]) for symbol, basis in bases.items()}
     for model in MODELS:
         basis = bases[model.hardness]
-        slopes = _depth_slopes(readings, basis, hardnesses[model.hardness])
+        slopes = slopes_of[model.hardness]
         weight = _weights(readings, readings.load, np.zeros(readings.n), uncertainty, scatter)
         previous = np.full(4, np.nan)
         for _ in range(n_iterations if model.n_parameters else 0):

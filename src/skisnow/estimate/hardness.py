@@ -93,20 +93,16 @@ class Hardness:
     Attributes
     ----------
     value
-        H from the reading under the largest load (Eqn 1).
+        H.
     interval
-        (m, 2), 95 %; carries gauge, load and scatter over the load steps. The scatter is that of the *other* readings,
-        so that it is independent of the one judged: n - 2 degrees of freedom. NaN with fewer than two others.
-    fitted, fitted_interval
-        H from all readings of the series with errors in depth and load, likewise; n - 1 degrees of freedom.
+        (m, 2), 95 %; carries gauge, load and scatter over the load steps. NaN where too few readings in contact leave
+        the scatter unknown.
     scatter
-        s of each series.
+        Relative scatter s of the readings that the interval knows it from.
     """
 
     value: FloatArray
     interval: FloatArray
-    fitted: FloatArray
-    fitted_interval: FloatArray
     scatter: FloatArray
 
 
@@ -117,22 +113,37 @@ def hardness_at_largest_load(readings: Readings, definition: HardnessDefinition)
 
 
 def hardness(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> Hardness:
-    """Hardness of each series from its largest load and from all its readings, with intervals."""
+    """Hardness of each series from the reading under its largest load (Eqn 1).
+
+    The scatter is that of the *other* readings, so that it is independent of the one judged: n - 2 degrees of freedom.
+    """
+    logs, known, others = _log_ratios(readings, definition, uncertainty)
+    others[readings.largest] = False
+    value = hardness_at_largest_load(readings, definition)
+    scatter2 = scatter_variance(readings, logs, known, others)
+    variance, dof = scatter2 + known[readings.largest], readings.sums(others.astype(float)) - 1.0
+    return Hardness(value, _log_interval(np.log(value), variance, dof), np.sqrt(scatter2))
+
+
+def hardness_of_all_readings(
+    readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty
+) -> Hardness:
+    """Hardness of each series from all its readings, with errors in depth and load: n - 1 degrees of freedom."""
+    logs, known, touching = _log_ratios(readings, definition, uncertainty)
+    scatter2 = scatter_variance(readings, logs, known, touching)
+    mean, variance = _weighted_mean(readings, logs, scatter2[readings.series] + known, touching)
+    interval = _log_interval(mean, variance, readings.sums(touching.astype(float)) - 1.0)
+    return Hardness(np.exp(mean), interval, np.sqrt(scatter2))
+
+
+def _log_ratios(
+    readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """ln(F/M) of each reading, its known variance, and whether the tool touches."""
     M = definition.measure(readings)
     touching = (M > 0) & (readings.penetration_depth > 0)
     logs = np.log(np.divide(readings.load, M, out=np.ones_like(M), where=touching))
-    known = known_variance(readings, definition, uncertainty)
-
-    value = hardness_at_largest_load(readings, definition)
-    others = touching.copy()
-    others[readings.largest] = False
-    variance = scatter_variance(readings, logs, known, others) + known[readings.largest]
-    interval = _log_interval(np.log(value), variance, readings.sums(others.astype(float)) - 1.0)
-
-    scatter2 = scatter_variance(readings, logs, known, touching)
-    mean, variance = _weighted_mean(readings, logs, scatter2[readings.series] + known, touching)
-    fitted_interval = _log_interval(mean, variance, readings.sums(touching.astype(float)) - 1.0)
-    return Hardness(value, interval, np.exp(mean), fitted_interval, np.sqrt(scatter2))
+    return logs, known_variance(readings, definition, uncertainty), touching
 
 
 def _weighted_mean(

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from .readings import Readings
 
 FloatArray = npt.NDArray[np.float64]
-_UPPER = np.triu_indices(4)
 MOST_UNITS: Final = 5000
 """Experiments, or groups of them, that the bootstrap draws."""
 
@@ -79,29 +78,65 @@ def bootstrap_intervals(
     ``MOST_UNITS`` experiments, random groups of them are drawn in their place: experiments are independent, so groups
     are too, and their number still is large.
     """
-    bases = {symbol: end_basis(readings, hardnesses[symbol]) for symbol in DEFINITIONS}
-    groups: dict[str, list[Model]] = {}
-    for model in MODELS:
-        if model.n_parameters:
-            groups.setdefault(model.id if weights else model.hardness, []).append(model)
-    products = [
-        _cross_products(readings, bases[members[0].hardness], weights[members[0]] if weights else None)
-        for members in groups.values()
-    ]
+    groups = _groups(readings, {symbol: end_basis(readings, hardnesses[symbol]) for symbol in DEFINITIONS}, weights)
+    products = [group.products for group in groups]
+    ends = np.cumsum([part.shape[1] for part in products])[:-1]
     stacked = _in_groups(np.hstack(products), rng)
-    width = products[0].shape[1]
-    samples: dict[Model, list[FloatArray]] = {model: [] for members in groups.values() for model in members}
+    samples: dict[Model, list[FloatArray]] = {model: [] for group in groups for model in group.models}
     done = 0
     for counts in resampling_counts(len(stacked), n_resamples, rng):
-        totals = counts @ stacked
-        for index, members in enumerate(groups.values()):
-            part = totals[:, index * width : (index + 1) * width]
-            for model in members:
-                samples[model].append(_resampled_coefficients(bases[model.hardness], model, part))
+        for group, totals in zip(groups, np.split(counts @ stacked, ends, axis=1), strict=True):
+            for model in group.models:
+                samples[model].append(group.coefficients(model, totals))
         done += len(counts)
         if progress:
             progress(f"bootstrap of the model table: {done} of {n_resamples} resamples")
     return {model: percentile_interval(np.vstack(drawn)) for model, drawn in samples.items()}
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Rows that share their regressors and weights, with each experiment's cross products of these regressors.
+
+    ``to_ends`` (4, q) makes the four end values from the coefficients of the group's q regressors.
+    """
+
+    basis: EndBasis
+    models: tuple[Model, ...]
+    to_ends: FloatArray
+    products: FloatArray
+
+    def coefficients(self, model: Model, totals: FloatArray) -> FloatArray:
+        """(B, 4) a0, a1, b0, b1 of B resamples from their summed products (B, q (q + 3)/2)."""
+        q = self.to_ends.shape[1]
+        rows, columns = np.triu_indices(q)
+        gram = np.empty((len(totals), q, q))
+        gram[:, rows, columns] = gram[:, columns, rows] = totals[:, :-q]
+        within = np.linalg.lstsq(self.to_ends, self.basis.projection(model))[0]
+        fitted = non_negative_fits(within.T @ gram @ within, totals[:, -q:] @ within)
+        return self.basis.coefficients(fitted @ self.basis.projection(model).T + self.basis.offset(model))
+
+
+def _groups(readings: Readings, bases: dict[str, EndBasis], weights: dict[Model, FloatArray] | None) -> list[_Group]:
+    """One group a hardness where all readings count alike; one a row, with its own regressors, where they do not."""
+    fitted = [model for model in MODELS if model.n_parameters]
+    if weights is None:
+        shared = {symbol: tuple(model for model in fitted if model.hardness == symbol) for symbol in bases}
+        return [_group(readings, bases[symbol], models, np.eye(4), None) for symbol, models in shared.items()]
+    return [
+        _group(readings, bases[model.hardness], (model,), bases[model.hardness].projection(model), weights[model])
+        for model in fitted
+    ]
+
+
+def _group(
+    readings: Readings, basis: EndBasis, models: tuple[Model, ...], to_ends: FloatArray, weight: FloatArray | None
+) -> _Group:
+    X, F = basis.columns @ to_ends, readings.load
+    W = X if weight is None else X * weight[:, None]
+    pairs = zip(*np.triu_indices(X.shape[1]), strict=True)
+    sums = [readings.sums(W[:, i] * X[:, j]) for i, j in pairs] + [readings.sums(column * F) for column in W.T]
+    return _Group(basis, models, to_ends, np.stack(sums, axis=1))
 
 
 def _in_groups(products: FloatArray, rng: np.random.Generator) -> FloatArray:
@@ -111,21 +146,3 @@ def _in_groups(products: FloatArray, rng: np.random.Generator) -> FloatArray:
         return products
     shuffled = products[rng.permutation(m)]
     return np.add.reduceat(shuffled, np.arange(MOST_UNITS) * m // MOST_UNITS, axis=0)
-
-
-def _cross_products(readings: Readings, basis: EndBasis, weights: FloatArray | None) -> FloatArray:
-    """(m, 14): the upper triangle of XᵀX and XᵀF of each series."""
-    X, F = basis.columns, readings.load
-    W = X if weights is None else X * weights[:, None]
-    rows = [readings.sums(W[:, i] * X[:, j]) for i, j in zip(*_UPPER, strict=True)]
-    rows += [readings.sums(W[:, i] * F) for i in range(4)]
-    return np.stack(rows, axis=1)
-
-
-def _resampled_coefficients(basis: EndBasis, model: Model, totals: FloatArray) -> FloatArray:
-    gram = np.empty((len(totals), 4, 4))
-    gram[:, _UPPER[0], _UPPER[1]] = totals[:, :10]
-    gram[:, _UPPER[1], _UPPER[0]] = totals[:, :10]
-    projection = basis.projection(model)
-    fitted = non_negative_fits(projection.T @ gram @ projection, totals[:, 10:] @ projection)
-    return basis.coefficients(fitted @ projection.T + basis.offset(model))

@@ -6,7 +6,6 @@ not rounded.
 
 from __future__ import annotations
 
-import json
 import math
 import platform
 from datetime import UTC, datetime
@@ -15,11 +14,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+import orjson
 
 from ..units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
 from .hardness import DEFINITIONS
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from .analysis import Analysis, ModelTable, PenetrationAnalysis, ShearAnalysis
     from .model_choice import NestedRows
     from .models import Model, ModelFit
@@ -29,7 +31,6 @@ FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
 
 SCHEMA_VERSION = 1
-_ENCODER = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
 
 
 def results_dict(analysis: Analysis) -> Json:
@@ -323,20 +324,23 @@ def _provenance(analysis: Analysis) -> Json:
     }
 
 
-def results_json(results: Json) -> str:
-    """The text of results.json: one entry of a list to a line, so that people can search it and machines read it."""
-    return _lines(results, 0)
+def results_json(results: Json) -> bytes:
+    """The UTF-8 text of results.json: one entry of a list to a line, so that people can search it."""
+    return b"".join(_pieces(results, 0)) + b"\n"
 
 
-def _lines(value: Any, depth: int) -> str:
-    pad = " " * (depth + 1)
+def _pieces(value: Any, depth: int) -> Iterator[bytes]:
+    pad = b"\n" + b" " * (depth + 1)
     if isinstance(value, dict) and value and depth < 3:
-        items = [f"{json.dumps(key)}: {_lines(item, depth + 1)}" for key, item in value.items()]
-        return "{\n" + ",\n".join(pad + item for item in items) + "\n" + " " * depth + "}"
-    if isinstance(value, list) and value and isinstance(value[0], dict):
-        return "[\n" + ",\n".join(pad + _flat(item) for item in value) + "\n" + " " * depth + "]"
-    return _flat(value)
-
-
-def _flat(value: Any) -> str:
-    return _ENCODER.encode(value)
+        for index, (key, item) in enumerate(value.items()):
+            yield (b"," if index else b"{") + pad + orjson.dumps(key) + b": "
+            yield from _pieces(item, depth + 1)
+        yield b"\n" + b" " * depth + b"}"
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        text = orjson.dumps(value)
+        # at once is five times faster than row by row; split it only where no name contains what parts the rows
+        if text.count(b"},{") == len(value) - 1:
+            text = b"[" + pad + text[1:-1].replace(b"},{", b"}," + pad + b"{") + b"\n" + b" " * depth + b"]"
+        yield text
+    else:
+        yield orjson.dumps(value)
