@@ -121,6 +121,12 @@ class Material:
         return texts(self.shear, "site")[self.shear_used]
 
     @cached_property
+    def seating(self) -> list[Json]:
+        """Seating of the used penetration experiments that have one, each with its experiment's own row."""
+        rows = zip(self.penetration, self.results["penetration"]["seating"], strict=True)
+        return [own | found for own, found in rows if own["used"] and found["depth_offset_mm"] is not None]
+
+    @cached_property
     def observations(self) -> dict[str, Observations]:
         """Used experiments with the snow they were made on, by penetration, shear and spots."""
         every_H = numbers(self.penetration, HARDNESS_KEY) * N_PER_MM3

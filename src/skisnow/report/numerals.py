@@ -19,7 +19,7 @@ def significant(value: float | None, digits: int = 3, *, style: Style = "typeset
     """Round to significant digits, without rounding whole numbers below 10⁶ away.
 
     >>> significant(0.034412), significant(1652.4), significant(-2.0e-7), significant(None)
-    ('0.0344', '1652', '−2.00 × 10⁻⁷', '–')
+    ('0.0344', '1652', '−2.00×10⁻⁷', '–')
     """
     if value is None:
         return ABSENT[style]
@@ -33,7 +33,7 @@ def significant(value: float | None, digits: int = 3, *, style: Style = "typeset
         return f"{mantissa}e{exponent}"
     if style == "latex":
         return rf"${mantissa}\times10^{{{exponent}}}$"
-    return f"{_signed(mantissa, style)} × 10{str(exponent).translate(_SUPERSCRIPTS)}"
+    return f"{_signed(mantissa, style)}×10{str(exponent).translate(_SUPERSCRIPTS)}"
 
 
 def _signed(text: str, style: Style) -> str:
@@ -54,6 +54,17 @@ def interval(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "t
     return f"[{significant(low, digits, style=style)}, {significant(high, digits, style=style)}]"
 
 
+def from_to(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "typeset") -> str:
+    """Least and greatest of a range.
+
+    >>> from_to([0.04, 90.0])
+    '0.0400 to 90.0'
+    """
+    if pair is None:
+        return ABSENT[style]
+    return " to ".join(significant(end, digits, style=style) for end in pair)
+
+
 def probability(p: float | None, *, style: Style = "typeset") -> str:
     """A p value to two digits; below 0.001 only that.
 
@@ -69,9 +80,10 @@ def probability(p: float | None, *, style: Style = "typeset") -> str:
 
 
 def p_equals(p: float | None, *, style: Style = "typeset") -> str:
-    """A p value inside a sentence: ``p = 0.52`` or ``p < 0.001``."""
+    """A p value inside a sentence: ``p = 0.52`` or ``p < 0.001``, not broken over lines where typeset."""
     text = probability(p, style=style)
-    return f"p {text}" if text[0] in "<>" else f"p = {text}"
+    sentence = f"p {text}" if text[0] in "<>" else f"p = {text}"
+    return sentence.replace(" ", "\u00a0") if style == "typeset" else sentence
 
 
 def counted(number: int, singular: str, plural: str | None = None) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from .numerals import counted, significant
+from .numerals import counted, significant, whole
 from .sentences.caveats import caveats
 from .sentences.key_results import key_results
 from .sentences.penetration import procedures_compared, readings_used, seating_found
@@ -91,8 +91,8 @@ def _frame(material: Material) -> dict[str, Any]:
 
 def _counts(material: Material) -> str:
     return (
-        f"{counted(len(material.penetration), 'penetration experiment')} ({int(material.penetration_used.sum())} used), "
-        f"{counted(len(material.shear), 'shear experiment')} ({int(material.shear_used.sum())} used), "
+        f"{counted(len(material.penetration), 'penetration experiment')} ({whole(len(material.hardness))} used), "
+        f"{counted(len(material.shear), 'shear experiment')} ({whole(len(material.stress))} used), "
         f"{counted(len(material.sites), 'site')}"
     )
 

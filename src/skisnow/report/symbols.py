@@ -1,4 +1,4 @@
-"""Symbols of the field in the three languages of a report: HTML, LaTeX and the figures' mathtext.
+"""Symbols of the field and users' names in the languages of a report: HTML, LaTeX, text of figures.
 
 Texts written here carry symbols as ``H_V``, ``S_f``, ``b_0``. Text that users wrote is never looked through for them;
 it is escaped.
@@ -12,6 +12,7 @@ from typing import Any, Final
 from markupsafe import Markup
 
 _SYMBOL: Final = re.compile(r"(?<![\w<>/])([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
+_PERCENT: Final = re.compile(r"(?<=\d) %")
 _LATEX_SPECIAL: Final = {
     "\\": r"\textbackslash{}",
     "{": r"\{",
@@ -61,7 +62,8 @@ def prose(template: str, **values: Any) -> Markup:
 
 def html(text: str) -> Markup:
     """Our own words with their symbols set in HTML."""
-    return Markup(_SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", str(Markup.escape(text))))
+    tied = _PERCENT.sub("\u00a0%", text)
+    return Markup(_SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", str(Markup.escape(tied))))
 
 
 def latex(text: str) -> str:
@@ -83,12 +85,9 @@ def latex_escaped(text: str) -> str:
     >>> latex_escaped("a & b_c 100%")
     'a \\& b\\_c 100\\%'
     """
-    return "".join(_LATEX_SPECIAL.get(letter, letter) for letter in text if letter.isprintable() or letter in "\n\r\u202f")
-
-
-def mathtext(text: str) -> str:
-    """Our own words with their symbols set for a figure."""
-    return _SYMBOL.sub(r"$\1_\\mathrm{\2}$", text)
+    return "".join(
+        _LATEX_SPECIAL.get(letter, letter) for letter in text if letter.isprintable() or letter in "\n\r\u202f"
+    )
 
 
 def figure_text(text: str, *, longest: int = 28) -> str:
@@ -98,5 +97,5 @@ def figure_text(text: str, *, longest: int = 28) -> str:
     """
     line = " ".join("".join(letter if letter.isprintable() else " " for letter in text).split()) or "(no name)"
     short = line if len(line) <= longest else line[: longest - 1].rstrip() + "…"
-    escaped = short.replace("\\", "\u29f5").replace("$", r"\$")
+    escaped = short.replace("$", r"\$")
     return f" {escaped}" if escaped.startswith("_") else escaped

@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-Kind: TypeAlias = Literal["text", "words", "codes", "yes", "count", "number", "p", "interval", "estimate"]
+Kind: TypeAlias = Literal[
+    "text", "words", "codes", "yes", "tick", "count", "angle", "number", "p", "interval", "range", "estimate"
+]
 """What a cell holds.
 
-text: what a user wrote; words: our own, with symbols; codes: a list of names; yes: a truth value; count: an integer;
-number: a float or None; p: a p value; interval: a pair or None; estimate: (value, pair), in HTML and LaTeX one cell.
+text: what a user wrote; words: our own, with symbols; codes: a list of names; yes: a truth value; tick: the same, shown
+only where true; count: an integer; angle: degrees as they were set; number: a float or None; p: a p value; interval: a
+pair or None; range: the same, least and greatest; estimate: (value, pair), in HTML and LaTeX one cell.
 """
 
 ROWS_IN_HTML: Final = 300
@@ -44,7 +47,7 @@ class Column:
     @property
     def numeric(self) -> bool:
         """Whether the cells are set right-aligned."""
-        return self.kind in ("count", "number", "p", "interval", "estimate")
+        return self.kind in ("count", "angle", "number", "p", "interval", "range", "estimate")
 
 
 @dataclass(frozen=True)

@@ -28,11 +28,11 @@ def table_csv(table: Table) -> str:
 
 def _names(column: Column) -> tuple[str, ...]:
     ends = (f"{column.key}_low", f"{column.key}_high")
-    return {"interval": ends, "estimate": (column.key, *ends)}.get(column.kind, (column.key,))
+    return {"interval": ends, "range": ends, "estimate": (column.key, *ends)}.get(column.kind, (column.key,))
 
 
 def _cells(column: Column, values: Iterable[Any]) -> list[Iterable[Any]]:
-    if column.kind == "interval":
+    if column.kind in ("interval", "range"):
         return list(zip(*(pair or _NOTHING for pair in values), strict=True)) or [(), ()]
     if column.kind == "estimate":
         return list(zip(*((value, *(pair or _NOTHING)) for value, pair in values), strict=True)) or [(), (), ()]
@@ -43,7 +43,12 @@ def _as_it_is(value: Any) -> Any:
     return value
 
 
+def _truth(value: bool) -> str:
+    return "true" if value else "false"
+
+
 _WRITTEN: dict[str, Callable[[Any], Any]] = {
-    "yes": lambda value: None if value is None else ("true" if value else "false"),
+    "yes": _truth,
+    "tick": _truth,
     "codes": "; ".join,
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
@@ -10,9 +10,13 @@ from . import numerals
 from .symbols import html, prose
 
 if TYPE_CHECKING:
-    from .table import Column, Table
+    from collections.abc import Callable
 
-LISTED_NAMES = 20
+    from .table import Column, Kind, Table
+
+LISTED_NAMES: Final = 20
+COLUMNS_OF_NARROW: Final = 7
+"""Up to so many columns an interval stands beside its value, else below it."""
 
 
 def table_html(table: Table, *, number: int) -> Markup:
@@ -20,16 +24,18 @@ def table_html(table: Table, *, number: int) -> Markup:
     head = Markup("").join(_header(column) for column in table.columns)
     shown = table.rows[: table.rows_in_html]
     body = Markup("\n").join(
-        Markup("<tr>") + Markup("").join(_cell(column, value, index) for index, (column, value) in _pairs(table, row))
+        Markup("<tr>")
+        + Markup("").join(_cell(column, value, index) for index, (column, value) in _pairs(table, row))
         + Markup("</tr>")
         for row in shown
     )
     return Markup(
-        '<div class="table" id="table-{name}" role="region" aria-label="{label}" tabindex="0"><table>\n'
+        '<div class="table" id="table-{name}" role="region" aria-label="{label}" tabindex="0"><table{kind}>\n'
         "<caption><b>Table {number}.</b> {caption}</caption>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>"
         "</table></div>\n{below}"
     ).format(
         name=table.name,
+        kind=Markup(' class="narrow"') if len(table.columns) <= COLUMNS_OF_NARROW else Markup(""),
         label=f"Table {number}",
         number=number,
         caption=html(table.full_caption),
@@ -59,26 +65,7 @@ def _cell(column: Column, value: Any, index: int) -> Markup:
 
 def cell_html(column: Column, value: Any) -> Markup:
     """The content of a cell."""
-    if value is None:
-        return Markup(numerals.ABSENT["typeset"])
-    match column.kind:
-        case "words":
-            return html(value)
-        case "codes":
-            return _names(value)
-        case "yes":
-            return Markup("yes" if value else "no")
-        case "count":
-            return Markup(numerals.whole(value))
-        case "number":
-            return Markup(numerals.significant(value, column.digits))
-        case "p":
-            return Markup.escape(numerals.probability(value))
-        case "interval":
-            return Markup(numerals.interval(value, column.digits))
-        case "estimate":
-            return _estimate(value, column.digits)
-    return Markup.escape(value)
+    return Markup(numerals.ABSENT["typeset"]) if value is None else _SET[column.kind](value, column.digits)
 
 
 def _estimate(value: tuple[float | None, Any], digits: int) -> Markup:
@@ -94,6 +81,22 @@ def _names(names: list[str]) -> Markup:
     listed = Markup(", ").join(names[:LISTED_NAMES])
     more = len(names) - LISTED_NAMES
     return listed + f" and {numerals.whole(more)} more" if more > 0 else listed
+
+
+_SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
+    "text": lambda value, _: Markup.escape(value),
+    "words": lambda value, _: html(value),
+    "codes": lambda value, _: _names(value),
+    "yes": lambda value, _: Markup("yes" if value else "no"),
+    "tick": lambda value, _: Markup('<span role="img" aria-label="yes">✓</span>' if value else ""),
+    "count": lambda value, _: Markup(numerals.whole(value)),
+    "angle": lambda value, _: Markup(f"{value:.6g}"),
+    "number": lambda value, digits: Markup(numerals.significant(value, digits)),
+    "p": lambda value, _: Markup.escape(numerals.probability(value)),
+    "interval": lambda value, digits: Markup(numerals.interval(value, digits)),
+    "range": lambda value, digits: Markup(numerals.from_to(value, digits)),
+    "estimate": _estimate,
+}
 
 
 def _below(table: Table) -> Markup:

@@ -1,21 +1,23 @@
-"""A table as LaTeX with booktabs; a long one as longtable. Needs the packages booktabs, longtable and textcomp."""
+"""A table as LaTeX with booktabs, a long one as longtable; needs booktabs, longtable, textcomp and amssymb."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from . import numerals
 from .symbols import latex, latex_escaped
 from .table import ROWS_IN_LATEX
 
 if TYPE_CHECKING:
-    from .table import Column, Table
+    from collections.abc import Callable
 
-ROWS_ON_A_PAGE = 45
+    from .table import Column, Kind, Table
+
+ROWS_ON_A_PAGE: Final = 45
 
 
 def table_latex(table: Table) -> str:
-    """The table with caption and label, to be read in by a paper (``\\input``)."""
+    """The table with caption and label, to be read in by a paper."""
     shown = table.rows[:ROWS_IN_LATEX]
     alignment = "".join("r" if column.numeric else "l" for column in table.columns)
     head = " & ".join(_header(column) for column in table.columns) + r" \\"
@@ -28,7 +30,7 @@ def table_latex(table: Table) -> str:
     else:
         lines = [r"\begin{table}", r"\centering", caption, rf"\begin{{tabular}}{{{alignment}}}", r"\toprule", head]
         lines += [r"\midrule", *body, r"\bottomrule", r"\end{tabular}", r"\end{table}"]
-    return "% needs \\usepackage{booktabs,longtable,textcomp}\n" + "\n".join(lines) + "\n"
+    return "% needs \\usepackage{booktabs,longtable,textcomp,amssymb}\n" + "\n".join(lines) + "\n"
 
 
 def _caption(table: Table) -> str:
@@ -45,24 +47,26 @@ def _header(column: Column) -> str:
 
 
 def _cell(column: Column, value: Any) -> str:
-    if value is None:
-        return numerals.ABSENT["latex"]
-    match column.kind:
-        case "words":
-            return latex(value)
-        case "codes":
-            return latex_escaped(", ".join(value))
-        case "yes":
-            return "yes" if value else "no"
-        case "count":
-            return str(value)
-        case "number":
-            return numerals.significant(value, column.digits, style="latex")
-        case "p":
-            return numerals.probability(value, style="latex")
-        case "interval":
-            return f"{{{numerals.interval(value, column.digits, style='latex')}}}"
-        case "estimate":
-            number = numerals.significant(value[0], column.digits, style="latex")
-            return number if value[1] is None else f"{number} {numerals.interval(value[1], column.digits, style='latex')}"
-    return latex_escaped(str(value))
+    return numerals.ABSENT["latex"] if value is None else _SET[column.kind](value, column.digits)
+
+
+def _estimate(value: tuple[float | None, Any], digits: int) -> str:
+    number, pair = value
+    ends = "" if pair is None else f" {numerals.interval(pair, digits, style='latex')}"
+    return numerals.significant(number, digits, style="latex") + ends
+
+
+_SET: Final[dict[Kind, Callable[[Any, int], str]]] = {
+    "text": lambda value, _: latex_escaped(str(value)),
+    "words": lambda value, _: latex(value),
+    "codes": lambda value, _: latex_escaped(", ".join(value)),
+    "yes": lambda value, _: "yes" if value else "no",
+    "tick": lambda value, _: r"$\checkmark$" if value else "",
+    "count": lambda value, _: str(value),
+    "angle": lambda value, _: f"{value:.6g}",
+    "number": lambda value, digits: numerals.significant(value, digits, style="latex"),
+    "p": lambda value, _: numerals.probability(value, style="latex"),
+    "interval": lambda value, digits: f"{{{numerals.interval(value, digits, style='latex')}}}",
+    "range": lambda value, digits: numerals.from_to(value, digits, style="latex"),
+    "estimate": _estimate,
+}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -50,7 +52,23 @@ def write_report(
     OutputError
         A file cannot be written. results.json, written last, says by its presence beside the others that all is there.
     """
-    material = Material(campaign, results)
+    with _paused_collector():
+        return _write(Material(campaign, results), out, progress)
+
+
+@contextmanager
+def _paused_collector() -> Iterator[None]:
+    """No search for reference cycles: it would walk over the millions of cells of a large campaign again and again."""
+    running = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if running:
+            gc.enable()
+
+
+def _write(material: Material, out: Path, progress: Callable[[str], None] | None) -> Path:
     say = progress or _silent
     say("tables of the report")
     every_table = tables_of(material)
@@ -67,7 +85,7 @@ def write_report(
     report = out / "report.html"
     write_file(report, page(material, tables, pictures, missing))
     say("results.json")
-    write_file(out / "results.json", results_json(results))
+    write_file(out / "results.json", results_json(material.results))
     return report
 
 

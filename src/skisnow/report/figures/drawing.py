@@ -9,6 +9,9 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from ..symbols import html
+from .style import thinning_sentence
+
 if TYPE_CHECKING:
     from markupsafe import Markup
     from matplotlib.figure import Figure
@@ -19,13 +22,14 @@ _FAMILY: Final = re.compile(r"'DejaVu Sans'(?!,)")
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure with its words. ``wide``: two columns of a journal."""
+    """A figure with its words. ``wide``: two columns of a journal; ``points``: how many the cloud has."""
 
     name: str
     caption: Markup
     alt: str
     figure: Figure
     wide: bool = False
+    points: int = 0
 
 
 @dataclass(frozen=True)
@@ -60,8 +64,18 @@ def pictured(drawing: Drawing) -> Picture:
     with warnings.catch_warnings():
         # a site's name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
         warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
+        _lay_out(drawing.figure)
         drawing.figure.savefig(svg, format="svg", metadata=_NO_DATE)
         drawing.figure.savefig(png, format="png", metadata={"Software": None})
     # Verdana has the widths of DejaVu Sans where that is not installed
     text = _FAMILY.sub("'DejaVu Sans', Verdana, sans-serif", svg.getvalue())
-    return Picture(drawing.name, drawing.caption, drawing.alt, drawing.wide, text, png.getvalue())
+    caption = drawing.caption + html(thinning_sentence(drawing.points))
+    return Picture(drawing.name, caption, drawing.alt, drawing.wide, text, png.getvalue())
+
+
+def _lay_out(figure: Figure) -> None:
+    """Place the axes once for both files, which takes as long as drawing them."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine("none")

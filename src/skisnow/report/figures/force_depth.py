@@ -73,7 +73,7 @@ def shown_angles(material: Material) -> list[float]:
 
 
 def _angle_name(angle: float) -> str:
-    return "flat, ϑ = 0°" if angle == 0 else f"edged, ϑ = {angle:.4g}°"
+    return "ϑ = 0°" if angle == 0 else f"edged, ϑ = {angle:.4g}°"
 
 
 def _members(material: Material, angle: float) -> list[int]:
@@ -127,16 +127,16 @@ def _law(material: Material, tests: PenetrationTests, index: int, wide_range: bo
 
 def _caption(counts: list[tuple[float, int, int]], *, wide_range: bool) -> Markup:
     panels = "; ".join(
-        f"{_angle_name(angle)}: {whole(shown)} of {whole(total)} series"
+        f"{whole(shown)} of {whole(total)} ({_angle_name(angle)})"
         + (", evenly spaced in the rank of their hardness" if shown < total else "")
         for angle, shown, total in counts
     )
     return prose(
         "Load against penetration depth (the paper's Fig. 5). Symbols: readings by site; lines: F = H_V V with each "
-        "series' own H_V, which meets the reading under the largest load by definition. {panels}.{axes}",
+        "series' own H_V, which meets the reading under the largest load by definition. Series shown: {panels}.{axes}",
         panels=panels,
         axes=" Both axes are logarithmic, as the depths span more than a decade: the law is a straight line there, of "
-        "slope 1 for the flat tool and 2 for the wedge; readings of depth 0 have no place on them."
+        "slope 1 for a flat tool and 2 for a wedge; readings of depth 0 have no place on them."
         if wide_range
         else "",
     )
@@ -144,4 +144,6 @@ def _caption(counts: list[tuple[float, int, int]], *, wide_range: bool) -> Marku
 
 def _alt(counts: list[tuple[float, int, int]]) -> str:
     angles = " and ".join(_angle_name(angle) for angle, _, _ in counts)
-    return f"Scatter of load in newtons against penetration depth in millimetres, {angles}, with a fitted law per series."
+    return (
+        f"Scatter of load in newtons against penetration depth in millimetres, {angles}, with a fitted law per series."
+    )

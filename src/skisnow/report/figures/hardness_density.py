@@ -32,7 +32,7 @@ def hardness_density(material: Material, styles: Sequence[SiteStyle]) -> Drawing
     ends, site = material.hardness_interval[known], material.penetration_site[known]
     figure = new_figure(height_mm=80.0)
     axes = figure.add_subplot()
-    error_bars(axes, density, hardness, ends, site, styles)
+    error_bars(axes, density, ends, site, styles)
     handles = scatter(axes, density, hardness, site, styles)
     if spans_a_decade(hardness):
         logarithmic(axes, "y", np.concatenate((hardness, ends[np.isfinite(ends)])))
@@ -42,7 +42,9 @@ def hardness_density(material: Material, styles: Sequence[SiteStyle]) -> Drawing
     legend_below(figure, handles)
     row = material.regression("H_V_N_per_mm3", "snow_density_kg_per_m3")
     caption = prose(
-        "Snow hardness H_V against density (the paper's Fig. 6) with 95 % intervals of each experiment, by site.{found}",
+        "Snow hardness H_V against density (the paper's Fig. 6) with the 95 % interval of each experiment.{found}",
         found=f" Linear regression over all: {p_equals(row['p'])}." if row and row["p"] is not None else "",
     )
-    return Drawing(NAME, caption, "Snow hardness against snow density with intervals, by site.", figure)
+    return Drawing(
+        NAME, caption, "Snow hardness against snow density with intervals, by site.", figure, points=len(hardness)
+    )

@@ -64,9 +64,9 @@ def machining(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Left
     mark_synthetic(material, axes)
     legend_below(figure, handles)
     caption = prose(
-        "Tangential stress F_t/(L e) at {site}, the softest site of varied edge angle, against machining theory (Eqn 10; "
-        "the paper's Fig. 9). S = {S} N/mm² is half of the regression's {upright} N/mm² at 90° (S_f = 2 S there without "
-        "friction): a choice that makes the thick curve, β = 0, meet the data at 90°; the thin one has β = arctan 0.2.",
+        "Tangential stress F_t/(L e) at {site}, the softest site of varied edge angle, against machining theory (Eqn "
+        "10; the paper's Fig. 9). S = {S} N/mm² is half of the regression's {upright} N/mm² at 90° (S_f = 2 S there "
+        "without friction): a choice that makes the thick curve, β = 0, meet the data at 90°; thin: β = arctan 0.2.",
         site=row["group"],
         S=significant(upright / 2.0),
         upright=significant(upright),

@@ -14,7 +14,7 @@ from ..numerals import significant, whole
 from ..symbols import html, prose
 from ..tables.models import law
 from .drawing import Drawing, LeftOut
-from .style import BLUE, GREY, PALE, RASTERISE_FROM, VERMILLION, mark_synthetic, new_figure
+from .style import BLUE, GREY, PALE, RASTERISE_FROM, VERMILLION, mark_synthetic, new_figure, thinned
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,9 +42,10 @@ def residuals(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Left
     figure = new_figure(height_mm=62.0)
     axes = figure.add_subplot()
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
+    part = thinned(used.n)
     axes.plot(
-        used.load,
-        departure,
+        used.load[part],
+        departure[part],
         linestyle="none",
         marker=".",
         markersize=3.0,
@@ -67,7 +68,9 @@ def residuals(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Left
         m=whole(used.n_series),
         rmse=significant(row["rmse_N"], 4),
     )
-    return Drawing(NAME, caption, "Residuals of the selected law in newtons against the load in newtons.", figure)
+    return Drawing(
+        NAME, caption, "Residuals of the selected law in newtons against the load in newtons.", figure, points=used.n
+    )
 
 
 def _force(material: Material, row: Json, used: Readings) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 from ..material import numbers, pairs, texts
 from ..numerals import whole
 from ..symbols import prose
-from ..tables.seating import offsets_that_show, seating_of_used
+from ..tables.seating import offsets_that_show
 from .drawing import Drawing, LeftOut
 from .style import GREY, error_bars, legend_below, mark_synthetic, new_figure, plain_number, scatter
 
@@ -25,7 +25,7 @@ _THRESHOLD_MM: Final = 0.1
 
 def seating_offsets(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Offsets with their intervals in the order of the hardness, where their effect lies."""
-    rows = seating_of_used(material)
+    rows = material.seating
     if not rows:
         return LeftOut(NAME, "Offsets of the depth zero", "no used series has the three readings that an offset needs")
     offset, ends = numbers(rows, "depth_offset_mm"), pairs(rows, "interval_mm")
@@ -33,7 +33,7 @@ def seating_offsets(material: Material, styles: Sequence[SiteStyle]) -> Drawing 
     figure = new_figure(height_mm=80.0)
     axes = figure.add_subplot()
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
-    error_bars(axes, hardness, offset, ends, site, styles)
+    error_bars(axes, hardness, ends, site, styles)
     handles = scatter(axes, hardness, offset, site, styles, size=3.0)
     if hardness.min() > 0 and hardness.max() > 10.0 * hardness.min():
         axes.set_xscale("log")
@@ -46,10 +46,16 @@ def seating_offsets(material: Material, styles: Sequence[SiteStyle]) -> Drawing 
     mark_synthetic(material, axes)
     legend_below(figure, handles)
     caption = prose(
-        "Offset δ of the depth zero of each used series with its 95 % interval, against the hardness: a positive δ is a "
-        "gauge that read δ when the tool touched. {shown} of {all} intervals leave out zero; of series without any "
+        "Offset δ of the depth zero of each used series with its 95 % interval, against the hardness: a positive δ is "
+        "a gauge that read δ when the tool touched. {shown} of {all} intervals leave out zero; of series without any "
         "offset about one in twenty would.",
         shown=whole(offsets_that_show(rows)),
         all=whole(len(rows)),
     )
-    return Drawing(NAME, caption, "Depth offset in millimetres with intervals against snow hardness, by site.", figure)
+    return Drawing(
+        NAME,
+        caption,
+        "Depth offset in millimetres with intervals against snow hardness, by site.",
+        figure,
+        points=len(rows),
+    )

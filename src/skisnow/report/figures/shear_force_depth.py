@@ -36,4 +36,10 @@ def shear_force_depth(material: Material, styles: Sequence[SiteStyle]) -> Drawin
         "Failure shear force F_t against penetration depth of the plate (the paper's Fig. 7), by site. With one plate, "
         "points of equal S_f lie on a straight line through the origin."
     )
-    return Drawing(NAME, caption, "Failure shear force in newtons against depth in millimetres, by site.", figure)
+    return Drawing(
+        NAME,
+        caption,
+        "Failure shear force in newtons against depth in millimetres, by site.",
+        figure,
+        points=len(force),
+    )

@@ -49,7 +49,7 @@ def stress_angle(material: Material, styles: Sequence[SiteStyle]) -> Drawing | L
     figure = new_figure(height_mm=70.0)
     axes = figure.add_subplot()
     ends = np.array([row["S_f_interval_N_per_mm2"] or (np.nan, np.nan) for row in material.shear], dtype=float)
-    error_bars(axes, angle, stress, ends[material.shear_used][chosen], site, styles)
+    error_bars(axes, angle, ends[material.shear_used][chosen], site, styles)
     handles = scatter(axes, angle, stress, site, styles)
     for style, mask in masks(styles, site):
         for row in rows:
@@ -66,12 +66,14 @@ def stress_angle(material: Material, styles: Sequence[SiteStyle]) -> Drawing | L
     legend_below(figure, handles)
     found = "; ".join(f"{row['group']}: n = {row['n']}, {p_equals(row['p'])}" for row in rows[:MOST_SENTENCES])
     caption = prose(
-        "Failure shear stress S_f against edge angle at the sites where the angle was varied (the paper's Fig. 8), with "
-        "the 95 % interval that the instruments allow. A regression line with the 95 % band of its mean is drawn only "
-        "where p < 0.05. {found}.",
+        "Failure shear stress S_f against edge angle at the sites where the angle was varied (the paper's Fig. 8), "
+        "with the 95 % interval that the instruments allow. A regression line with the 95 % band of its mean is drawn "
+        "only where p < 0.05. {found}.",
         found=found,
     )
-    return Drawing(NAME, caption, "Failure shear stress against edge angle in degrees, by site.", figure)
+    return Drawing(
+        NAME, caption, "Failure shear stress against edge angle in degrees, by site.", figure, points=len(stress)
+    )
 
 
 def _significant(row: Json) -> bool:

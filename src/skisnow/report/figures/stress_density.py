@@ -46,12 +46,19 @@ def stress_density(material: Material, styles: Sequence[SiteStyle]) -> Drawing |
     caption = prose(
         "Failure shear stress S_f against density (the paper's Fig. 10), by site.{line}", line=_line(row) if row else ""
     )
-    return Drawing(NAME, caption, "Failure shear stress against snow density with a regression line, by site.", figure)
+    return Drawing(
+        NAME,
+        caption,
+        "Failure shear stress against snow density with a regression line, by site.",
+        figure,
+        points=len(stress),
+    )
 
 
 def _line(row: Json) -> str:
     text = (
-        f" Line: {significant(row['b'][0])} + ({significant(row['b'][1])}) ρ, n = {row['n']}, {p_equals(row['p'])}"
+        f" Line: {significant(row['b'][0])} {'−' if row['b'][1] < 0 else '+'} {significant(abs(row['b'][1]))} ρ, "
+        f"n = {row['n']}, {p_equals(row['p'])}"
         f"{', dashed because not significant' if row['p'] is None or row['p'] >= SIGNIFICANT else ''}; band: 95 % "
         "interval of its mean, as if all experiments were independent."
     )

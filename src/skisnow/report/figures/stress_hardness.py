@@ -40,9 +40,15 @@ def stress_hardness(material: Material, styles: Sequence[SiteStyle]) -> Drawing 
     legend_below(figure, handles)
     row = material.regression("S_f_N_per_mm2", "H_V_N_per_mm3")
     caption = prose(
-        "Failure shear stress S_f against snow hardness H_V at {spots} (the paper's Fig. 11): geometric mean of H_V and "
-        "mean of S_f over the used experiments of a spot.{found}",
+        "Failure shear stress S_f against snow hardness H_V at {spots} (the paper's Fig. 11): geometric mean of H_V "
+        "and mean of S_f over the used experiments of a spot.{found}",
         spots=counted(len(spots.site), "spot"),
         found=f" Linear regression: {p_equals(row['p'])}." if row and row["p"] is not None else "",
     )
-    return Drawing(NAME, caption, "Failure shear stress against snow hardness, one point for each spot.", figure)
+    return Drawing(
+        NAME,
+        caption,
+        "Failure shear stress against snow hardness, one point for each spot.",
+        figure,
+        points=len(stress),
+    )

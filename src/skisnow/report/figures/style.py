@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import matplotlib
 import numpy as np
@@ -27,6 +27,7 @@ SINGLE_MM: Final = 85.0
 DOUBLE_MM: Final = 180.0
 RASTERISE_FROM: Final = 2000
 """Points above which a cloud is drawn as an image inside the SVG."""
+MOST_POINTS: Final = 40_000
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
@@ -38,6 +39,7 @@ MARKERS: Final = ("o", "^", "s", "D", "v", "P", "X", "<", "p", ">", "*", "h", "d
 NAMED_SITES: Final = 14
 _LETTER_MM: Final = 1.4
 _HANDLE_MM: Final = 9.0
+_ROW_MM: Final = 3.6
 
 _RC: Final[dict[str, Any]] = {
     "font.family": "DejaVu Sans",  # comes with the drawing library: the same picture on every machine
@@ -79,7 +81,7 @@ def journal_style() -> Iterator[None]:
     """The library's own defaults plus ours while drawing and writing, whatever the user has set; put back after."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_RC)
+        matplotlib.rcParams.update(cast("Any", _RC))
         yield
 
 
@@ -129,14 +131,37 @@ def scatter(
     axes: Axes, x: FloatArray, y: FloatArray, site: TextArray, styles: Sequence[SiteStyle], *, size: float | None = None
 ) -> list[Line2D]:
     """Points by site; returns the handles of the legend."""
-    many = len(x) > RASTERISE_FROM
+    many, part = len(x) > RASTERISE_FROM, thinned(len(x))
+    x, y, site = x[part], y[part], site[part]
     handles = []
     for style, mask in masks(styles, site):
         axes.plot(
-            x[mask], y[mask], linestyle="none", rasterized=many, zorder=3, **_marker(style, size or (2.5 if many else None))
+            x[mask],
+            y[mask],
+            linestyle="none",
+            rasterized=many,
+            zorder=3,
+            **_marker(style, size or (2.5 if many else None)),
         )
         handles.append(Line2D([], [], linestyle="none", label=style.label, **_marker(style, None)))
     return handles
+
+
+def thinned(count: int) -> slice:
+    """Every k-th of many points: a cloud looks the same with MOST_POINTS of them.
+
+    k has no small divisor: every seventh reading would always be the same load step.
+    """
+    step = max(1, -(-count // MOST_POINTS))
+    while step > 1 and any(step % divisor == 0 for divisor in range(2, 11)):
+        step += 1
+    return slice(None, None, step)
+
+
+def thinning_sentence(count: int) -> str:
+    """What the caption says of it."""
+    step = thinned(count).step
+    return f" One point in {step} is drawn." if step > 1 else ""
 
 
 def _marker(style: SiteStyle, size: float | None) -> dict[str, Any]:
@@ -144,9 +169,7 @@ def _marker(style: SiteStyle, size: float | None) -> dict[str, Any]:
     return look if size is None else look | {"markersize": size}
 
 
-def error_bars(
-    axes: Axes, x: FloatArray, y: FloatArray, ends: FloatArray, site: TextArray, styles: Sequence[SiteStyle]
-) -> None:
+def error_bars(axes: Axes, x: FloatArray, ends: FloatArray, site: TextArray, styles: Sequence[SiteStyle]) -> None:
     """Intervals behind the points; left away where they would be a cloud of ink."""
     if len(x) > RASTERISE_FROM:
         return
@@ -164,6 +187,8 @@ def legend_below(figure: Figure, handles: Sequence[Line2D]) -> None:
     widths = [_LETTER_MM * len(str(handle.get_label())) + _HANDLE_MM for handle in handles]
     columns = next(n for n in range(len(handles), 0, -1) if n == 1 or _width(widths, n) <= room_mm)
     rows = -(-len(handles) // columns)
+    # a tall legend takes its room from the page and not from the axes
+    figure.set_figheight(figure.get_figheight() + max(0, rows - 2) * _ROW_MM / MM_PER_INCH)
     figure.legend(handles=list(handles), loc="outside lower center", ncols=-(-len(handles) // rows))
 
 
@@ -202,7 +227,7 @@ def logarithmic(axes: Axes, which: str, values: FloatArray) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def plain_number(value: float, _place: int | None = None) -> str:
+def plain_number(value: float, _place: float | None = None) -> str:
     """A tick's label: 0.05 and not 5 × 10⁻², with a true minus."""
     if value != 0 and not 1e-4 <= abs(value) < 1e5:
         return f"$10^{{{np.log10(abs(value)):.0f}}}$"

@@ -52,8 +52,8 @@ def _not_there(material: Material) -> list[str]:
         found.append("No drop-cone test is given: the regression of H_V on drop-cone depth has no data.")
     if material.results["provenance"]["options"]["geometry"] == "paper":
         found.append(
-            "The paper's plain wedge was chosen: an edged tool counts as a wedge at every depth, also where its base is "
-            "under the surface (marked beyond_tool)."
+            "The paper's plain wedge was chosen: an edged tool counts as a wedge at every depth, also where its base "
+            "is under the surface (marked beyond_tool)."
         )
     return found
 

@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from ..numerals import counted, interval, p_equals, significant, whole
 from ..symbols import html, prose
-from ..tables.models import law
+from ..tables.models import law, row_name
 from ..tables.regressions import QUANTITY
 
 if TYPE_CHECKING:
@@ -41,8 +41,8 @@ def _hardness(material: Material) -> Markup | None:
         return prose("None of the {n} can be used, so there is no H_V.", n=counted(n, "penetration experiment"))
     sites = len(set(material.penetration_site.tolist()))
     return prose(
-        "Snow hardness H_V: geometric mean {value} N/mm³{ends}, single experiments {low} to {high} N/mm³; {used} of {n} "
-        "used, at {sites}.",
+        "Snow hardness H_V: geometric mean {value} N/mm³{ends}, single experiments {low} to {high} N/mm³; {used} of "
+        "{n} used, at {sites}.",
         value=_strong(row["own"]),
         ends=_ends(row["own_interval"], "N/mm³", sites),
         low=significant(row["own_range"][0]),
@@ -62,8 +62,8 @@ def _stress(material: Material) -> Markup | None:
         return prose("None of the {n} can be used, so there is no S_f.", n=counted(n, "shear experiment"))
     sites = len(set(material.shear_site.tolist()))
     return prose(
-        "Failure shear stress S_f: mean {value} N/mm²{ends}, single experiments {low} to {high} N/mm²; {used} of {n} "
-        "used, at {sites}.",
+        "Failure shear stress S_f: mean {value} N/mm²{ends}, single experiments {low} to {high} N/mm²; {used} of "
+        "{n} used, at {sites}.",
         value=_strong(row["own"]),
         ends=_ends(row["own_interval"], "N/mm²", sites),
         low=significant(row["own_range"][0]),
@@ -93,9 +93,17 @@ def _law(material: Material) -> Markup | None:
     return prose(
         "Selected law of the penetration force: {law}. {reason}{same}",
         law=_strong_law(selected["id"]),
-        reason=selected["reason"],
+        reason=_reason(material),
         same=same,
     )
+
+
+def _reason(material: Material) -> Markup:
+    """The reason of the results with the rows by their names in the tables."""
+    reason: str = material.results["penetration"]["selected"]["reason"]
+    for row in material.results["penetration"]["models"]:
+        reason = reason.replace(f"of {row['id']}", f"of the row {row_name(row['id'])}")
+    return html(reason)
 
 
 def _strong_law(model_id: str) -> Markup:
@@ -128,4 +136,3 @@ def _listed(rows: list[Json]) -> Markup:
     if len(rows) > LISTED:
         named.append(html(f"{whole(len(rows) - LISTED)} more"))
     return html(", ").join(named) if named else html("none")
-

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from ..material import numbers, pairs
 from ..numerals import counted, significant, whole
 from ..symbols import html, prose
-from ..tables.seating import offsets_that_show, seating_of_used
+from ..tables.seating import offsets_that_show
 
 if TYPE_CHECKING:
     from ..material import Material
@@ -49,15 +49,15 @@ def procedures_compared(material: Material) -> Markup:
 
 def seating_found(material: Material) -> list[Markup]:
     """How large the offsets are and how many of them show."""
-    rows = seating_of_used(material)
+    rows = material.seating
     without = int(material.penetration_used.sum()) - len(rows)
     if not rows:
         return [html("No used series has the readings that an offset can be estimated from.")]
     half = np.diff(pairs(rows, "interval_mm"), axis=1) / 2.0
     found = [
         prose(
-            "{shown} of {all} have an offset whose 95 % interval leaves out zero; the median half-width of the intervals "
-            "is {half} mm. Every offset stands in {file}.",
+            "{shown} of {all} have an offset whose 95 % interval leaves out zero; the median half-width of the "
+            "intervals is {half} mm. Every offset stands in {file}.",
             shown=whole(offsets_that_show(rows)),
             all=counted(len(rows), "used series", "used series"),
             half=significant(float(np.nanmedian(half))),

@@ -20,7 +20,14 @@ _QUANTITY: Final = {
 def site_comparison_table(material: Material) -> Table:
     """Every pair of sites."""
     rows = [
-        (row["quantity"], row["site_a"], row["site_b"], (row["ratio"], row["interval"]), row["p"], row["n_for_10_percent"])
+        (
+            row["quantity"],
+            row["site_a"],
+            row["site_b"],
+            (row["ratio"], row["interval"]),
+            row["p"],
+            row["n_for_10_percent"],
+        )
         for row in material.results["site_comparisons"]
     ]
     return Table(
@@ -50,9 +57,9 @@ def published_table(material: Material) -> Table:
             Column("source", "Source", "text"),
             Column("quantity", "Quantity", "words"),
             Column("value", "published"),
-            Column("range", "published range", "interval"),
+            Column("range", "published range", "range"),
             Column("own", "this campaign", "estimate"),
-            Column("own_range", "its range", "interval"),
+            Column("own_range", "its range", "range"),
             Column("own_over_published", "own / published"),
         ),
         [_row(row) for row in material.results["comparisons"]],

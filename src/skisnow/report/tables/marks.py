@@ -28,7 +28,7 @@ def marks_table(material: Material) -> Table:
     ]
     return Table(
         "marks",
-        "Marks of the screening. A mark deletes nothing; one that excludes keeps its experiments out of every estimate.",
+        "Marks of the screening. A mark deletes nothing; one that excludes keeps its experiments out of the estimates.",
         (
             Column("code", "Code", "text"),
             Column("sentence", "What it says", "words"),

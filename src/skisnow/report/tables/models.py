@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 COEFFICIENTS = ("a0", "a1", "b0", "b1")
 _UNIT_NOTE = (
-    "F in N, A in mm², V in mm³, ϑ in rad, H_e in N/mm, H_A in N/mm², H_V in N/mm³; so a_0 is in mm/mm², 1 or mm and "
-    "b_0 in mm/mm³, 1/mm or 1 with H_e, H_A, H_V, the slopes a_1, b_1 the same per rad."
+    "a = a_0 + a_1 ϑ and b = b_0 + b_1 ϑ with F in N, A in mm², V in mm³, ϑ in rad, H_e in N/mm, H_A in N/mm², H_V in "
+    "N/mm³: with H_e, H_A, H_V in this order a_0 is in 1/mm, 1, mm and b_0 in 1/mm², 1/mm, 1."
 )
 
 
@@ -23,8 +23,7 @@ def law(model_id: str) -> str:
     >>> law("H_V:a=none,b=linear"), law("H_V:a=none,b=one"), law("H_A:a=constant,b=constant")
     ('H_V (b_0 + b_1 ϑ) V', 'H_V V', 'H_A (a_0 A + b_0 V)')
     """
-    hardness, _, terms = model_id.partition(":")
-    forms = dict(part.split("=") for part in terms.split(","))
+    hardness, forms = _forms(model_id)
     parts = [part for part in (_term("a", forms["a"], "A"), _term("b", forms["b"], "V")) if part]
     return f"{hardness} {parts[0]}" if len(parts) == 1 else f"{hardness} ({' + '.join(parts)})"
 
@@ -34,13 +33,32 @@ def _term(letter: str, form: str, measure: str) -> str:
     return terms.get(form, f"({letter}_0 + {letter}_1 ϑ) {measure}")
 
 
+def row_name(model_id: str) -> str:
+    """A row in a few words, for tables and sentences.
+
+    >>> row_name("H_V:a=none,b=one"), row_name("H_A:a=linear,b=linear"), row_name("H_V:a=none,b=linear")
+    ('H_V; b = 1', 'H_A; a, b linear', 'H_V; b linear')
+    """
+    hardness, forms = _forms(model_id)
+    if forms["a"] == "none":
+        return f"{hardness}; b = 1" if forms["b"] == "one" else f"{hardness}; b {forms['b']}"
+    return (
+        f"{hardness}; a, b {forms['b']}" if forms["a"] == forms["b"] else f"{hardness}; a {forms['a']}, b {forms['b']}"
+    )
+
+
+def _forms(model_id: str) -> tuple[str, dict[str, str]]:
+    hardness, _, terms = model_id.partition(":")
+    return hardness, dict(part.split("=") for part in terms.split(","))
+
+
 def models_table(material: Material) -> Table:
     """The nine rows with the paper's printed rmse beside each."""
     found = material.results["penetration"]
     chosen = found["selected"]["id"] if found["selected"] else None
     columns = (
-        Column("id", "Law F =", "words"),
-        Column("selected", "selected", "yes"),
+        Column("row", "Row", "words"),
+        Column("selected", "sel.", "tick"),
         *(Column(name, f"{name[0]}_{name[1]}", "estimate") for name in COEFFICIENTS),
         Column("at_bound", "on its bound", "codes"),
         Column("n_parameters", "fitted", "count"),
@@ -51,7 +69,7 @@ def models_table(material: Material) -> Table:
     )
     rows = [
         (
-            law(row["id"]),
+            row_name(row["id"]),
             row["id"] == chosen,
             *_coefficients(row),
             row["at_bound"],
@@ -66,25 +84,31 @@ def models_table(material: Material) -> Table:
     ]
     return Table(
         "models",
-        "The nine rival laws of the penetration force (Eqn 6), with 95 % intervals from resampling whole experiments, "
-        "beside the rmse printed by Mössner and others (2013).",
+        "The nine rival laws F = H (a(ϑ) A + b(ϑ) V) of the penetration force (Eqn 6), with 95 % intervals from "
+        "resampling whole experiments, beside the rmse printed by Mössner and others (2013).",
         columns,
         rows,
-        note=_UNIT_NOTE + " A coefficient without an interval is fixed, not fitted. The paper's own data are not "
+        note=_UNIT_NOTE + " b = 1 is fixed, not fitted. The paper's own data are not "
         "public: its rmse are for its snow and its loads, not a target for others.",
     )
 
 
 def _coefficients(row: Json) -> list[tuple[float | None, Any]]:
-    return [(row[name], row["intervals"][name]) for name in COEFFICIENTS]
+    """Value and interval; nothing for a term that the row does not have, 1 without interval for b = 1."""
+    return [(row[name] if _has(row, name) else None, row["intervals"][name]) for name in COEFFICIENTS]
+
+
+def _has(row: Json, coefficient: str) -> bool:
+    form = row[coefficient[0]]
+    return form == "linear" if coefficient.endswith("1") else form != "none"
 
 
 def nested_table(material: Material) -> Table:
     """F tests between nested rows."""
     rows = [
         (
-            law(row["full"]),
-            law(row["reduced"]),
+            row_name(row["full"]),
+            row_name(row["reduced"]),
             row["F"],
             *row["df"],
             row["p"],
@@ -97,8 +121,8 @@ def nested_table(material: Material) -> Table:
         "model_tests",
         "F tests of each simpler law against the fuller one that contains it, and the effect size.",
         (
-            Column("full", "Fuller law", "words"),
-            Column("reduced", "Simpler law", "words"),
+            Column("full", "Fuller row", "words"),
+            Column("reduced", "Simpler row", "words"),
             Column("F", "F"),
             Column("df1", "df 1", "count"),
             Column("df2", "df 2", "count"),
@@ -115,7 +139,7 @@ def errors_in_depth_table(material: Material) -> Table:
     found = material.results["penetration"]
     rows = [
         (
-            law(row["id"]),
+            row_name(row["id"]),
             procedure,
             *_coefficients(row),
             row["at_bound"],
@@ -131,7 +155,7 @@ def errors_in_depth_table(material: Material) -> Table:
         "The nine laws by two procedures: the paper's, with H from each series' largest load and all error in the "
         "load; and with errors in depth and load, H estimated from all readings of a series.",
         (
-            Column("id", "Law F =", "words"),
+            Column("row", "Row", "words"),
             Column("procedure", "procedure", "words"),
             *(Column(name, f"{name[0]}_{name[1]}", "estimate") for name in COEFFICIENTS),
             Column("at_bound", "on its bound", "codes"),
@@ -139,8 +163,8 @@ def errors_in_depth_table(material: Material) -> Table:
             Column("rmse_free_N", "over free points", unit="N", digits=4),
         ),
         rows,
-        note="Both rmse are unweighted and in force. The second procedure minimises weighted squares, so a larger rmse "
-        "there is no worse fit.",
+        note="Both rmse are unweighted and in force. The second procedure minimises weighted squares and does "
+        "not pass through each series' last reading: the two columns of rmse are no race between procedures.",
     )
 
 

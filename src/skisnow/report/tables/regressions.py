@@ -19,12 +19,6 @@ QUANTITY: Final = {
 """Symbol and unit of each key that a regression knows."""
 
 
-def slope_unit(row: Json) -> str:
-    """Unit of a regression's slope: N/mm² per kg/m³."""
-    response, predictor = row["response"], row["terms"][1]
-    return f"{QUANTITY[response][1]} per {QUANTITY[predictor][1]}"
-
-
 def regressions_table(material: Material) -> Table:
     """A row for each regression, those without data too."""
     return Table(
@@ -37,8 +31,7 @@ def regressions_table(material: Material) -> Table:
             Column("n", "n", "count"),
             Column("intercept", "intercept", "estimate"),
             Column("slope", "slope", "estimate"),
-            Column("slope_by_site", "slope, sites as clusters", "interval"),
-            Column("slope_unit", "unit of the slope", "words"),
+            Column("slope_by_site", "sites as clusters", "interval"),
             Column("rmse", "rmse over n"),
             Column("rmse_dof", "over n − 2"),
             Column("r2", "R²"),
@@ -46,23 +39,28 @@ def regressions_table(material: Material) -> Table:
             Column("p", "p", "p"),
         ),
         [_row(row) for row in material.results["regressions"]],
-        note="Intercept and rmse are in the unit of the response. Sites as clusters: the interval that knows that "
-        "experiments of one site belong together; it is absent for a single site and where the sites do not tell.",
+        note="Intercept and rmse are in the unit of the response, slopes in that per unit of the predictor. Sites as "
+        "clusters: the interval of the slope that knows that experiments of one site belong together; it is absent for "
+        "a single site and where the sites do not tell.",
     )
+
+
+def _in_unit(key: str) -> str:
+    name, unit = QUANTITY[key]
+    return f"{name} ({unit})"
 
 
 def _row(row: Json) -> tuple[Any, ...]:
     b, ends = row["b"] or (None, None), row["interval"] or (None, None)
     by_site = row["interval_by_site"]
     return (
-        QUANTITY[row["response"]][0],
-        QUANTITY[row["terms"][1]][0],
+        _in_unit(row["response"]),
+        _in_unit(row["terms"][1]),
         row["group"],
         row["n"],
         (b[0], ends[0]),
         (b[1], ends[1]),
         by_site[1] if by_site else None,
-        slope_unit(row),
         row["rmse"],
         row["rmse_dof"],
         row["r2"],

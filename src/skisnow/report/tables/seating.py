@@ -18,12 +18,6 @@ _OFFSET = Column("depth_offset_mm", "offset δ", "estimate", "mm")
 _CHANGE = Column("H_V_change_percent", "H_V would change by", unit="%")
 
 
-def seating_of_used(material: Material) -> list[Json]:
-    """Seating of the used experiments that have one, each with its site."""
-    rows = zip(material.penetration, material.results["penetration"]["seating"], strict=True)
-    return [own | found for own, found in rows if own["used"] and found["depth_offset_mm"] is not None]
-
-
 def offsets_that_show(rows: list[Json]) -> int:
     """How many offsets have an interval without zero."""
     ends = pairs(rows, "interval_mm")
@@ -32,7 +26,7 @@ def offsets_that_show(rows: list[Json]) -> int:
 
 def seating_quantiles_table(material: Material) -> Table:
     """Quantiles over the used series."""
-    found = seating_of_used(material)
+    found = material.seating
     offset, change = numbers(found, "depth_offset_mm"), numbers(found, "H_V_change_percent")
     rows = [(_quantile_name(share), _quantile(offset, share), _quantile(change, share)) for share in QUANTILES]
     return Table(
@@ -60,8 +54,10 @@ def _quantile(values: FloatArray, share: float) -> float | None:
 
 def seating_largest_table(material: Material) -> Table:
     """The series whose hardness would move most."""
-    found = [row for row in seating_of_used(material) if row["H_V_change_percent"] is not None]
-    found.sort(key=lambda row: -abs(np.log(max(1e-6, 1.0 + row["H_V_change_percent"] / 100.0))))
+    change = numbers(material.seating, "H_V_change_percent")
+    by_factor = np.abs(np.log(np.maximum(1.0 + change / 100.0, 1e-6)))
+    order = np.argsort(-by_factor, kind="stable")[: min(LARGEST, int(np.isfinite(by_factor).sum()))]
+    found = [material.seating[index] for index in order.tolist()]
     rows = [
         (
             row["experiment"],
@@ -71,7 +67,7 @@ def seating_largest_table(material: Material) -> Table:
             (row["depth_offset_mm"], row["interval_mm"]),
             row["H_V_change_percent"],
         )
-        for row in found[:LARGEST]
+        for row in found
     ]
     return Table(
         "seating_largest",
@@ -81,7 +77,7 @@ def seating_largest_table(material: Material) -> Table:
         (
             Column("experiment", "Experiment", "text"),
             Column("site", "Site", "text"),
-            Column("edge_angle_deg", "ϑ", unit="°"),
+            Column("edge_angle_deg", "ϑ", "angle", "°"),
             Column("H_V_N_per_mm3", "H_V", unit="N/mm³"),
             _OFFSET,
             _CHANGE,
@@ -99,8 +95,13 @@ def seating_table(material: Material) -> Table:
     return Table(
         "seating",
         "Offset of the depth zero of each penetration experiment, with 95 % interval.",
-        (Column("experiment", "Experiment", "text"), Column("site", "Site", "text"), Column("used", "used", "yes"))
-        + (_OFFSET, _CHANGE),
+        (
+            Column("experiment", "Experiment", "text"),
+            Column("site", "Site", "text"),
+            Column("used", "used", "yes"),
+            _OFFSET,
+            _CHANGE,
+        ),
         rows,
         rows_in_html=0,
     )

@@ -17,11 +17,11 @@ COLUMNS = (
     Column("penetration_n", "penetration tests", "count"),
     Column("penetration_used", "used", "count"),
     Column("H_V_N_per_mm3", "H_V, geometric mean", "estimate", "N/mm³"),
-    Column("H_V_range_N_per_mm3", "H_V, range", "interval", "N/mm³"),
+    Column("H_V_range_N_per_mm3", "H_V, range", "range", "N/mm³"),
     Column("shear_n", "shear tests", "count"),
     Column("shear_used", "used", "count"),
     Column("S_f_N_per_mm2", "S_f, mean", "estimate", "N/mm²"),
-    Column("S_f_range_N_per_mm2", "S_f, range", "interval", "N/mm²"),
+    Column("S_f_range_N_per_mm2", "S_f, range", "range", "N/mm²"),
 )
 
 
@@ -66,7 +66,9 @@ def _by_site(values: FloatArray, site: TextArray) -> dict[str, tuple[FloatArray,
     order = np.argsort(site, kind="stable")
     names, starts = np.unique(site[order], return_index=True)
     parts = np.split(order, starts[1:])
-    return {str(name): (values[part], site[part]) for name, part in zip(names, parts, strict=True)} if len(names) else {}
+    return (
+        {str(name): (values[part], site[part]) for name, part in zip(names, parts, strict=True)} if len(names) else {}
+    )
 
 
 def _row(

@@ -1,0 +1,69 @@
+"""One synthetic campaign of the paper's design, analysed and reported once for all tests of this room."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from skisnow.estimate import analyse, results_dict
+from skisnow.field import Campaign, PenetrationTests, ShearTests
+from skisnow.field.reference import reference_campaign
+from skisnow.report import write_report
+
+
+@dataclass(frozen=True)
+class Reported:
+    """A campaign with its results and the folder of its report."""
+
+    campaign: Campaign
+    results: dict[str, Any]
+    folder: Path
+
+    @property
+    def html(self) -> str:
+        return (self.folder / "report.html").read_text(encoding="utf-8")
+
+
+def results_of(campaign: Campaign) -> dict[str, Any]:
+    """Few resamples: the tests hold the report against the results, whatever these are."""
+    return results_dict(analyse(campaign, n_resamples=50))
+
+
+def reported(campaign: Campaign, folder: Path) -> Reported:
+    results = results_of(campaign)
+    write_report(campaign, results, folder)
+    return Reported(campaign, results, folder)
+
+
+def first_series(campaign: Campaign, count: int) -> PenetrationTests:
+    """The first penetration experiments."""
+    tests = campaign.penetration
+    assert tests is not None
+    readings = int(tests.first[count])
+    keys = ("experiment", "site", "tool", "spot", "edge_angle", "snow_density", "drop_cone_depth", "cancelled")
+    by_series: dict[str, Any] = {name: getattr(tests, name)[:count] for name in keys}
+    by_reading: dict[str, Any] = {
+        name: getattr(tests, name)[:readings] for name in ("load", "penetration_depth", "row")
+    }
+    return replace(tests, **by_series, **by_reading, first=tests.first[: count + 1], further={})
+
+
+def first_shear(campaign: Campaign, count: int) -> ShearTests:
+    """The first shear experiments."""
+    tests = campaign.shear
+    assert tests is not None
+    columns: dict[str, Any] = {name: getattr(tests, name)[:count] for name in ShearTests.__slots__ if name != "further"}
+    return replace(tests, **columns, further={})
+
+
+@pytest.fixture(scope="session")
+def campaign() -> Campaign:
+    return reference_campaign(1).campaign()
+
+
+@pytest.fixture(scope="session")
+def reference(campaign: Campaign, tmp_path_factory: pytest.TempPathFactory) -> Reported:
+    return reported(campaign, tmp_path_factory.mktemp("report"))

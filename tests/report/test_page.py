@@ -1,0 +1,309 @@
+"""The page: its numbers are the results', it needs nothing from elsewhere, users' names are text."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.field import Campaign
+
+from .conftest import Reported, first_series, first_shear, reported
+
+_HOSTILE = "<script>alert('x')</script> & a_b"
+
+
+class _Reader(HTMLParser):
+    """Tags with their attributes, tables as rows of texts, open tags at the end."""
+
+    VOID = frozenset({"meta", "img", "br", "link", "mspace", "hr"})
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.tables: dict[str, list[list[str]]] = {}
+        self.text: list[str] = []
+        self._open: list[str] = []
+        self._rows: list[list[str]] | None = None
+        self._cell: list[str] | None = None
+        self.feed(html)
+        self.close()
+        assert self._open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in self.VOID:
+            self._open.append(tag)
+        name = str(dict(attrs).get("id") or "")
+        if tag == "div" and name.startswith("table-"):
+            self._rows = self.tables.setdefault(name.removeprefix("table-"), [])
+        if tag == "tr" and self._rows is not None:
+            self._rows.append([])
+        if tag in ("td", "th"):
+            self._cell = []
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self._open.pop() == tag
+        if tag in ("td", "th") and self._cell is not None and self._rows:
+            self._rows[-1].append(" ".join("".join(self._cell).split()))
+            self._cell = None
+
+    def handle_data(self, data: str) -> None:
+        self.text.append(data)
+        if self._cell is not None:
+            self._cell.append(data)
+
+
+@pytest.fixture(scope="module")
+def read(reference: Reported) -> _Reader:
+    return _Reader(reference.html)
+
+
+def _value(text: str) -> float:
+    mantissa, _, power = text.replace("−", "-").partition("×10")
+    exponent = power.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+    return float(mantissa) * 10.0 ** int(exponent or 0)
+
+
+def _agrees(printed: str, value: float | None, digits: int) -> bool:
+    """Whether a printed number is the value rounded to that many significant digits (half a unit of the last)."""
+    if value is None:
+        return printed == "–"
+    if value == 0:
+        return printed == "0"
+    last = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
+    return abs(_value(printed) - value) <= 0.5000001 * last
+
+
+def _estimate(cell: str) -> tuple[str, list[str]]:
+    number, _, rest = cell.partition(" [")
+    return number, rest.rstrip("]").split(", ") if rest else []
+
+
+def test_the_nine_rows_are_those_of_the_results(reference: Reported, read: _Reader) -> None:
+    head, *rows = read.tables["models"]
+    models = reference.results["penetration"]["models"]
+    assert len(rows) == len(models) == 9
+    for cells, model in zip(rows, models, strict=True):
+        row = dict(zip(head, cells, strict=True))
+        for header, key in (
+            ("rmse over n N", "rmse_N"),
+            ("over n − p N", "rmse_dof_N"),
+            ("over free points N", "rmse_free_N"),
+        ):
+            assert _agrees(row[header], model[key], 4)
+        for name in ("a0", "a1", "b0", "b1"):
+            number, ends = _estimate(row[name])
+            if model["intervals"][name] is not None:
+                assert _agrees(number, model[name], 3)
+                assert all(_agrees(end, value, 3) for end, value in zip(ends, model["intervals"][name], strict=True))
+            else:
+                assert ends == []
+        assert (row["sel."] == "✓") == (model["id"] == reference.results["penetration"]["selected"]["id"])
+
+
+def test_the_paper_s_printed_rmse_stand_beside_the_rows(read: _Reader) -> None:
+    """The sequence printed in the paper: 140, 58.4, 53.6; 207, 75.2, 54.8; 53.8; 54.9; 56.1 N."""
+    assert [float(row[-1]) for row in read.tables["models"][1:]] == [140, 58.4, 53.6, 207, 75.2, 54.8, 53.8, 54.9, 56.1]
+
+
+def test_every_experiment_is_listed_with_its_hardness(reference: Reported, read: _Reader) -> None:
+    rows = read.tables["penetration_experiments"][1:]
+    experiments = reference.results["penetration"]["experiments"]
+    assert [row[0] for row in rows] == [experiment["experiment"] for experiment in experiments]
+    for row, experiment in zip(rows, experiments, strict=True):
+        number, ends = _estimate(row[-1])
+        assert _agrees(number, experiment["H_V_N_per_mm3"], 3)
+        assert all(map(_agrees, ends, experiment["H_V_interval_N_per_mm3"], (3, 3)))
+
+
+def test_regressions_are_those_of_the_results(reference: Reported, read: _Reader) -> None:
+    rows = read.tables["regressions"][1:]
+    for row, found in zip(rows, reference.results["regressions"], strict=True):
+        assert row[2:4] == [found["group"], str(found["n"])]
+        slope, ends = _estimate(row[5])
+        assert _agrees(slope, found["b"][1], 3)
+        assert all(map(_agrees, ends, found["interval"][1], (3, 3)))
+
+
+def test_means_by_site_are_means(reference: Reported, read: _Reader) -> None:
+    """Geometric for H_V, arithmetic for S_f, computed here from the results."""
+    rows = {row[0]: row for row in read.tables["sites"][1:]}
+    hardness = [
+        e["H_V_N_per_mm3"]
+        for e in reference.results["penetration"]["experiments"]
+        if e["site"] == "site C" and e["used"]
+    ]
+    stress = [
+        e["S_f_N_per_mm2"] for e in reference.results["shear"]["experiments"] if e["site"] == "site C" and e["used"]
+    ]
+    assert _agrees(_estimate(rows["site C"][3])[0], math.exp(sum(map(math.log, hardness)) / len(hardness)), 3)
+    assert _agrees(_estimate(rows["site C"][7])[0], sum(stress) / len(stress), 3)
+
+
+def test_each_slope_that_is_not_significant_has_its_interval_in_words(reference: Reported, read: _Reader) -> None:
+    text = " ".join(read.text)
+    quiet = [row for row in reference.results["regressions"] if row["p"] is not None and row["p"] >= 0.05]
+    assert quiet
+    assert text.count("not significant (p") >= len(quiet)
+    assert text.count("could still change by anything in [") == len(quiet)
+    density = next(row for row in quiet if row["response"].startswith("S_f") and "density" in row["terms"][1])
+    low, high = re.search(r"on snow density ρ, all sites.*?anything in \[(\S+), (\S+)\]", text).groups()  # type: ignore[union-attr]
+    # said per 100 kg/m³
+    assert _agrees(low, 100.0 * density["interval"][1][0], 3)
+    assert _agrees(high, 100.0 * density["interval"][1][1], 3)
+
+
+def test_nothing_is_fetched_from_anywhere(reference: Reported, read: _Reader) -> None:
+    for _, attributes in read.tags:
+        for name in ("src", "href", "srcset", "poster", "data", "action", "xlink:href"):
+            value = attributes.get(name)
+            assert value is None or value.startswith(("#", "data:image/"))
+    page = re.sub(r"base64,[A-Za-z0-9+/=]+", "", reference.html)
+    assert not re.search(r"https?:|@import|url\(|<script|<link|<iframe|<object", page)
+
+
+def test_pictures_inside_the_page_fetch_nothing_either(reference: Reported) -> None:
+    for path in (reference.folder / "figures").glob("*.svg"):
+        svg = path.read_text(encoding="utf-8")
+        assert "<text" in svg
+        assert not re.search(r"(?:href|src)=\"(?!#|data:)", svg)
+        assert not re.search(r"<dc:date|<script|@import|url\((?!#)", svg)
+
+
+def test_the_page_is_built_of_meaning(read: _Reader) -> None:
+    names = [tag for tag, _ in read.tags]
+    assert names.count("h1") == names.count("main") == 1
+    assert names.count("figure") == names.count("figcaption") == names.count("img") == 10
+    assert all(attributes.get("alt") for tag, attributes in read.tags if tag == "img")
+    assert all(attributes.get("scope") in ("row", "col") for tag, attributes in read.tags if tag == "th")
+    assert names.count("caption") == names.count("table")
+    targets = {attributes["href"] for tag, attributes in read.tags if tag == "a"}
+    ids = [attributes["id"] for _, attributes in read.tags if "id" in attributes]
+    assert targets <= {f"#{name}" for name in ids}
+    assert len(ids) == len(set(ids))
+
+
+def test_synthetic_stands_wherever_the_numbers_do(reference: Reported) -> None:
+    html = reference.html
+    assert "synthetic" in html.partition("<title>")[2].partition("</title>")[0]
+    captions = re.findall(r"<(?:caption|figcaption)>(.*?)</(?:caption|figcaption)>", html, re.DOTALL)
+    assert len(captions) > 20
+    assert all("Synthetic data." in caption for caption in captions)
+    assert all("ynthetic" in alt for alt in re.findall(r'<img alt="(.*?)"', html))
+    for path in (reference.folder / "figures").glob("*.svg"):
+        assert "synthetic data" in path.read_text(encoding="utf-8")
+    for path in (reference.folder / "tables").iterdir():
+        assert "synthetic" in path.name
+        assert path.suffix == ".csv" or "Synthetic data." in path.read_text(encoding="utf-8")
+
+
+def test_a_measured_campaign_is_not_called_synthetic(campaign: Campaign, tmp_path: Path) -> None:
+    found = reported(replace(campaign, name="Hintertux", place="glacier", penetration=None), tmp_path)
+    page = re.sub(r"base64,[A-Za-z0-9+/=]+", "", found.html)
+    assert "ynthetic" not in page
+    assert not [path for path in tmp_path.rglob("*") if "synthetic" in path.name]
+    for path in (tmp_path / "figures").glob("*.svg"):
+        assert "synthetic" not in path.read_text(encoding="utf-8")
+
+
+def test_names_are_text_and_never_markup(campaign: Campaign, tmp_path: Path) -> None:
+    assert campaign.shear is not None
+    shear = replace(campaign.shear, site=tuple(f"{_HOSTILE} {name}" for name in campaign.shear.site))
+    evil = replace(campaign, name=_HOSTILE, place="{{ 7 * 7 }}", observers=("<b>",), shear=shear, penetration=None)
+    found = reported(evil, tmp_path)
+    reader = _Reader(found.html)
+    assert not [tag for tag, _ in reader.tags if tag == "script"]
+    assert _HOSTILE in "".join(reader.text)
+    assert "{{ 7 * 7 }}" in "".join(reader.text)
+    assert f"{_HOSTILE} site J" in [row[0] for row in reader.tables["sites"]]
+
+
+def test_what_is_not_stated_is_said(campaign: Campaign, tmp_path: Path) -> None:
+    silent = replace(
+        campaign,
+        gauge_resolution=None,
+        load_uncertainty=None,
+        moment_uncertainty=None,
+        lever_arm_uncertainty=None,
+        density=None,
+        drop_cone=None,
+    )
+    text = " ".join(" ".join(_Reader(reported(silent, tmp_path).html).text).split())
+    assert "no interval carries a depth uncertainty" in text
+    for name in ("loads", "moments", "lever arms"):
+        assert f"The uncertainty of the {name} is not stated; it counts as 0." in text
+    assert "Snow hardness against density: the campaign gives no snow density at its penetration experiments." in text
+    assert not (tmp_path / "figures" / "fig06_hardness_density.svg").exists()
+
+
+@pytest.mark.parametrize(
+    ("case", "figures"),
+    [
+        ("only shear", 4),
+        ("only penetration", 5),
+        ("one of each", 5),
+        ("nothing used", 0),
+    ],
+)
+def test_small_campaigns_have_a_report(case: str, figures: int, campaign: Campaign, tmp_path: Path) -> None:
+    cases: dict[str, dict[str, Any]] = {
+        "only shear": {"penetration": None},
+        "only penetration": {"shear": None},
+        "one of each": {
+            "penetration": first_series(campaign, 1),
+            "shear": first_shear(campaign, 1),
+            "density": None,
+        },
+        "nothing used": {
+            "penetration": replace(first_series(campaign, 2), cancelled=("crushed", "tilted")),
+            "shear": replace(first_shear(campaign, 1), cancelled=("slipped",)),
+        },
+    }
+    found = reported(replace(campaign, **cases[case]), tmp_path)
+    reader = _Reader(found.html)
+    assert len(list((tmp_path / "figures").glob("*.svg"))) == figures
+    assert len([tag for tag, _ in reader.tags if tag == "img"]) == figures
+    visible = " ".join(text for text in reader.text)
+    assert not re.search(r"\bnan\b|\bNone\b(?! of the)|\binf\b", visible)
+    assert ("Figures left out for want of data" in visible) == (figures < 10)
+
+
+def test_a_mark_says_its_sentence_its_count_and_whom_it_concerns(campaign: Campaign, tmp_path: Path) -> None:
+    tests = first_series(campaign, 40)
+    marked = replace(tests, cancelled=("crushed", *tests.cancelled[1:]))
+    rows = _Reader(reported(replace(campaign, penetration=marked), tmp_path).html).tables["marks"]
+    cancelled = next(row for row in rows if row[0] == "cancelled")
+    assert cancelled[1].startswith("The experiment was cancelled")
+    assert cancelled[2:] == ["yes", "1", "0", tests.experiment[0]]
+
+
+def test_long_tables_are_cut_with_a_sentence(campaign: Campaign, tmp_path: Path) -> None:
+    tests = campaign.penetration
+    assert tests is not None
+    names: dict[str, Any] = {
+        name: getattr(tests, name) * 2 for name in ("experiment", "site", "tool", "spot", "cancelled")
+    }
+    columns: dict[str, Any] = {
+        name: np.tile(getattr(tests, name), 2)
+        for name in ("edge_angle", "snow_density", "drop_cone_depth", "load", "penetration_depth", "row")
+    }
+    first = np.concatenate((tests.first, tests.first[1:] + tests.first[-1]))
+    twice = replace(tests, **names, **columns, first=first, further={})
+    found = reported(replace(campaign, penetration=twice, shear=None), tmp_path)
+    reader = _Reader(found.html)
+    assert len(reader.tables["penetration_experiments"]) == 301
+    assert "The first 300 of 472 rows; tables/penetration_experiments_synthetic.csv holds them all." in "".join(
+        reader.text
+    )
+    csv = (tmp_path / "tables" / "penetration_experiments_synthetic.csv").read_bytes()
+    assert csv.count(b"\r\n") == 473

@@ -1,0 +1,51 @@
+"""The text for the terminal."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+
+from skisnow.field import Campaign
+from skisnow.report.summary import summary
+
+from .conftest import Reported, results_of
+
+
+def test_it_has_what_a_person_looks_for(reference: Reported) -> None:
+    text = summary(reference.results)
+    lines = text.splitlines()
+    models = reference.results["penetration"]["models"]
+    for model in models:
+        line = next(line for line in lines if model["id"] in line[:40])
+        assert f"{model['rmse_N']:.4g}" in line
+    assert reference.results["penetration"]["selected"]["reason"] in text
+    chosen = next(line for line in lines if line.startswith("* H_"))
+    assert reference.results["penetration"]["selected"]["id"] in chosen
+    own = next(row for row in reference.results["comparisons"] if row["quantity"] == "H_V_N_per_mm3")
+    assert f"geometric mean {own['own']:.3g} N/mm³" in text
+    assert "over 8 sites" in text
+    assert text.count("p = ") + text.count("p < ") == len(reference.results["regressions"])
+
+
+def test_synthetic_stands_beside_the_numbers(reference: Reported, campaign: Campaign) -> None:
+    assert summary(reference.results).count("(synthetic)") == 4
+    real = replace(campaign, name="Hintertux", place="", penetration=None)
+    assert "synthetic" not in summary(results_of(real))
+
+
+def test_a_campaign_with_nothing_has_a_summary(campaign: Campaign) -> None:
+    silent = replace(campaign, penetration=None, shear=None, gauge_resolution=None, load_uncertainty=None)
+    text = summary(results_of(silent))
+    assert "penetration experiments: none" in text
+    assert "no depth uncertainty" in text
+    assert "not stated, counted as 0: load_uncertainty_N" in text
+
+
+def test_it_prints_on_a_western_terminal(reference: Reported) -> None:
+    summary(reference.results).encode("cp1252")
+
+
+def test_it_does_not_wait_for_the_drawing_library() -> None:
+    code = "import sys, skisnow.report.summary; sys.exit('matplotlib' in sys.modules or 'jinja2' in sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -1,0 +1,66 @@
+"""CSV: read back by another reader, it gives the same values with all their digits."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+from skisnow.report.table import Column, Table
+from skisnow.report.table_csv import table_csv
+
+from .conftest import Reported
+
+TABLE = Table(
+    "test",
+    "A table.",
+    (
+        Column("site", "Site", "text"),
+        Column("n", "n", "count"),
+        Column("used", "used", "yes"),
+        Column("flags", "marks", "codes"),
+        Column("H_V_N_per_mm3", "H_V", "estimate", "N/mm³"),
+        Column("range_mm", "range", "interval", "mm"),
+        Column("p", "p", "p"),
+    ),
+    [
+        ('a, "b"\nc', 3, True, ["x", "y"], (0.1 + 0.2, (1e-17, 1e300)), None, 1 / 3),
+        ("ünïcode ;", 0, False, [], (None, None), (0.0, -2.5), None),
+    ],
+)
+
+
+def test_values_come_back_with_all_digits() -> None:
+    rows = list(csv.DictReader(io.StringIO(table_csv(TABLE), newline="")))
+    first, second = rows
+    assert first["site"] == 'a, "b"\nc'
+    assert (first["n"], first["used"], first["flags"]) == ("3", "true", "x; y")
+    assert float(first["H_V_N_per_mm3"]) == 0.1 + 0.2
+    assert (float(first["H_V_N_per_mm3_low"]), float(first["H_V_N_per_mm3_high"])) == (1e-17, 1e300)
+    assert float(first["p"]) == 1 / 3
+    assert (first["range_mm_low"], first["range_mm_high"]) == ("", "")
+    assert (second["H_V_N_per_mm3"], second["p"], second["flags"]) == ("", "", "")
+    assert (float(second["range_mm_low"]), float(second["range_mm_high"])) == (0.0, -2.5)
+
+
+def test_lines_end_as_rfc_4180_has_it() -> None:
+    text = table_csv(TABLE)
+    assert text.endswith("\r\n")
+    assert text.count("\r\n") == 3
+    assert text.startswith("site,n,used,flags,H_V_N_per_mm3,H_V_N_per_mm3_low,H_V_N_per_mm3_high,range_mm_low")
+
+
+def test_a_table_without_rows_is_its_header() -> None:
+    empty = Table("test", "A table.", TABLE.columns, [])
+    assert table_csv(empty).count("\r\n") == 1
+
+
+def test_the_report_s_experiments_equal_the_results(reference: Reported) -> None:
+    path = reference.folder / "tables" / "penetration_experiments_synthetic.csv"
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    experiments = reference.results["penetration"]["experiments"]
+    for key in ("H_e_N_per_mm", "H_A_N_per_mm2", "H_V_N_per_mm3", "edge_angle_deg"):
+        assert [float(row[key]) for row in rows] == [row[key] for row in experiments]
+    low, high = zip(*(row["H_V_interval_N_per_mm3"] for row in experiments), strict=True)
+    assert [float(row["H_V_N_per_mm3_low"]) for row in rows] == list(low)
+    assert [float(row["H_V_N_per_mm3_high"]) for row in rows] == list(high)
