@@ -1,10 +1,10 @@
 """Flat discs pushed into dry sand, as a campaign: the same files and steps as for snow, on another material.
 
-    python examples/plates_in_sand.py [DATA] [--out CAMPAIGN]
+    python examples/plates_in_sand.py DATA [--out CAMPAIGN]
 
 DATA is a folder with ``plates_large_box_7level.csv``: load and depth of nine trials with discs of 60, 80 and 100 mm at
-seven levels each, from github robomechanics/3d-terramechanics (MIT). Prints how many series and readings the campaign
-has; ``skisnow analyse CAMPAIGN`` goes on from there.
+seven levels each, from github robomechanics/3d-terramechanics (MIT). Prints what the nine rival models make of them;
+``skisnow analyse CAMPAIGN --out DIR`` gives the whole report.
 """
 
 from __future__ import annotations
@@ -14,9 +14,8 @@ import csv
 import tempfile
 from pathlib import Path
 
-from skisnow.field import read_campaign
+from skisnow import analyse, read_campaign, results_dict
 
-DATA = Path(__file__).resolve().parents[2] / "shared" / "data" / "plates-in-sand"
 SITE = "sand box"
 HEADER = ("experiment", "site", "tool", "edge_angle_deg", "load_N", "depth_mm")
 
@@ -55,15 +54,19 @@ def write_campaign(data: Path, folder: Path) -> None:
 
 
 def main() -> None:
-    """Write the campaign, read it back, count."""
+    """Write the campaign, read it back, fit the nine models."""
     parser = argparse.ArgumentParser(description="Turn the plates in sand into a campaign.")
-    parser.add_argument("data", nargs="?", type=Path, default=DATA)
+    parser.add_argument("data", type=Path)
     parser.add_argument("--out", type=Path, default=Path("plates-in-sand"))
     arguments = parser.parse_args()
     write_campaign(arguments.data, arguments.out)
-    tests = read_campaign(arguments.out).penetration
-    assert tests is not None
-    print(f"{arguments.out}: {len(tests)} series, {len(tests.load)} readings")
+    penetration = results_dict(analyse(read_campaign(arguments.out)))["penetration"]
+    for row in penetration["models"]:
+        bound = f", on its bound: {', '.join(row['at_bound'])}" if row["at_bound"] else ""
+        print(
+            f"{row['id']:<26} rmse {row['rmse_N']:5.2f} N over {row['n']} readings of {row['n_series']} series{bound}"
+        )
+    print(f"selected: {penetration['selected']['id']}")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Side force of a wheel in dry sand against its slip angle, as a regression with intervals.
 
-    python examples/wheel_in_sand.py [FILE]
+    python examples/wheel_in_sand.py FILE
 
 FILE is ``wheel_lateral_smooth.csv``: steady forces on a smooth wheel at slip angles of 0 to 90°, from github
 robomechanics/3d-terramechanics (MIT). A slip angle is no edge angle: the machining law of a ski's edge does not apply.
@@ -17,8 +17,6 @@ import numpy.typing as npt
 
 from skisnow.statistics import linear_fit
 
-DATA = Path(__file__).resolve().parents[2] / "shared" / "data" / "plates-in-sand" / "wheel_lateral_smooth.csv"
-
 
 def wheel_side_force(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Give slip angle (rad) and side force (N), one pair per steady run."""
@@ -31,7 +29,7 @@ def wheel_side_force(path: Path) -> tuple[npt.NDArray[np.float64], npt.NDArray[n
 def main() -> None:
     """Fit and print."""
     parser = argparse.ArgumentParser(description="Regress the side force of a wheel on its slip angle.")
-    parser.add_argument("file", nargs="?", type=Path, default=DATA)
+    parser.add_argument("file", type=Path)
     slip_angle, side_force = wheel_side_force(parser.parse_args().file)
     fit = linear_fit(side_force, slip_angle)
     low, high = fit.intervals[1]

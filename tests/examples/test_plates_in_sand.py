@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from skisnow.field import read_campaign
+from skisnow import analyse, read_campaign, results_dict
 from skisnow.statistics import linear_fit
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,7 +34,9 @@ def test_plates_become_a_campaign(
 ) -> None:
     folder = tmp_path / "new" / "sand"
     run("plates_in_sand.py", str(DATA), "--out", str(folder), monkeypatch=monkeypatch)
-    assert "9 series, 63 readings" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert printed.count("63 readings of 9 series") == 9
+    assert "selected: H_V:a=none,b=constant" in printed
     campaign = read_campaign(folder)
     tests = campaign.penetration
     assert tests is not None
@@ -50,6 +52,24 @@ def test_plates_become_a_campaign(
     assert fourth.tool == "disc 100 mm"
     np.testing.assert_allclose(fourth.load[[0, -1]], [38.142, 266.735], rtol=1e-12)
     np.testing.assert_allclose(fourth.penetration_depth[[0, -1]], [4.809e-3, 18.924e-3], rtol=1e-12)
+
+
+def test_the_ranking_and_the_active_bound(tmp_path: Path) -> None:
+    """b of F = H_V b V and its rmse by a one-line division; a is on its bound since the load grows faster than depth."""
+    example("plates_in_sand.py")["write_campaign"](DATA, tmp_path / "sand")
+    results = results_dict(analyse(tmp_path / "sand"))["penetration"]
+    rmse = {row["id"]: row["rmse_N"] for row in results["models"]}
+    assert rmse["H_e:a=constant,b=constant"] > rmse["H_A:a=constant,b=constant"] > rmse["H_V:a=constant,b=constant"]
+    table = np.genfromtxt(DATA / "plates_large_box_7level.csv", delimiter=",", names=True)
+    depth, load = (table[name].reshape(9, 7) for name in ("depth_mm", "load_N"))
+    law = load[:, -1:] * depth / depth[:, -1:]  # a disc's V is proportional to its depth
+    b = float(np.sum(law * load) / np.sum(law**2))
+    rows = {row["id"]: row for row in results["models"]}
+    assert rows["H_V:a=none,b=constant"]["b0"] == pytest.approx(b, rel=1e-9)
+    assert b < 1
+    assert rows["H_V:a=none,b=constant"]["rmse_N"] == pytest.approx(np.sqrt(np.mean((b * law - load) ** 2)), rel=1e-9)
+    assert rows["H_V:a=constant,b=constant"]["at_bound"] == ["a"]
+    assert rows["H_V:a=linear,b=linear"]["b1"] is None
 
 
 def test_an_existing_folder_is_refused(tmp_path: Path) -> None:

@@ -239,7 +239,10 @@ def fit_models(readings: Readings, hardnesses: dict[str, FloatArray]) -> tuple[M
 
 
 def select_model(fits: tuple[ModelFit, ...], *, tolerance: float = 0.05) -> ModelFit:
-    """Pick the simplest row whose rmse is within a share of the best: fewest parameters, smaller rmse, fewer terms."""
+    """Pick the simplest row whose rmse is within a share of the best: fewest parameters, smaller rmse, fewer terms.
+
+    Where rows repeat each other, because the edge angle does not vary, the nominally simpler one stands for both.
+    """
     best = min(fit.rmse for fit in fits)
     near = [fit for fit in fits if fit.rmse <= best * (1.0 + tolerance)]
-    return min(near, key=lambda fit: (fit.n_parameters, fit.rmse, fit.model.n_terms))
+    return min(near, key=lambda fit: (fit.n_parameters, fit.rmse, fit.model.n_terms, fit.model.n_parameters))
