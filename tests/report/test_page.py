@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from skisnow.field import Campaign
+from skisnow.report.material import Material
 
 from .conftest import Reported, first_series, first_shear, reported
 
@@ -307,3 +308,13 @@ def test_long_tables_are_cut_with_a_sentence(campaign: Campaign, tmp_path: Path)
     )
     csv = (tmp_path / "tables" / "penetration_experiments_synthetic.csv").read_bytes()
     assert csv.count(b"\r\n") == 473
+
+
+def test_the_days_of_the_campaign_are_read_from_its_times(campaign: Campaign) -> None:
+    shear = first_shear(campaign, 3)
+    times = ("2026-02-03 10:00", "2026-01-31T09:30", "noon")
+    dated = replace(
+        campaign, penetration=None, density=None, drop_cone=None, shear=replace(shear, further={"time": times})
+    )
+    assert Material(dated, {}).dates == ("2026-01-31", "2026-02-03")
+    assert Material(replace(dated, shear=shear), {}).dates is None
