@@ -55,7 +55,7 @@ def test_plates_become_a_campaign(
 
 
 def test_the_ranking_and_the_active_bound(tmp_path: Path) -> None:
-    """b of F = H_V b V and its rmse by a one-line division; a is on its bound since the load grows faster than depth."""
+    """b of F = H_V b V and its rmse by a one-line division; a on its bound: load grows faster than depth."""
     example("plates_in_sand.py")["write_campaign"](DATA, tmp_path / "sand")
     results = results_dict(analyse(tmp_path / "sand"))["penetration"]
     rmse = {row["id"]: row["rmse_N"] for row in results["models"]}
