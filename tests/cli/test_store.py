@@ -121,7 +121,7 @@ def test_a_check_that_breaks_is_told(shell: Shell, folder: Path, monkeypatch: py
     def breaks(_: Path) -> None:
         raise ZeroDivisionError("by zero")
 
-    monkeypatch.setattr("skisnow.field.reading.check_campaign", breaks)
+    monkeypatch.setattr("skisnow.field.reading.campaign.check_campaign", breaks)
     out, told = shell.text("add", folder, "--json")
     assert json.loads(out)["n_errors"] is None
     assert "could not be checked: ZeroDivisionError: by zero" in told

@@ -5,8 +5,7 @@ from .marks import MARKS, Mark
 from .problems import Problem
 from .reading import check_campaign, read_campaign
 from .records import Campaign, DensitySamples, DropConeTests, PenetrationSeries, PenetrationTests, ShearTests
-from .reference import ReferenceCampaign, ReferenceNoise, reference_campaign
-from .reference_files import write_reference
+from .reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
 from .screening import mark_problems, screen_penetration, screen_shear
 from .snow_micro_pen import SnowMicroPenProfile, read_snow_micro_pen
 

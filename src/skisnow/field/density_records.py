@@ -16,15 +16,15 @@ from ..constants import ICE_DENSITY
 from ..errors import FieldDataError
 from ..units import CM
 from .problems import error
-from .raw_files import RawFiles
-from .table_forms import NumberColumn, TableForm
-from .tables import read_table
-from .text import UnreadableTextError, look_at_csv
+from .reading.raw_files import RawFiles
+from .reading.table_forms import NumberColumn, TableForm
+from .reading.tables import read_table
+from .reading.text import UnreadableTextError, look_at_csv
 
 if TYPE_CHECKING:
     from .problems import Problem
+    from .reading.tables import Table
     from .records import FloatArray, IntArray
-    from .tables import Table
 
 _NO_NOTE: Final = "-9999"
 

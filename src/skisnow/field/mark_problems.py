@@ -10,7 +10,7 @@ from ..units import MM
 from .largest_load import greatest_depths, reading_at_largest_load
 from .marks import FEWEST_LOADS, MARKS, RESOLUTIONS
 from .problems import Problem
-from .table_forms import PENETRATION, SHEAR
+from .reading.table_forms import PENETRATION, SHEAR
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

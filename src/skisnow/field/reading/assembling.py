@@ -1,0 +1,95 @@
+"""Tables without an error to records in SI."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...units import DEGREE, MM
+from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
+from .experiments import Blocks
+
+if TYPE_CHECKING:
+    from .columns import NameColumn
+    from .tables import Table
+
+
+def penetration_tests(table: Table) -> PenetrationTests:
+    """Make the penetration experiments; their rows stand together and agree."""
+    blocks = Blocks.of_runs(table.names["experiment"])
+    spot = table.names["spot"]
+    return PenetrationTests(
+        experiment=_at(table.names["experiment"], blocks.start),
+        site=_at(table.names["site"], blocks.start),
+        tool=_at(table.names["tool"], blocks.start),
+        spot=_at(spot, blocks.first_given(~spot.is_blank)),
+        edge_angle=table.numbers["edge_angle_deg"][blocks.start] * DEGREE,
+        snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
+        drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
+        cancelled=blocks.texts(table.names["status"]),
+        first=blocks.first,
+        load=table.numbers["load_N"],
+        penetration_depth=table.numbers["depth_mm"] * MM,
+        row=table.row,
+        further=table.further,
+    )
+
+
+def shear_tests(table: Table) -> ShearTests:
+    """Make the shear experiments, one a row."""
+    return ShearTests(
+        experiment=table.names["experiment"].cells(),
+        site=table.names["site"].cells(),
+        plate=table.names["plate"].cells(),
+        spot=table.names["spot"].cells(),
+        edge_angle=table.numbers["edge_angle_deg"] * DEGREE,
+        penetration_depth=table.numbers["depth_mm"] * MM,
+        lever_arm=table.numbers["lever_arm_mm"] * MM,
+        moment=table.numbers["moment_Nm"],
+        snow_density=table.numbers["snow_density_kg_per_m3"],
+        drop_cone_depth=table.numbers["drop_cone_depth_mm"] * MM,
+        cancelled=table.names["status"].cells(),
+        row=table.row,
+        further=table.further,
+    )
+
+
+def density_samples(table: Table) -> DensitySamples:
+    """Make the density samples."""
+    return DensitySamples(
+        sample=table.names["sample"].cells(),
+        site=table.names["site"].cells(),
+        snow_density=table.numbers["snow_density_kg_per_m3"],
+        cancelled=_cancelled_together(table),
+        row=table.row,
+        further=table.further,
+    )
+
+
+def drop_cone_tests(table: Table) -> DropConeTests:
+    """Make the repeats of the drop-cone tests."""
+    return DropConeTests(
+        test=table.names["test"].cells(),
+        site=table.names["site"].cells(),
+        repeat=table.names["repeat"].cells(),
+        drop_cone_depth=table.numbers["drop_cone_depth_mm"] * MM,
+        cancelled=_cancelled_together(table),
+        row=table.row,
+        further=table.further,
+    )
+
+
+def _at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[str, ...]:
+    return tuple(map(column.names.__getitem__, column.code[rows].tolist()))
+
+
+def _cancelled_together(table: Table) -> tuple[str, ...]:
+    """Let a status on any row of a sample or test cancel all rows of that name at that site."""
+    status = table.names["status"].cells()
+    together = list(zip(table.names["site"].cells(), table.names[table.form.key].cells(), strict=True))
+    reasons: dict[tuple[str, str], dict[str, None]] = {}
+    for name, reason in zip(together, status, strict=True):
+        if reason:
+            reasons.setdefault(name, {})[reason] = None
+    return tuple("; ".join(reasons.get(name, ())) for name in together)

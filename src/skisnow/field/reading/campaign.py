@@ -1,0 +1,186 @@
+"""Read a campaign's folder: every file once, every problem said, and records only where none is an error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...errors import FieldDataError
+from ..problems import error
+from ..records import Campaign
+from .assembling import density_samples, drop_cone_tests, penetration_tests, shear_tests
+from .campaign_file import CAMPAIGN_FILE, read_campaign_file
+from .corrections import corrections_by_file, refuse_without_file
+from .raw_files import RawFiles
+from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, TABLES
+from .tables import read_table
+from .text import UnreadableTextError, decode, look_at_csv
+from .together import check_together
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from ..problems import Problem
+    from .campaign_file import CampaignFile
+    from .corrections import RowCorrections
+    from .table_forms import TableForm
+    from .tables import Table
+
+_FILES = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
+
+
+def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None = None) -> Campaign:
+    """Read and check a campaign.
+
+    Parameters
+    ----------
+    folder
+        The folder with campaign.toml and the tables.
+    progress
+        Is told now and then, in a few words, how far the reading is.
+
+    Returns
+    -------
+    The campaign in SI, corrections applied; ``problems`` holds the warnings.
+
+    Raises
+    ------
+    FieldDataError
+        With every problem, warnings too, where at least one is an error.
+    """
+    contents = _read(Path(folder), progress)
+    if contents.described is None or any(problem.severity == "error" for problem in contents.problems):
+        raise FieldDataError(contents.problems)
+    return _campaign(contents, contents.described)
+
+
+def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
+    """List every error and warning of a campaign, in the order of its files and rows; a bad campaign does not raise."""
+    return _read(Path(folder), None).problems
+
+
+@dataclass(frozen=True, slots=True)
+class _Contents:
+    """What was read, and what was found wrong, by file and row."""
+
+    folder: Path
+    described: CampaignFile | None
+    tables: Mapping[str, Table]
+    hashes: Mapping[str, str]
+    problems: tuple[Problem, ...]
+
+
+def _read(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
+    if not folder.is_dir():
+        action = "Name the folder that holds campaign.toml and the tables."
+        nowhere = error("unreadable_file", str(folder), allowed="a folder that exists", action=action)
+        return _Contents(folder, None, {}, {}, (nowhere,))
+    files = RawFiles(folder)
+    described = _described(files)
+    corrections = _corrections(files)
+    tables: dict[str, Table] = {}
+    for form in TABLES:
+        table = _table(files, form, corrections.get(form.file, {}), progress)
+        if table is not None:
+            tables[form.file] = table
+            files.found.extend(check_together(table, described))
+    files.found.extend(_misnamed(folder, files.absent))
+    if {PENETRATION.file, SHEAR.file} <= files.absent:
+        files.found.append(_no_measurements())
+    return _Contents(folder, described, tables, files.hashes, _in_order(files.found))
+
+
+def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
+    place = {name: index for index, name in enumerate(_FILES)}
+    return tuple(sorted(problems, key=lambda problem: (place.get(problem.file, len(place)), problem.row or 0)))
+
+
+def _misnamed(folder: Path, absent: set[str]) -> list[Problem]:
+    """Files whose names differ from the campaign's by capitals alone: they would be passed over without a word."""
+    names = sorted(path.name for path in folder.iterdir())
+    return [
+        error("unreadable_file", name, value=name, allowed=name.lower(), action=f"Rename it to {name.lower()}.")
+        for name in names
+        if name not in _FILES and name.lower() in absent
+    ]
+
+
+def _no_measurements() -> Problem:
+    return error(
+        "unreadable_file",
+        PENETRATION.file,
+        allowed=f"at least one of {PENETRATION.file} and {SHEAR.file}",
+        action="Put the tables of the experiments into the folder, under these names.",
+    )
+
+
+def _described(files: RawFiles) -> CampaignFile | None:
+    data = files.read(CAMPAIGN_FILE)
+    if CAMPAIGN_FILE in files.absent:
+        action = "Write the file, with the tools and plates that the tables name."
+        allowed = "a file of this name in the folder"
+        files.found.append(error("bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action))
+    if data is None:
+        return None
+    try:
+        decoded = decode(data)
+    except UnreadableTextError as trouble:
+        files.say_unreadable(CAMPAIGN_FILE, trouble)
+        return None
+    if not decoded.text.strip():
+        action = "Describe the tools and plates that the tables name."
+        files.found.append(
+            error("empty_file", CAMPAIGN_FILE, value="nothing", allowed="keys and values", action=action)
+        )
+        return None
+    files.say_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)
+    return read_campaign_file(decoded.text, files.found)
+
+
+def _corrections(files: RawFiles) -> Mapping[str, RowCorrections]:
+    table = _table(files, CORRECTIONS, {}, None)
+    if table is None or table.absent:
+        return {}
+    return corrections_by_file(table, files.found)
+
+
+def _table(
+    files: RawFiles, form: TableForm, corrections: RowCorrections, progress: Callable[[str], None] | None
+) -> Table | None:
+    data = files.read(form.file)
+    if form.file in files.absent:
+        refuse_without_file(corrections, files.found)
+    if data is None:
+        return None
+    try:
+        text = look_at_csv(data)
+    except UnreadableTextError as trouble:
+        files.say_unreadable(form.file, trouble)
+        return None
+    files.say_encoding(form.file, text.foreign_encoding)
+    return read_table(form, text, corrections=corrections, files=files, progress=progress)
+
+
+def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
+    tables = contents.tables
+    return Campaign(
+        name=described.name or contents.folder.resolve().name,
+        place=described.place,
+        observers=described.observers,
+        folder=contents.folder,
+        gauge_resolution=described.gauge_resolution,
+        load_uncertainty=described.load_uncertainty,
+        moment_uncertainty=described.moment_uncertainty,
+        lever_arm_uncertainty=described.lever_arm_uncertainty,
+        load_steps=described.load_steps,
+        tools=described.tools,
+        plates=described.plates,
+        excluding=described.excluding,
+        penetration=penetration_tests(tables[PENETRATION.file]) if PENETRATION.file in tables else None,
+        shear=shear_tests(tables[SHEAR.file]) if SHEAR.file in tables else None,
+        density=density_samples(tables[DENSITY.file]) if DENSITY.file in tables else None,
+        drop_cone=drop_cone_tests(tables[DROP_CONE.file]) if DROP_CONE.file in tables else None,
+        problems=contents.problems,
+        file_hashes=contents.hashes,
+    )

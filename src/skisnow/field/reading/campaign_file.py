@@ -1,0 +1,196 @@
+"""campaign.toml: who measured with what, how finely, and which marks exclude."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import tomllib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from ...units import MM
+from ..marks import MARKS
+from ..problems import error
+from .toml_values import TomlValues
+from .tool_shapes import SHAPES
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ...geometry import Tool
+    from ..problems import Problem
+
+CAMPAIGN_FILE: Final = "campaign.toml"
+
+_TOP_KEYS: Final = (
+    "name",
+    "place",
+    "observers",
+    "gauge_resolution_mm",
+    "load_uncertainty_N",
+    "moment_uncertainty_Nm",
+    "lever_arm_uncertainty_mm",
+    "load_steps_N",
+    "tool",
+    "plate",
+    "screening",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignFile:
+    """What campaign.toml says, in SI; the fields are those of `skisnow.field.records.Campaign`.
+
+    ``tool_names`` and ``plate_names`` also hold those whose lengths were refused; ``flat_tools`` are the tools without
+    an edge, for which only the edge angle 0 has a meaning.
+    """
+
+    name: str | None
+    place: str
+    observers: tuple[str, ...]
+    gauge_resolution: float | None
+    load_uncertainty: float | None
+    moment_uncertainty: float | None
+    lever_arm_uncertainty: float | None
+    load_steps: tuple[float, ...]
+    tools: Mapping[str, Tool]
+    plates: Mapping[str, float]
+    tool_names: frozenset[str]
+    plate_names: frozenset[str]
+    flat_tools: frozenset[str]
+    excluding: frozenset[str]
+
+
+def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
+    """Read the text of campaign.toml.
+
+    Parameters
+    ----------
+    text
+        The decoded file.
+    found
+        Takes every problem.
+
+    Returns
+    -------
+    Its content, or None where it is not TOML. With an error in ``found`` what was refused is left out.
+    """
+    parsed = _parsed(text, found)
+    if parsed is None:
+        return None
+    top = TomlValues(CAMPAIGN_FILE, parsed, "", found)
+    top.refuse_misspelt(_TOP_KEYS)
+    tools, tool_names, flat_tools = _tools(top)
+    plates, plate_names = _plates(top)
+    return CampaignFile(
+        name=top.text("name", blank_allowed=True),
+        place=top.text("place", blank_allowed=True) or "",
+        observers=top.texts("observers"),
+        gauge_resolution=_scaled(top.number("gauge_resolution_mm", zero_allowed=False)),
+        load_uncertainty=top.number("load_uncertainty_N", zero_allowed=True),
+        moment_uncertainty=top.number("moment_uncertainty_Nm", zero_allowed=True),
+        lever_arm_uncertainty=_scaled(top.number("lever_arm_uncertainty_mm", zero_allowed=True)),
+        load_steps=top.positive_numbers("load_steps_N"),
+        tools=tools,
+        plates=plates,
+        tool_names=tool_names,
+        plate_names=plate_names,
+        flat_tools=flat_tools,
+        excluding=_excluding(top),
+    )
+
+
+def _scaled(value_mm: float | None) -> float | None:
+    return None if value_mm is None else value_mm * MM
+
+
+def _parsed(text: str, found: list[Problem]) -> dict[str, Any] | None:
+    try:
+        return tomllib.loads(text.replace("\r\n", "\n").replace("\r", "\n"))
+    except RecursionError:
+        row, what = None, "brackets nested too deeply"
+    except ValueError as trouble:  # TOMLDecodeError, and numbers or dates that Python cannot hold
+        what = str(trouble)
+        line = re.search(r"at line (\d+)", what)
+        row = int(line[1]) if line else None
+    action = "Correct the line: texts stand in quotes, numbers have a decimal point, lists stand in brackets."
+    found.append(error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed="TOML (toml.io)", action=action))
+    return None
+
+
+def _tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[str]]:
+    tools: dict[str, Tool] = {}
+    names: set[str] = set()
+    flat: set[str] = set()
+    for entry in top.tables("tool"):
+        name = _new_name(entry, names)
+        shape_name = _shape_name(entry)
+        if shape_name is None:
+            continue
+        shape = SHAPES[shape_name]
+        entry.refuse_misspelt(("name", "shape", *shape.argument_of_key))
+        lengths = {argument: _length(entry, key) for key, argument in shape.argument_of_key.items()}
+        if name is not None and all(length is not None for length in lengths.values()):
+            tools[name] = shape.tool(**lengths)
+        if name is not None and not shape.has_edge:
+            flat.add(name)
+    return tools, frozenset(names), frozenset(flat)
+
+
+def _plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
+    plates: dict[str, float] = {}
+    names: set[str] = set()
+    for entry in top.tables("plate"):
+        name = _new_name(entry, names)
+        entry.refuse_misspelt(("name", "length_mm"))
+        length = _length(entry, "length_mm")
+        if name is not None and length is not None:
+            plates[name] = length
+    return plates, frozenset(names)
+
+
+def _new_name(entry: TomlValues, names: set[str]) -> str | None:
+    """Take a name in; None, and said, where it is missing or taken."""
+    if "name" not in entry.values:
+        entry.refuse("name", "a name", "Add the name that the tables use.")
+    name = entry.text("name")
+    if name in names:
+        entry.refuse("name", "each name once", "Rename or remove one of the two.")
+        return None
+    if name is not None:
+        names.add(name)
+    return name
+
+
+def _shape_name(entry: TomlValues) -> str | None:
+    allowed = f"one of {', '.join(SHAPES)}"
+    if "shape" not in entry.values:
+        entry.refuse("shape", allowed, "Add the shape.")
+        return None
+    shape = entry.text("shape")
+    if shape is None or shape in SHAPES:
+        return shape
+    near = difflib.get_close_matches(shape.lower(), SHAPES, n=1)
+    entry.refuse("shape", allowed, f"Is {near[0]} meant? Correct the shape." if near else "Correct the shape.")
+    return None
+
+
+def _length(entry: TomlValues, key: str) -> float | None:
+    if key not in entry.values:
+        entry.refuse(key, "a length in mm above 0", f"Add {key}.")
+    return _scaled(entry.number(key, zero_allowed=False))
+
+
+def _excluding(top: TomlValues) -> frozenset[str]:
+    """Codes of the marks that exclude: the list of the file replaces the default, an empty list too."""
+    screening = top.table("screening")
+    screening.refuse_misspelt(("exclude",))
+    if "exclude" not in screening.values:
+        return frozenset(code for code, mark in MARKS.items() if mark.excludes_by_default)
+    codes = screening.texts("exclude")
+    for code in codes:
+        if code not in MARKS:
+            near = difflib.get_close_matches(code, MARKS, n=1)
+            hint = f"Is {near[0]} meant? " if near else ""
+            screening.refuse("exclude", f"codes among {', '.join(MARKS)}", f"{hint}Correct the code.", value=code)
+    return frozenset(codes) & frozenset(MARKS)

@@ -1,0 +1,165 @@
+"""Corrections of single cells, kept beside the raw files and applied before anything is interpreted.
+
+A correction says what stood in the cell and what is meant. Where something else stands there it is not applied: the raw
+file or the correction is not the one that was meant.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from ..problems import error
+from .number_cells import is_number, number
+from .table_forms import CORRECTIONS, TABLES
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from ..problems import Problem
+    from .header import Header
+    from .table_forms import TableForm
+    from .tables import Table
+
+STATUS = "status"
+
+
+@dataclass(frozen=True, slots=True)
+class Correction:
+    """One row of corrections.csv; ``line`` is its own file line, ``row`` the one that it corrects."""
+
+    line: int
+    file: str
+    experiment: str
+    row: int
+    column: str
+    old: str
+    new: str
+
+    def mismatch(self, column: str, value: str, allowed: str) -> Problem:
+        """Say that this correction does not meet what it names."""
+        return error(
+            "correction_mismatch",
+            CORRECTIONS.file,
+            row=self.line,
+            column=column,
+            experiment=self.experiment or None,
+            value=value,
+            allowed=allowed,
+            action=f"Look at {self.file}, row {self.row}: put this correction right, or delete its row.",
+        )
+
+
+RowCorrections: TypeAlias = "Mapping[int, Sequence[Correction]]"
+"""The corrections of one file by file line, each line's in the order of corrections.csv."""
+
+
+def corrections_by_file(table: Table, found: list[Problem]) -> dict[str, dict[int, list[Correction]]]:
+    """Sort the rows of corrections.csv by the file and the line that they correct."""
+    files = [form.file for form in TABLES]
+    sorted_by_file: dict[str, dict[int, list[Correction]]] = {}
+    lines, rows = table.row.tolist(), table.numbers["row"].tolist()
+    names = (table.names[name].cells() for name in ("file", "experiment", "column"))
+    texts = (table.further[name] for name in ("old", "new"))
+    for line, row, file, experiment, column, old, new in zip(lines, rows, *names, *texts, strict=True):
+        if math.isnan(row) or not file:
+            continue  # already said to be no number or blank
+        correction = Correction(line, file, experiment, int(row), column, old, new)
+        if file not in files:
+            found.append(correction.mismatch("file", file, f"one of {', '.join(files)}"))
+        elif row != int(row):
+            found.append(correction.mismatch("row", f"{row:g}", "a whole number, the file's line"))
+        else:
+            sorted_by_file.setdefault(file, {}).setdefault(int(row), []).append(correction)
+    return sorted_by_file
+
+
+def refuse_without_file(corrections: RowCorrections, found: list[Problem]) -> None:
+    """Say of each correction that its file is not in the campaign, or cannot be read."""
+    for of_one_row in corrections.values():
+        found.extend(each.mismatch("file", each.file, "a readable file of this campaign") for each in of_one_row)
+
+
+def header_with_status(form: TableForm, header: Header, corrections: RowCorrections) -> Header:
+    """Append the column ``status`` where a correction cancels and the file has no such column."""
+    asked = (each.column for of_one_row in corrections.values() for each in of_one_row)
+    if STATUS in form.optional and STATUS not in header.columns and STATUS in asked:
+        return header.with_column(STATUS)
+    return header
+
+
+class Corrector:
+    """Applies the corrections of one file to its records.
+
+    Parameters
+    ----------
+    form
+        What the table must and may have.
+    header
+        The file's header, with `header_with_status`.
+    corrections
+        Those of this file.
+    mark
+        How the file writes decimals.
+    found
+        Takes the problems.
+    """
+
+    def __init__(
+        self, form: TableForm, header: Header, corrections: RowCorrections, *, mark: str, found: list[Problem]
+    ) -> None:
+        self._header = header
+        self._position = header.position
+        self._numbers = {column.name for column in form.numbers}
+        self._key = form.key
+        self._mark = mark
+        self._found = found
+        self._left = dict(corrections)
+
+    def apply(self, lines: Sequence[int], rows: Sequence[list[str]]) -> None:
+        """Change the cells of these records in place."""
+        if not self._left:
+            return
+        for line, cells in zip(lines, rows, strict=True):
+            for correction in self._left.pop(line, ()):
+                self._correct(cells, correction)
+
+    def finish(self) -> None:
+        """Say which corrections met no row; to be called after the last record."""
+        for row, of_one_row in sorted(self._left.items()):
+            what = "the header" if row == self._header.row else "no measurement"
+            allowed = f"a row of measurements; {what} stands there"
+            self._found.extend(each.mismatch("row", str(row), allowed) for each in of_one_row)
+
+    def _correct(self, cells: list[str], correction: Correction) -> None:
+        position = self._position.get(correction.column)
+        if position is None:
+            allowed = f"a column of {correction.file}: {', '.join(self._position)}"
+            self._found.append(correction.mismatch("column", correction.column, allowed))
+            return
+        cells.extend([""] * (len(self._header.columns) - len(cells)))
+        if self._agrees(cells, position, correction):
+            cells[position] = self._in_the_files_form(correction)
+
+    def _agrees(self, cells: list[str], position: int, correction: Correction) -> bool:
+        key_position = self._position.get(self._key)
+        experiment = cells[key_position].strip() if key_position is not None else correction.experiment
+        if experiment != correction.experiment:
+            allowed = f"what stands there: {experiment!r}"
+            self._found.append(correction.mismatch("experiment", correction.experiment, allowed))
+            return False
+        standing = cells[position].strip()
+        if standing == correction.old or (correction.column in self._numbers and self._equal(standing, correction.old)):
+            return True
+        self._found.append(correction.mismatch("old", correction.old, f"what stands there: {standing!r}"))
+        return False
+
+    def _equal(self, standing: str, old: str) -> bool:
+        return number(standing, self._mark) in (number(old, self._mark), number(old, "."))
+
+    def _in_the_files_form(self, correction: Correction) -> str:
+        """Let a number in the plain form stand in a file with decimal commas too."""
+        if self._mark == "," and correction.column in self._numbers and is_number(correction.new, "."):
+            return correction.new.replace(".", ",")
+        return correction.new

@@ -1,0 +1,84 @@
+"""The files of a campaign's folder as bytes, each read once and hashed."""
+
+from __future__ import annotations
+
+import hashlib
+import stat
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from ..problems import error, warning
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ..problems import Problem
+    from .text import UnreadableTextError
+
+
+@dataclass(frozen=True, slots=True)
+class RawFiles:
+    """Reads files of one folder and remembers what it met.
+
+    Attributes
+    ----------
+    folder
+        The campaign's folder.
+    found
+        Takes the problems.
+    hashes
+        SHA-256 of each file that was read.
+    absent
+        Names that were asked for and are not there.
+    """
+
+    folder: Path
+    found: list[Problem] = field(default_factory=list)
+    hashes: dict[str, str] = field(default_factory=dict)
+    absent: set[str] = field(default_factory=set)
+
+    def read(self, name: str) -> bytes | None:
+        """Give a file's bytes; None where it is absent, or cannot be read, which is said."""
+        path = self.folder / name
+        try:
+            # a pipe would be waited for, a folder cannot be read
+            data = path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None
+        except FileNotFoundError:
+            self.absent.add(name)
+            return None
+        except OSError as trouble:
+            self._refuse(name, trouble.strerror or str(trouble))
+            return None
+        if data is None:
+            self._refuse(name, "something that is no plain file")
+            return None
+        self.hashes[name] = hashlib.sha256(data).hexdigest()
+        return data
+
+    def _refuse(self, name: str, what: str) -> None:
+        action = "Make the file readable, or remove it from the campaign."
+        allowed = "a plain file that may be read"
+        self.found.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
+
+    def say_unreadable(self, name: str, trouble: UnreadableTextError) -> None:
+        """Say that a file is not the text it should be."""
+        self.found.append(
+            error(
+                "unreadable_file",
+                name,
+                row=trouble.row,
+                value=trouble.value,
+                allowed=trouble.allowed,
+                action=trouble.action,
+            )
+        )
+
+    def say_encoding(self, name: str, foreign_encoding: str | None) -> None:
+        """State an encoding that is not the plain one."""
+        if foreign_encoding is None:
+            return
+        how = "It was guessed" if foreign_encoding == "Windows-1252" else "It was read as such"
+        action = f"{how}; save as UTF-8 if letters look wrong in the report."
+        self.found.append(
+            warning("encoding", name, value=foreign_encoding, allowed="UTF-8, in the plain form", action=action)
+        )

@@ -1,0 +1,242 @@
+"""One table of a campaign: its CSV with the corrections applied, by columns, every cell checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..problems import error, warning
+from .columns import NameCollector, NumberCollector, Rows, TextCollector
+from .corrections import Corrector, header_with_status
+from .header import Header, check_header
+from .number_cells import decimal_mark
+from .text import SEPARATOR_NAMES, CsvText, UnreadableTextError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from ..problems import Problem
+    from ..records import FloatArray, IntArray
+    from .columns import Collector, NameColumn
+    from .corrections import RowCorrections
+    from .raw_files import RawFiles
+    from .table_forms import TableForm
+    from .text import Records
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table as it was read: n rows in the order of the file, numbers in the file's own units.
+
+    Attributes
+    ----------
+    form
+        What the table must and may have.
+    row
+        File line of each row.
+    names
+        The required and the interpreted optional text columns, whether the file has them or not.
+    numbers
+        Every column of numbers of the form; NaN where blank, absent or refused.
+    further
+        The other columns of the file, unknown ones too, as text.
+    absent
+        Required columns that the file lacks.
+    """
+
+    form: TableForm
+    row: IntArray
+    names: Mapping[str, NameColumn]
+    numbers: Mapping[str, FloatArray]
+    further: Mapping[str, tuple[str, ...]]
+    absent: frozenset[str]
+
+    def __len__(self) -> int:
+        """Count the rows."""
+        return len(self.row)
+
+
+def read_table(
+    form: TableForm,
+    text: CsvText,
+    *,
+    corrections: RowCorrections,
+    files: RawFiles,
+    progress: Callable[[str], None] | None = None,
+) -> Table | None:
+    """Read one table, with its corrections applied, and check each cell.
+
+    Parameters
+    ----------
+    form
+        What the table must and may have.
+    text
+        The file.
+    corrections
+        Those of this file.
+    files
+        Takes every problem.
+    progress
+        Is told now and then how many rows were read.
+
+    Returns
+    -------
+    The table, or None where no row could be looked at. With an error found its columns may have gaps.
+    """
+    reading: _TableReading | None = None
+    readable = True
+    try:
+        for lines, rows in text.records():
+            if reading is None and rows:
+                reading = _TableReading(
+                    form, Header.from_cells(rows.pop(0), lines.pop(0)), text, corrections, files.found
+                )
+            if reading is not None and rows:
+                reading.take(lines, rows)
+                if progress is not None:
+                    progress(f"{form.file}: {len(reading):,} rows")
+    except UnreadableTextError as trouble:
+        files.say_unreadable(form.file, trouble)
+        readable = False
+    return _table_or_empty(form, reading, files.found, readable=readable)
+
+
+def _table_or_empty(
+    form: TableForm, reading: _TableReading | None, found: list[Problem], *, readable: bool
+) -> Table | None:
+    if reading is None:
+        if readable:
+            found.append(_empty(form, "nothing"))
+        return None
+    reading.finish()
+    if readable and not reading.met_rows and not form.may_be_empty:
+        found.append(_empty(form, "a header only"))
+    return reading.table() if len(reading) or form.may_be_empty else None
+
+
+def _empty(form: TableForm, what: str) -> Problem:
+    action = "Fill the file, or remove it from the campaign."
+    return error("empty_file", form.file, value=what, allowed="a header and at least one row", action=action)
+
+
+class _TableReading:
+    """Takes the records of a table in, some thousand at a time."""
+
+    def __init__(
+        self, form: TableForm, header: Header, text: CsvText, corrections: RowCorrections, found: list[Problem]
+    ) -> None:
+        self._form = form
+        self._found = found
+        self._file_header = header
+        mark = _decimal_mark(form, header, text)
+        found.extend(_not_plain(form.file, text.separator, mark))
+        found.extend(check_header(form, header))
+        self._header = header_with_status(form, header, corrections)
+        self._corrector = Corrector(form, self._header, corrections, mark=mark, found=found)
+        self._row: list[IntArray] = []
+        self.met_rows = False
+        present = self._header.position
+        self._names = {name: NameCollector(name, required=name in form.names) for name in form.names + form.optional}
+        self._numbers = {column.name: NumberCollector(column, mark) for column in form.numbers}
+        interpreted = (set(self._names) | set(self._numbers)) - set(form.further)
+        self._further = {name: TextCollector() for name in present if name not in interpreted}
+        collectors: list[tuple[str, Collector]] = [*self._names.items(), *self._numbers.items(), *self._further.items()]
+        self._collectors = [(present[name], collector) for name, collector in collectors if name in present]
+
+    def __len__(self) -> int:
+        return sum(map(len, self._row))
+
+    def take(self, lines: list[int], rows: list[list[str]]) -> None:
+        """Take some records in."""
+        self.met_rows = True
+        lines, rows = self._without_surplus(lines, rows)
+        self._corrector.apply(lines, rows)
+        if not rows:
+            return
+        columns = _transposed(rows, len(self._header.columns))
+        key_position = self._header.position.get(self._form.key)
+        keys = columns[key_position] if key_position is not None else ("",) * len(rows)
+        about = Rows(self._form.file, lines, keys)
+        self._row.append(np.array(lines, dtype=np.int64))
+        for position, collector in self._collectors:
+            collector.take(columns[position], about, self._found)
+
+    def _without_surplus(self, lines: list[int], rows: list[list[str]]) -> Records:
+        """Refuse rows with a cell below no column name; blank cells there are a spreadsheet program's padding."""
+        width = len(self._file_header.columns)
+        unnamed = self._file_header.unnamed
+        if not unnamed and max(map(len, rows)) <= width:
+            return lines, rows
+        kept: Records = ([], [])
+        for line, cells in zip(lines, rows, strict=True):
+            surplus = chain(cells[width:], (cells[index] for index in unnamed if index < len(cells)))
+            first = next(filter(None, map(str.strip, surplus)), None)
+            if first is None:
+                kept[0].append(line)
+                kept[1].append(cells[:width])
+            else:
+                self._found.append(self._surplus(line, first, width - len(unnamed)))
+        return kept
+
+    def _surplus(self, line: int, cell: str, width: int) -> Problem:
+        return error(
+            "unreadable_file",
+            self._form.file,
+            row=line,
+            value=cell,
+            allowed=f"{width} cells, one below each column name",
+            action="Name the column in the header, or put the cell that holds a separator or decimal comma in quotes.",
+        )
+
+    def finish(self) -> None:
+        """Say what only the whole file can tell."""
+        self._corrector.finish()
+
+    def table(self) -> Table:
+        """Join what was collected."""
+        count = len(self)
+        present = self._header.position
+        return Table(
+            form=self._form,
+            row=np.concatenate(self._row) if self._row else np.zeros(0, dtype=np.int64),
+            names={name: collector.column(count) for name, collector in self._names.items()},
+            numbers={name: collector.column(count) for name, collector in self._numbers.items()},
+            further={name: collector.column() for name, collector in self._further.items()},
+            absent=frozenset(name for name in self._form.required if name not in present),
+        )
+
+
+def _transposed(rows: list[list[str]], width: int) -> list[tuple[str, ...]]:
+    if min(map(len, rows)) < width:
+        rows = [cells + [""] * (width - len(cells)) for cells in rows]
+    return list(zip(*rows, strict=True))
+
+
+def _decimal_mark(form: TableForm, header: Header, text: CsvText) -> str:
+    """Look ahead for the first numbers with a fraction."""
+    asked = {column.name for column in form.numbers}
+    positions = [index for index, name in enumerate(header.columns) if name in asked]
+
+    def groups() -> Iterator[list[str]]:
+        for _, rows in text.records():
+            yield [cells[index] for cells in rows for index in positions if index < len(cells)]
+
+    try:
+        return decimal_mark(groups(), separator=text.separator)
+    except UnreadableTextError:
+        return "."  # what is unreadable is said where the records are taken in
+
+
+def _not_plain(file: str, separator: str, mark: str) -> Iterator[Problem]:
+    found = [SEPARATOR_NAMES[separator]] * (separator != ",") + ["decimal comma"] * (mark == ",")
+    for value in found:
+        yield warning(
+            "separator",
+            file,
+            value=value,
+            allowed="commas between cells and decimal points, in the plain form",
+            action="It was read as found; nothing need be done.",
+        )

@@ -1,0 +1,67 @@
+"""Checks of a table that more than one of its cells, or more than one file, decide."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..problems import error
+from .angles import check_flat_tools, check_steepness, check_unit
+from .campaign_file import CAMPAIGN_FILE
+from .experiments import Blocks, check_one_site, check_series, check_single_rows
+from .table_forms import DROP_CONE, PENETRATION, SHEAR
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ..problems import Problem
+    from .campaign_file import CampaignFile
+    from .tables import Table
+
+
+def check_together(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+    """Find what the rows of a table say against each other, or against campaign.toml where that could be read."""
+    if table.form == PENETRATION:
+        yield from _check_penetration(table, described)
+    elif table.form == SHEAR:
+        yield from _check_shear(table, described)
+    elif table.form == DROP_CONE:
+        yield from check_one_site(table)
+
+
+def _check_penetration(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+    blocks = Blocks.of_runs(table.names["experiment"])
+    yield from check_series(table, blocks)
+    yield from check_unit(table)
+    yield from check_steepness(table, blocks)
+    if described is not None:
+        yield from check_flat_tools(table, blocks, described.flat_tools)
+        yield from _unknown_names(table, blocks, "tool", described.tool_names)
+
+
+def _check_shear(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+    blocks = Blocks.of_single_rows(len(table))
+    yield from check_single_rows(table, blocks)
+    yield from check_unit(table)
+    if described is not None:
+        yield from _unknown_names(table, blocks, "plate", described.plate_names)
+
+
+def _unknown_names(table: Table, blocks: Blocks, column: str, known: frozenset[str]) -> Iterator[Problem]:
+    """Find tools or plates that campaign.toml does not describe, once in each experiment."""
+    names = table.names[column]
+    unknown = np.array([bool(name) and name not in known for name in names.names], dtype=np.bool_)[names.code]
+    pairs = np.stack([blocks.of_row, names.code], axis=1)[unknown]
+    _, first = np.unique(pairs, axis=0, return_index=True)
+    for row in np.flatnonzero(unknown)[np.sort(first)].tolist():
+        yield error(
+            f"unknown_{column}",
+            table.form.file,
+            row=int(table.row[row]),
+            column=column,
+            experiment=table.names[table.form.key][row] or None,
+            value=names[row],
+            allowed=f"one of {', '.join(sorted(known))}" if known else f"a {column} that {CAMPAIGN_FILE} describes",
+            action=f"Correct the cell, or describe the {column} in {CAMPAIGN_FILE} under [[{column}]].",
+        )

@@ -1,0 +1,6 @@
+"""The synthetic reference campaign: its design, its noise, its truth, its files."""
+
+from .campaign import ReferenceCampaign, ReferenceNoise, reference_campaign
+from .files import write_reference
+
+__all__ = ["ReferenceCampaign", "ReferenceNoise", "reference_campaign", "write_reference"]

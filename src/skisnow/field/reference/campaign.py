@@ -1,0 +1,217 @@
+"""Synthetic reference campaign: the paper's design, snow whose truth is known, stated measurement errors.
+
+The design, and which part of it is the paper's, stands in ``reference_design``; the errors stand in `ReferenceNoise`.
+Both were fixed before any table of results was made from them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from ...errors import ParameterError
+from ...units import MM
+from ..marks import MARKS
+from ..records import Campaign
+from . import design, draws
+
+if TYPE_CHECKING:
+    from ..records import DensitySamples, DropConeTests, FloatArray, PenetrationTests, ShearTests
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReferenceNoise:
+    """How far the readings of the reference campaign are from the law F = H_V V, and its spots from one another.
+
+    All but two are standard deviations of independent normal draws; each is 0 to switch it off, which leaves the draws
+    of all others as they are.
+
+    Attributes
+    ----------
+    gauge_resolution
+        Step to which depths are rounded (m).
+    load_sd
+        True load less the nominal one that the file states (N), each reading by itself.
+    seating_sd
+        Offset of the depth zero (m), one per series: what the gauge reads too much.
+    depth_scatter
+        Relative scatter of depth from reading to reading.
+    hardness_log_sd
+        Spread of ln H_V between the spots of one site.
+    layering_sd
+        Spread of the layering exponent κ between series, see `reference_campaign`; at most 0.4.
+    shear_scatter
+        Multiplies the scatter of S_f between spots (0.03 N/mm² hard, 0.006 soft, 0.059 about Eqn 14).
+    moment_sd
+        Error of the moment (N m).
+    lever_arm_sd
+        True lever arm less the stated one (m).
+    """
+
+    gauge_resolution: float = 0.01 * MM
+    load_sd: float = 0.5
+    seating_sd: float = 0.02 * MM
+    depth_scatter: float = 0.02
+    hardness_log_sd: float = 0.3
+    layering_sd: float = 0.15
+    shear_scatter: float = 1.0
+    moment_sd: float = 0.2
+    lever_arm_sd: float = 1.0 * MM
+
+    def __post_init__(self) -> None:
+        for name in (entry.name for entry in fields(self)):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value >= 0):
+                raise ParameterError(f"ReferenceNoise: {name} is {value!r}; it must be a finite number, 0 or above")
+        if self.layering_sd > 0.4:
+            raise ParameterError(
+                f"ReferenceNoise: layering_sd is {self.layering_sd!r}; it must be at most 0.4, "
+                "or the force falls with depth in some series"
+            )
+
+
+DEFAULT_NOISE: Final = ReferenceNoise()
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceCampaign:
+    """A synthetic campaign and the truth behind it.
+
+    Attributes
+    ----------
+    seed, noise
+        What it was drawn with.
+    penetration, shear, density, drop_cone
+        The tables as a reader of the written files gives them.
+    snow_hardness
+        True H_V (N/m³), one per penetration series: F₇/V₇ at the nominal largest load and the true depth there.
+    seating_offset
+        What the gauge reads too much in each series (m).
+    layering
+        κ of each series.
+    penetration_depth
+        True depth of each penetration reading under its true load (m).
+    failure_shear_stress
+        True S_f (N/m²), one per shear test.
+    """
+
+    seed: int
+    noise: ReferenceNoise
+    penetration: PenetrationTests = field(repr=False)
+    shear: ShearTests = field(repr=False)
+    density: DensitySamples = field(repr=False)
+    drop_cone: DropConeTests = field(repr=False)
+    snow_hardness: FloatArray = field(repr=False)
+    seating_offset: FloatArray = field(repr=False)
+    layering: FloatArray = field(repr=False)
+    penetration_depth: FloatArray = field(repr=False)
+    failure_shear_stress: FloatArray = field(repr=False)
+
+    @property
+    def name(self) -> str:
+        """Name of the campaign; it says that it is synthetic."""
+        return f"synthetic reference campaign, seed {self.seed}"
+
+    @property
+    def place(self) -> str:
+        """Where it was measured: nowhere."""
+        return "nowhere: synthetic, drawn by a random number generator"
+
+    def campaign(self) -> Campaign:
+        """Give the campaign as if it had been read from files, for studies that draw many."""
+        return Campaign(
+            name=self.name,
+            place=self.place,
+            observers=("skisnow",),
+            folder=Path(self.name),
+            gauge_resolution=self.noise.gauge_resolution or None,
+            load_uncertainty=self.noise.load_sd,
+            moment_uncertainty=self.noise.moment_sd,
+            lever_arm_uncertainty=self.noise.lever_arm_sd,
+            load_steps=design.LOADS,
+            tools={design.TOOL: design.SKI_PIECE},
+            plates={design.PLATE: design.PLATE_LENGTH},
+            excluding=frozenset(code for code, mark in MARKS.items() if mark.excludes_by_default),
+            penetration=self.penetration,
+            shear=self.shear,
+            density=self.density,
+            drop_cone=self.drop_cone,
+            problems=(),
+            file_hashes={},
+        )
+
+
+def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> ReferenceCampaign:
+    """Draw a synthetic campaign of the paper's design: 236 penetration series of seven loads, 108 shear tests.
+
+    Parameters
+    ----------
+    seed
+        For `numpy.random.default_rng`, the only source of randomness; an integer of at least 0.
+    noise
+        The errors; the default is the reference campaign, others are for studies.
+
+    Returns
+    -------
+    ReferenceCampaign
+        Bit for bit the same for the same seed and noise.
+
+    Raises
+    ------
+    ParameterError
+        For a seed that is no integer of at least 0.
+
+    Notes
+    -----
+    Penetration. ln H_V of a spot is normal about its site's, redrawn where H_V leaves 0.04-90 N/mm³. The series' snow
+    obeys
+
+        F = H_V V(e₇) (V(e) / V(e₇))^(1 + κ/2),    with V(e₇) = F₇ / H_V and F₇ = 492 N,
+
+    so that it passes exactly through F₇ = H_V V₇ at the nominal largest load, whatever its layering exponent κ; with
+    κ = 0 it is F = H_V V (Eqn 12). For the wedge F ~ e^(2 + κ): κ > 0 is snow that is harder below. The true load F is
+    the nominal one plus an error; e solves the law for it. The gauge reads e (1 + scatter) + seating offset, rounded to
+    its step; it does not read below its zero, so a negative reading is recorded as 0. The file states the nominal
+    loads. Readings are recorded as they come: where depths shrink, screening marks the series.
+
+    A series planned flat whose snow would let the flat tool no deeper than 0.2 mm at the largest load is done at one of
+    the other angles instead (Choice: nobody measures 0.0004 mm).
+
+    Shear. S_f is 0.25 N/mm² at every angle on the hard snow, Eqn 13 on the soft snow, Eqn 14 of the spot's own density
+    for the 58 tests at 90° (redrawn where S_f leaves 0.04-0.40 N/mm²), each plus its scatter. Depths are
+    drawn evenly from 2 mm to 12 mm, or to the depth at which the moment S_f e L r is 60 N m where that is less. The
+    moment is S_f e L times the true lever arm plus an error, 0 where negative, written to 0.01 N m.
+
+    Densities and drop-cone depths vary about their site's and know nothing of H_V. Lengths in the files are written to
+    0.01 mm (drop cone 0.1 mm), densities to 1 kg/m³.
+
+    Examples
+    --------
+    >>> drawn = reference_campaign(1)
+    >>> len(drawn.penetration), len(drawn.penetration.load), len(drawn.shear)
+    (236, 1652, 108)
+    """
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise ParameterError(f"reference_campaign: the seed is {seed!r}; it must be an integer of at least 0")
+    # One stream per kind of draw, so that none depends on how many numbers another took.
+    spots, spread, readings, shear, beside = np.random.default_rng(seed).spawn(5)
+    snow_hardness = draws.snow_hardness(spread, noise)
+    edge_angle = draws.edge_angle(spots, snow_hardness)
+    penetration = draws.penetration(readings, snow_hardness, edge_angle, noise)
+    shear_tests, stress = draws.shear(shear, noise)
+    return ReferenceCampaign(
+        seed=seed,
+        noise=noise,
+        penetration=penetration.tests,
+        shear=shear_tests,
+        density=draws.density(beside),
+        drop_cone=draws.drop_cone(beside),
+        snow_hardness=snow_hardness,
+        seating_offset=penetration.seating_offset,
+        layering=penetration.layering,
+        penetration_depth=penetration.true_depth,
+        failure_shear_stress=stress,
+    )

@@ -1,0 +1,208 @@
+"""The SQLite file under the store: connections, transactions, schema, and plain words for what goes wrong.
+
+Every connection has foreign keys on and waits for others; every commit is on the disk before it returns
+(``synchronous=FULL``). Connections are opened for each piece of work and closed after it, threads share none.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import sqlite3
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Final
+from urllib.parse import quote
+
+from sqlalchemy import Connection, Engine, NullPool, create_engine, event
+from sqlalchemy.exc import DBAPIError
+
+from ...errors import StoreError
+from .schema import APPLICATION_ID, REVISION
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+_NO_ROOM: Final = "there is no room left on the disk; free some space and try again"
+_READ_ONLY: Final = "it is read-only; allow writing to the file and its folder, or name another place"
+_SQLITE_TROUBLE: Final = {
+    sqlite3.SQLITE_FULL: _NO_ROOM,
+    sqlite3.SQLITE_READONLY: _READ_ONLY,
+    sqlite3.SQLITE_PERM: _READ_ONLY,
+    sqlite3.SQLITE_BUSY: "another program has kept it locked for too long; wait until that one is done and try again",
+    sqlite3.SQLITE_CANTOPEN: "it cannot be opened; the file and its folder must exist and be readable and writable",
+    sqlite3.SQLITE_NOTADB: "this file is no store but something else; name another file",
+    sqlite3.SQLITE_CORRUPT: "the file is damaged; put a backup in its place, or export what can still be exported",
+    sqlite3.SQLITE_IOERR: "the disk could not be read or written; check it and the space left on it",
+}
+_SYSTEM_TROUBLE: Final = {
+    errno.ENOSPC: _NO_ROOM,
+    errno.EDQUOT: _NO_ROOM,
+    errno.EROFS: _READ_ONLY,
+    errno.EACCES: "access is not allowed; change the permissions or name another place",
+    errno.EPERM: "access is not allowed; change the permissions or name another place",
+}
+
+
+@contextmanager
+def database_told(store: Path, doing: str) -> Iterator[None]:
+    """Turn trouble of the database into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
+    try:
+        yield
+    except (DBAPIError, sqlite3.Error) as error:
+        why = _SQLITE_TROUBLE.get(_primary_code(error), str(getattr(error, "orig", error)))
+        raise StoreError(f"The store {store} {doing}: {why}.") from error
+
+
+@contextmanager
+def files_told(place: Path, doing: str) -> Iterator[None]:
+    """Turn trouble of the file system into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
+    try:
+        yield
+    except OSError as error:
+        why = _SYSTEM_TROUBLE.get(error.errno or 0, error.strerror or str(error))
+        raise StoreError(f"{error.filename or place} {doing}: {why}.") from error
+
+
+def _primary_code(error: DBAPIError | sqlite3.Error) -> int:
+    code: int = getattr(getattr(error, "orig", error), "sqlite_errorcode", 0)
+    return code & 0xFF  # the upper bits say more than a user can act on
+
+
+@contextmanager
+def reading(engine: Engine) -> Iterator[Connection]:
+    """Give a connection that sees the store as it is now, whatever others write meanwhile; it cannot commit."""
+    with (
+        engine.connect() as connection
+    ):  # ended by a rollback, which works even on damaged files, where COMMIT does not
+        yield connection
+
+
+@contextmanager
+def writing(engine: Engine) -> Iterator[Connection]:
+    """Give a connection that alone may write; all of its work is kept, or none."""
+    with engine.connect() as connection, connection.execution_options(skisnow_begin="IMMEDIATE").begin():
+        yield connection
+
+
+def open_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
+    """Connect to the SQLite file and bring its schema up to date.
+
+    Raises
+    ------
+    StoreError
+        The file is no store, or of a newer program, or damaged, or must be written and cannot.
+    """
+    with database_told(path, "cannot be used"):
+        engine = _readable_engine(path, create=create, busy_timeout_s=busy_timeout_s)
+        if _is_outdated(engine, path):
+            _bring_up_to_date(engine, path, busy_timeout_s)
+    return engine
+
+
+def _readable_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
+    engine = _engine(path, "mode=rwc" if create else "mode=rw", busy_timeout_s)
+    try:
+        _tables(engine)
+    except DBAPIError as error:
+        # A write-ahead log needs a file beside the store. Where the folder forbids that and there is no log, nobody is
+        # writing, and SQLite can be told to read the file as it stands.
+        log = path.with_name(path.name + "-wal")
+        forbidden = _primary_code(error) in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
+        if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
+            raise
+        engine = _engine(path, "mode=ro&immutable=1", busy_timeout_s)
+        _tables(engine)
+    return engine
+
+
+def _engine(path: Path, mode: str, busy_timeout_s: float) -> Engine:
+    name = quote(os.fsencode(path.absolute().as_posix()))
+    address = f"file://{'' if name.startswith('/') else '/'}{name}?{mode}"
+
+    def connect() -> sqlite3.Connection:
+        connection = sqlite3.connect(
+            address, uri=True, timeout=busy_timeout_s, isolation_level=None, check_same_thread=False
+        )
+        try:
+            connection.execute("PRAGMA foreign_keys = ON")
+            connection.execute("PRAGMA synchronous = FULL")
+        except BaseException:
+            connection.close()
+            raise
+        return connection
+
+    engine = create_engine("sqlite://", creator=connect, poolclass=NullPool)
+    event.listen(engine, "begin", _begin)
+    return engine
+
+
+def _begin(connection: Connection) -> None:
+    # The driver's own BEGIN comes late and never before DDL; with isolation_level None it stays out of the way.
+    connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('skisnow_begin', 'DEFERRED')}")
+
+
+def _tables(engine: Engine) -> set[str]:
+    with reading(engine) as connection:
+        return set(connection.exec_driver_sql("SELECT name FROM sqlite_master WHERE type = 'table'").scalars())
+
+
+def _revision(connection: Connection, path: Path) -> str | None:
+    """Migration that the store is at; None for a file without tables."""
+    tables = set(connection.exec_driver_sql("SELECT name FROM sqlite_master WHERE type = 'table'").scalars())
+    if not tables - {"alembic_version"}:
+        return None
+    if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
+        raise StoreError(f"{path} is an SQLite database of another program, not a store; name another file.")
+    return str(connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalar_one())
+
+
+def _is_outdated(engine: Engine, path: Path) -> bool:
+    with reading(engine) as connection:
+        return _needs_migration(_revision(connection, path), path)
+
+
+def _needs_migration(revision: str | None, path: Path) -> bool:
+    if revision == REVISION:
+        return False  # the usual case: alembic need not even be imported
+    from .migrations import knows
+
+    if revision is not None and not knows(revision):
+        raise StoreError(
+            f"{path} was written by a newer skisnow (schema {revision}; this one knows up to {REVISION}); "
+            "update skisnow, or name another store."
+        )
+    return True
+
+
+def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None:
+    from .migrations import upgrade
+
+    _use_write_ahead_log(engine, busy_timeout_s)
+    with engine.connect() as connection:
+        # Tables are rebuilt by some migrations, which foreign keys would hinder; they can only be switched off outside
+        # of a transaction and are checked before it ends.
+        connection.connection.cursor().execute("PRAGMA foreign_keys = OFF")
+        with connection.execution_options(skisnow_begin="IMMEDIATE").begin():
+            if not _needs_migration(_revision(connection, path), path):
+                return  # another process was faster
+            upgrade(connection)
+            if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
+                raise StoreError(
+                    f"{path} holds rows that point nowhere; it was left as it is. Put a backup in its place."
+                )
+
+
+def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:
+    """Switch the file to write-ahead logging, which it then keeps; SQLite does not wait for others here by itself."""
+    give_up = time.monotonic() + busy_timeout_s
+    while True:
+        try:
+            with engine.connect() as connection:
+                connection.connection.cursor().execute("PRAGMA journal_mode = WAL")
+            return
+        except sqlite3.OperationalError as error:
+            if _primary_code(error) != sqlite3.SQLITE_BUSY or time.monotonic() > give_up:
+                raise
+        time.sleep(0.01)

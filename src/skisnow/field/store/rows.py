@@ -1,0 +1,191 @@
+"""Campaigns as rows of the store: what each read and write does inside a transaction that the caller opened."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Final
+
+from sqlalchemy import Connection, Row, delete, insert, select, update
+
+from ...errors import StoreError
+from .folder import StoredFile, read_chunks
+from .schema import CHUNK_BYTES, campaign, campaign_file, chunk, content
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+ID_DIGITS: Final = 12
+_SHORTEST_PREFIX: Final = 4
+_SHOWN_CANDIDATES: Final = 10
+_TIME: Final = "%Y-%m-%dT%H:%M:%SZ"
+
+
+@dataclass(frozen=True, slots=True)
+class StoredCampaign:
+    """A campaign in the store.
+
+    Attributes
+    ----------
+    id, sha256
+        The hash of the manifest and its first 12 hex digits.
+    name
+        From campaign.toml, else the folder's, when it was added first.
+    added_at
+        When, in UTC.
+    n_errors, n_warnings
+        Of checking the campaign; None where the check itself failed.
+    files
+        Sorted by path.
+    """
+
+    id: str
+    name: str
+    added_at: datetime
+    sha256: str
+    n_errors: int | None
+    n_warnings: int | None
+    files: tuple[StoredFile, ...]
+
+    @property
+    def n_files(self) -> int:
+        """Count the files."""
+        return len(self.files)
+
+    @property
+    def n_bytes(self) -> int:
+        """Add up the sizes of the files."""
+        return sum(file.size for file in self.files)
+
+
+def all_campaigns(connection: Connection) -> tuple[StoredCampaign, ...]:
+    """Give all campaigns, oldest first."""
+    rows = connection.execute(select(campaign).order_by(campaign.c.added_at, campaign.c.id)).all()
+    return tuple(_stored_campaign(connection, row) for row in rows)
+
+
+def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
+    """Find the one campaign whose hash begins so.
+
+    Raises
+    ------
+    StoreError
+        No hexadecimal digits, fewer than 4, unknown, or several: lists those that may be meant.
+    """
+    beginning = beginning.strip().lower()
+    if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", beginning):
+        raise StoreError(
+            f"{beginning!r} is no campaign's id: give its {ID_DIGITS} hexadecimal digits or the first "
+            f"{_SHORTEST_PREFIX} or more of them."
+        )
+    begins_so = select(campaign).where(campaign.c.sha256.startswith(beginning)).order_by(campaign.c.id)
+    rows = connection.execute(begins_so).all()
+    if len(rows) == 1:
+        return _stored_campaign(connection, rows[0])
+    if rows:
+        raise StoreError(f"Several campaigns begin with {beginning}: {_candidates(rows)}; give more digits.")
+    known = connection.execute(select(campaign).order_by(campaign.c.added_at.desc(), campaign.c.id)).all()
+    raise StoreError(f"No campaign begins with {beginning}; the store holds {_candidates(known)}.")
+
+
+def _candidates(rows: Sequence[Row[tuple[object, ...]]]) -> str:
+    named = [f"{row.id} ({row.name})" for row in rows[:_SHOWN_CANDIDATES]]
+    further = len(rows) - len(named)
+    return (", ".join(named) or "none") + (f" and {further} more" if further else "")
+
+
+def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
+    files = connection.execute(
+        select(campaign_file.c.path, content.c.size, content.c.sha256)
+        .join_from(campaign_file, content)
+        .where(campaign_file.c.campaign_id == row.id)
+        .order_by(campaign_file.c.path)
+    )
+    return StoredCampaign(
+        id=row.id,
+        name=row.name,
+        added_at=datetime.strptime(row.added_at, _TIME).replace(tzinfo=UTC),
+        sha256=row.sha256,
+        n_errors=row.n_errors,
+        n_warnings=row.n_warnings,
+        files=tuple(StoredFile(file.path, file.size, file.sha256) for file in files),
+    )
+
+
+def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
+    """Give a content's bytes piece by piece."""
+    pieces = select(chunk.c.data).where(chunk.c.sha256 == sha256).order_by(chunk.c.position)
+    yield from connection.execute(pieces, execution_options={"yield_per": 1}).scalars()
+
+
+def is_sound(connection: Connection, sha256: str, size: int) -> bool:
+    """Tell whether a content still has the hash and the size (bytes) that it had when it was taken in."""
+    found, n_bytes = hashlib.sha256(), 0
+    for piece in stored_chunks(connection, sha256):
+        found.update(piece)
+        n_bytes += len(piece)
+    return found.hexdigest() == sha256 and n_bytes == size
+
+
+def keep_content(connection: Connection, folder: Path, file: StoredFile) -> bool:
+    """Keep the bytes of a file unless they are there already; tell whether damaged ones were made whole.
+
+    Raises
+    ------
+    StoreError
+        The file no longer is what its hash was taken from.
+    """
+    stored_size = connection.execute(select(content.c.size).where(content.c.sha256 == file.sha256)).scalar_one_or_none()
+    if stored_size is None:
+        connection.execute(insert(content).values(sha256=file.sha256, size=file.size))
+    elif is_sound(connection, file.sha256, file.size) and stored_size == file.size:
+        return False
+    else:
+        connection.execute(update(content).where(content.c.sha256 == file.sha256).values(size=file.size))
+        connection.execute(delete(chunk).where(chunk.c.sha256 == file.sha256))
+    found = hashlib.sha256()
+    for position, piece in enumerate(read_chunks(folder / file.path, CHUNK_BYTES)):
+        found.update(piece)
+        connection.execute(insert(chunk).values(sha256=file.sha256, position=position, data=piece))
+    if found.hexdigest() != file.sha256:
+        refuse_changed([file.path])
+    return stored_size is not None
+
+
+def refuse_changed(paths: Sequence[str]) -> None:
+    """Refuse a campaign whose files changed while they were read."""
+    if paths:
+        raise StoreError(
+            f"Changed while being read: {', '.join(paths)}; nothing was stored. "
+            "Close the program that writes there and add the folder again."
+        )
+
+
+def keep_campaign(
+    connection: Connection, files: Iterable[StoredFile], sha256: str, name: str, counts: tuple[int | None, int | None]
+) -> bool:
+    """Enter a campaign whose contents are kept already; False where it was there before. Counts: errors, warnings."""
+    id_ = sha256[:ID_DIGITS]
+    present = connection.execute(select(campaign.c.sha256).where(campaign.c.id == id_)).scalar_one_or_none()
+    if present == sha256:
+        return False
+    if present is not None:
+        raise StoreError(f"Another campaign in the store has the id {id_} by chance; keep this one in another store.")
+    connection.execute(
+        insert(campaign).values(
+            id=id_,
+            sha256=sha256,
+            name=name,
+            added_at=datetime.now(UTC).strftime(_TIME),
+            n_errors=counts[0],
+            n_warnings=counts[1],
+        )
+    )
+    connection.execute(
+        insert(campaign_file),
+        [{"campaign_id": id_, "path": file.path, "sha256": file.sha256} for file in files],
+    )
+    return True

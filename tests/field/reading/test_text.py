@@ -1,0 +1,124 @@
+"""Bytes to text and records: encodings, what is binary, separators, lines."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from skisnow.field.reading.text import RECORDS_AT_ONCE, UnreadableTextError, decode, look_at_csv
+
+
+def records(data: bytes) -> list[tuple[int, list[str]]]:
+    return [pair for lines, rows in look_at_csv(data).records() for pair in zip(lines, rows, strict=True)]
+
+
+@pytest.mark.parametrize(
+    ("data", "text", "foreign"),
+    [
+        (b"", "", None),
+        ("Höhe".encode(), "Höhe", None),
+        ("Höhe".encode("utf-8-sig"), "Höhe", None),
+        ("\ufeffHöhe".encode("utf-8-sig"), "Höhe", None),  # two byte order marks
+        ("Höhe".encode("utf-16"), "Höhe", "UTF-16"),
+        (b"\xfe\xff" + "Höhe".encode("utf-16-be"), "Höhe", "UTF-16"),
+        ("Höhe 5–6 €".encode("cp1252"), "Höhe 5–6 €", "Windows-1252"),
+    ],
+)
+def test_decode(data: bytes, text: str, foreign: str | None) -> None:
+    decoded = decode(data)
+    assert decoded.text == text
+    assert decoded.foreign_encoding == foreign
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"PK\x03\x04\x14\x00\x06\x00\x08\x00",  # a workbook
+        b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR",
+        b"a,b\n1,\x00\n",
+        b"\xff\xfea",  # half a UTF-16 character
+        b"\xef\xbb\xbfa\xff",  # promises UTF-8
+        b"\xe9\x81",  # 0x81 is no Windows-1252 character
+        "a,b\n1,2\n".encode("utf-16-le"),  # without byte order mark
+        "a,b\n1,2\n".encode("utf-32"),
+        bytes(range(1, 32)) * 10,
+        b"\xe9" + bytes([1, 2, 3, 4]) * 3,
+    ],
+)
+def test_binary_is_refused(data: bytes) -> None:
+    with pytest.raises(UnreadableTextError) as caught:
+        decode(data)
+    assert "binary" in caught.value.action
+
+
+@pytest.mark.parametrize(
+    ("data", "separator"),
+    [
+        (b"a,b;c,d\n", ","),
+        (b"a;b;c\n1,5;2,5;3,5\n", ";"),
+        (b'"a,b,c,d";e\n', ";"),
+        (b'"a\nb,c,d";e\n', ";"),
+        (b"a\tb\n", "\t"),
+        (b"a\n", ","),
+        (b";;;\r\n\r\na,b\r\n", ","),
+        (b"sep=;\na,b,c;d\n", ";"),
+        (b'"sep=\t"\r\na,b\n', "\t"),
+        (b"SEP=,\na;b;c\n", ","),
+    ],
+)
+def test_separator(data: bytes, separator: str) -> None:
+    assert look_at_csv(data).separator == separator
+
+
+def test_separator_that_is_not_read() -> None:
+    with pytest.raises(UnreadableTextError) as caught:
+        look_at_csv(b"sep=|\na|b\n")
+    assert (caught.value.row, caught.value.value) == (1, "sep=|")
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_lines_of_records(end: str) -> None:
+    lines = ["a,b", "", ' , "  "', "1,2", '"x', 'y",3', "\u00a0,", "4", '5," 6"']
+    assert records(end.join(lines).encode()) == [
+        (1, ["a", "b"]),
+        (4, ["1", "2"]),
+        (5, [f"x{end}y", "3"]),
+        (8, ["4"]),
+        (9, ["5", " 6"]),
+    ]
+
+
+def test_other_line_separators_do_not_count() -> None:
+    assert records("a,b\n1\u20282,\x853\x0b\n4,5\n".encode())[2][0] == 3
+
+
+def test_lines_below_a_line_that_names_the_separator() -> None:
+    assert records(b"sep=;\r\na;b\r\n\r\n1;2\r\n") == [(2, ["a", "b"]), (4, ["1", "2"])]
+
+
+@pytest.mark.parametrize("more", [0, 1, 60_000])
+def test_open_quote_names_its_row(more: int) -> None:
+    """At the end, one line on, and beyond the longest cell of the csv module; rows before it are still given."""
+    data = b'a,b\n1,2\n3,"4' + b"\n5,6" * more
+    chunks = look_at_csv(data).records()
+    assert next(chunks) == ([1, 2], [["a", "b"], ["1", "2"]])
+    with pytest.raises(UnreadableTextError) as caught:
+        next(chunks)
+    assert caught.value.row == 3
+
+
+@pytest.mark.parametrize("count", [RECORDS_AT_ONCE - 1, RECORDS_AT_ONCE, RECORDS_AT_ONCE + 1])
+def test_no_record_is_lost_between_portions(count: int) -> None:
+    data = "\n".join(map(str, range(count))).encode()
+    assert records(data) == [(index + 1, [str(index)]) for index in range(count)]
+    with pytest.raises(UnreadableTextError) as caught:
+        list(look_at_csv(data + b'\n"').records())
+    assert caught.value.row == count + 1
+
+
+def test_records_come_in_portions() -> None:
+    data = b"1\n" * (3 * RECORDS_AT_ONCE)
+    sizes = [len(rows) for _, rows in look_at_csv(data).records()]
+    assert sum(sizes) == 3 * RECORDS_AT_ONCE
+    assert all(size <= RECORDS_AT_ONCE for size in itertools.chain(sizes))
