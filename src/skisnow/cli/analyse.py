@@ -29,6 +29,7 @@ def run(options: argparse.Namespace) -> int:
     """Analyse, write what was asked for, print the summary."""
     from ..estimate import analyse, results_dict
     from ..estimate.results import results_json
+    from ..memory import paused_collector
     from .progress import Progress
 
     chosen: dict[str, Any] = {}
@@ -36,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
         chosen["seed"] = options.seed
     if options.resamples is not None:
         chosen["n_resamples"] = options.resamples
-    with Progress() as progress:
+    with Progress() as progress, paused_collector():
         analysis = analyse(options.campaign, geometry=options.geometry, progress=progress, **chosen)
         results = results_dict(analysis)
         if options.out is not None:

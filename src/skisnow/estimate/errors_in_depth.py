@@ -112,7 +112,7 @@ def fit_models_with_depth_errors(
         for _ in range(n_iterations if model.n_parameters else 0):
             ends = _weighted_ends(basis, model, readings.load, weight)
             weight = _weights(readings, basis.columns @ ends, slopes @ ends, uncertainty, scatter)
-            if np.allclose(ends, previous, rtol=1e-8, atol=0.0):
+            if np.allclose(ends, previous, rtol=1e-6, atol=0.0):
                 break
             previous = ends
         fits.append(fit_model(readings, basis, model, weights=weight)[0])

@@ -63,7 +63,7 @@ def seating(
             log_H, offset = log_H + step, offset + shift
             previous, scatter2 = scatter2, _scatter_step(readings, log_H, offset, scatter2, uncertainty, n)
             drift = np.abs(scatter2 - previous) / (scatter2 + 1e-12)
-            if np.nanmax(np.maximum(np.abs(step), drift), initial=0.0) < 1e-9:
+            if np.nanmax(np.maximum(np.abs(step), drift), initial=0.0) < 1e-7:
                 break
         line = _linearise(readings, log_H, offset, scatter2, uncertainty)
         _, _, variance_H, variance_offset = _solve(readings, line)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import gc
-from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..estimate.results import results_json
 from ..files import write_file
+from ..memory import paused_collector
 from .figures import figures_of
 from .material import Material
 from .page import page
@@ -52,20 +51,8 @@ def write_report(
     OutputError
         A file cannot be written. results.json, written last, says by its presence beside the others that all is there.
     """
-    with _paused_collector():
+    with paused_collector():
         return _write(Material(campaign, results), out, progress)
-
-
-@contextmanager
-def _paused_collector() -> Iterator[None]:
-    """No search for reference cycles: it would walk over the millions of cells of a large campaign again and again."""
-    running = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if running:
-            gc.enable()
 
 
 def _write(material: Material, out: Path, progress: Callable[[str], None] | None) -> Path:
