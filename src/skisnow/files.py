@@ -30,8 +30,31 @@ def write_file(path: str | Path, content: str | bytes) -> None:
             os.fsync(file.fileno())
         temporary.chmod(0o644)
         temporary.replace(path)
+        temporary = None
     except OSError as error:
-        if temporary is not None:
+        raise cannot_write(path, error) from error
+    finally:
+        if temporary is not None:  # an error, or an interruption at any moment
             temporary.unlink(missing_ok=True)
-        reason = error.strerror or error
-        raise OutputError(f"{path} cannot be written: {reason}. Choose another place or free some space.") from error
+
+
+def require_writable(folder: str | Path) -> None:
+    """Make a folder where it is missing and try a file in it, so that long work is not done for nothing.
+
+    Raises
+    ------
+    OutputError
+        The folder cannot be made or written.
+    """
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+
+
+def cannot_write(path: str | Path, error: OSError) -> OutputError:
+    """The sentence for a place that cannot be written."""
+    reason = error.strerror or error
+    return OutputError(f"{path} cannot be written: {reason}. Choose another place or free some space.")

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import IO, Any
 
 import jsonschema
 import pytest
@@ -73,16 +74,16 @@ def test_analyse_prints_json_alone_and_writes_nothing_without_out(
     campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = files_below(tmp_path)
-    assert main(["analyse", str(campaign), "--json", "--resamples", "50", "--seed", "7"]) == 0
+    assert main(["analyse", str(campaign), "--json", "--resamples", "100", "--seed", "7"]) == 0
     results = json.loads(capsys.readouterr().out)
     assert results["provenance"]["seed"] == 7
-    assert results["provenance"]["options"] == {"geometry": "extended", "n_resamples": 50}
+    assert results["provenance"]["options"] == {"geometry": "extended", "n_resamples": 100}
     assert files_below(tmp_path) == before
 
 
 def test_analyse_writes_the_report(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
-    assert main(["analyse", str(campaign), "--out", str(out), "--resamples", "50", "--geometry", "paper"]) == 0
+    assert main(["analyse", str(campaign), "--out", str(out), "--resamples", "100", "--geometry", "paper"]) == 0
     assert "H_V" in capsys.readouterr().out
     written = files_below(out)
     assert {"results.json", "report.html"} <= written
@@ -124,6 +125,58 @@ def test_a_place_that_cannot_be_written_is_a_sentence(
 ) -> None:
     """A file stands where the folder should be."""
     (tmp_path / "out").write_text("a file", encoding="utf-8")
-    assert main(["analyse", str(campaign), "--out", str(tmp_path / "out"), "--resamples", "20"]) == 1
+    assert main(["analyse", str(campaign), "--out", str(tmp_path / "out"), "--resamples", "100"]) == 1
     assert "cannot be written" in capsys.readouterr().err
     assert (tmp_path / "out").read_text(encoding="utf-8") == "a file"
+
+
+@pytest.mark.parametrize("seed", ["-1", "1.5", "x", "9223372036854775808"])
+def test_a_seed_is_a_whole_number_that_every_file_can_hold(seed: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["analyse", "x", "--seed", seed])
+    assert stop.value.code == 2
+    assert "is no seed" in capsys.readouterr().err
+
+
+def test_too_few_resamples_are_refused(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["analyse", str(campaign), "--resamples", "0"]) == 1
+    assert "100 or more" in capsys.readouterr().err
+
+
+def run_program(*words: str, encoding: str = "utf-8", stdout: int | IO[bytes] = subprocess.PIPE) -> Any:
+    environment = {**os.environ, "PYTHONIOENCODING": encoding}
+    command = [sys.executable, "-m", "skisnow", *words]
+    return subprocess.run(command, env=environment, stdout=stdout, stderr=subprocess.PIPE, check=False)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+def test_json_is_utf_8_whatever_the_terminal(campaign: Path, encoding: str) -> None:
+    toml = campaign / "campaign.toml"
+    toml.write_text(toml.read_text(encoding="utf-8").replace("place = ", 'place = "Kühtai ϑ" # ', 1), encoding="utf-8")
+    done = run_program("analyse", str(campaign), "--json", "--resamples", "100", encoding=encoding)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout.decode("utf-8"))["campaign"]["place"] == "Kühtai ϑ"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full on this system")
+def test_a_full_disk_behind_stdout_is_a_sentence(campaign: Path) -> None:
+    with Path("/dev/full").open("wb") as full:
+        done = run_program("analyse", str(campaign), "--json", "--resamples", "100", stdout=full)
+    assert done.returncode == 1
+    assert done.stderr.decode("utf-8").strip() == "skisnow: No space left on device"
+
+
+def test_an_interrupted_rewrite_leaves_the_earlier_report_whole(
+    campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "out"
+    assert main(["analyse", str(campaign), "--out", str(out), "--resamples", "100"]) == 0
+    before = {name: (out / name).read_bytes() for name in files_below(out)}
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("skisnow.report.write.page", interrupted)
+    words = ["analyse", str(campaign), "--out", str(out), "--resamples", "100", "--geometry", "paper", "--seed", "9"]
+    assert main(words) == 130
+    assert {name: (out / name).read_bytes() for name in files_below(out)} == before

@@ -217,3 +217,42 @@ def test_bootstrap_agrees_with_refitting_drawn_experiments_one_by_one() -> None:
     width = slow[:, 1] - slow[:, 0]
     # the ends of a 95 % interval from 400 draws are uncertain by about a tenth of its width
     np.testing.assert_allclose(fast[MODELS[2]] / width[:, None], slow / width[:, None], atol=0.2)
+
+
+@pytest.mark.parametrize(("at_the_far_angle", "known"), [(1, False), (3, False), (12, True)])
+def test_resamples_without_one_end_of_the_angles_make_the_interval_unknown(at_the_far_angle: int, known: bool) -> None:
+    """With 1 of 24 experiments at 60° a third of the resamples have none there: no slope, and no interval for it."""
+    readings = simulated(11, (30.0,), m=24)
+    angle = np.where(np.arange(24) < at_the_far_angle, math.radians(60.0), math.radians(30.0))
+    volume = TOOL.displaced_volume(readings.penetration_depth, math.radians(30.0))
+    depth = TOOL.depth_at_volume(volume, np.repeat(angle, 7))
+    tilted = Readings(readings.load, depth, angle, readings.first, readings.largest, readings.tool, readings.tools)
+    intervals = bootstrap_intervals(tilted, hardnesses(tilted), np.random.default_rng(1), n_resamples=1000)
+    linear = intervals[Model("H_V", "none", "linear")]
+    assert np.isfinite(linear[3]).all() == known
+    if known:
+        assert linear[3, 0] < 0.0 < linear[3, 1]
+        assert linear[3, 1] - linear[3, 0] < 0.2
+    assert np.isfinite(intervals[Model("H_V", "none", "constant")][2]).all()
+
+
+def test_one_experiment_has_no_bootstrap_interval() -> None:
+    readings = simulated(12, (30.0,), m=1)
+    intervals = bootstrap_intervals(readings, hardnesses(readings), np.random.default_rng(1), n_resamples=200)
+    assert all(np.isnan(interval).all() for interval in intervals.values())
+
+
+def test_rounding_does_not_choose_between_exact_models() -> None:
+    """F = H_V V to the last bit or so: every H_V row fits, the simplest is taken, no F test is made up."""
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        angle = np.radians(rng.choice([15.0, 30.0, 60.0], 10))
+        H = np.exp(rng.normal(18.0, 1.0, 10))
+        depth = TOOL.depth_at_volume(np.tile(LOADS, (10, 1)) / H[:, None], angle[:, None]).ravel()
+        readings = Readings(
+            np.tile(LOADS, 10), depth, angle, np.arange(11) * 7, np.arange(10) * 7 + 6, np.zeros(10, np.int64), (TOOL,)
+        )
+        fits = fit_models(readings, hardnesses(readings))
+        assert select_model(fits).model.id == "H_V:a=none,b=one"
+        exact = [t for t in compare_nested_rows(fits) if t.full.hardness == "H_V"]
+        assert all(math.isnan(t.F) and math.isnan(t.p) and math.isnan(t.rmse_change_percent) for t in exact)

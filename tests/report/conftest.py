@@ -29,7 +29,7 @@ class Reported:
 
 def results_of(campaign: Campaign) -> dict[str, Any]:
     """Few resamples: the tests hold the report against the results, whatever these are."""
-    return results_dict(analyse(campaign, n_resamples=50))
+    return results_dict(analyse(campaign, n_resamples=100))
 
 
 def reported(campaign: Campaign, folder: Path) -> Reported:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import io
+import os
 import sys
 from typing import TYPE_CHECKING
 
@@ -29,9 +31,13 @@ def build_parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns 0 when it did its work, 1 where the data or the machine refused, 2 for wrong words."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # JSON is UTF-8 whatever the terminal's code page
+            stream.reconfigure(encoding="utf-8", errors="backslashreplace")
     options = build_parser().parse_args(arguments)
     try:
         status: int = options.run(options)
+        sys.stdout.flush()
     except FieldDataError as error:
         for problem in error.problems:
             print(problem, file=sys.stderr)
@@ -44,6 +50,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("skisnow: interrupted; nothing half-written was left behind.", file=sys.stderr)
         return 130
     except BrokenPipeError:
-        sys.stderr.close()
-        return 1
+        return _stdout_lost()
+    except OSError as error:
+        print(f"skisnow: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", file=sys.stderr)
+        return _stdout_lost()
     return status
+
+
+def _stdout_lost() -> int:
+    """Nobody reads on, or the output cannot be written: keep Python from saying so again when it ends."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 1

@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from .words import seed_number
+
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the program's."""
@@ -20,8 +22,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="the ski piece with its continuation below the rim of its base, or the paper's plain wedge",
     )
     parser.add_argument("--json", action="store_true", help="print results.json instead of the summary")
-    parser.add_argument("--seed", type=int, help="seed of the bootstrap")
-    parser.add_argument("--resamples", type=int, metavar="N", help="bootstrap resamples of whole experiments")
+    parser.add_argument("--seed", type=seed_number, help="seed of the bootstrap, a whole number from 0 on")
+    parser.add_argument(
+        "--resamples", type=int, metavar="N", help="bootstrap resamples of whole experiments, 100 or more"
+    )
     parser.set_defaults(run=run)
 
 
@@ -29,6 +33,8 @@ def run(options: argparse.Namespace) -> int:
     """Analyse, write what was asked for, print the summary."""
     from ..estimate import analyse, results_dict
     from ..estimate.results import results_json
+    from ..field import read_campaign
+    from ..files import require_writable
     from ..memory import paused_collector
     from .progress import Progress
 
@@ -38,12 +44,15 @@ def run(options: argparse.Namespace) -> int:
     if options.resamples is not None:
         chosen["n_resamples"] = options.resamples
     with Progress() as progress, paused_collector():
-        analysis = analyse(options.campaign, geometry=options.geometry, progress=progress, **chosen)
+        campaign = read_campaign(options.campaign, progress=progress)
+        if options.out is not None:
+            require_writable(options.out)
+        analysis = analyse(campaign, geometry=options.geometry, progress=progress, **chosen)
         results = results_dict(analysis)
         if options.out is not None:
             from ..report import write_report
 
-            write_report(analysis.campaign, results, options.out, progress=progress)
+            write_report(campaign, results, options.out, progress=progress)
     if options.json:
         print(results_json(results).decode("utf-8"), end="")
         return 0

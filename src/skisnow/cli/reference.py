@@ -5,12 +5,16 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from .words import seed_number
+
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the program's."""
     parser = commands.add_parser("reference", help="write a synthetic campaign with the design of the 2013 paper")
     parser.add_argument("folder", type=Path, help="folder to write; it must not hold a campaign yet")
-    parser.add_argument("--seed", type=int, required=True, help="seed of the random numbers, a whole number from 0 on")
+    parser.add_argument(
+        "--seed", type=seed_number, required=True, help="seed of the random numbers, a whole number from 0 on"
+    )
     parser.set_defaults(run=run)
 
 

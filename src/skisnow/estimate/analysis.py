@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from ..errors import ParameterError
 from ..field import read_campaign
 from ..field.records import Campaign
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
@@ -41,6 +42,7 @@ FloatArray = npt.NDArray[np.float64]
 
 DEFAULT_RESAMPLES: Final = 2000
 """Bootstrap resamples; the ends of a 95 % interval then move by a few percent of its width between seeds."""
+FEWEST_RESAMPLES: Final = 100
 DEFAULT_SEED: Final = 1
 
 
@@ -115,15 +117,19 @@ def analyse(
     seed
         Seed of the bootstrap; the same seed gives the same numbers bit for bit on one machine.
     n_resamples
-        Bootstrap resamples of whole experiments.
+        Bootstrap resamples of whole experiments, ≥ 100.
     progress
         Called with a line of text now and then.
 
     Raises
     ------
     FieldDataError
-        The folder holds errors; the message lists every one.
+        The folder holds errors; its ``problems`` list every one.
+    ParameterError
+        ``n_resamples`` is too small for a 95 % interval.
     """
+    if n_resamples < FEWEST_RESAMPLES:
+        raise ParameterError(f"n_resamples is {n_resamples!r}; a 95 % interval needs {FEWEST_RESAMPLES} or more")
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
     return _analysis(read, geometry, seed, n_resamples, progress)
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from ..constants import CONFIDENCE
 from ..errors import FitError
+from ..names import numbered
 from ..snow.published import domine_2011, federolf_2006, moessner_2013
 from ..statistics.clusters import cluster_intervals
 from ..statistics.combined_uncertainty import expanded_factor
@@ -62,13 +63,13 @@ def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> Ow
     if values.size == 0 or (geometric and np.any(values <= 0)):
         return OwnValue(*[float("nan")] * 5)
     data = np.log(values) if geometric else values
-    low, high = _mean_interval(data, np.array(sites, dtype=object).astype(str))
+    low, high = _mean_interval(data, numbered(sites)[1])
     numbers = np.array([data.mean(), low, high])
     mean, low, high = (np.exp(numbers) if geometric else numbers).tolist()
     return OwnValue(mean, low, high, float(values.min()), float(values.max()))
 
 
-def _mean_interval(data: FloatArray, sites: npt.NDArray[np.str_]) -> tuple[float, float]:
+def _mean_interval(data: FloatArray, sites: npt.NDArray[np.int64]) -> tuple[float, float]:
     if len(np.unique(sites)) > 1:
         try:
             low, high = cluster_intervals(data, np.empty((len(data), 0)), sites).intervals[0]

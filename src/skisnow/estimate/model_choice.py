@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from .readings import Readings
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+LEAST_DETERMINANT: Final = 1e-12
+"""Of a normal matrix of columns of length one: below it, some combination of coefficients is free but for rounding."""
 MOST_UNITS: Final = 5000
 """Experiments, or groups of them, that the bootstrap draws."""
 
@@ -78,6 +81,8 @@ def bootstrap_intervals(
     ``MOST_UNITS`` experiments, random groups of them are drawn in their place: experiments are independent, so groups
     are too, and their number still is large.
     """
+    if readings.n_series < 2:  # one experiment cannot tell how experiments differ
+        return {model: np.full((4, 2), np.nan) for model in MODELS if model.n_parameters}
     groups = _groups(readings, {symbol: end_basis(readings, hardnesses[symbol]) for symbol in DEFINITIONS}, weights)
     products = [group.products for group in groups]
     ends = np.cumsum([part.shape[1] for part in products])[:-1]
@@ -113,8 +118,19 @@ class _Group:
         gram = np.empty((len(totals), q, q))
         gram[:, rows, columns] = gram[:, columns, rows] = totals[:, :-q]
         within = np.linalg.lstsq(self.to_ends, self.basis.projection(model))[0]
-        fitted = non_negative_fits(within.T @ gram @ within, totals[:, -q:] @ within)
+        normal = within.T @ gram @ within
+        fitted = non_negative_fits(normal, totals[:, -q:] @ within)
+        fitted[_undetermined(normal)] = np.nan
         return self.basis.coefficients(fitted @ self.basis.projection(model).T + self.basis.offset(model))
+
+
+def _undetermined(normal: FloatArray) -> BoolArray:
+    """Which of B normal matrices (B, p, p) leave a coefficient free: no experiment drawn at one end of the angles."""
+    length = np.sqrt(np.einsum("bii->bi", normal))
+    present = (length > 0).all(axis=1)
+    scale = np.where(length > 0, length, 1.0)
+    determinant: FloatArray = np.linalg.det(normal / scale[:, :, None] / scale[:, None, :])
+    return ~present | ~(determinant > LEAST_DETERMINANT)
 
 
 def _groups(readings: Readings, bases: dict[str, EndBasis], weights: dict[Model, FloatArray] | None) -> list[_Group]:

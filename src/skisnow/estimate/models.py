@@ -56,6 +56,8 @@ class Model:
         )
 
 
+EXACT: Final = 1e-11
+"""Residuals below this share of the loads are rounding of some thousand operations."""
 _N_PARAMETERS: Final = {"none": 0, "one": 0, "constant": 1, "linear": 2}
 _RANK: Final = {"none": 0, "one": 0, "constant": 1, "linear": 2}
 
@@ -191,6 +193,8 @@ def _row(
 ) -> ModelFit:
     n, m = readings.n, readings.n_series
     squares = residual**2
+    if float(squares.sum()) <= (EXACT * float(np.linalg.norm(readings.load))) ** 2:
+        squares = np.zeros(n)  # a fit to rounding is exact: rounding must not choose between models
     sse = float(squares.sum())
     free = sse - float(squares[readings.largest].sum())
     a0, a1, b0, b1 = (float(c) for c in basis.coefficients(ends))
@@ -227,7 +231,7 @@ def _bounds(model: Model, basis: EndBasis, bound: npt.NDArray[np.bool_]) -> tupl
         elif term == "linear":
             ends = (basis.low, basis.high)
             names += [
-                f"{name}@{round(float(np.degrees(end)), 9):g}deg" for i, end in enumerate(ends) if bound[start + i]
+                f"{name}@{round(float(np.degrees(end)), 11):.12g}deg" for i, end in enumerate(ends) if bound[start + i]
             ]
     return tuple(names)
 

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FitError
+from ..names import numbered
 from ..statistics.clusters import cluster_intervals
 from ..statistics.linear import LinearFit, linear_fit
 from .observations import ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY, HARDNESS_KEY, STRESS_KEY
@@ -70,18 +71,16 @@ def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression
         x, y = data.columns[plan.predictor], data.columns[plan.response]
         known = np.isfinite(x) & np.isfinite(y)
         x, y = x[known], y[known]
-        sites = np.array(data.site, dtype=object)[known].astype(str)
-        if plan.by_site:
-            found += [
-                Regression(plan, str(site), int(np.sum(sites == site)), _fit(y[sites == site], x[sites == site]), None)
-                for site in np.unique(sites)
-                if np.sum(sites == site) >= FEWEST_TESTS and len(np.unique(x[sites == site])) >= FEWEST_ANGLES
-            ]
-        found.append(_pooled(plan, x, y, sites))
+        names, site_of = numbered([data.site[index] for index in np.flatnonzero(known).tolist()])
+        for index, name in enumerate(names if plan.by_site else []):
+            mine = site_of == index
+            if mine.sum() >= FEWEST_TESTS and len(np.unique(x[mine])) >= FEWEST_ANGLES:
+                found.append(Regression(plan, name, int(mine.sum()), _fit(y[mine], x[mine]), None))
+        found.append(_pooled(plan, x, y, site_of))
     return tuple(found)
 
 
-def _pooled(plan: RegressionPlan, x: FloatArray, y: FloatArray, sites: npt.NDArray[np.str_]) -> Regression:
+def _pooled(plan: RegressionPlan, x: FloatArray, y: FloatArray, sites: npt.NDArray[np.int64]) -> Regression:
     fit = _fit(y, x)
     by_site = None
     if fit is not None and len(np.unique(sites)) > 1:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from ..field.problems import Problem
 from ..field.screening import mark_problems, screen_penetration, screen_shear
+from ..names import numbered
 from ..units import N_PER_MM3
 from .hardness import DEFINITIONS, hardness_at_largest_load
 from .readings import readings_of
@@ -19,6 +19,7 @@ from .shear_stress import shear_stress
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from ..field.problems import Problem
     from ..field.records import Campaign
     from ..geometry import GeometryForm
 
@@ -74,7 +75,7 @@ def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]
     """Used series with |ln H_V - the site's median| > 3.5 × 1.4826 × MAD, at sites with five or more used series."""
     outlier = np.zeros(len(hardness), dtype=bool)
     logs = np.log(hardness, out=np.zeros_like(hardness), where=used)
-    names, site_of = np.unique(np.array(site, dtype=object).astype(str), return_inverse=True)
+    names, site_of = numbered(site)
     order = np.argsort(site_of, kind="stable")
     bounds = np.searchsorted(site_of[order], np.arange(len(names) + 1))
     for start, stop in pairwise(bounds.tolist()):
@@ -92,34 +93,21 @@ def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]
 def marks_of(campaign: Campaign, *, geometry: GeometryForm = "extended") -> list[Problem]:
     """Every mark of a campaign as a problem of severity ``mark``, the one that needs the hardness included."""
     penetration, shear = screened_penetration(campaign, geometry=geometry), screened_shear(campaign)
-    field_marks = {code: mask for code, mask in penetration.marks.items() if code != "hardness_outlier"}
-    problems = mark_problems(campaign, field_marks, dict(shear.marks), geometry=geometry)
+    problems = mark_problems(campaign, penetration.marks, shear.marks, geometry=geometry)
     tests = campaign.penetration
     if tests is None:
         return problems
-    readings = readings_of(tests, campaign.tools, geometry=geometry)
-    H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"]) / N_PER_MM3
-    for index in np.flatnonzero(penetration.marks["hardness_outlier"]).tolist():
-        problems.append(
-            Problem(
-                severity="mark",
-                code="hardness_outlier",
-                file="penetration.csv",
-                row=int(tests.row[readings.largest[index]]),
-                column=None,
-                experiment=tests.experiment[index],
-                value=f"H_V = {H_V[index]:.4g} N/mm³",
-                allowed="within 3.5 × 1.4826 × MAD of the site's median of ln H_V",
-                action=f"Look at it beside the others of site {tests.site[index]}; it stays in unless excluded.",
-            )
-        )
-    return problems
+    H_V = hardness_at_largest_load(readings_of(tests, campaign.tools, geometry=geometry), DEFINITIONS["H_V"])
+    told = {name: f"H_V = {H:.4g} N/mm³" for name, H in zip(tests.experiment, H_V / N_PER_MM3, strict=True)}
+    return [
+        replace(problem, value=told[problem.experiment or ""]) if problem.code == "hardness_outlier" else problem
+        for problem in problems
+    ]
 
 
 def _used(marks: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:
-    """A cancelled experiment never takes part; the other marks exclude as the campaign says."""
     excluded = np.zeros(count, dtype=bool)
     for code, mask in marks.items():
-        if code in campaign.excluding or code == "cancelled":
+        if code in campaign.excluding:
             excluded |= mask
     return ~excluded

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from ..names import numbered
 from ..statistics.two_groups import ratio_of_means, tests_per_group
 
 if TYPE_CHECKING:
@@ -44,9 +45,9 @@ class SiteComparison:
 def compare_sites(quantity: str, values: FloatArray, site: Sequence[str]) -> tuple[SiteComparison, ...]:
     """Compare every pair of sites by the used experiments (values above 0 alone), in alphabetical order."""
     positive = values > 0
-    names = np.array(site, dtype=object)[positive].astype(str)
+    names, site_of = numbered([name for name, use in zip(site, positive.tolist(), strict=True) if use])
     logs = np.log(values[positive])
-    groups = {str(name): logs[names == name] for name in np.unique(names)}
+    groups = {name: logs[site_of == index] for index, name in enumerate(names)}
     return tuple(_compare(quantity, (a, groups[a]), (b, groups[b])) for a, b in combinations(sorted(groups), 2))
 
 

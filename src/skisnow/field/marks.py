@@ -15,6 +15,10 @@ RESOLUTIONS: Final = 5.0
 """A depth of fewer gauge resolutions is read with more than some 6 % of standard uncertainty: 1/(5 √12) (Choice)."""
 
 
+ALWAYS_EXCLUDE: Final = frozenset({"cancelled", "zero_depth"})
+"""A campaign may choose which marks exclude, but not these: the observers took the test back, or there is no value."""
+
+
 @dataclass(frozen=True, slots=True)
 class Mark:
     """A mark: its code, the sentence that explains it in a report, and whether it excludes unless told otherwise."""

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final
 
 from ..estimate.results import results_json
-from ..files import write_file
+from ..files import cannot_write, require_writable, write_file
 from ..memory import paused_collector
 from .figures import figures_of
 from .material import Material
@@ -17,17 +19,21 @@ from .tables import tables_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
-    from pathlib import Path
 
     from ..field.records import Campaign
     from .figures import Picture
     from .table import Table
+
+RESULTS: Final = "results.json"
 
 
 def write_report(
     campaign: Campaign, results: dict[str, Any], out: Path, *, progress: Callable[[str], None] | None = None
 ) -> Path:
     """Write report.html, figures/, tables/ and results.json of an analysed campaign.
+
+    All is made in a folder of its own inside ``out`` and moved into place at the end: an error or interruption before
+    leaves ``out`` as it was.
 
     Parameters
     ----------
@@ -49,31 +55,47 @@ def write_report(
     Raises
     ------
     OutputError
-        A file cannot be written. results.json, written last, says by its presence beside the others that all is there.
+        A file cannot be written. results.json, moved last, says by its presence beside the others that all is there.
     """
-    with paused_collector():
-        return _write(Material(campaign, results), out, progress)
-
-
-def _write(material: Material, out: Path, progress: Callable[[str], None] | None) -> Path:
     say = progress or _silent
+    require_writable(out)
+    try:
+        with paused_collector(), TemporaryDirectory(prefix=".report-", dir=out) as stage:
+            stale = _write(Material(campaign, results), Path(stage), say)
+            _move_into_place(Path(stage), out, stale)
+    except OSError as error:
+        raise cannot_write(out, error) from error
+    return out / "report.html"
+
+
+def _write(material: Material, stage: Path, say: Callable[[str], None]) -> list[str]:
+    """Write all files below the stage; returns those of an earlier report that this campaign has no data for."""
     say("tables of the report")
     every_table = tables_of(material)
     tables = {name: table for name, table in every_table.items() if table.rows}
     for table in tables.values():
         say(f"table {table.name}")
-        _write_table(table, out / "tables")
-    pictures, missing = figures_of(material, progress=progress)
+        _write_table(table, stage / "tables")
+    pictures, missing = figures_of(material, progress=say)
     for picture in pictures:
-        _write_picture(picture, out / "figures")
-    _remove_stale(out / "tables", _other_stems(every_table.values()), (".csv", ".tex"))
-    _remove_stale(out / "figures", (left_out.name for left_out in missing), (".svg", ".png"))
+        _write_picture(picture, stage / "figures")
     say("report.html")
-    report = out / "report.html"
-    write_file(report, page(material, tables, pictures, missing))
+    write_file(stage / "report.html", page(material, tables, pictures, missing))
     say("results.json")
-    write_file(out / "results.json", results_json(material.results))
-    return report
+    write_file(stage / RESULTS, results_json(material.results))
+    stale = [f"tables/{stem}{ending}" for stem in _other_stems(every_table.values()) for ending in (".csv", ".tex")]
+    return stale + [f"figures/{left_out.name}{ending}" for left_out in missing for ending in (".svg", ".png")]
+
+
+def _move_into_place(stage: Path, out: Path, stale: list[str]) -> None:
+    """Take the old results.json away, replace file by file, bring the new results.json last."""
+    for name in (RESULTS, *stale):
+        (out / name).unlink(missing_ok=True)
+    files = sorted((path for path in stage.rglob("*") if path.is_file()), key=lambda path: path.name == RESULTS)
+    for path in files:
+        target = out / path.relative_to(stage)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        path.replace(target)
 
 
 def _silent(_text: str) -> None:
@@ -95,9 +117,3 @@ def _other_stems(tables: Iterable[Table]) -> Iterator[str]:
     for table in tables:
         both = {replace(table, synthetic=synthetic).file_stem for synthetic in (False, True)}
         yield from sorted(both - {table.file_stem} if table.rows else both)
-
-
-def _remove_stale(folder: Path, stems: Iterable[str], endings: tuple[str, str]) -> None:
-    for stem in stems:
-        for ending in endings:
-            (folder / f"{stem}{ending}").unlink(missing_ok=True)

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     from .least_squares import FloatArray
 
+_BEYOND = 1e300
+"""Stands for an unknown sample; a quantile between it and any other number is still far beyond all numbers in use."""
 _DRAWS_AT_ONCE = 2**18
 """Draws of one chunk, some MB: what stays in the processor's cache."""
 
@@ -82,8 +84,9 @@ def percentile_interval(samples: npt.ArrayLike, *, confidence: float = 0.95) -> 
     Returns
     -------
     array
-        Low and high, shape (..., 2). Nothing is left out: one NaN among the samples of a quantity makes its interval
-        NaN, for a resample without an answer is not one that may be forgotten. NaN for B = 0.
+        Low and high, shape (..., 2). A NaN is a resample without an answer: it could have been anything, so it counts
+        as below everything for the low end and above everything for the high end. An interval whose end would then be
+        such a sample is NaN at both ends. NaN for B = 0.
 
     Notes
     -----
@@ -101,5 +104,9 @@ def percentile_interval(samples: npt.ArrayLike, *, confidence: float = 0.95) -> 
     if len(values) == 0:
         return np.full((*values.shape[1:], 2), np.nan)
     tail = 0.5 * (1.0 - confidence)
-    bounds: FloatArray = np.quantile(values, [tail, 1.0 - tail], axis=0)
-    return np.moveaxis(bounds, 0, -1)
+    unknown = np.isnan(values)
+    low = np.quantile(np.where(unknown, -_BEYOND, values), tail, axis=0)
+    high = np.quantile(np.where(unknown, _BEYOND, values), 1.0 - tail, axis=0)
+    bounds = np.stack((low, high), axis=-1)
+    reached = np.any(np.abs(bounds) > _BEYOND * 1e-6, axis=-1, keepdims=True)
+    return np.where(reached, np.nan, bounds)

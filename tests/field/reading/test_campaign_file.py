@@ -130,10 +130,10 @@ def test_exclusions_replace_the_default() -> None:
     described, found = read('[screening]\nexclude = ["beyond_tool", "hardness_outlier"]')
     assert found == []
     assert described is not None
-    assert described.excluding == {"beyond_tool", "hardness_outlier"}
+    assert described.excluding == {"beyond_tool", "hardness_outlier", "cancelled", "zero_depth"}
     nothing, _ = read("[screening]\nexclude = []")
     assert nothing is not None
-    assert nothing.excluding == frozenset()
+    assert nothing.excluding == {"cancelled", "zero_depth"}
 
 
 def test_windows_and_old_macintosh_line_ends() -> None:

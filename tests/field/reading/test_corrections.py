@@ -172,3 +172,13 @@ def test_a_broken_file_of_corrections(
 
 def test_a_header_alone_is_no_correction(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
     assert check_campaign(write_campaign({**small_campaign, FILE: corrections()})) == ()
+
+
+@pytest.mark.parametrize(("standing", "old"), [("2.s", ""), ("2.s", "abc"), ("", "unknown")])
+def test_two_texts_that_are_no_numbers_are_not_equal(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], standing: str, old: str
+) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("140.5,2.5", f"140.5,{standing}")
+    small_campaign[FILE] = corrections((PEN, "P1", "3", "depth_mm", old, "9"))
+    problems = check_campaign(write_campaign(small_campaign))
+    assert "correction_mismatch" in [problem.code for problem in problems]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from ...units import MM
-from ..marks import MARKS
+from ..marks import ALWAYS_EXCLUDE, MARKS
 from ..problems import error
 from .toml_values import TomlValues
 from .tool_shapes import SHAPES
@@ -182,7 +182,7 @@ def _length(entry: TomlValues, key: str) -> float | None:
 
 
 def _excluding(top: TomlValues) -> frozenset[str]:
-    """Codes of the marks that exclude: the list of the file replaces the default, an empty list too."""
+    """Codes of the marks that exclude: the list of the file replaces the default, but for those that always do."""
     screening = top.table("screening")
     screening.refuse_misspelt(("exclude",))
     if "exclude" not in screening.values:
@@ -193,4 +193,4 @@ def _excluding(top: TomlValues) -> frozenset[str]:
             near = difflib.get_close_matches(code, MARKS, n=1)
             hint = f"Is {near[0]} meant? " if near else ""
             screening.refuse("exclude", f"codes among {', '.join(MARKS)}", f"{hint}Correct the code.", value=code)
-    return frozenset(codes) & frozenset(MARKS)
+    return (frozenset(codes) & frozenset(MARKS)) | ALWAYS_EXCLUDE

@@ -156,7 +156,8 @@ class Corrector:
         return False
 
     def _equal(self, standing: str, old: str) -> bool:
-        return number(standing, self._mark) in (number(old, self._mark), number(old, "."))
+        stands = number(standing, self._mark)
+        return any(stands == number(old, mark) for mark in (self._mark, "."))  # NaN, no number, equals nothing
 
     def _in_the_files_form(self, correction: Correction) -> str:
         """Let a number in the plain form stand in a file with decimal commas too."""
