@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import skisnow
-from skisnow.estimate.results import results_json
+from skisnow.estimate.results_text import results_json
 from skisnow.field import Campaign, read_campaign, write_reference
 
 from .conftest import MakeCampaign

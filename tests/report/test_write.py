@@ -10,7 +10,7 @@ import matplotlib
 import pytest
 
 from skisnow.errors import OutputError
-from skisnow.estimate.results import results_json
+from skisnow.estimate.results_text import results_json
 from skisnow.field import Campaign
 from skisnow.files import write_file
 from skisnow.report import write_report

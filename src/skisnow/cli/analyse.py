@@ -32,7 +32,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(options: argparse.Namespace) -> int:
     """Analyse, write what was asked for, print the summary."""
     from ..estimate import analyse, results_dict
-    from ..estimate.results import results_json
+    from ..estimate.results_text import results_json
     from ..field import read_campaign
     from ..files import require_writable
     from ..memory import paused_collector

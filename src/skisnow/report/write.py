@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
-from ..estimate.results import results_json
+from ..estimate.results_text import results_json
 from ..files import cannot_write, require_writable, write_file
 from ..memory import paused_collector
 from .figures import figures_of

@@ -1,6 +1,7 @@
 """The synthetic reference campaign: its design, its noise, its truth, its files."""
 
-from .campaign import ReferenceCampaign, ReferenceNoise, reference_campaign
+from .campaign import ReferenceCampaign, reference_campaign
 from .files import write_reference
+from .noise import ReferenceNoise
 
 __all__ = ["ReferenceCampaign", "ReferenceNoise", "reference_campaign", "write_reference"]

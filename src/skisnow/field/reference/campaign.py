@@ -1,76 +1,25 @@
 """Synthetic reference campaign: the paper's design, snow whose truth is known, stated measurement errors.
 
-The design, and which part of it is the paper's, stands in ``reference_design``; the errors stand in `ReferenceNoise`.
+The design, and which part of it is the paper's, stands in ``design``; the errors stand in `ReferenceNoise`.
 Both were fixed before any table of results was made from them.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from ...errors import ParameterError
-from ...units import MM
 from ..marks import MARKS
 from ..records import Campaign
 from . import design, draws
+from .noise import ReferenceNoise
 
 if TYPE_CHECKING:
     from ..records import DensitySamples, DropConeTests, FloatArray, PenetrationTests, ShearTests
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReferenceNoise:
-    """How far the readings of the reference campaign are from the law F = H_V V, and its spots from one another.
-
-    All but two are standard deviations of independent normal draws; each is 0 to switch it off, which leaves the draws
-    of all others as they are.
-
-    Attributes
-    ----------
-    gauge_resolution
-        Step to which depths are rounded (m).
-    load_sd
-        True load less the nominal one that the file states (N), each reading by itself.
-    seating_sd
-        Offset of the depth zero (m), one per series: what the gauge reads too much.
-    depth_scatter
-        Relative scatter of depth from reading to reading.
-    hardness_log_sd
-        Spread of ln H_V between the spots of one site.
-    layering_sd
-        Spread of the layering exponent κ between series, see `reference_campaign`; at most 0.4.
-    shear_scatter
-        Multiplies the scatter of S_f between spots (0.03 N/mm² hard, 0.006 soft, 0.059 about Eqn 14).
-    moment_sd
-        Error of the moment (N m).
-    lever_arm_sd
-        True lever arm less the stated one (m).
-    """
-
-    gauge_resolution: float = 0.01 * MM
-    load_sd: float = 0.5
-    seating_sd: float = 0.02 * MM
-    depth_scatter: float = 0.02
-    hardness_log_sd: float = 0.3
-    layering_sd: float = 0.15
-    shear_scatter: float = 1.0
-    moment_sd: float = 0.2
-    lever_arm_sd: float = 1.0 * MM
-
-    def __post_init__(self) -> None:
-        for name in (entry.name for entry in fields(self)):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value >= 0):
-                raise ParameterError(f"ReferenceNoise: {name} is {value!r}; it must be a finite number, 0 or above")
-        if self.layering_sd > 0.4:
-            raise ParameterError(
-                f"ReferenceNoise: layering_sd is {self.layering_sd!r}; it must be at most 0.4, "
-                "or the force falls with depth in some series"
-            )
 
 
 DEFAULT_NOISE: Final = ReferenceNoise()

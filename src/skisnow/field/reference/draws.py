@@ -16,7 +16,7 @@ from . import design
 
 if TYPE_CHECKING:
     from ..records import FloatArray
-    from .campaign import ReferenceNoise
+    from .noise import ReferenceNoise
 
 
 class DrawnPenetration(NamedTuple):
