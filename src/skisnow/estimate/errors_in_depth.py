@@ -122,10 +122,12 @@ def fit_models_with_depth_errors(
 
 def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: FloatArray) -> FloatArray:
     """End values of a weighted fit by its normal equations: good enough on the way to the final factorised fit."""
-    weighted = basis.columns * weight[:, None]
     projection, fixed = basis.projection(model), basis.offset(model)
-    gram = weighted.T @ basis.columns
-    moment = weighted.T @ load - gram @ fixed
+    # column by column: a weighted copy of all columns would cost more in memory traffic than the sums do
+    columns = basis.columns.T
+    weighted = (column * weight for column in columns)
+    products = np.array([[*(w @ column for column in columns), w @ load] for w in weighted])
+    gram, moment = products[:, :4], products[:, 4] - products[:, :4] @ fixed
     fitted = non_negative_fits((projection.T @ gram @ projection)[None], (moment @ projection)[None])[0]
     return fixed + projection @ fitted
 
@@ -138,7 +140,7 @@ def _depth_slopes(readings: Readings, basis: EndBasis, hardness: FloatArray) -> 
     # a line contact (cylinder at e = 0) has an infinite dA/de: no depth, no information
     growth = np.where(np.isfinite(readings.area_growth), readings.area_growth, 0.0)
     da, db = H * growth, H * readings.contact_area
-    return np.stack((da * (1.0 - t), da * t, db * (1.0 - t), db * t), axis=1)
+    return np.stack((da * (1.0 - t), da * t, db * (1.0 - t), db * t)).T
 
 
 def _weights(

@@ -191,7 +191,7 @@ def scatter_variance(readings: Readings, logs: FloatArray, known: FloatArray, to
             # Newton on 1/Q, which is straight where the scatter dominates
             step = np.where(slope > 0, (Q / (n - 1.0) - 1.0) * Q / slope, 0.0)
             moved = np.maximum(s2 + step, 0.0)
-            settled = np.abs(moved - s2) <= 1e-12 * moved
+            settled = np.abs(moved - s2) <= 1e-9 * moved
             s2 = moved
             if settled[n > 1].all():
                 break

@@ -163,7 +163,8 @@ def end_basis(readings: Readings, hardness: FloatArray) -> EndBasis:
     t = (readings.angle_of_reading - low) / span if span > 0 else np.zeros(readings.n)
     H = hardness[readings.series]
     HA, HV = H * readings.contact_area, H * readings.displaced_volume
-    return EndBasis(np.stack((HA * (1.0 - t), HA * t, HV * (1.0 - t), HV * t), axis=1), low, high)
+    # each column contiguous, as the sums over it want it
+    return EndBasis(np.stack((HA * (1.0 - t), HA * t, HV * (1.0 - t), HV * t)).T, low, high)
 
 
 def fit_model(
