@@ -56,7 +56,7 @@ def test_check_lists_every_error_and_exits_1(campaign: Path, capsys: pytest.Capt
     assert main(["check", str(campaign)]) == 1
     text = capsys.readouterr().out
     assert "row 3, column depth_mm" in text
-    assert "2 errors" in text
+    assert "errors: 2" in text
 
 
 def test_analyse_refuses_a_campaign_with_errors_and_writes_nothing(

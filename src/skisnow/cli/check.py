@@ -29,7 +29,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         for problem in problems:
             print(problem)
-        print(f"{errors} errors, {warnings} warnings, {marks} marks")
+        print(f"errors: {errors}, warnings: {warnings}, marks: {marks}")
     return 1 if errors else 0
 
 

@@ -232,13 +232,21 @@ def _selected(found: PenetrationAnalysis) -> Json | None:
         return None
     best = min(found.table.fits, key=lambda fit: fit.rmse)
     chosen = found.selected
-    loss = 100.0 * (chosen.rmse / best.rmse - 1.0) if best.rmse > 0 else 0.0
-    return {
-        "id": chosen.model.id,
-        "reason": f"The simplest of the nine rows whose rmse is within 5 % of the best: {chosen.rmse:.4g} N with "
-        f"{chosen.n_parameters} fitted parameters against {best.rmse:.4g} N of {best.model.id} with "
-        f"{best.n_parameters}, {loss:.2g} % more.",
-    }
+    return {"id": chosen.model.id, "reason": _reason(chosen, best)}
+
+
+def _reason(chosen: ModelFit, best: ModelFit) -> str:
+    if chosen.model == best.model:
+        return (
+            f"The smallest rmse of the nine rows, {chosen.rmse:.4g} N; no row with fewer fitted parameters "
+            f"({chosen.n_parameters} here) comes within 5 % of it."
+        )
+    more = 100.0 * (chosen.rmse / best.rmse - 1.0) if best.rmse > 0 else 0.0
+    return (
+        f"The simplest of the nine rows whose rmse is within 5 % of the best: {chosen.rmse:.4g} N with fitted "
+        f"parameters: {chosen.n_parameters}, against {best.rmse:.4g} N of {best.model.id} with {best.n_parameters}, "
+        f"{more:.2g} % more."
+    )
 
 
 def _seating(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Json]:

@@ -100,8 +100,10 @@ def _models(penetration: Json, tag: str) -> Iterator[str]:
 
 
 def _coefficients(row: Json) -> str:
-    fitted = [name for name in ("a0", "a1", "b0", "b1") if row["intervals"][name] is not None]
-    text = ", ".join(f"{name} = {significant(row[name], style='plain')}" for name in fitted)
+    terms = {"a": ("constant", "linear"), "b": ("constant", "linear")}
+    fitted = [f"{name}0" for name, fits in terms.items() if row[name] in fits]
+    fitted += [f"{name}1" for name in terms if row[name] == "linear" and row[f"{name}1"] is not None]
+    text = ", ".join(f"{name} = {significant(row[name], style='plain')}" for name in sorted(fitted))
     bounds = f"; at bound: {', '.join(row['at_bound'])}" if row["at_bound"] else ""
     return text + bounds
 

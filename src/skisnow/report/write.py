@@ -28,7 +28,7 @@ RESULTS: Final = "results.json"
 
 
 def write_report(
-    campaign: Campaign, results: dict[str, Any], out: Path, *, progress: Callable[[str], None] | None = None
+    campaign: Campaign, results: dict[str, Any], out: str | Path, *, progress: Callable[[str], None] | None = None
 ) -> Path:
     """Write report.html, figures/, tables/ and results.json of an analysed campaign.
 
@@ -58,6 +58,7 @@ def write_report(
         A file cannot be written. results.json, moved last, says by its presence beside the others that all is there.
     """
     say = progress or _silent
+    out = Path(out)
     require_writable(out)
     try:
         with paused_collector(), TemporaryDirectory(prefix=".report-", dir=out) as stage:
