@@ -29,6 +29,8 @@ napoleon_google_docstring = False
 napoleon_use_ivar = True
 napoleon_use_rtype = False
 
+suppress_warnings = ["ref.python"]  # F and p are fields of several results: their names need no link
+
 html_theme = "furo"
 html_title = f"skisnow {release}"
 html_static_path = ["_static"]
@@ -59,6 +61,12 @@ def _visit_block(translator: Any, node: Any) -> None:
     raise SkipNode
 
 
+def _bars(_app: Sphinx, _what: str, _name: str, _object: Any, _options: Any, lines: list[str]) -> None:
+    """Absolute values in docstrings, |t|, are bars and not the beginning of a substitution."""
+    lines[:] = [line if "``" in line or ">>>" in line else line.replace("|", r"\|") for line in lines]
+
+
 def setup(app: Sphinx) -> None:
-    """Register the renderer of equations."""
+    """Register the renderer of equations and the reader of bars."""
+    app.connect("autodoc-process-docstring", _bars)
     app.add_html_math_renderer("mathml", (_visit_inline, None), (_visit_block, None))
