@@ -21,7 +21,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Print the problems; 1 if any is an error."""
-    problems = _problems(options.campaign)
+    problems, told = _problems(options.campaign)
     errors, warnings, marks = (_count(problems, severity) for severity in ("error", "warning", "mark"))
     if options.json:
         entries = [problem.as_dict() for problem in problems]
@@ -29,13 +29,15 @@ def run(options: argparse.Namespace) -> int:
     else:
         for problem in problems:
             print(problem)
+        for remark in told:
+            print(f"remark: {remark}")
         print(f"errors: {errors}, warnings: {warnings}, marks: {marks}")
     return 1 if errors else 0
 
 
-def _problems(folder: Path) -> list[Problem]:
+def _problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
     from ..errors import FieldDataError
-    from ..estimate import marks_of
+    from ..estimate import marks_of, remarks
     from ..field import Problem, read_campaign
     from .progress import Progress
 
@@ -43,8 +45,8 @@ def _problems(folder: Path) -> list[Problem]:
         try:
             campaign = read_campaign(folder, progress=progress)
         except FieldDataError as error:
-            return [problem for problem in error.problems if isinstance(problem, Problem)]
-        return [*campaign.problems, *marks_of(campaign)]
+            return [problem for problem in error.problems if isinstance(problem, Problem)], ()
+        return [*campaign.problems, *marks_of(campaign)], remarks(campaign)
 
 
 def _count(problems: list[Problem], severity: str) -> int:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import platform
+from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -17,6 +18,7 @@ import numpy.typing as npt
 
 from ..units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
 from .hardness import DEFINITIONS
+from .remarks import remarks
 
 if TYPE_CHECKING:
     from .analysis import Analysis, ModelTable, PenetrationAnalysis, ShearAnalysis
@@ -104,6 +106,8 @@ def _campaign(analysis: Analysis) -> Json:
         else campaign.lever_arm_uncertainty / MM,
         "excluding": sorted(campaign.excluding),
         "warnings": [problem.as_dict() for problem in campaign.problems],
+        "corrections": [asdict(correction) for correction in campaign.corrections],
+        "remarks": list(remarks(campaign)),
     }
 
 

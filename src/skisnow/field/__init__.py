@@ -4,13 +4,22 @@ from .density_records import DensityLayers, read_density_layers
 from .marks import MARKS, Mark
 from .problems import Problem
 from .reading import check_campaign, read_campaign
-from .records import Campaign, DensitySamples, DropConeTests, PenetrationSeries, PenetrationTests, ShearTests
+from .records import (
+    AppliedCorrection,
+    Campaign,
+    DensitySamples,
+    DropConeTests,
+    PenetrationSeries,
+    PenetrationTests,
+    ShearTests,
+)
 from .reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
 from .screening import mark_problems, screen_penetration, screen_shear
 from .snow_micro_pen import SnowMicroPenProfile, read_snow_micro_pen
 
 __all__ = [
     "MARKS",
+    "AppliedCorrection",
     "Campaign",
     "DensityLayers",
     "DensitySamples",

@@ -190,6 +190,21 @@ def _means(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) ->
 
 
 @dataclass(frozen=True, slots=True)
+class AppliedCorrection:
+    """A cell that was read otherwise than the raw file has it; ``row`` is the line of that file."""
+
+    file: str
+    experiment: str
+    row: int
+    column: str
+    old: str
+    new: str
+    who: str
+    when: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class Campaign:
     """A checked campaign, corrections applied.
 
@@ -215,6 +230,10 @@ class Campaign:
         Warnings of reading the files (errors would have refused the campaign).
     file_hashes
         SHA-256 of each file that was read, by name.
+    corrections
+        What corrections.csv changed, in its order.
+    unread_files
+        Names of files in the folder that are no part of a campaign.
     """
 
     name: str
@@ -235,6 +254,8 @@ class Campaign:
     drop_cone: DropConeTests | None
     problems: tuple[Problem, ...]
     file_hashes: Mapping[str, str]
+    corrections: tuple[AppliedCorrection, ...] = ()
+    unread_files: tuple[str, ...] = ()
 
     @property
     def depth_uncertainty(self) -> float | None:

@@ -79,6 +79,9 @@ def _mean(results: Json, quantity: str, symbol: str, unit: str, kind: str) -> st
 
 
 def _not_stated(campaign: Json) -> Iterator[str]:
+    if campaign["corrections"]:
+        yield f"corrections applied: {len(campaign['corrections'])}"
+    yield from (f"remark: {remark}" for remark in campaign["remarks"])
     if campaign["gauge_resolution_mm"] is None:
         yield "gauge_resolution_mm is not stated: no depth uncertainty in any interval"
     keys = ("load_uncertainty_N", "moment_uncertainty_Nm", "lever_arm_uncertainty_mm")

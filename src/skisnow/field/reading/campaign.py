@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from ..problems import Problem
+    from ..records import AppliedCorrection
     from .campaign_file import CampaignFile
     from .corrections import RowCorrections
     from .table_forms import TableForm
@@ -69,12 +70,15 @@ class _Contents:
     tables: Mapping[str, Table]
     hashes: Mapping[str, str]
     problems: tuple[Problem, ...]
+    corrections: tuple[AppliedCorrection, ...] = ()
+    unread: tuple[str, ...] = ()
 
 
 def _read(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
     if not folder.is_dir():
         action = "Name the folder that holds campaign.toml and the tables."
-        nowhere = error("unreadable_file", str(folder), allowed="a folder that exists", action=action)
+        value = "a file" if folder.exists() else "nothing"
+        nowhere = error("unreadable_file", str(folder), value=value, allowed="a folder that exists", action=action)
         return _Contents(folder, None, {}, {}, (nowhere,))
     files = RawFiles(folder)
     described = _described(files)
@@ -88,12 +92,34 @@ def _read(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
     files.found.extend(_misnamed(folder, files.absent))
     if {PENETRATION.file, SHEAR.file} <= files.absent:
         files.found.append(_no_measurements())
-    return _Contents(folder, described, tables, files.hashes, _in_order(files.found))
+    applied = sorted(
+        (each for rows in corrections.values() for row in rows.values() for each in row), key=lambda each: each.line
+    )
+    return _Contents(
+        folder,
+        described,
+        tables,
+        files.hashes,
+        _in_order(files.found),
+        tuple(each.applied() for each in applied),
+        _unread(folder),
+    )
 
 
 def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
     place = {name: index for index, name in enumerate(_FILES)}
     return tuple(sorted(problems, key=lambda problem: (place.get(problem.file, len(place)), problem.row or 0)))
+
+
+def _unread(folder: Path) -> tuple[str, ...]:
+    """Files that are no part of a campaign; hidden ones are not spoken of."""
+    return tuple(
+        sorted(
+            path.name
+            for path in folder.iterdir()
+            if path.is_file() and path.name not in _FILES and not path.name.startswith(".")
+        )
+    )
 
 
 def _misnamed(folder: Path, absent: set[str]) -> list[Problem]:
@@ -183,4 +209,6 @@ def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
         drop_cone=drop_cone_tests(tables[DROP_CONE.file]) if DROP_CONE.file in tables else None,
         problems=contents.problems,
         file_hashes=contents.hashes,
+        corrections=contents.corrections,
+        unread_files=contents.unread,
     )

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from ..problems import error
+from ..records import AppliedCorrection
 from .number_cells import is_number, number
 from .table_forms import CORRECTIONS, TABLES
 
@@ -36,6 +37,15 @@ class Correction:
     column: str
     old: str
     new: str
+    who: str
+    when: str
+    why: str
+
+    def applied(self) -> AppliedCorrection:
+        """What the records keep of it."""
+        return AppliedCorrection(
+            self.file, self.experiment, self.row, self.column, self.old, self.new, self.who, self.when, self.why
+        )
 
     def mismatch(self, column: str, value: str, allowed: str) -> Problem:
         """Say that this correction does not meet what it names."""
@@ -61,11 +71,11 @@ def corrections_by_file(table: Table, found: list[Problem]) -> dict[str, dict[in
     sorted_by_file: dict[str, dict[int, list[Correction]]] = {}
     lines, rows = table.row.tolist(), table.numbers["row"].tolist()
     names = (table.names[name].cells() for name in ("file", "experiment", "column"))
-    texts = (table.further[name] for name in ("old", "new"))
-    for line, row, file, experiment, column, old, new in zip(lines, rows, *names, *texts, strict=True):
+    texts = (table.further[name] for name in ("old", "new", "who", "when", "why"))
+    for line, row, file, experiment, column, *said in zip(lines, rows, *names, *texts, strict=True):
         if math.isnan(row) or not file:
             continue  # already said to be no number or blank
-        correction = Correction(line, file, experiment, int(row), column, old, new)
+        correction = Correction(line, file, experiment, int(row), column, *said)
         if file not in files:
             found.append(correction.mismatch("file", file, f"one of {', '.join(files)}"))
         elif row != int(row):

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _CAMPAIGN_FILES = ("penetration.csv", "shear.csv", "density.csv", "drop_cone.csv", "corrections.csv", "campaign.toml")
 
 
-def write_reference(folder: Path, *, seed: int) -> None:
+def write_reference(folder: str | Path, *, seed: int) -> None:
     """Write the reference campaign of a seed: campaign.toml, penetration, shear, density and drop_cone CSV.
 
     Parameters

@@ -60,7 +60,9 @@ def force_depth(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Le
     panels[0].set_ylabel("load $F$ (N)")
     mark_synthetic(material, panels[-1])
     legend_below(figure, [handles[style.label] for style in styles if style.label in handles])
-    return Drawing(NAME, _caption(counts, wide_range=wide_range), _alt(counts), figure, wide=len(angles) > 1)
+    elsewhere = int(material.penetration_used.sum()) - sum(len(every) for every in members)
+    caption = _caption(counts, elsewhere, wide_range=wide_range)
+    return Drawing(NAME, caption, _alt(counts), figure, wide=len(angles) > 1)
 
 
 def shown_angles(material: Material) -> list[float]:
@@ -125,7 +127,7 @@ def _law(material: Material, tests: PenetrationTests, index: int, wide_range: bo
     return e / MM, row["H_V_N_per_mm3"] * N_PER_MM3 * volume
 
 
-def _caption(counts: list[tuple[float, int, int]], *, wide_range: bool) -> Markup:
+def _caption(counts: list[tuple[float, int, int]], elsewhere: int, *, wide_range: bool) -> Markup:
     panels = "; ".join(
         f"{whole(shown)} of {whole(total)} ({_angle_name(angle)})"
         + (", evenly spaced in the rank of their hardness" if shown < total else "")
@@ -133,8 +135,10 @@ def _caption(counts: list[tuple[float, int, int]], *, wide_range: bool) -> Marku
     )
     return prose(
         "Load against penetration depth (the paper's Fig. 5). Symbols: readings by site; lines: F = H_V V with each "
-        "series' own H_V, which meets the reading under the largest load by definition. Series shown: {panels}.{axes}",
+        "series' own H_V, which meets the reading under the largest load by definition. Series shown: "
+        "{panels}.{others}{axes}",
         panels=panels,
+        others=f" Series at other edge angles, not shown: {whole(elsewhere)}." if elsewhere else "",
         axes=" Both axes are logarithmic, as the depths span more than a decade: the law is a straight line there, of "
         "slope 1 for a flat tool and 2 for a wedge; readings of depth 0 have no place on them."
         if wide_range

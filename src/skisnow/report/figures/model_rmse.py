@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final
 
 from matplotlib.lines import Line2D
@@ -28,7 +29,9 @@ def model_rmse(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Lef
     rows = [row for row in material.results["penetration"]["models"] if row["n"]]
     if not rows:
         return LeftOut(NAME, "rmse of the nine laws", "no penetration experiment is used")
-    own, printed = [row["rmse_N"] for row in rows], [PRINTED_RMSE_N[row["id"]] for row in rows]
+    own = [row["rmse_N"] for row in rows]
+    printed = [PRINTED_RMSE_N.get(row["id"], math.nan) for row in rows]
+    known = [value for value in own + printed if math.isfinite(value)]
     figure = new_figure(height_mm=70.0)
     axes = figure.add_subplot()
     places = range(len(rows))
@@ -37,10 +40,10 @@ def model_rmse(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Lef
     axes.plot(own, places, linestyle="none", marker="o", color=BLUE, markersize=4.4, zorder=4)
     axes.set_yticks(list(places), [_label(row, material) for row in rows])
     axes.invert_yaxis()
-    if max(own + printed) > _WIDE_RATIO * max(min(own + printed), 1e-9):
+    if max(known) > _WIDE_RATIO * max(min(known), 1e-9):
         axes.set_xscale("log")
     else:
-        axes.set_xlim(0.0, max(own + printed) * 1.06)
+        axes.set_xlim(0.0, max(known) * 1.06)
     axes.set_xlabel("rmse over all readings (N)")
     axes.tick_params(axis="y", length=0)
     axes.grid(axis="x", color="#E6E6E6", linewidth=0.5)

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
 def caveats(material: Material) -> list[Markup]:
     """Sentences, most weighty first."""
-    return [html(sentence) for sentence in (*_not_stated(material), *_not_there(material))]
+    remarks = material.results["campaign"]["remarks"]
+    return [html(sentence) for sentence in (*_not_stated(material), *remarks, *_not_there(material))]
 
 
 def _not_stated(material: Material) -> list[str]:

@@ -122,14 +122,25 @@ def _relations(material: Material) -> Markup | None:
     )
 
 
+def _with_sites(row: Json) -> str:
+    """What the interval that knows the sites says, where a pooled slope is significant without it."""
+    if row["group"] != "all" or row["p"] >= SIGNIFICANT or row["interval_by_site"] is None:
+        return ""
+    pair = row["interval_by_site"][1]
+    if pair is None:
+        return "; the sites are too few or too alike to tell"
+    return "" if pair[0] > 0 or pair[1] < 0 else "; not with sites as clusters"
+
+
 def _listed(rows: list[Json]) -> Markup:
     named = [
         prose(
-            "{response} on {predictor}{group} ({p})",
+            "{response} on {predictor}{group} ({p}{sites})",
             response=html(QUANTITY[row["response"]][0]),
             predictor=html(QUANTITY[row["terms"][1]][0]),
             group="" if row["group"] == "all" else f" at {row['group']}",
             p=p_equals(row["p"]),
+            sites=_with_sites(row),
         )
         for row in rows[:LISTED]
     ]

@@ -9,7 +9,7 @@ from .comparisons import published_table, site_comparison_table
 from .experiments import penetration_table, shear_table
 from .marks import marks_table
 from .models import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
-from .provenance import files_table, warnings_table
+from .provenance import corrections_table, files_table, warnings_table
 from .regressions import regressions_table
 from .seating import seating_largest_table, seating_quantiles_table, seating_table
 from .sites import sites_table
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 BUILDERS = (
     sites_table,
+    corrections_table,
     warnings_table,
     models_table,
     nested_table,

@@ -77,7 +77,7 @@ def models_table(material: Material) -> Table:
             row["rmse_N"],
             row["rmse_dof_N"],
             row["rmse_free_N"],
-            PRINTED_RMSE_N[row["id"]],
+            PRINTED_RMSE_N.get(row["id"]),
         )
         for row in found["models"]
         if row["n"]

@@ -20,6 +20,18 @@ def files_table(material: Material) -> Table:
     )
 
 
+def corrections_table(material: Material) -> Table:
+    """Every cell that was read otherwise than the raw file has it."""
+    keys = ("file", "row", "experiment", "column", "old", "new", "who", "when", "why")
+    rows = [tuple(row[key] for key in keys) for row in material.results["campaign"]["corrections"]]
+    return Table(
+        "corrections",
+        "Corrections applied when the files were read; the raw files keep the old values.",
+        tuple(Column(key, key, "count" if key == "row" else "text") for key in keys),
+        rows,
+    )
+
+
 def warnings_table(material: Material) -> Table:
     """What the reader of the files warned of."""
     keys = ("severity", "code", "file", "row", "column", "experiment", "value", "allowed", "action")
