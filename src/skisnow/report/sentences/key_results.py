@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from markupsafe import Markup
 
@@ -12,7 +12,7 @@ from ..tables.models import law, row_name
 from ..tables.regressions import QUANTITY
 
 if TYPE_CHECKING:
-    from ..material import Json, Material
+    from ..material import Json, Material, TextArray
 
 SIGNIFICANT: Final = 0.05
 LISTED: Final = 12
@@ -33,43 +33,43 @@ def own_value(material: Material, quantity: str) -> Json | None:
 
 
 def _hardness(material: Material) -> Markup | None:
-    if not material.penetration:
-        return None
-    n, used = len(material.penetration), len(material.hardness)
-    row = own_value(material, "H_V_N_per_mm3")
-    if row is None:
-        return prose("None of the {n} can be used, so there is no H_V.", n=counted(n, "penetration experiment"))
-    sites = len(set(material.penetration_site.tolist()))
-    return prose(
-        "Snow hardness H_V: geometric mean {value} N/mm³{ends}, single experiments {low} to {high} N/mm³; {used} of "
-        "{n} used, at {sites}.",
-        value=_strong(row["own"]),
-        ends=_ends(row["own_interval"], "N/mm³", sites),
-        low=significant(row["own_range"][0]),
-        high=significant(row["own_range"][1]),
-        used=whole(used),
-        n=counted(n, "penetration experiment"),
-        sites=counted(sites, "site"),
-    )
+    quantity = Quantity("Snow hardness H_V: geometric mean", "H_V", "H_V_N_per_mm3", "N/mm³", "penetration experiment")
+    return _mean(material, quantity, material.penetration, len(material.hardness), material.penetration_site)
 
 
 def _stress(material: Material) -> Markup | None:
-    if not material.shear:
+    quantity = Quantity("Failure shear stress S_f: mean", "S_f", "S_f_N_per_mm2", "N/mm²", "shear experiment")
+    return _mean(material, quantity, material.shear, len(material.stress), material.shear_site)
+
+
+class Quantity(NamedTuple):
+    """A measured quantity: how its sentence begins, its symbol, its key, its unit, what it is measured by."""
+
+    begins: str
+    symbol: str
+    key: str
+    unit: str
+    experiment: str
+
+
+def _mean(material: Material, quantity: Quantity, experiments: list[Json], used: int, site: TextArray) -> Markup | None:
+    if not experiments:
         return None
-    n, used = len(material.shear), len(material.stress)
-    row = own_value(material, "S_f_N_per_mm2")
+    n = counted(len(experiments), quantity.experiment)
+    row = own_value(material, quantity.key)
     if row is None:
-        return prose("None of the {n} can be used, so there is no S_f.", n=counted(n, "shear experiment"))
-    sites = len(set(material.shear_site.tolist()))
+        return prose("None of the {n} can be used, so there is no {symbol}.", n=n, symbol=html(quantity.symbol))
+    sites = len(set(site.tolist()))
     return prose(
-        "Failure shear stress S_f: mean {value} N/mm²{ends}, single experiments {low} to {high} N/mm²; {used} of "
-        "{n} used, at {sites}.",
+        "{begins} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used} of {n} used, at {sites}.",
+        begins=html(quantity.begins),
         value=_strong(row["own"]),
-        ends=_ends(row["own_interval"], "N/mm²", sites),
+        unit=quantity.unit,
+        ends=_ends(row["own_interval"], quantity.unit, sites),
         low=significant(row["own_range"][0]),
         high=significant(row["own_range"][1]),
         used=whole(used),
-        n=counted(n, "shear experiment"),
+        n=n,
         sites=counted(sites, "site"),
     )
 
