@@ -7,13 +7,14 @@ carried back to the columns as given. No normal equations: they would square the
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import qr, solve_triangular
 
 from ..errors import FitError, ParameterError
+from .combined_uncertainty import expanded_factor
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -160,6 +161,42 @@ def factorise(columns: Columns) -> Factorisation:
     inverse = np.empty((p, p))
     inverse[order] = solve_triangular(R, np.eye(p))
     return Factorisation(Q, columns.back @ inverse, columns.scaled, columns.back, inverse)
+
+
+class Spread(TypedDict):
+    """What every least-squares fit tells of its n_parameters coefficients and n residuals."""
+
+    n: int
+    n_parameters: int
+    coefficients: FloatArray
+    standard_errors: FloatArray
+    intervals: FloatArray
+    covariance: FloatArray
+    residuals: FloatArray
+    sse: float
+    rmse: float
+    rmse_dof: float
+
+
+def spread(coefficients: FloatArray, residuals: FloatArray, design: Factorisation, confidence: float) -> Spread:
+    """Errors of the coefficients from the scatter of the residuals; NaN where no degree of freedom is left."""
+    n, p = len(residuals), len(coefficients)
+    sse = float(residuals @ residuals)
+    variance = sse / (n - p) if n > p else float("nan")
+    errors = np.sqrt(variance) * np.linalg.norm(design.loadings, axis=1)
+    half = expanded_factor(float(n - p), confidence) * errors
+    return Spread(
+        n=n,
+        n_parameters=p,
+        coefficients=coefficients,
+        standard_errors=errors,
+        intervals=np.stack((coefficients - half, coefficients + half), axis=-1),
+        covariance=variance * design.loadings @ design.loadings.T,
+        residuals=residuals,
+        sse=sse,
+        rmse=float(np.sqrt(sse / n)),
+        rmse_dof=float(np.sqrt(variance)),
+    )
 
 
 def _dependence(names: Sequence[str], dependent: list[int], rank: int) -> str:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .combined_uncertainty import expanded_factor, require_confidence
-from .least_squares import Columns, as_predictors, as_response, centre, factorise, standardised
+from .combined_uncertainty import require_confidence
+from .least_squares import Columns, as_predictors, as_response, centre, factorise, spread, standardised
 from .nested import f_ratio, f_tail
 from .polynomial_basis import chebyshev_columns
 
@@ -146,28 +146,10 @@ def _fit(response: FloatArray, columns: Columns, *, intercept: bool, confidence:
     coefficients, residuals = design.solve(shifted)
     if intercept:
         coefficients[0] += middle
-    n, p = design.orthogonal.shape
-    sse = float(residuals @ residuals)
-    variance = sse / (n - p) if n > p else float("nan")
-    errors = np.sqrt(variance) * np.linalg.norm(design.loadings, axis=1)
-    half = expanded_factor(float(n - p), confidence) * errors
+    p = len(coefficients)
     r2, F, tail = _explained(shifted, residuals, p) if intercept else (float("nan"),) * 3
-    return LinearFit(
-        n=n,
-        n_parameters=p,
-        rank=p,
-        coefficients=coefficients,
-        standard_errors=errors,
-        intervals=np.stack((coefficients - half, coefficients + half), axis=-1),
-        covariance=variance * design.loadings @ design.loadings.T,
-        residuals=residuals,
-        sse=sse,
-        rmse=float(np.sqrt(sse / n)),
-        rmse_dof=float(np.sqrt(variance)),
-        r2=r2,
-        F=F,
-        p=tail,
-    )
+    told = spread(coefficients, residuals, design, confidence)
+    return LinearFit(**told, rank=p, r2=r2, F=F, p=tail)
 
 
 def _explained(shifted: FloatArray, residuals: FloatArray, p: int) -> tuple[float, float, float]:

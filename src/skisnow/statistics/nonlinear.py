@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FitError, ParameterError
-from .combined_uncertainty import expanded_factor, require_confidence
-from .least_squares import Columns, Factorisation, FloatArray, as_response, factorise, require_finite
+from .combined_uncertainty import require_confidence
+from .least_squares import Columns, Factorisation, FloatArray, as_response, factorise, require_finite, spread
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -129,7 +129,7 @@ def nonlinear_fit(
     require_finite("model at the start", values(b))
     b = _searched(values, observed, b, scale)
     b, design = _polished(values, observed, b, scale, labels)
-    return _report(observed - values(b), b, design, labels, confidence)
+    return NonlinearFit(**spread(b, observed - values(b), design, confidence), names=labels)
 
 
 def _searched(values: _Values, observed: FloatArray, start: FloatArray, scale: FloatArray) -> FloatArray:
@@ -207,26 +207,3 @@ def _factorised(jacobian: FloatArray, names: tuple[str, ...]) -> Factorisation:
     length = np.linalg.norm(jacobian, axis=0)
     unit = np.where(length > 0, length, 1.0)
     return factorise(Columns(jacobian / unit, np.diag(1.0 / unit), names))
-
-
-def _report(
-    residuals: FloatArray, b: FloatArray, design: Factorisation, names: tuple[str, ...], confidence: float
-) -> NonlinearFit:
-    n, p = len(residuals), len(b)
-    sse = float(residuals @ residuals)
-    variance = sse / (n - p) if n > p else float("nan")
-    errors = np.sqrt(variance) * np.linalg.norm(design.loadings, axis=1)
-    half = expanded_factor(float(n - p), confidence) * errors
-    return NonlinearFit(
-        names=names,
-        coefficients=b,
-        standard_errors=errors,
-        intervals=np.stack((b - half, b + half), axis=-1),
-        covariance=variance * design.loadings @ design.loadings.T,
-        residuals=residuals,
-        sse=sse,
-        rmse=float(np.sqrt(sse / n)),
-        rmse_dof=float(np.sqrt(variance)),
-        n=n,
-        n_parameters=p,
-    )
