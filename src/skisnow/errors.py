@@ -48,7 +48,3 @@ class StoreError(SkisnowError):
 
 class OutputError(SkisnowError):
     """A file could not be written; nothing half-written was left behind."""
-
-
-class RangeWarning(UserWarning):
-    """A relation is used outside the range in which it was measured; the value is computed all the same."""

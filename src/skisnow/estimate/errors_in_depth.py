@@ -25,7 +25,7 @@ import numpy.typing as npt
 
 from ..statistics.bounded import non_negative_fits
 from .hardness import DEFINITIONS, hardness_of_all_readings
-from .models import MODELS, EndBasis, Model, ModelFit, end_basis, fit_model
+from .models import MODELS, EndBasis, Model, ModelFit, end_basis, end_columns, fit_model
 
 if TYPE_CHECKING:
     from .hardness import ReadingUncertainty
@@ -103,7 +103,7 @@ def fit_models_with_depth_errors(
     fits: list[ModelFit] = []
     weights: dict[Model, FloatArray] = {}
     bases = {symbol: end_basis(readings, H) for symbol, H in hardnesses.items()}
-    slopes_of = {symbol: _depth_slopes(readings, basis, hardnesses[symbol]) for symbol, basis in bases.items()}
+    slopes_of = {symbol: _depth_slopes(readings, H) for symbol, H in hardnesses.items()}
     for model in MODELS:
         basis = bases[model.hardness]
         slopes = slopes_of[model.hardness]
@@ -132,15 +132,11 @@ def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: Floa
     return fixed + projection @ fitted
 
 
-def _depth_slopes(readings: Readings, basis: EndBasis, hardness: FloatArray) -> FloatArray:
+def _depth_slopes(readings: Readings, hardness: FloatArray) -> FloatArray:
     """d/de of the four regressors: dA/de and dV/de = A in the place of A and V."""
-    span = basis.high - basis.low
-    t = (readings.angle_of_reading - basis.low) / span if span > 0 else np.zeros(readings.n)
-    H = hardness[readings.series]
     # a line contact (cylinder at e = 0) has an infinite dA/de: no depth, no information
     growth = np.where(np.isfinite(readings.area_growth), readings.area_growth, 0.0)
-    da, db = H * growth, H * readings.contact_area
-    return np.stack((da * (1.0 - t), da * t, db * (1.0 - t), db * t)).T
+    return end_columns(readings, hardness, growth, readings.contact_area)
 
 
 def _weights(

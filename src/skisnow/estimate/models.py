@@ -159,12 +159,18 @@ def _block(term: Term, flat: bool, start: int) -> FloatArray:
 def end_basis(readings: Readings, hardness: FloatArray) -> EndBasis:
     """Build the regressors from the hardness of each series (SI)."""
     low, high = float(readings.edge_angle.min()), float(readings.edge_angle.max())
-    span = high - low
-    t = (readings.angle_of_reading - low) / span if span > 0 else np.zeros(readings.n)
+    columns = end_columns(readings, hardness, readings.contact_area, readings.displaced_volume)
+    return EndBasis(columns, low, high)
+
+
+def end_columns(readings: Readings, hardness: FloatArray, of_a: FloatArray, of_b: FloatArray) -> FloatArray:
+    """(n, 4) H x (1-t), H x t for x of a and x of b: A and V, or their derivatives with depth."""
+    low, high = readings.edge_angle.min(), readings.edge_angle.max()
+    t = (readings.angle_of_reading - low) / (high - low) if high > low else np.zeros(readings.n)
     H = hardness[readings.series]
-    HA, HV = H * readings.contact_area, H * readings.displaced_volume
+    Ha, Hb = H * of_a, H * of_b
     # each column contiguous, as the sums over it want it
-    return EndBasis(np.stack((HA * (1.0 - t), HA * t, HV * (1.0 - t), HV * t)).T, low, high)
+    return np.stack((Ha * (1.0 - t), Ha * t, Hb * (1.0 - t), Hb * t)).T
 
 
 def fit_model(

@@ -82,6 +82,8 @@ def test_rows_must_point_somewhere(place: Path) -> None:
         writing(store.engine) as connection,
     ):
         connection.execute(text("INSERT INTO chunk VALUES ('a', 0, x'00')"))
+    with Store.open(place) as store, store.engine.connect() as connection:
+        assert connection.execute(text("SELECT count(*) FROM chunk")).scalar_one() == 0
 
 
 def test_odd_names_of_the_store(tmp_path: Path, folder: Path) -> None:
@@ -304,25 +306,12 @@ def test_two_processes_lose_nothing(state: str, place: Path, tmp_path: Path) -> 
         assert store.verify() == ()
 
 
-def test_opening_waits_for_the_one_who_makes_the_store(place: Path) -> None:
+@pytest.mark.parametrize("lock", ["EXCLUSIVE", "IMMEDIATE"])
+def test_opening_waits_for_others(place: Path, lock: str) -> None:
+    """Exclusive: one who makes the store. Immediate: others can read, and SQLite itself would not wait."""
     place.parent.mkdir()
     other = sqlite3.connect(place, isolation_level=None, check_same_thread=False)
-    other.execute("BEGIN EXCLUSIVE")
-    with pytest.raises(StoreError, match="kept it locked for too long"):
-        Store.open(place, busy_timeout_s=0.05)
-    release = threading.Timer(0.3, other.rollback)
-    release.start()
-    with Store.open(place, busy_timeout_s=20.0) as store:
-        assert store.list() == ()
-    release.join()
-    other.close()
-
-
-def test_switching_to_the_log_waits_for_writers(place: Path) -> None:
-    """Others can read the file then, and SQLite itself would not wait."""
-    place.parent.mkdir()
-    other = sqlite3.connect(place, isolation_level=None, check_same_thread=False)
-    other.execute("BEGIN IMMEDIATE")
+    other.execute(f"BEGIN {lock}")
     with pytest.raises(StoreError, match="kept it locked for too long"):
         Store.open(place, busy_timeout_s=0.05)
     release = threading.Timer(0.3, other.rollback)

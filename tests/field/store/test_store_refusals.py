@@ -84,8 +84,10 @@ def test_a_file_that_cannot_be_read(folder: Path, place: Path, monkeypatch: pyte
         raise PermissionError(errno.EACCES, "Permission denied", str(file))
 
     monkeypatch.setattr("skisnow.field.store.store.read_chunks", forbidden)
-    with Store.open(place) as store, pytest.raises(StoreError, match=r"could not be read: access is not allowed"):
-        store.add(folder)
+    with Store.open(place) as store:
+        with pytest.raises(StoreError, match=r"could not be read: access is not allowed"):
+            store.add(folder)
+        assert store.list() == ()
 
 
 def rewrite_unseen(file: Path) -> None:
