@@ -1,0 +1,192 @@
+"""What a ski is: its shape, stiffness and mass, as dense tables along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from . import checks
+from .edge_line import radius_of_least_squares_circle
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+_EDGE_POINTS = 401  # of the circle through the edge line, evenly spaced whatever the spacing of the tables
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SkiSections:
+    """Cross sections of a ski at chosen stations; every array has the shape of ``station``.
+
+    Attributes
+    ----------
+    station
+        From the boot, positive forward (m).
+    width, base_height, bending_stiffness, torsional_stiffness, mass_per_length
+        As in `Ski`.
+    """
+
+    station: FloatArray
+    width: FloatArray
+    base_height: FloatArray
+    bending_stiffness: FloatArray
+    torsional_stiffness: FloatArray
+    mass_per_length: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ski:
+    """A ski as tables from tip to tail, dense enough for linear interpolation. Everything in SI.
+
+    Attributes
+    ----------
+    name
+        What it is called.
+    source
+        Where its numbers come from, in words.
+    station
+        Distance from the boot, positive forward (m); falls from tip to tail in steps of 2.5 mm at most. Shape (n,).
+    width
+        From edge to edge (m). Shape (n,).
+    base_height
+        Height of the unloaded base along the base normal, 0 at the boot, positive away from the snow (m): camber makes
+        it negative towards the contact points, the shovel rises. Shape (n,).
+    bending_stiffness
+        EI (N m²). Shape (n,).
+    torsional_stiffness
+        GJ (N m²). Shape (n,).
+    mass_per_length
+        (kg/m); its trapezoidal integral is the mass. Shape (n,).
+    running_length
+        Between the contact points of the base (m).
+    sidecut_length
+        Between the widest points in front and behind (m).
+    base_bevel
+        Angle by which the edge strip is ground up from the base (rad), 0 to 0.1.
+    edge_width
+        Width of the bevelled strip (m). Choice: 2 mm, a usual steel edge.
+    sidecut_middle
+        Station of the middle of running length and sidecut length (m): 0 where the boot stands there.
+
+    The tables are copied and made read-only.
+
+    Raises
+    ------
+    ParameterError
+        A table is not finite, not of the same length, not falling or not positive where it must be, the waist is wider
+        than the tip or the tail, or the tables do not reach over the running and the sidecut length.
+    """
+
+    name: str
+    source: str
+    station: FloatArray
+    width: FloatArray
+    base_height: FloatArray
+    bending_stiffness: FloatArray
+    torsional_stiffness: FloatArray
+    mass_per_length: FloatArray
+    running_length: float
+    sidecut_length: float
+    base_bevel: float = 0.0
+    edge_width: float = 0.002
+    sidecut_middle: float = 0.0
+
+    def __post_init__(self) -> None:
+        for field in fields(SkiSections):
+            table = np.array(getattr(self, field.name), dtype=float)
+            table.flags.writeable = False
+            object.__setattr__(self, field.name, table)
+        checks.require_sound(self)
+
+    def at(self, station: npt.ArrayLike) -> SkiSections:
+        """Give the cross sections at stations (m, any shape), interpolated linearly.
+
+        Raises
+        ------
+        ParameterError
+            A station is beyond tip or tail.
+        """
+        where = np.asarray(station, dtype=float)
+        checks.require_on_ski(self, where)
+        rising = self.station[::-1]
+
+        def along(table: FloatArray) -> FloatArray:
+            return np.asarray(np.interp(where, rising, table[::-1]))
+
+        return SkiSections(
+            where,
+            along(self.width),
+            along(self.base_height),
+            along(self.bending_stiffness),
+            along(self.torsional_stiffness),
+            along(self.mass_per_length),
+        )
+
+    @property
+    def length(self) -> float:
+        """From tip to tail along the base (m)."""
+        return float(self.station[0] - self.station[-1])
+
+    @property
+    def mass(self) -> float:
+        """Mass of the ski alone (kg)."""
+        return float(-np.trapezoid(self.mass_per_length, self.station))
+
+    @property
+    def torsional_inertia_per_length(self) -> FloatArray:
+        """Moment of inertia about the ski's axis per length, m' w²/12 of a thin strip (kg m). Shape (n,)."""
+        inertia: FloatArray = self.mass_per_length * self.width**2 / 12.0
+        return inertia
+
+    @property
+    def sidecut_ends(self) -> tuple[float, float]:
+        """Stations of the front and the rear end of the sidecut length (m)."""
+        return self.sidecut_middle + self.sidecut_length / 2.0, self.sidecut_middle - self.sidecut_length / 2.0
+
+    @property
+    def contact_points(self) -> tuple[float, float]:
+        """Stations of the front and the rear contact point of the unloaded base, the ends of the running length (m)."""
+        return self.sidecut_middle + self.running_length / 2.0, self.sidecut_middle - self.running_length / 2.0
+
+    @property
+    def sidecut_widths(self) -> tuple[float, float, float]:
+        """Widths at the front end, the middle and the rear end of the sidecut length (m)."""
+        front, rear = self.sidecut_ends
+        at_front, at_middle, at_rear = self.at([front, self.sidecut_middle, rear]).width
+        return float(at_front), float(at_middle), float(at_rear)
+
+    @property
+    def tip_width(self) -> float:
+        """Greatest width in front of the middle of the sidecut length (m)."""
+        return float(np.max(self.width[self.station >= self.sidecut_middle]))
+
+    @property
+    def waist_width(self) -> float:
+        """Width at the middle of the sidecut length (m)."""
+        return self.sidecut_widths[1]
+
+    @property
+    def tail_width(self) -> float:
+        """Greatest width behind the middle of the sidecut length (m)."""
+        return float(np.max(self.width[self.station <= self.sidecut_middle]))
+
+    @property
+    def sidecut_depth(self) -> float:
+        """δ = (tip + tail - 2 waist)/4 of the widths at the ends and the middle of the sidecut length (m)."""
+        front, middle, rear = self.sidecut_widths
+        return (front + rear - 2.0 * middle) / 4.0
+
+    @property
+    def sidecut_radius_of_three_widths(self) -> float:
+        """R_sc = L_sc²/(8 δ), the arc through three widths (m); infinite for a straight edge."""
+        depth = self.sidecut_depth
+        return self.sidecut_length**2 / (8.0 * depth) if depth > checks.STRAIGHT else float("inf")
+
+    @property
+    def sidecut_radius_of_edge_line(self) -> float:
+        """Radius of the least-squares circle through the edge over the sidecut length (m); infinite if straight."""
+        front, rear = self.sidecut_ends
+        along = np.linspace(front, rear, _EDGE_POINTS)
+        return radius_of_least_squares_circle(along, self.at(along).width / 2.0)
