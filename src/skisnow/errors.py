@@ -48,3 +48,7 @@ class StoreError(SkisnowError):
 
 class OutputError(SkisnowError):
     """A file could not be written; nothing half-written was left behind."""
+
+
+class RangeWarning(UserWarning):
+    """A relation is used outside the range in which it was measured: the number is computed all the same."""

@@ -16,6 +16,10 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 SOURCE: Final = "Domine and others 2011"
+LEAST_DENSITY: Final = 11.5323 / 0.1027
+"""Density (kg/m³) at which the square is 0, 112.3: below it the relation rises again, which no snow does."""
+SNOW_DENSITY_RANGE: Final = (LEAST_DENSITY, 500.0)
+"""ρ (kg/m³) for which it may stand: Mössner and others (2013) give 100-500 for such studies; it starts at its zero."""
 
 
 def failure_shear_stress_from_density(snow_density: npt.ArrayLike) -> FloatArray:

@@ -28,6 +28,13 @@ PRESSURE_LAWS: Final = {
 }
 """A (N/mm³) and B (N/mm²) of p = A e + B by snow."""
 
+NAMES: Final = {
+    "race-piste": "well-prepared race piste",
+    "recreational-piste": "compact recreational piste",
+    "spring-snow": "spring snow",
+}
+"""The paper's snow by the name that `skisnow.snow.published_snow` takes."""
+
 
 def converted(pressure_slope: float, pressure_offset: float, edge_angle: float) -> tuple[float, float]:
     """H_V = 2 A / cos²ϑ and S_f = B / sin²ϑ, in the units of A and B; ϑ in rad, 0 < ϑ < π/2.
@@ -46,3 +53,9 @@ def snows() -> dict[str, SnowProperties]:
         H_V, S_f = converted(slope, offset, CONVERSION_ANGLE)
         found[name] = SnowProperties(H_V * N_PER_MM3, S_f * N_PER_MM2, f"{SOURCE}: {name}")
     return found
+
+
+def named_snows() -> dict[str, SnowProperties]:
+    """The three snows by the names of `skisnow.snow.published_snow`."""
+    found = snows()
+    return {name: found[words] for name, words in NAMES.items()}

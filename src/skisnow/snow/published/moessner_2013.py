@@ -12,6 +12,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from ...units import DEGREE, N_PER_MM2, N_PER_MM3
+from ..properties import SnowProperties
+
 FloatArray = npt.NDArray[np.float64]
 
 SOURCE: Final = "Mössner and others 2013"
@@ -22,6 +25,13 @@ FAILURE_SHEAR_STRESS_RANGE_N_PER_MM2: Final = (0.04, 0.40)
 """S_f, from fresh snow on ski slopes to slopes prepared for World Cup races."""
 SNOW_DENSITY_RANGE: Final = (420.0, 740.0)
 """ρ of the shear tests in kg/m³; that of the penetration tests ends at 620."""
+PENETRATION_EDGE_ANGLE_RANGE: Final = (0.0, 60.0 * DEGREE)
+"""ϑ of the penetration tests (rad)."""
+NAMED_SNOWS: Final = {
+    "fresh-snow": ("fresh snow on ski slopes", 0.04, 0.04),
+    "glacier": ("late-summer glacier", 90.0, 0.30),
+}
+"""H_V (N/mm³) and S_f (N/mm²) that the paper prints for a named snow, by the name of `skisnow.snow.published_snow`."""
 TOOL_LENGTH_MM: Final = 200.0
 TOOL_WIDTH_MM: Final = 62.0
 
@@ -41,6 +51,12 @@ PRINTED_RMSE_N: Final = {
 ANGLE_TERM: Final = (0.99, 0.14)
 """b₀ and b₁ (1/rad) of Eqn 11, F_n = (0.99 + 0.14 ϑ) H_V V."""
 
+STRESS_BY_ANGLE: Final = (0.059, 0.266)
+"""S_f at ϑ → 0 (N/mm²) and its relative decrease with ϑ (1/rad) in Eqn 13."""
+
+STRESS_BY_DENSITY: Final = (-0.047, 0.00031)
+"""Intercept (N/mm²) and slope (N/mm² per kg/m³) of Eqn 14."""
+
 PRINTED_P: Final = {
     ("H_V", "snow_density"): 0.99,
     ("H_V", "drop_cone_depth"): 0.83,
@@ -59,7 +75,8 @@ def failure_shear_stress_from_angle(edge_angle: npt.ArrayLike) -> FloatArray:
     >>> round(float(failure_shear_stress_from_angle(math.pi / 2)) / 1e6, 4)
     0.0343
     """
-    result: FloatArray = 0.059e6 * (1.0 - 0.266 * np.asarray(edge_angle, float))
+    flat, decrease = STRESS_BY_ANGLE
+    result: FloatArray = flat * N_PER_MM2 * (1.0 - decrease * np.asarray(edge_angle, float))
     return result
 
 
@@ -69,5 +86,22 @@ def failure_shear_stress_from_density(snow_density: npt.ArrayLike) -> FloatArray
     >>> round(float(failure_shear_stress_from_density(500.0)) / 1e6, 3)
     0.108
     """
-    result: FloatArray = 1e6 * (-0.047 + 0.00031 * np.asarray(snow_density, float))
+    intercept, slope = STRESS_BY_DENSITY
+    result: FloatArray = N_PER_MM2 * (intercept + slope * np.asarray(snow_density, float))
     return result
+
+
+def named_snows() -> dict[str, SnowProperties]:
+    """Fresh snow and the late-summer glacier, by the names of `skisnow.snow.published_snow`.
+
+    Notes
+    -----
+    The paper names these snows as the ends of its ranges of H_V and of S_f, one after the other. That the two numbers
+    of one name belong to one snow is our reading (Choice): the paper found no relation between H_V and S_f.
+    """
+    return {
+        name: SnowProperties(
+            H_V * N_PER_MM3, S_f * N_PER_MM2, f"{SOURCE}: {words}, ends of the printed ranges, paired by us"
+        )
+        for name, (words, H_V, S_f) in NAMED_SNOWS.items()
+    }

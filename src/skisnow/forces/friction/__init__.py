@@ -1,0 +1,14 @@
+"""Glide friction over the speed; ``LAWS`` lists the rivals."""
+
+from typing import Final
+
+from .constant import ConstantFriction
+from .law import FrictionLaw
+from .linear import LinearFriction
+from .quadratic import QuadraticFriction
+from .water_film import WaterFilmFriction
+
+LAWS: Final[tuple[type[FrictionLaw], ...]] = (ConstantFriction, LinearFriction, QuadraticFriction, WaterFilmFriction)
+"""Every law for glide friction: one set of tests runs over all of them."""
+
+__all__ = ["LAWS", "ConstantFriction", "FrictionLaw", "LinearFriction", "QuadraticFriction", "WaterFilmFriction"]

@@ -1,0 +1,91 @@
+"""What every law for the glide friction of a ski looks like."""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Mapping
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ...errors import ParameterError
+from ..measured_ranges import GLIDE_FRICTION
+
+FloatArray = npt.NDArray[np.float64]
+
+COMPARISON_SPEED: Final = 10.0
+"""Speed (m/s) at which a law is held against the measured range when it is made (Choice: an ordinary speed on skis)."""
+
+
+class FrictionLaw(abc.ABC):
+    """Friction of a ski that glides along its length: μ(v) times the normal force, against the sliding.
+
+    A rival law is one frozen dataclass in a file of its own, entered in ``LAWS``; it gives ``_coefficient``.
+    Measured on skis: 0.023-0.139 over more than 200 runs (Wolfsperger and others 2021). When a law is made, its μ at
+    10 m/s is compared with that; μ = 0 is friction switched off and not warned of.
+    """
+
+    __slots__ = ()
+
+    @property
+    def exceptions(self) -> Mapping[str, str]:
+        """Shared checks of physics that this law fails, each with the reason."""
+        return {}
+
+    def coefficient(self, speed: npt.ArrayLike) -> FloatArray:
+        """Coefficient of friction μ (≥ 0) at a sliding speed v (m/s, ≥ 0), any shape.
+
+        Raises
+        ------
+        ParameterError
+            A speed is negative, or the law gives a negative coefficient at one of the speeds.
+        """
+        v = np.asarray(speed, float)
+        if np.any(v < 0):
+            raise ParameterError(f"speed is {float(v.min())!r} m/s; a sliding speed is at least 0")
+        mu = self._coefficient(v)
+        if np.any(mu < 0):
+            fastest = float(v.flat[int(np.argmin(mu))])
+            raise ParameterError(
+                f"{type(self).__name__}: the coefficient of friction is negative at {fastest:g} m/s: {self!r} would "
+                "push the ski; use other parameters or lower speeds"
+            )
+        return mu
+
+    def friction_force(self, normal_force: npt.ArrayLike, sliding_velocity: npt.ArrayLike) -> FloatArray:
+        """Force (N) of the snow on the ski, -μ(v) F_n v/v, against the sliding velocity.
+
+        Parameters
+        ----------
+        normal_force
+            F_n (N), shape (...). Below 0 there is no contact and no friction.
+        sliding_velocity
+            Velocity (m/s) of the ski over the snow, shape (..., d) with d components.
+
+        Returns
+        -------
+        array
+            Shape (..., d).
+
+        Notes
+        -----
+        At rest the force is 0: its direction is not determined, and up to μ(0) F_n it is what holds the ski. A
+        simulation that stops or starts must treat rest itself, for example by a smooth step over a small speed.
+        """
+        velocity = np.asarray(sliding_velocity, float)
+        speed = np.linalg.norm(velocity, axis=-1)
+        size = self.coefficient(speed) * np.maximum(np.asarray(normal_force, float), 0.0)
+        direction = np.divide(velocity, speed[..., None], out=np.zeros(velocity.shape), where=speed[..., None] > 0)
+        result: FloatArray = -size[..., None] * direction
+        return result
+
+    def _warn_outside(self) -> None:
+        """Compare μ at the comparison speed with what was measured; called when a law is made."""
+        mu = self._coefficient(np.asarray(COMPARISON_SPEED))
+        if np.any(mu != 0):
+            GLIDE_FRICTION.warn_outside(mu, f"{type(self).__name__} at {COMPARISON_SPEED:g} m/s", stacklevel=4)
+
+    @abc.abstractmethod
+    def _coefficient(self, speed: FloatArray) -> FloatArray:
+        """μ at speeds of at least 0."""

@@ -1,0 +1,51 @@
+"""What the force laws refuse: parameters that no snow can have, and angles that look like degrees."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+
+if TYPE_CHECKING:
+    FloatArray = npt.NDArray[np.float64]
+
+RIGHT_ANGLE = math.pi / 2.0
+
+
+def require_above_zero(owner: object, **parameters: float) -> None:
+    """Refuse a parameter that is not a finite number above 0."""
+    for name, value in parameters.items():
+        if not (math.isfinite(value) and value > 0):
+            raise ParameterError(f"{type(owner).__name__}: {name} is {value!r}; it must be a finite number above 0")
+
+
+def require_not_below_zero(owner: object, **parameters: float) -> None:
+    """Refuse a parameter that is not a finite number of at least 0."""
+    for name, value in parameters.items():
+        if not (math.isfinite(value) and value >= 0):
+            raise ParameterError(f"{type(owner).__name__}: {name} is {value!r}; it must be a finite number, 0 or above")
+
+
+def require_finite(owner: object, **parameters: float) -> None:
+    """Refuse a parameter that is no finite number."""
+    for name, value in parameters.items():
+        if not math.isfinite(value):
+            raise ParameterError(f"{type(owner).__name__}: {name} is {value!r}; it must be a finite number")
+
+
+def edge_angles(edge_angle: npt.ArrayLike) -> FloatArray:
+    """The edge angles as an array, refused unless all are in 0 ≤ ϑ ≤ π/2 rad."""
+    angle = np.asarray(edge_angle, float)
+    # to one part in 10⁹: 90° through a unit conversion is a right angle
+    wrong = ~((angle >= 0.0) & (angle <= RIGHT_ANGLE * (1.0 + 1e-9)))
+    if np.any(wrong):
+        first = float(angle[wrong].flat[0])
+        raise ParameterError(
+            f"edge angle is {first!r} rad; it must be between 0 and π/2 rad (0° and 90°): an angle in degrees must be "
+            "converted with math.radians"
+        )
+    return angle

@@ -1,0 +1,45 @@
+"""Snow pressed by a tool (`PenetrationLaw`) or at one place (`PointLaw`), with the list of the rivals of each."""
+
+from typing import Final
+
+from .area import AreaLaw
+from .bilinear import BilinearLaw
+from .depth import DepthLaw
+from .elastic_point import ElasticPoint
+from .element_count import ElementCountLaw
+from .hypoplastic_point import HypoplasticPoint
+from .law import PenetrationLaw
+from .mean_pressure import MeanPressureLaw
+from .point_law import PointLaw
+from .volume import VolumeLaw
+from .volume_with_angle import VolumeWithAngleLaw
+
+LAWS: Final[tuple[type[PenetrationLaw], ...]] = (
+    VolumeLaw,
+    VolumeWithAngleLaw,
+    BilinearLaw,
+    DepthLaw,
+    AreaLaw,
+    MeanPressureLaw,
+    ElementCountLaw,
+)
+"""Every law for the force of a tool: one set of tests runs over all of them."""
+
+POINT_LAWS: Final[tuple[type[PointLaw], ...]] = (ElasticPoint, HypoplasticPoint)
+"""Every law for one place on the snow."""
+
+__all__ = [
+    "LAWS",
+    "POINT_LAWS",
+    "AreaLaw",
+    "BilinearLaw",
+    "DepthLaw",
+    "ElasticPoint",
+    "ElementCountLaw",
+    "HypoplasticPoint",
+    "MeanPressureLaw",
+    "PenetrationLaw",
+    "PointLaw",
+    "VolumeLaw",
+    "VolumeWithAngleLaw",
+]

@@ -1,0 +1,47 @@
+"""What every law for one place on the snow looks like."""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class PointLaw(abc.ABC):
+    """Stress along the snow normal at one place on the snow, from its depth now and its greatest depth so far.
+
+    The place keeps one number, the deepest depth ε_max (m, ≥ 0; 0 for untouched snow). It belongs to the snow and not
+    to the ski: what comes behind meets the groove that came before. Along any path the work done on the place is
+    ``stored_energy`` plus ``lost_energy``, exactly.
+    """
+
+    __slots__ = ()
+
+    @property
+    def exceptions(self) -> Mapping[str, str]:
+        """Shared checks of physics that this law fails, each with the reason."""
+        return {}
+
+    def deepest_after(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """The deepest depth (m) of a place at ε_max that is brought to depth ε, both in m."""
+        return np.maximum(np.maximum(np.asarray(depth, float), np.asarray(deepest, float)), 0.0)
+
+    @abc.abstractmethod
+    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """Stress p (N/m², ≥ 0) at depth ε (m) of a place that has been at ε_max (m) before; the shapes broadcast."""
+
+    @abc.abstractmethod
+    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
+        """Depth ε_res (m) of the groove that is left when the place is unloaded."""
+
+    @abc.abstractmethod
+    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """Energy per area (J/m²) that comes back when the place is unloaded from depth ε."""
+
+    @abc.abstractmethod
+    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
+        """Energy per area (J/m²) that the groove of depth ε_max has cost for good."""

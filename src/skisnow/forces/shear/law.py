@@ -1,0 +1,81 @@
+"""What every law for the force at which snow fails sideways looks like."""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Mapping
+from typing import ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from ...snow import MeasuredRange
+from ..parameter_checks import edge_angles
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class ShearLaw(abc.ABC):
+    """Force along the snow surface, across the edge, at which snow gives way.
+
+    A rival law is one frozen dataclass in a file of its own, entered in ``LAWS``; it gives ``_stress`` and, where it
+    fails one of the shared checks of physics, says so in ``exceptions``. The force acts against the side on which the
+    edge presses; it is the same to both sides (Choice).
+    """
+
+    __slots__ = ()
+    edge_depth_range: ClassVar[MeasuredRange | None] = None
+    edge_angle_range: ClassVar[MeasuredRange | None] = None
+    """What was measured, where it is known; outside, `RangeWarning`."""
+
+    @property
+    def exceptions(self) -> Mapping[str, str]:
+        """Shared checks of physics that this law fails, each with the reason."""
+        return {}
+
+    def failure_stress(self, edge_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
+        """Tangential force per length and depth of the edge, F_t/(L e) (N/m²).
+
+        Parameters
+        ----------
+        edge_depth
+            e (m), any shape; below 0 the edge is above the snow.
+        edge_angle
+            ϑ (rad), 0 ≤ ϑ ≤ π/2, any shape that broadcasts with the depth.
+
+        Raises
+        ------
+        ParameterError
+            An edge angle is outside 0 to π/2.
+
+        Warns
+        -----
+        RangeWarning
+            A depth or an edge angle is outside the law's measured range.
+        """
+        return self._checked_stress(edge_depth, edge_angle)
+
+    def failure_force(
+        self, edge_depth: npt.ArrayLike, edge_length: npt.ArrayLike, edge_angle: npt.ArrayLike
+    ) -> FloatArray:
+        """Tangential force F_t (N, ≥ 0) at which the snow fails along a length L (m) of edge at depth e (m)."""
+        depth = np.maximum(np.asarray(edge_depth, float), 0.0)
+        return self._checked_stress(edge_depth, edge_angle) * depth * np.asarray(edge_length, float)
+
+    def thrust_force(
+        self, edge_depth: npt.ArrayLike, edge_length: npt.ArrayLike, edge_angle: npt.ArrayLike
+    ) -> FloatArray:
+        """Force (N) along the snow normal that comes with the tangential one, pushing the edge out; 0 if none does."""
+        return np.zeros(np.broadcast_shapes(*map(np.shape, (edge_depth, edge_length, edge_angle))))
+
+    def _checked_stress(self, edge_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
+        angle = edge_angles(edge_angle)
+        depth, angle = np.broadcast_arrays(np.maximum(np.asarray(edge_depth, float), 0.0), angle)
+        for measured, value in ((self.edge_depth_range, depth), (self.edge_angle_range, angle)):
+            if measured is not None:
+                measured.warn_outside(value, type(self).__name__, stacklevel=3)
+        return self._stress(depth, angle)
+
+    @abc.abstractmethod
+    def _stress(self, depth: FloatArray, angle: FloatArray) -> FloatArray:
+        """F_t/(L e) (N/m²) for depths of at least 0 and angles of the same shape."""

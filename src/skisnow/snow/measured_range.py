@@ -1,0 +1,74 @@
+"""The range in which a relation was measured, and the warning outside it.
+
+Outside its range a relation is computed and the reader is warned; nothing is clipped.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import RangeWarning
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredRange:
+    """Ends of what was measured of one quantity, with its source.
+
+    Attributes
+    ----------
+    quantity
+        The quantity in words.
+    lowest, highest
+        Ends of the range, in SI.
+    unit, unit_factor
+        The unit that the warning prints, and its size in SI.
+    source
+        Who measured it.
+    """
+
+    quantity: str
+    lowest: float
+    highest: float
+    unit: str
+    unit_factor: float
+    source: str
+
+    def warn_outside(self, value: npt.ArrayLike, relation: str, *, stacklevel: int = 2) -> None:
+        """Issue one `RangeWarning` if any of the values (SI) lies outside; NaN does not count as outside.
+
+        Parameters
+        ----------
+        value
+            What is asked of the relation, scalar or array.
+        relation
+            The relation's name, for the message.
+        stacklevel
+            As for `warnings.warn`, counted from the caller of this method.
+
+        Examples
+        --------
+        >>> import warnings
+        >>> angles = MeasuredRange("edge angle", 0.0, 1.0, "rad", 1.0, "a test")
+        >>> with warnings.catch_warnings(record=True) as caught:
+        ...     warnings.simplefilter("always")
+        ...     angles.warn_outside([0.5, 1.25], "a law")
+        >>> print(caught[0].message)
+        a law: edge angle 1.25 rad is outside the 0 to 1 rad that were measured (a test); computed all the same
+        """
+        values = np.asarray(value, float)
+        outside = values[(values < self.lowest) | (values > self.highest)]
+        if outside.size == 0:
+            return
+        # the value that lies farthest out speaks for an array
+        farthest = outside[np.argmax(np.maximum(self.lowest - outside, outside - self.highest))]
+        shown = [f"{end / self.unit_factor:.4g}" for end in (float(farthest), self.lowest, self.highest)]
+        warnings.warn(
+            f"{relation}: {self.quantity} {shown[0]} {self.unit} is outside the {shown[1]} to {shown[2]} {self.unit} "
+            f"that were measured ({self.source}); computed all the same",
+            RangeWarning,
+            stacklevel=stacklevel + 1,
+        )

@@ -1,0 +1,49 @@
+"""Snows that publications name, by the name a user gives."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+
+from ..errors import ParameterError
+from .properties import SnowProperties
+from .published import federolf_2006, moessner_2013
+
+
+def published_names() -> tuple[str, ...]:
+    """Names that `published_snow` knows, publication by publication.
+
+    >>> published_names()
+    ('race-piste', 'recreational-piste', 'spring-snow', 'fresh-snow', 'glacier')
+    """
+    return tuple(_by_name())
+
+
+def published_snow(name: str) -> SnowProperties:
+    """H_V and S_f of a snow that a publication names, with the publication as source.
+
+    Parameters
+    ----------
+    name
+        One of `published_names`.
+
+    Raises
+    ------
+    ParameterError
+        No such name; the message gives the nearest one and all.
+
+    Examples
+    --------
+    >>> snow = published_snow("race-piste")
+    >>> round(snow.snow_hardness / 1e9, 2), round(snow.failure_shear_stress / 1e6, 2)  # N/mm³ and N/mm²
+    (0.21, 0.52)
+    """
+    known = _by_name()
+    if name not in known:
+        near = get_close_matches(str(name).strip().lower().replace("_", "-").replace(" ", "-"), known, n=1, cutoff=0.4)
+        meant = f"; did you mean {near[0]!r}?" if near else "."
+        raise ParameterError(f"no published snow is named {name!r}{meant} There are {', '.join(known)}")
+    return known[name]
+
+
+def _by_name() -> dict[str, SnowProperties]:
+    return {**federolf_2006.named_snows(), **moessner_2013.named_snows()}
