@@ -1,0 +1,324 @@
+"""A ski in snow under a load: flat or edged, at rest or carving steadily.
+
+The ski is held at the boot with a given edge angle. A load along the snow normal presses it, and in a balanced turn the snow's
+side force is load × tan ϑ, so that the whole reaction is normal to the base under the boot. The edge is held: whether
+the snow can hold it is a result (`Equilibrium.holds`), not part of the balance.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from ..ski.beam.clamped import ClampedSki, clamped
+from ..ski.ski import Ski
+from ..snow.properties import SnowProperties
+from .equilibrium.assembly import Conditions
+from .equilibrium.edge_line import EdgeLine
+from .equilibrium.solve import RIGID_PLASTIC, Solution, solved
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_converged"]
+GrooveForm: TypeAlias = Literal["edge", "path"]
+
+CLAMP_LENGTH: Final = 0.30
+"""Length of ski that boot and binding keep straight (m). Choice; limits are tested with 0."""
+ELEMENTS: Final = 160
+"""Elements over the whole ski: 1 cm each, half of 1/λ on the hardest snow (Choice: see the convergence tests)."""
+SINKING_DEPTH: Final = 0.30
+"""Edge depth (m) beyond which a ski counts as swallowed: no balance above it (Choice)."""
+GREATEST_EDGE_ANGLE: Final = math.radians(85.0)
+LARGE_SLOPE: Final = 0.35
+"""Slope of the bent ski, and twist (rad), beyond which small-deflection beams no longer hold (Choice: 6 % in the cosine)."""
+_MOST_PATHS: Final = 40
+_PATH_TOLERANCE: Final = 1e-6  # relative change of the radius
+
+REMEDIES: Final[dict[Outcome, str]] = {
+    "equilibrium": "",
+    "slips": "the snow cannot hold the side force: less edge angle or load, or a stronger snow; the numbers are those of an edge "
+    "held by something else",
+    "sinks": f"no balance above {SINKING_DEPTH * 1e2:.0f} cm: the snow is too soft for this load",
+    "bridges": "the ski stands on separate pieces, or not under the boot: more load or a softer ski would close the gap",
+    "not_converged": "no equilibrium was found: try a smaller unloading ratio, more elements or a lower edge angle",
+}
+"""What to do about an outcome, in words."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Equilibrium:
+    """A ski in equilibrium with the snow. SI, radians; None where a number does not exist.
+
+    Attributes
+    ----------
+    outcome
+        "equilibrium"; "slips": the side force is beyond the shear strength, all numbers are those of the held edge;
+        "bridges": the contact is not one piece or misses the boot; "sinks" and "not_converged" have no numbers.
+        Where several apply: not_converged, sinks, slips, bridges, equilibrium.
+    remedy
+        What to do about it, in words.
+    side_force, side_force_limit
+        Load × tan ϑ, and S_f ∫ e ds over the edge that is below the surface (N).
+    holds
+        Whether the limit is not exceeded.
+    turn_radius_boot
+        Radius of the circle through the edge line at the boot and 0.4 m before and behind it (m).
+    turn_radius_chord
+        Radius of the circle through the edge line at the boot and at both ends of the contact (m).
+    contact_length
+        Between the first and the last place that bears (m).
+    afterbody_depth_ratio
+        Mean edge depth of the contact behind the boot over that before it.
+    station
+        Places along the ski, from the boot, positive forward, tip to tail (m), shape (n,), as all that follow.
+    edge_depth
+        Of the edge below the undisturbed surface (m); negative: above it.
+    force_per_length
+        Of the snow, along the snow normal (N/m).
+    bending
+        Deflection of the base against the ski held straight at the boot, away from the snow (m).
+    twist
+        Growth of the edge angle against that at the boot (rad).
+    edge_line
+        Position of the edge in the snow surface, towards the inside of the turn (m).
+    residual_force, residual_moment
+        What the snow's force and its moment about the boot differ by from load and moment (N, N m).
+    warnings
+        Where the answer is outside what the model can say, in words.
+    iterations
+        Of Newton's method.
+    """
+
+    outcome: Outcome
+    remedy: str
+    holds: bool | None
+    side_force: float | None
+    side_force_limit: float | None
+    turn_radius_boot: float | None
+    turn_radius_chord: float | None
+    contact_length: float | None
+    afterbody_depth_ratio: float | None
+    station: FloatArray
+    edge_depth: FloatArray | None
+    force_per_length: FloatArray | None
+    bending: FloatArray | None
+    twist: FloatArray | None
+    edge_line: FloatArray | None
+    residual_force: float | None
+    residual_moment: float | None
+    warnings: tuple[str, ...]
+    iterations: int
+
+
+def carve(
+    ski: Ski,
+    snow: SnowProperties,
+    *,
+    edge_angle: float,
+    load: float,
+    unloading_ratio: float,
+    moment: float = 0.0,
+    clamp_length: float = CLAMP_LENGTH,
+    side_force_bends: bool = True,
+    groove: GrooveForm = "edge",
+    twists: bool = True,
+    elements: int = ELEMENTS,
+) -> Equilibrium:
+    """Equilibrium of a ski that carves steadily: every place on the snow meets its stations from tip to tail.
+
+    Parameters
+    ----------
+    ski, snow
+        The ski, and the snow with H_V and S_f.
+    edge_angle
+        ϑ of the base under the boot to the snow surface (rad), 0 to 85°.
+    load
+        Force on this ski along the snow normal, at the boot (N), > 0.
+    unloading_ratio
+        k_u/H_V ≥ 1: 1 is elastic snow, `math.inf` rigid-plastic snow (computed as 1000).
+    moment
+        About the horizontal cross axis at the boot, positive where it presses the tip down (N m).
+    clamp_length
+        Length of ski kept straight by boot and binding (m).
+    side_force_bends
+        Whether the side force, too, bends and twists the ski (it does: the part sin ϑ of it is normal to the base).
+    groove
+        "edge": the groove of the forebody lies under the edge of the afterbody. "path": it lies on the circle through the
+        edge line at the boot and 0.4 m before and behind, and the afterbody's edge beside it by what its edge line differs.
+    twists
+        Whether the ski twists (GJ) or keeps its edge angle everywhere.
+    elements
+        Of the whole ski.
+
+    Raises
+    ------
+    ParameterError
+        An argument is outside its range, or the snow has no S_f.
+
+    Notes
+    -----
+    The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight is left
+    out. The side force draws the same share of the shear strength everywhere along the edge (Choice): τ e per length.
+    """
+    _require(edge_angle, load, unloading_ratio, moment)
+    if snow.failure_shear_stress is None:
+        raise ParameterError(
+            f"the snow ({snow.source}) has no failure shear stress S_f; a carved turn needs it: give one"
+        )
+    model = clamped(ski, clamp_length, elements)
+    conditions = _conditions(
+        ski, snow, edge_angle, load, moment, min(unloading_ratio, RIGID_PLASTIC), side_force_bends, twists
+    )
+    if groove == "edge":
+        return _described(model, conditions, snow, solved(model, conditions))
+    if groove == "path":
+        return _described(model, conditions, snow, _following_path(model, conditions))
+    raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
+
+
+def rest(
+    ski: Ski,
+    snow: SnowProperties,
+    *,
+    edge_angle: float,
+    load: float,
+    moment: float = 0.0,
+    clamp_length: float = CLAMP_LENGTH,
+    twists: bool = True,
+    elements: int = ELEMENTS,
+) -> Equilibrium:
+    """Equilibrium of a ski set down on snow: virgin snow everywhere, no side force. Arguments as in `carve`."""
+    _require(edge_angle, load, 1.0, moment)
+    model = clamped(ski, clamp_length, elements)
+    conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twists)._replace(side_force=0.0)
+    return _described(model, conditions, snow, solved(model, conditions))
+
+
+def _require(edge_angle: float, load: float, unloading_ratio: float, moment: float) -> None:
+    if not 0.0 <= edge_angle <= GREATEST_EDGE_ANGLE:
+        raise ParameterError(
+            f"edge_angle is {edge_angle} rad; it must be from 0 to {GREATEST_EDGE_ANGLE:.3f} rad (85 degrees)"
+        )
+    if not (math.isfinite(load) and load > 0.0):
+        raise ParameterError(f"load is {load} N; it must be a finite force above 0")
+    if not unloading_ratio >= 1.0:
+        raise ParameterError(f"unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more")
+    if not math.isfinite(moment):
+        raise ParameterError(f"moment is {moment} N m; it must be finite")
+
+
+def _conditions(
+    ski: Ski,
+    snow: SnowProperties,
+    edge_angle: float,
+    load: float,
+    moment: float,
+    unloading_ratio: float,
+    side_force_bends: bool,
+    twists: bool,
+) -> Conditions:
+    return Conditions(
+        edge_angle=edge_angle,
+        hardness=snow.snow_hardness,
+        excess=snow.snow_hardness * (unloading_ratio - 1.0),
+        load=load,
+        moment=moment,
+        side_force=load * math.tan(edge_angle),
+        groove_follows_path=0.0,
+        side_force_bends=float(side_force_bends),
+        twists=float(twists and edge_angle > 0.0),
+        bevel=ski.base_bevel,
+        bevel_width=ski.edge_width,
+    )
+
+
+def _following_path(model: ClampedSki, conditions: Conditions) -> Solution:
+    """Repeat with the edge's offset from the path until path and edge line agree."""
+    solution = solved(model, conditions)
+    path = conditions._replace(groove_follows_path=1.0)
+    offset = np.zeros(len(model.stations.station))
+    before = math.inf
+    for _ in range(_MOST_PATHS):
+        if not solution.converged:
+            return solution
+        line = EdgeLine(model, conditions.edge_angle, solution)
+        radius = line.radius_at_boot()
+        if radius is None or abs(radius - before) <= _PATH_TOLERANCE * abs(radius):
+            return solution
+        before = radius
+        offset = 0.5 * (offset + line.offset_from_circle())
+        solution = solved(model, path, offset=offset)
+    return Solution(False, *(getattr(solution, name) for name in Solution.__slots__[1:]))
+
+
+def _described(model: ClampedSki, conditions: Conditions, snow: SnowProperties, solution: Solution) -> Equilibrium:
+    station = model.stations.station
+    sinks = solution.converged and float(np.max(solution.edge_depth)) > SINKING_DEPTH
+    if not solution.converged or sinks:
+        outcome: Outcome = "sinks" if sinks else "not_converged"
+        nothing = (None,) * 7
+        return Equilibrium(outcome, REMEDIES[outcome], *nothing, station, *(None,) * 7, (), solution.iterations)
+    line = EdgeLine(model, conditions.edge_angle, solution)
+    weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
+    loaded = force > 0.0
+    limit = (
+        None
+        if snow.failure_shear_stress is None
+        else snow.failure_shear_stress * float(weight @ np.maximum(depth, 0.0))
+    )
+    holds = True if conditions.side_force == 0.0 else limit is not None and conditions.side_force <= limit
+    outcome = "slips" if not holds else "bridges" if _bridges(station, loaded) else "equilibrium"
+    ends = line.contact_ends(depth, loaded)
+    return Equilibrium(
+        outcome=outcome,
+        remedy=REMEDIES[outcome],
+        holds=holds,
+        side_force=conditions.side_force,
+        side_force_limit=limit,
+        turn_radius_boot=line.radius_at_boot(),
+        turn_radius_chord=line.radius_over(*ends),
+        contact_length=ends[0] - ends[1],
+        afterbody_depth_ratio=_depth_ratio(station, weight, depth, loaded),
+        station=station,
+        edge_depth=depth,
+        force_per_length=force,
+        bending=line.deflection,
+        twist=line.twist,
+        edge_line=line.position,
+        residual_force=float(weight @ force) - conditions.load,
+        residual_moment=float(weight @ (force * station)) - conditions.moment,
+        warnings=_warnings(line),
+        iterations=solution.iterations,
+    )
+
+
+def _bridges(station: FloatArray, loaded: npt.NDArray[np.bool_]) -> bool:
+    pieces = int(loaded[0]) + int(np.count_nonzero(np.diff(loaded.astype(int)) == 1))
+    bearing = station[loaded]
+    return pieces != 1 or not bearing[-1] <= 0.0 <= bearing[0]
+
+
+def _depth_ratio(
+    station: FloatArray, weight: FloatArray, depth: FloatArray, loaded: npt.NDArray[np.bool_]
+) -> float | None:
+    before, behind = loaded & (station > 0.0), loaded & (station < 0.0)
+    if not (before.any() and behind.any()):
+        return None
+    mean_before, mean_behind = (float(weight[part] @ depth[part] / weight[part].sum()) for part in (before, behind))
+    return mean_behind / mean_before if mean_before > 0.0 else None
+
+
+def _warnings(line: EdgeLine) -> tuple[str, ...]:
+    found = []
+    slope, twist = line.greatest_slope(), float(np.max(np.abs(line.twist)))
+    if slope > LARGE_SLOPE:
+        found.append(
+            f"the ski bends to a slope of {slope:.2f}: beyond {LARGE_SLOPE} beams of small deflection are inexact"
+        )
+    if twist > LARGE_SLOPE:
+        found.append(f"the ski twists by {math.degrees(twist):.0f} degrees: more than a linear torsion bar can tell")
+    return tuple(found)

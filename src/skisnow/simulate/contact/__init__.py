@@ -1,0 +1,1 @@
+"""Snow against the base of a ski."""

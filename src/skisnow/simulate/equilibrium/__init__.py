@@ -1,0 +1,1 @@
+"""A flexible ski at rest in snow, or carving steadily: the discrete equations and their solution."""

@@ -1,0 +1,195 @@
+"""Equilibrium of a clamped ski in snow: starting shape, elastic snow first, then the snow's memory by continuation."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ...ski.beam.clamped import ClampedSki
+from ...ski.ski import Ski
+from .assembly import BORDER, Conditions, Sections, System, new_system
+from .newton import newton
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+TOLERANCE: Final = 1e-11
+"""Size (m) of the last correction to the edge depth."""
+RIGID_PLASTIC: Final = 1000.0
+"""Unloading ratio that stands for rigid-plastic snow: the groove springs back by a thousandth of its depth."""
+MOST_ITERATIONS: Final = 60
+MOST_STAGES: Final = 40
+_SHALLOWEST_WEDGE: Final = 0.01  # rad; flatter than this the first guess treats the base as flat
+_CONFORMING_SHARE: Final = 0.9  # of the running length that the first guess bends onto the snow
+_CONTACT_SHARE: Final = 0.9  # of the running length that the first guess loads evenly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solution:
+    """State of the ski in equilibrium, all in SI.
+
+    Attributes
+    ----------
+    converged, iterations
+        Whether Newton's method came to an end, and its iterations in all.
+    u
+        Unknowns of the beam, relative to the boot.
+    boot_depth, boot_slope
+        b₀ (m) and b₁: depth of the base's middle under the boot, and its growth along the ski.
+    shear_stress
+        τ, drawn from the snow along the edge (N/m²).
+    edge_depth, force_per_length
+        At the stations: e (m), and the snow's force per length along the snow normal (N/m).
+    """
+
+    converged: bool
+    iterations: int
+    u: FloatArray
+    boot_depth: float
+    boot_slope: float
+    shear_stress: float
+    edge_depth: FloatArray
+    force_per_length: FloatArray
+
+
+def solved(model: ClampedSki, conditions: Conditions, *, offset: FloatArray | None = None) -> Solution:
+    """Find the equilibrium of a ski under the conditions.
+
+    Parameters
+    ----------
+    model
+        The clamped ski.
+    conditions
+        Snow, load and choices.
+    offset
+        Of the edge from the path at each station (m), where the groove follows the path; None: 0.
+    """
+    stations = model.stations
+    n = len(stations.station)
+    u, border = _first_guess(model, conditions)
+    system, spare = new_system(model.size, n), new_system(model.size, n)
+
+    def sections(place: FloatArray) -> Sections:
+        return Sections(
+            stations.station, stations.weight, stations.width, stations.base_height, stations.dof,
+            stations.deflection, stations.twist, place, np.zeros(n) if offset is None else offset,
+        )  # fmt: skip
+
+    def attempt(at: Sections, case: Conditions) -> tuple[bool, int]:
+        return newton(at, case, model.stiffness, u, border, system, spare, TOLERANCE, MOST_ITERATIONS)
+
+    elastic = conditions._replace(excess=0.0)
+    whole = _places_across(model, elastic, np.zeros(1))
+    converged, iterations = attempt(sections(whole), elastic)
+    if not converged:
+        converged, more = _from_softer_snow(sections(whole), elastic, model, u, border, system, spare)
+        iterations += more
+    if converged and conditions.excess > 0.0:
+        place = _places_across(model, conditions, system.depth)
+        converged, more = _with_memory(sections(place), conditions, model, u, border, system, spare)
+        iterations += more
+    return Solution(converged, iterations, u, *(float(b) for b in border), system.depth, system.force)
+
+
+def _from_softer_snow(
+    sections: Sections,
+    conditions: Conditions,
+    model: ClampedSki,
+    u: FloatArray,
+    border: FloatArray,
+    system: System,
+    spare: System,
+) -> tuple[bool, int]:
+    """Harden the snow step by step from a thousandth of its hardness."""
+    u[:], border[:] = _first_guess(model, conditions._replace(hardness=conditions.hardness / 1000.0))
+    converged, iterations = False, 0
+    for share in np.logspace(-3.0, 0.0, 10):
+        case = conditions._replace(hardness=float(share) * conditions.hardness)
+        converged, more = newton(sections, case, model.stiffness, u, border, system, spare, TOLERANCE, MOST_ITERATIONS)
+        iterations += more
+    return converged, iterations
+
+
+def _with_memory(
+    sections: Sections,
+    conditions: Conditions,
+    model: ClampedSki,
+    u: FloatArray,
+    border: FloatArray,
+    system: System,
+    spare: System,
+) -> tuple[bool, int]:
+    """Steepen the unloading from the elastic state to what was asked, at once or in steps of its logarithm."""
+    goal = math.log1p(conditions.excess / conditions.hardness)
+    reached, stride, iterations = 0.0, goal, 0
+    for _ in range(MOST_STAGES):
+        target = min(reached + stride, goal)
+        case = conditions._replace(excess=conditions.hardness * math.expm1(target))
+        kept_u, kept_border = u.copy(), border.copy()
+        converged, more = newton(sections, case, model.stiffness, u, border, system, spare, TOLERANCE, MOST_ITERATIONS)
+        iterations += more
+        if converged:
+            reached, stride = target, 2.0 * stride
+            if reached == goal:
+                return True, iterations
+        else:
+            u[:], border[:] = kept_u, kept_border
+            stride /= 3.0
+    return False, iterations
+
+
+def _first_guess(model: ClampedSki, conditions: Conditions) -> tuple[FloatArray, FloatArray]:
+    """A ski bent so that its edge is straight in the snow, as deep as a rigid one of that contact length would be."""
+    ski, angle = model.ski, conditions.edge_angle
+    length = _CONTACT_SHARE * ski.running_length
+    waist = float(ski.at(0.0).width)
+    wedge = math.sqrt(2.0 * conditions.load * math.tan(max(angle, _SHALLOWEST_WEDGE)) / (conditions.hardness * length))
+    flat = conditions.load / (conditions.hardness * length * waist * math.cos(angle)) + waist / 2.0 * math.sin(angle)
+    depth = min(wedge, flat)
+    border = np.zeros(BORDER)
+    border[0] = depth - waist / 2.0 * math.sin(angle)
+    border[2] = conditions.side_force / (depth * length)
+    return _conforming(model, angle), border
+
+
+def _conforming(model: ClampedSki, angle: float) -> FloatArray:
+    """Unknowns of a ski bent onto the snow over most of its running length, and straight beyond."""
+    ski, node = model.ski, model.node
+    dof = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
+    front, rear = (_CONFORMING_SHARE * end for end in _ends(ski))
+    inside = np.clip(node, rear, front)
+    near = 1e-4
+
+    def lift(station: FloatArray) -> FloatArray:
+        at = ski.at(station)
+        return math.tan(angle) * at.width / 2.0 - at.base_height
+
+    slope = (lift(inside + near) - lift(inside - near)) / (2.0 * near)
+    deflection = lift(inside) - lift(np.zeros(1)) + slope * (node - inside)
+    u = np.zeros(model.size)
+    free = dof[:, 0] >= 0
+    u[dof[free, 0]] = deflection[free]
+    u[dof[free, 1]] = -slope[free]  # the elements run from tip to tail
+    return u
+
+
+def _ends(ski: Ski) -> tuple[float, float]:
+    front, rear = ski.contact_points
+    return min(front, float(ski.station[0])), max(rear, float(ski.station[-1]))
+
+
+def _places_across(model: ClampedSki, conditions: Conditions, edge_depth: FloatArray) -> FloatArray:
+    """Places across the ski at which the groove is kept: about the waterline, and at the bevel's and the base's ends."""
+    tangent = math.tan(max(conditions.edge_angle, 1e-9))
+    reach = float(model.stations.width.max()) * math.cos(conditions.edge_angle)
+    waterline = max(float(np.max(edge_depth)), 0.0) / tangent
+    if waterline > 0.6 * reach:
+        place = np.linspace(0.0, 1.05 * reach, 5)
+    else:
+        place = np.append(np.array([0.0, 0.5, 1.0, 1.7]) * waterline, 1.05 * reach)
+    if conditions.bevel > 0.0:
+        place = np.append(place, conditions.bevel_width * math.cos(conditions.edge_angle))
+    return np.unique(place)

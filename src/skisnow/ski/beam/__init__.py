@@ -1,0 +1,1 @@
+"""Finite elements of a flexible ski: bending, torsion, and the banded systems they make."""
