@@ -1,5 +1,23 @@
 """Skis: their shape, stiffness and mass, their files and a catalogue. Knows no snow."""
 
+from .assembling import arc_ski
+from .base_profile import BaseShape
+from .layout import Layout, layout_of_lengths
+from .monkeycam import read_monkeycam
+from .reading import read_ski, ski_named, ski_names
 from .ski import Ski, SkiSections
+from .writing import write_ski
 
-__all__ = ["Ski", "SkiSections"]
+__all__ = [
+    "BaseShape",
+    "Layout",
+    "Ski",
+    "SkiSections",
+    "arc_ski",
+    "layout_of_lengths",
+    "read_monkeycam",
+    "read_ski",
+    "ski_named",
+    "ski_names",
+    "write_ski",
+]

@@ -34,6 +34,8 @@ def require_sound(ski: Ski) -> None:
     ParameterError
         The first rule broken.
     """
+    if not (isinstance(ski.name, str) and ski.name.strip()):
+        _refuse(ski, "its name is blank", "Give it one")
     _require_tables(ski)
     _require_stations(ski)
     _require_positive_tables(ski)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import eig
 
 from .checks import STRAIGHT
 
@@ -44,6 +43,8 @@ def radius_of_least_squares_circle(along: FloatArray, across: FloatArray) -> flo
 
 
 def _pratt_curvature(x: FloatArray, y: FloatArray) -> float:
+    from scipy.linalg import eig  # slow to load, and asked for with a ski at hand only
+
     points = np.column_stack([x**2 + y**2, x, y, np.ones_like(x)])
     constraint = np.array([[0.0, 0, 0, -2], [0, 1, 0, 0], [0, 0, 1, 0], [-2, 0, 0, 0]])
     residuals, circles = eig(np.linalg.solve(constraint, points.T @ points / len(x)))

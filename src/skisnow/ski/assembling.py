@@ -1,0 +1,172 @@
+"""A `Ski` from what is known about it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .base_profile import BaseShape
+from .checks import GREATEST_SPACING
+from .outline import ArcOutline
+from .ski import Ski
+from .station_table import StationTable, evenly_spread
+
+if TYPE_CHECKING:
+    from .layout import Layout
+
+FloatArray = npt.NDArray[np.float64]
+Along: TypeAlias = Callable[[FloatArray], FloatArray]
+
+_SAME_PLACE = 1e-9  # m
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SkiParts:
+    """What is known of a ski along its stations, each as a function of station (m) in SI.
+
+    Attributes
+    ----------
+    name, source, layout, base_bevel, edge_width
+        As in `Ski` and `Layout`.
+    width, base_height, bending_stiffness, torsional_stiffness
+        As in `Ski`; the base may have any height at the boot.
+    mass_per_length
+        As in `Ski`; None: proportional to the width (Choice), with ``mass``.
+    mass
+        Of the ski (kg); looked at only without ``mass_per_length``.
+    stations
+        Stations (m) that the ski shall have, tip to tail; those of layout and boot are added and gaps above 2.5 mm
+        divided evenly.
+    """
+
+    name: str
+    source: str
+    layout: Layout
+    width: Along
+    base_height: Along
+    bending_stiffness: Along
+    torsional_stiffness: Along
+    mass_per_length: Along | None = None
+    mass: float = 0.0
+    base_bevel: float = 0.0
+    edge_width: float = 0.002
+    stations: FloatArray | None = None
+
+    def assembled(self) -> Ski:
+        """Tabulate the parts densely.
+
+        Raises
+        ------
+        ParameterError
+            The result breaks a rule of `Ski`.
+        """
+        station = self._grid()
+        width = self.width(station)
+        mass_per_length = width if self.mass_per_length is None else self.mass_per_length(station)
+        if self.mass_per_length is None:
+            mass_per_length = width * (self.mass / -np.trapezoid(width, station))
+        return Ski(
+            name=self.name,
+            source=self.source,
+            station=station,
+            width=width,
+            base_height=self.base_height(station) - self.base_height(np.zeros(1)),
+            bending_stiffness=self.bending_stiffness(station),
+            torsional_stiffness=self.torsional_stiffness(station),
+            mass_per_length=mass_per_length,
+            running_length=self.layout.running_length,
+            sidecut_length=self.layout.sidecut_length,
+            base_bevel=self.base_bevel,
+            edge_width=self.edge_width,
+            sidecut_middle=self.layout.middle,
+        )
+
+    def _grid(self) -> FloatArray:
+        given = np.empty(0) if self.stations is None else self.stations
+        if given.size and np.max(-np.diff(given)) <= GREATEST_SPACING + _SAME_PLACE:
+            return given
+        layout = self.layout
+        own = [layout.tip, *layout.widest_points, *layout.contact_points, layout.middle, 0.0, layout.tail]
+        places = np.unique(np.clip([*own, *given], layout.tail, layout.tip))[::-1]
+        places = places[np.append(True, -np.diff(places) > _SAME_PLACE)]
+        counts = np.ceil(-np.diff(places) / GREATEST_SPACING - _SAME_PLACE).astype(int)
+        pieces = [
+            np.linspace(start, end, count, endpoint=False)
+            for start, end, count in zip(places[:-1], places[1:], counts, strict=True)
+        ]
+        return np.concatenate([*pieces, places[-1:]])
+
+
+def arc_ski(
+    layout: Layout,
+    *,
+    name: str,
+    source: str,
+    tip_width: float,
+    waist_width: float,
+    tail_width: float,
+    mass: float,
+    bending_stiffness: npt.ArrayLike,
+    torsional_stiffness: npt.ArrayLike,
+    stiffness_station: npt.ArrayLike | None = None,
+    base: BaseShape | None = None,
+    base_bevel: float = 0.0,
+    edge_width: float = 0.002,
+) -> Ski:
+    """Make a ski from three widths, a mass and a few stiffnesses, in SI.
+
+    Parameters
+    ----------
+    layout
+        Of its lengths, see `layout_of_lengths`.
+    tip_width, waist_width, tail_width
+        At the front end, the middle and the rear end of the sidecut length (m).
+    mass
+        Of the ski alone (kg); spread in proportion to the width (Choice).
+    bending_stiffness, torsional_stiffness
+        EI and GJ (N m²), tip to tail, one value or several.
+    stiffness_station
+        Stations of both (m, from the boot, falling); left out: evenly spaced over the running length (Choice). Between
+        them a shape-preserving cubic, beyond them the end values.
+    base
+        Camber, rocker and heights; left out: flat, with the usual shovel and tail.
+    base_bevel, edge_width
+        As in `Ski`.
+
+    Raises
+    ------
+    ParameterError
+        The parts do not fit together or break a rule of `Ski`.
+    """
+    shape = BaseShape() if base is None else base
+    outline = ArcOutline(layout=layout, tip_width=tip_width, waist_width=waist_width, tail_width=tail_width)
+    return SkiParts(
+        name=name,
+        source=source,
+        layout=layout,
+        width=outline.width_at,
+        base_height=lambda station: shape.height_at(station, layout),
+        bending_stiffness=stiffness_table(bending_stiffness, stiffness_station, layout).at,
+        torsional_stiffness=stiffness_table(torsional_stiffness, stiffness_station, layout).at,
+        mass=mass,
+        base_bevel=base_bevel,
+        edge_width=edge_width,
+    ).assembled()
+
+
+def stiffness_table(values: npt.ArrayLike, station: npt.ArrayLike | None, layout: Layout) -> StationTable:
+    """Table of a stiffness, at its stations (m) or evenly spaced over the running length, tip to tail.
+
+    Raises
+    ------
+    ParameterError
+        The stations do not fall or are not as many as the values.
+    """
+    if station is None:
+        return evenly_spread(values, *layout.contact_points)
+    listed = np.atleast_1d(np.asarray(values, dtype=float))
+    return StationTable(np.atleast_1d(np.asarray(station, dtype=float)), listed)

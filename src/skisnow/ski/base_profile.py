@@ -1,0 +1,125 @@
+"""The base of an unloaded ski seen from the side: camber, rocker, shovel and tail."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+
+if TYPE_CHECKING:
+    from .layout import Layout
+
+FloatArray = npt.NDArray[np.float64]
+
+SHOVEL_HEIGHT: Final = 0.050
+"""Height of the tip over the contact points (m). Choice: 50 mm, a usual alpine ski."""
+
+TAIL_HEIGHT: Final = 0.008
+"""Height of the tail over the contact points (m). Choice: 8 mm, a usual square tail."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BaseShape:
+    """Heights and lengths of the unloaded base (m); heights are over the line through the contact points.
+
+    Choices:
+
+    - Camber is the arch c (1 - ξ²)², ξ from -1 to 1 between the contact points: it meets them with slope 0, as the ski
+      lies on a table.
+    - The shovel rises quadratically from the front contact point to ``shovel_height`` at the tip, the tail likewise
+      behind. The slope is continuous along the whole base.
+    - Rocker draws a contact point in from the end of the running length, by ``…_rocker_length``; over that length the
+      base rises quadratically to ``…_rocker_height``, and the shovel or tail goes on from there without a kink.
+
+    A height left out where nothing is beyond the contact point counts as 0.
+    """
+
+    camber: float = 0.0
+    shovel_height: float | None = None
+    tail_height: float | None = None
+    tip_rocker_length: float = 0.0
+    tip_rocker_height: float = 0.0
+    tail_rocker_length: float = 0.0
+    tail_rocker_height: float = 0.0
+
+    def height_at(self, station: FloatArray, layout: Layout) -> FloatArray:
+        """Height (m) of the base at stations (m), 0 at the boot.
+
+        Raises
+        ------
+        ParameterError
+            Rockers overlap, or the shovel or tail would bend down after its rocker.
+
+        Examples
+        --------
+        >>> from .layout import layout_of_lengths
+        >>> layout = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458)
+        >>> contact, tip = BaseShape(camber=0.007).height_at(np.array([1.396 / 2, layout.tip]), layout)
+        >>> round(float(contact) * 1e3, 6), round(float(tip) * 1e3, 6)  # mm
+        (-7.0, 43.0)
+        """
+        heights = self._over_contact(np.append(station, 0.0), layout)
+        return heights[:-1] - heights[-1]
+
+    def _over_contact(self, station: FloatArray, layout: Layout) -> FloatArray:
+        front, rear = layout.contact_points
+        foremost, hindmost = front - self.tip_rocker_length, rear + self.tail_rocker_length
+        if foremost <= hindmost:
+            raise ParameterError(
+                f"the rockers, {self.tip_rocker_length * 1e3:.1f} and {self.tail_rocker_length * 1e3:.1f} mm long, "
+                f"leave nothing of the running length of {layout.running_length * 1e3:.1f} mm. Shorten them."
+            )
+        arch = (station - (foremost + hindmost) / 2.0) / ((foremost - hindmost) / 2.0)
+        shovel = _End("shovel", self.tip_rocker_length, self.tip_rocker_height, layout.tip - front, self.shovel_height)
+        tail = _End("tail", self.tail_rocker_length, self.tail_rocker_height, rear - layout.tail, self.tail_height)
+        heights: FloatArray = self.camber * np.maximum(1.0 - arch**2, 0.0) ** 2
+        heights += shovel.rise(np.maximum(station - foremost, 0.0))
+        heights += tail.rise(np.maximum(hindmost - station, 0.0))
+        return heights
+
+
+@dataclass(frozen=True, slots=True)
+class _End:
+    """The rise of the base outwards from a contact point (m)."""
+
+    name: str
+    rocker_length: float
+    rocker_height: float
+    length: float
+    given_height: float | None
+
+    def rise(self, distance: FloatArray) -> FloatArray:
+        if self.rocker_height > 0 and not self.rocker_length > 0:
+            raise ParameterError(
+                f"the rocker before the {self.name} has a height of {self.rocker_height * 1e3:.1f} mm but no length. "
+                "Give its length or leave the height out."
+            )
+        share = np.minimum(distance, self.rocker_length) / self.rocker_length if self.rocker_length > 0 else 0.0
+        beyond = np.maximum(distance - self.rocker_length, 0.0)
+        return np.asarray(self.rocker_height * share**2 + self._slope * beyond + self._bend() * beyond**2)
+
+    @property
+    def _slope(self) -> float:
+        return 2.0 * self.rocker_height / self.rocker_length if self.rocker_length > 0 else 0.0
+
+    def _bend(self) -> float:
+        if self.length <= 1e-9:
+            if self.given_height and abs(self.given_height - self.rocker_height) > 1e-9:
+                raise ParameterError(
+                    f"the {self.name} height is {self.given_height * 1e3:.1f} mm, but the running length ends where "
+                    f"the ski does. Give the {self.name} a length or leave its height out."
+                )
+            return 0.0
+        straight = self.rocker_height + self._slope * self.length
+        default = SHOVEL_HEIGHT if self.name == "shovel" else TAIL_HEIGHT
+        height = max(default, straight) if self.given_height is None else self.given_height
+        if height < straight - 1e-9:
+            raise ParameterError(
+                f"the {self.name} height is {height * 1e3:.1f} mm, but straight on from its rocker the base is already "
+                f"{straight * 1e3:.1f} mm high. Raise the {self.name} or flatten the rocker."
+            )
+        return (height - straight) / self.length**2

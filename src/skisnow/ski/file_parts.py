@@ -1,0 +1,163 @@
+"""The parts of a ski from the keys of its file and from its table; what both say is an error."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import ParameterError, RangeWarning
+from .assembling import SkiParts, stiffness_table
+from .base_profile import BaseShape
+from .file_keys import BASE, LIST_KEYS, RIGID, WIDTHS
+from .layout import TAIL_OVERHANG, Layout, layout_of_lengths
+from .monkeycam import monkeycam_shape
+from .outline import ArcOutline
+
+if TYPE_CHECKING:
+    from .assembling import Along
+    from .file_values import FileValues
+    from .ski import Ski
+    from .station_table import StationTable
+
+_LEAST_LENGTH_IN_WIDTHS = 2.5  # 159.3 instead of 1593 beside a width of 116 is caught, the 200 × 62 of a tool passes
+_LEAST_SHARE_OF_LENGTH = 0.3  # of running and sidecut length: a tenth is another unit, a half a ski with long rocker
+_SAME_LENGTH = 1e-3  # m
+_SAME_MASS = 0.01  # of the mass
+
+
+@dataclass(frozen=True, slots=True)
+class FileParts:
+    """A ski file, parsed.
+
+    Attributes
+    ----------
+    values
+        Its keys.
+    table
+        The columns of its table by name, empty without one.
+    """
+
+    values: FileValues
+    table: dict[str, StationTable]
+
+    def ski(self) -> Ski:
+        """Put the ski together."""
+        values = self.values
+        layout, width, name = self._shaped() if "shape" in values else self._laid_out()
+        bevel, edge = values.number("base_bevel_deg"), values.number("edge_width_mm")
+        mass_per_length = self.table.get("mass_per_length_kg_per_m")
+        ski = SkiParts(
+            name=values.text("name") or name,
+            source=values.text("source") or f"file {values.file.name}",
+            layout=layout,
+            width=width,
+            base_height=self._base_height(layout),
+            bending_stiffness=self._stiffness("EI_N_m2", layout),
+            torsional_stiffness=self._stiffness("GJ_N_m2", layout),
+            mass_per_length=mass_per_length.at if mass_per_length else None,
+            mass=0.0 if mass_per_length else values.needed("mass_kg"),
+            base_bevel=0.0 if bevel is None else bevel,
+            edge_width=0.002 if edge is None else edge,
+            stations=self.table["station_m"].station if self.table else None,
+        ).assembled()
+        self._require_mass(ski)
+        self._require_lengths(ski)
+        return ski
+
+    def _shaped(self) -> tuple[Layout, Along, str]:
+        values = self.values
+        said = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, "tail_overhang_mm", "boot_position_mm")
+        values.refuse_together(said, "shape", "Leave one of them out")
+        shape = monkeycam_shape(
+            values.file.parent / (values.text("shape") or ""), running_length=values.number("running_length_mm")
+        )
+        return shape.outline.layout, shape.outline.width_at, shape.name
+
+    def _laid_out(self) -> tuple[Layout, Along, str]:
+        values = self.values
+        layout = self._layout_of_table() if self.table else self._layout_of_keys()
+        if "width_mm" in self.table:
+            values.refuse_together(WIDTHS, "the column width_mm", "Leave one of them out")
+            return layout, self.table["width_mm"].at, values.file.stem
+        tip, waist, tail = (values.needed(key) for key in WIDTHS)
+        for key, width in (("tip_width_mm", tip), ("tail_width_mm", tail)):
+            if waist > width:
+                allowed = f"at most {key}, {width * 1e3:g}: the waist is the narrowest of the three"
+                values.refuse("waist_width_mm", values.values["waist_width_mm"], allowed, f"Correct it or {key}")
+        outline = ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail)
+        return layout, outline.width_at, values.file.stem
+
+    def _layout_of_keys(self) -> Layout:
+        values = self.values
+        overhang = values.number("tail_overhang_mm")
+        return layout_of_lengths(
+            length=values.needed("length_mm"),
+            running_length=values.needed("running_length_mm"),
+            sidecut_length=values.needed("sidecut_length_mm"),
+            tail_overhang=TAIL_OVERHANG if overhang is None else overhang,
+            boot_position=values.number("boot_position_mm") or 0.0,
+        )
+
+    def _layout_of_table(self) -> Layout:
+        values = self.values
+        values.refuse_together(["tail_overhang_mm"], "a table, which reaches from tip to tail", "Leave it out")
+        station = self.table["station_m"].station
+        length, reach = values.number("length_mm"), float(station[0] - station[-1])
+        if length is not None and abs(length - reach) > _SAME_LENGTH:
+            kind = "shorter" if reach < length else "longer"
+            what = (
+                f"its table reaches over {reach * 1e3:.1f} mm and is {kind} than the ski, length_mm {length * 1e3:.1f}"
+            )
+            raise ParameterError(f"{what}. Give the table from tip to tail, or correct length_mm.")
+        return Layout(
+            tip=float(station[0]),
+            tail=float(station[-1]),
+            middle=-(values.number("boot_position_mm") or 0.0),
+            running_length=values.needed("running_length_mm"),
+            sidecut_length=values.needed("sidecut_length_mm"),
+        )
+
+    def _base_height(self, layout: Layout) -> Along:
+        values = self.values
+        if "base_height_mm" in self.table:
+            values.refuse_together(BASE, "the column base_height_mm", "Leave one of them out")
+            return self.table["base_height_mm"].at
+        given = {key.removesuffix("_mm"): number for key in BASE if (number := values.number(key)) is not None}
+        shape = BaseShape(**given)
+        return lambda station: shape.height_at(station, layout)
+
+    def _stiffness(self, key: str, layout: Layout) -> Along:
+        values = self.values
+        if values.switch("rigid"):
+            values.refuse_together(LIST_KEYS, "rigid", "Leave one of them out")
+            if key in self.table:
+                raise ParameterError(f"the column {key} cannot stand beside rigid = true. Leave one of them out.")
+            return lambda station: np.full(np.shape(station), RIGID)
+        if key in self.table:
+            values.refuse_together([key], f"the column {key}", "Leave one of them out")
+            return self.table[key].at
+        stiffness = values.numbers(key)
+        station = values.numbers("stiffness_station_mm") if "stiffness_station_mm" in values else None
+        try:
+            return stiffness_table(stiffness, station, layout).at
+        except ParameterError as error:
+            raise ParameterError(f"{key} and stiffness_station_mm: {error}") from error
+
+    def _require_mass(self, ski: Ski) -> None:
+        mass = self.values.number("mass_kg")
+        if mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
+            allowed = f"{ski.mass:.4g}, which the column mass_per_length_kg_per_m integrates to"
+            self.values.refuse("mass_kg", mass, allowed, "Correct one of them or leave mass_kg out")
+
+    def _require_lengths(self, ski: Ski) -> None:
+        least = _LEAST_LENGTH_IN_WIDTHS * ski.tip_width
+        if ski.length < least:
+            allowed = f"at least {_LEAST_LENGTH_IN_WIDTHS:g} times the tip width, {least * 1e3:.0f}"
+            self.values.refuse("the length in mm", round(ski.length * 1e3, 3), allowed, "Is it in centimetres? Use mm")
+        for key, length in (("running_length_mm", ski.running_length), ("sidecut_length_mm", ski.sidecut_length)):
+            if length < _LEAST_SHARE_OF_LENGTH * ski.length:
+                text = f"{self.values.file}: {key} is {length * 1e3:g}, the ski {ski.length * 1e3:g} mm long"
+                warnings.warn(f"{text}; usual are 0.7 to 0.95 of it. Is it in mm?", RangeWarning, stacklevel=5)

@@ -1,0 +1,90 @@
+"""Where along a ski its tip, its tail, its widest points and its contact points are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from ..errors import ParameterError
+
+TAIL_OVERHANG: Final = 0.020
+"""Length of ski behind the rear end of the sidecut length (m). Choice: 20 mm, a short square tail."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Layout:
+    """Stations and lengths of a ski (m). Stations count from the boot, positive forward.
+
+    Choice: the running length is centred in the sidecut length, ``middle`` is the station of both middles.
+    """
+
+    tip: float
+    tail: float
+    middle: float
+    running_length: float
+    sidecut_length: float
+
+    def __post_init__(self) -> None:
+        for name in ("running_length", "sidecut_length"):
+            length = getattr(self, name)
+            if not length > 0:
+                raise ParameterError(f"{name} is {length!r} m; it must be above 0. Correct it.")
+            front, rear = self.middle + length / 2.0, self.middle - length / 2.0
+            if front > self.tip + 1e-9 or rear < self.tail - 1e-9:
+                raise ParameterError(
+                    f"the {name} of {length * 1e3:.1f} mm reaches from {front * 1e3:.1f} to {rear * 1e3:.1f} mm from "
+                    f"the boot, but the ski only from {self.tip * 1e3:.1f} to {self.tail * 1e3:.1f} mm. Correct the "
+                    "lengths, the boot position or the tail overhang."
+                )
+
+    @property
+    def widest_points(self) -> tuple[float, float]:
+        """Stations of the front and the rear end of the sidecut length (m)."""
+        return self.middle + self.sidecut_length / 2.0, self.middle - self.sidecut_length / 2.0
+
+    @property
+    def contact_points(self) -> tuple[float, float]:
+        """Stations of the front and the rear end of the running length (m)."""
+        return self.middle + self.running_length / 2.0, self.middle - self.running_length / 2.0
+
+
+def layout_of_lengths(
+    *,
+    length: float,
+    running_length: float,
+    sidecut_length: float,
+    tail_overhang: float = TAIL_OVERHANG,
+    boot_position: float = 0.0,
+) -> Layout:
+    """Lay a ski out by its lengths (m).
+
+    Parameters
+    ----------
+    length
+        From tip to tail along the base.
+    running_length, sidecut_length
+        Between the contact points, between the widest points.
+    tail_overhang
+        Of the tail behind the sidecut length; what is left of the length is the tip. Choice: 20 mm.
+    boot_position
+        Of the boot in front of the middle of the running length, negative behind it. Choice: 0.
+
+    Raises
+    ------
+    ParameterError
+        The running or the sidecut length does not fit between tip and tail.
+
+    Examples
+    --------
+    >>> ski = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458)
+    >>> round(ski.tip - ski.widest_points[0], 6), round(ski.widest_points[1] - ski.tail, 6)
+    (0.115, 0.02)
+    """
+    tail = -boot_position - sidecut_length / 2.0 - tail_overhang
+    return Layout(
+        tip=tail + length,
+        tail=tail,
+        middle=-boot_position,
+        running_length=running_length,
+        sidecut_length=sidecut_length,
+    )

@@ -1,0 +1,141 @@
+"""Shapes from the design files of MonkeyCAM (``ski-def.json``): outline only, no stiffness, no camber, no mass.
+
+MonkeyCAM (github mikemag/MonkeyCAM) is a program for building skis and snowboards. Its file gives the lengths of nose,
+effective edge and tail, the waist width at the middle of the effective edge, the sidecut radius R and the taper t. With
+the sagitta s = R - √(R² - L²/4) of the effective edge L the nose is w + 2 s + t/2 wide and the tail w + 2 s - t/2, and
+the edge is the arc through the three.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ..errors import ParameterError
+from ..units import CM, MM
+from .assembling import SkiParts, stiffness_table
+from .base_profile import BaseShape
+from .file_values import refuse
+from .layout import layout_of_lengths
+from .outline import ArcOutline
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy.typing as npt
+
+    from .ski import Ski
+
+_UNITS = {"": CM, "cm": CM, "mm": MM, "m": 1.0, "in": 25.4 * MM, "inch": 25.4 * MM, "inches": 25.4 * MM, '"': 25.4 * MM}
+_LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z\"]*)\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class MonkeycamShape:
+    """What a design file of MonkeyCAM says of a ski's shape: its name and its outline (SI)."""
+
+    name: str
+    outline: ArcOutline
+
+
+def read_monkeycam(
+    path: Path,
+    *,
+    mass: float,
+    bending_stiffness: npt.ArrayLike,
+    torsional_stiffness: npt.ArrayLike,
+    stiffness_station: npt.ArrayLike | None = None,
+    running_length: float | None = None,
+    base: BaseShape | None = None,
+    base_bevel: float = 0.0,
+    edge_width: float = 0.002,
+) -> Ski:
+    """Read a ski whose shape is in a design file of MonkeyCAM; what that file does not know has no default.
+
+    Parameters
+    ----------
+    path
+        Of ``ski-def.json``.
+    mass, bending_stiffness, torsional_stiffness, stiffness_station, base, base_bevel, edge_width
+        As in `arc_ski`.
+    running_length
+        Between the contact points (m); left out: the effective edge (Choice).
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, a key is missing or no length, the edge is no arc, or the ski breaks a rule of `Ski`.
+
+    Notes
+    -----
+    The sidecut length is the effective edge; the boot is behind its middle by the stance setback. Nose and tail beyond
+    it are closed as in `ArcOutline`: the curves of the file's nose and tail shape are not read, nor is the thickness
+    of the core, from which no stiffness follows without the materials.
+    """
+    shape = monkeycam_shape(path, running_length=running_length)
+    layout, profile = shape.outline.layout, BaseShape() if base is None else base
+    return SkiParts(
+        name=shape.name,
+        source=f"shape from {path.name} of MonkeyCAM",
+        layout=layout,
+        width=shape.outline.width_at,
+        base_height=lambda station: profile.height_at(station, layout),
+        bending_stiffness=stiffness_table(bending_stiffness, stiffness_station, layout).at,
+        torsional_stiffness=stiffness_table(torsional_stiffness, stiffness_station, layout).at,
+        mass=mass,
+        base_bevel=base_bevel,
+        edge_width=edge_width,
+    ).assembled()
+
+
+def monkeycam_shape(path: Path, *, running_length: float | None = None) -> MonkeycamShape:
+    """Read the outline of a design file of MonkeyCAM; parameters and errors as in `read_monkeycam`."""
+    board = _board(path)
+    edge, waist, taper = (_length(path, board, key) for key in ("effective edge length", "waist width", "taper"))
+    radius = _length(path, board, "sidecut radius")
+    if not radius > edge / 2.0 > 0:
+        refuse(path, "board: sidecut radius", board["sidecut radius"], "more than half the edge length", "Correct it")
+    nose, tail = _length(path, board, "nose length"), _length(path, board, "tail length")
+    layout = layout_of_lengths(
+        length=nose + edge + tail,
+        running_length=edge if running_length is None else running_length,
+        sidecut_length=edge,
+        tail_overhang=tail,
+        boot_position=-_length(path, board, "stance setback") if "stance setback" in board else 0.0,
+    )
+    widest = waist + 2.0 * (radius - math.sqrt(radius**2 - edge**2 / 4.0))
+    outline = ArcOutline(
+        layout=layout, tip_width=widest + taper / 2.0, waist_width=waist, tail_width=widest - taper / 2.0
+    )
+    return MonkeycamShape(str(board.get("name") or path.stem), outline)
+
+
+def _board(path: Path) -> dict[str, Any]:
+    try:
+        design = json.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path.") from error
+    except ValueError as error:
+        raise ParameterError(f"{path} is no JSON text: {error}. Correct that place.") from error
+    board = design.get("board") if isinstance(design, dict) else None
+    if not isinstance(board, dict):
+        raise ParameterError(f"{path} has no section 'board'. Give a design file of MonkeyCAM, such as ski-def.json.")
+    if board.get("splitboard"):
+        raise ParameterError(f"{path}: board: splitboard is true. Its outline is of two halves together; give a ski.")
+    form = board.get("edge shape")
+    kind = form.get("type") if isinstance(form, dict) else None
+    if kind != "Basic Arc":
+        refuse(path, "board: edge shape: type", kind, "'Basic Arc'", "Give other side lines as a table of widths")
+    return board
+
+
+def _length(path: Path, board: dict[str, Any], key: str) -> float:
+    """A length in m; a number without unit is in cm, as in MonkeyCAM."""
+    value = board.get(key)
+    read = None if isinstance(value, bool) else _LENGTH.fullmatch(str(value))
+    if read is None or read[2].lower() not in _UNITS:
+        refuse(path, f"board: {key}", value, "a number in cm or a text such as '161cm', '2mm', '4in'", "Correct it")
+    return float(read[1]) * _UNITS[read[2].lower()]

@@ -1,0 +1,97 @@
+"""A ski from its file, or by its name from the catalogue."""
+
+from __future__ import annotations
+
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import ParameterError
+from .file_parts import FileParts
+from .file_values import file_values, nearest
+from .table_file import read_table
+
+if TYPE_CHECKING:
+    from .ski import Ski
+
+_CATALOGUE = files(__package__) / "catalogue"
+
+
+def read_ski(name_or_path: str | Path) -> Ski:
+    """Read a ski: one of the catalogue by its name, any other from its TOML file.
+
+    Parameters
+    ----------
+    name_or_path
+        A name of `ski_names`, or the path of a file. A path is whatever ends in .toml, has a folder or is a `Path`.
+
+    Raises
+    ------
+    ParameterError
+        There is no such name; the nearest is named. The file cannot be read, a key of it is unknown, missing, said
+        twice or outside its range, or the ski breaks a rule of `Ski`; file, key, value, what is allowed and what to do
+        are named.
+
+    Warns
+    -----
+    RangeWarning
+        A value is beyond what skis usually have; a likely mistake of unit is named.
+    """
+    path = Path(name_or_path)
+    if str(name_or_path) in ski_names():
+        return ski_named(str(name_or_path))
+    if path.suffix.lower() == ".json":
+        raise ParameterError(
+            f"{path} has a shape but no stiffness and no mass. Write a TOML file with shape = {path.name!r}, EI_N_m2, "
+            "GJ_N_m2 and mass_kg, and read that."
+        )
+    if isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != str(path) or path.is_file():
+        return _ski_in(path)
+    raise _no_such_ski(str(name_or_path))
+
+
+def ski_named(name: str) -> Ski:
+    """Read a ski of the catalogue.
+
+    Raises
+    ------
+    ParameterError
+        There is no such name; the nearest is named.
+
+    Examples
+    --------
+    >>> slalom = ski_named("slalom")
+    >>> round(slalom.length, 4), round(slalom.mass, 4), round(slalom.sidecut_radius_of_three_widths, 2)
+    (1.593, 2.231, 13.12)
+    """
+    if name not in ski_names():
+        raise _no_such_ski(name)
+    with as_file(_CATALOGUE / f"{name}.toml") as path:
+        return _ski_in(path)
+
+
+def ski_names() -> tuple[str, ...]:
+    """Names of the skis of the catalogue.
+
+    >>> ski_names()
+    ('carver', 'giant-slalom', 'paper-tool', 'slalom')
+    """
+    files_there = (entry.name for entry in _CATALOGUE.iterdir())
+    return tuple(sorted(name.removesuffix(".toml") for name in files_there if name.endswith(".toml")))
+
+
+def _no_such_ski(name: str) -> ParameterError:
+    others = "Any other ski is read from a file ending in .toml."
+    return ParameterError(f"there is no ski named {name!r}. {nearest(name, ski_names())} {others}")
+
+
+def _ski_in(path: Path) -> Ski:
+    values = file_values(path)
+    table, shape = values.beside("table"), values.beside("shape")
+    columns = read_table(table) if table else {}
+    try:
+        return FileParts(values, columns).ski()
+    except ParameterError as error:
+        if any(str(error).startswith(str(file)) for file in (path, shape) if file):
+            raise
+        raise ParameterError(f"{path}: {error}") from error

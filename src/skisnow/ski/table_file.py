@@ -1,0 +1,91 @@
+"""A table of a ski in a CSV file: a row for each station, from tip to tail."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from .file_keys import COLUMNS
+from .file_values import checked_number, nearest, refuse
+from .station_table import StationTable
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def read_table(path: Path) -> dict[str, StationTable]:
+    """Read the columns of a table, in SI, by their names; ``station_m`` is the station of each.
+
+    The first line names the columns: ``station_m`` and any of ``width_mm``, ``base_height_mm``, ``EI_N_m2``,
+    ``GJ_N_m2``, ``mass_per_length_kg_per_m``. Separators are commas, semicolons or tabs, decimals have a point, lines
+    beginning with # are remarks.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, a column is unknown or missing, a cell is no number or outside its range, or the
+        stations do not fall. Line numbers are those of the file.
+    """
+    lines = _lines(path)
+    header = lines[0][1]
+    for place, name in enumerate(header):
+        if name not in COLUMNS:
+            raise ParameterError(
+                f"{path}, line {lines[0][0]}: the column {name!r} is not known. {nearest(name, COLUMNS)}"
+            )
+        if name in header[:place]:
+            raise ParameterError(f"{path}, line {lines[0][0]}: the column {name} stands there twice. Remove one.")
+    if "station_m" not in header or len(header) < 2:
+        raise ParameterError(
+            f"{path}, line {lines[0][0]}: needed are the column station_m and one or more others. Add it."
+        )
+    rows = [_row(path, line, header, cells) for line, cells in lines[1:]]
+    columns = dict(zip(header, np.array(rows).T, strict=True))
+    _require_falling(path, columns["station_m"], [line for line, _ in lines[1:]])
+    return {name: StationTable(columns["station_m"], column) for name, column in columns.items()}
+
+
+def _lines(path: Path) -> list[tuple[int, list[str]]]:
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path.") from error
+    except UnicodeDecodeError as error:
+        raise ParameterError(f"{path} is not UTF-8 text ({error.reason}). Save it as UTF-8.") from error
+    separator = next((mark for mark in ";\t" if mark in text), ",")
+    rows = enumerate(csv.reader(io.StringIO(text), delimiter=separator), start=1)
+    lines = [(line, [cell.strip() for cell in row]) for line, row in rows if any(map(str.strip, row))]
+    lines = [(line, cells) for line, cells in lines if not cells[0].startswith("#")]
+    if len(lines) < 3:
+        raise ParameterError(f"{path}: a table needs a line of column names and two rows or more. Complete it.")
+    return lines
+
+
+def _row(path: Path, line: int, header: list[str], cells: list[str]) -> list[float]:
+    if len(cells) != len(header):
+        raise ParameterError(f"{path}, line {line}: {len(cells)} cells stand under {len(header)} columns. Correct it.")
+    return [_cell(path, line, name, cell) for name, cell in zip(header, cells, strict=True)]
+
+
+def _cell(path: Path, line: int, name: str, cell: str) -> float:
+    place = f"line {line}, {name}"
+    try:
+        value = float(cell)
+    except ValueError:
+        refuse(path, place, cell, f"a finite number, {COLUMNS[name].allowed}", "Write it with a decimal point")
+    return checked_number(path, place, value, COLUMNS[name])
+
+
+def _require_falling(path: Path, station: FloatArray, lines: list[int]) -> None:
+    rising = np.flatnonzero(np.diff(station) >= 0)
+    if rising.size:
+        place, value = f"line {lines[rising[0] + 1]}, station_m", float(station[rising[0] + 1])
+        allowed = f"less than the {station[rising[0]]:g} before it"
+        refuse(path, place, value, allowed, "List the rows from tip to tail, positive in front of the boot")
