@@ -66,7 +66,8 @@ class ShearLaw(abc.ABC):
         self, edge_depth: npt.ArrayLike, edge_length: npt.ArrayLike, edge_angle: npt.ArrayLike
     ) -> FloatArray:
         """Force (N) along the snow normal that comes with the tangential one, pushing the edge out; 0 if none does."""
-        return np.zeros(np.broadcast_shapes(*map(np.shape, (edge_depth, edge_length, edge_angle))))
+        shape = np.broadcast_shapes(np.shape(edge_depth), np.shape(edge_length), edge_angles(edge_angle).shape)
+        return np.zeros(shape)
 
     def _checked_stress(self, edge_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         angle = edge_angles(edge_angle)

@@ -1,0 +1,172 @@
+"""One set of physics checks over every law of glide friction, and exact values."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from skisnow.errors import ParameterError, RangeWarning
+from skisnow.forces.friction import (
+    LAWS,
+    ConstantFriction,
+    FrictionLaw,
+    LinearFriction,
+    QuadraticFriction,
+    WaterFilmFriction,
+)
+
+
+@dataclass(frozen=True)
+class Sample:
+    law: FrictionLaw
+    stronger: FrictionLaw
+    """The same with every coefficient doubled."""
+    outside: tuple[Callable[[], object], ...]
+
+
+SAMPLES = (
+    Sample(
+        ConstantFriction(0.05),
+        ConstantFriction(0.10),
+        (lambda: ConstantFriction(0.02), lambda: ConstantFriction(0.2)),
+    ),
+    Sample(LinearFriction(0.03, 0.001), LinearFriction(0.06, 0.002), (lambda: LinearFriction(0.05, 0.01),)),
+    Sample(
+        QuadraticFriction(0.03, 0.0005, 2e-5),
+        QuadraticFriction(0.06, 0.001, 4e-5),
+        (lambda: QuadraticFriction(0.05, 0.0, 1e-3),),
+    ),
+    Sample(
+        WaterFilmFriction(0.03, 0.04, 1.0, 4e-4),
+        WaterFilmFriction(0.06, 0.08, 1.0, 8e-4),
+        (lambda: WaterFilmFriction(0.0, 0.04, 1.0, 4e-4),),
+    ),
+)
+EVERY_SAMPLE = pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: type(sample.law).__name__)
+SPEEDS = np.linspace(0.0, 40.0, 401)
+COMPONENT = st.floats(-40.0, 40.0)
+
+
+def test_every_registered_law_has_a_sample() -> None:
+    assert {type(sample.law) for sample in SAMPLES} == set(LAWS)
+
+
+@EVERY_SAMPLE
+def test_never_negative_and_continuous_in_speed(sample: Sample) -> None:
+    assert np.all(sample.law.coefficient(SPEEDS) >= 0.0)
+    coarse, fine = (np.abs(np.diff(sample.law.coefficient(np.linspace(0, 40, n)))).max() for n in (2001, 4001))
+    assert fine <= max(0.75 * coarse, 1e-15)
+    assert not sample.law.exceptions
+
+
+@EVERY_SAMPLE
+@given(st.floats(0.0, 3000.0), st.tuples(COMPONENT, COMPONENT, COMPONENT))
+def test_against_the_sliding_and_of_the_right_size(sample: Sample, load: float, velocity: tuple[float, ...]) -> None:
+    force = sample.law.friction_force(load, velocity)
+    speed = math.hypot(*velocity)
+    power = float(np.dot(force, velocity))
+    assert power <= 0.0  # no energy gained on any path
+    # speeds whose squares underflow count as rest: 10⁻¹⁴⁰ W are nobody's
+    assert power == pytest.approx(-float(sample.law.coefficient(speed)) * load * speed, rel=1e-9, abs=1e-140)
+    assert np.linalg.norm(np.cross(force, velocity)) <= 1e-9 * load * speed + 1e-140
+
+
+@EVERY_SAMPLE
+@given(st.floats(0.0, 2 * math.pi), COMPONENT, COMPONENT)
+def test_rotation_of_the_frame(sample: Sample, turn: float, along: float, across: float) -> None:
+    rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    velocity = np.array([along, across])
+    turned = sample.law.friction_force(800.0, rotation @ velocity)
+    np.testing.assert_allclose(turned, rotation @ sample.law.friction_force(800.0, velocity), atol=1e-9)
+
+
+@EVERY_SAMPLE
+def test_at_rest_and_without_contact_the_force_is_zero(sample: Sample) -> None:
+    assert sample.law.friction_force(800.0, [0.0, 0.0]).tolist() == [0.0, 0.0]
+    assert not np.any(sample.law.friction_force(-10.0, [1.0, 2.0]))
+
+
+@EVERY_SAMPLE
+@given(st.floats(0.0, 40.0))
+def test_scaling_with_the_parameters(sample: Sample, speed: float) -> None:
+    assert float(sample.stronger.coefficient(speed)) == pytest.approx(2 * float(sample.law.coefficient(speed)))
+    one, three = (sample.law.friction_force(load, [speed, 1.0]) for load in (250.0, 750.0))
+    assert three == pytest.approx(3 * one)
+
+
+@EVERY_SAMPLE
+def test_scalar_equals_array(sample: Sample) -> None:
+    assert sample.law.coefficient(SPEEDS).tolist() == [float(sample.law.coefficient(float(v))) for v in SPEEDS]
+    velocity = np.array([[3.0, 4.0], [0.0, 0.0], [-6.0, 8.0]])
+    load = np.array([[100.0], [800.0]])
+    table = sample.law.friction_force(load, velocity)
+    assert table.shape == (2, 3, 2)
+    for i, j in np.ndindex(2, 3):
+        assert table[i, j].tolist() == sample.law.friction_force(float(load[i, 0]), velocity[j]).tolist()
+
+
+@EVERY_SAMPLE
+def test_a_warning_outside_the_measured_range(sample: Sample) -> None:
+    assert sample.outside
+    for make in sample.outside:
+        with pytest.warns(RangeWarning, match="Wolfsperger and others 2021") as caught:
+            make()
+        assert [warning.filename for warning in caught] == [__file__]
+
+
+def test_values_by_hand() -> None:
+    assert float(LinearFriction(0.03, 0.001).coefficient(15.0)) == pytest.approx(0.045)
+    assert float(QuadraticFriction(0.03, 0.001, -2e-5).coefficient(20.0)) == pytest.approx(0.042)
+    assert float(WaterFilmFriction(0.03, 0.04, 2.0, 1e-3).coefficient(2.0)) == pytest.approx(0.052)
+    assert float(WaterFilmFriction(0.03, 0.04, 2.0, 1e-3).coefficient(0.0)) == pytest.approx(0.07)
+
+
+def test_friction_switched_off_is_not_warned_of() -> None:
+    assert not np.any(ConstantFriction(0.0).friction_force(800.0, [3.0, 4.0]))
+
+
+@given(st.floats(0.001, 0.2), st.floats(0.1, 5.0), st.floats(1e-5, 2e-2))
+@pytest.mark.filterwarnings("ignore::skisnow.errors.RangeWarning")
+def test_the_minimum_is_where_it_is_stated(dry: float, film_speed: float, slope: float) -> None:
+    law = WaterFilmFriction(0.02, dry, film_speed, slope)
+    best = law.speed_of_least_friction
+    grid = np.concatenate([np.linspace(0.0, 100.0, 2001), best * np.linspace(0.9, 1.1, 21)])
+    least = float(law.coefficient(best))
+    assert least <= float(law.coefficient(grid).min()) * (1 + 1e-12)
+    stated = 0.02 + 2 * math.sqrt(dry * slope * film_speed) - slope * film_speed if best > 0 else 0.02 + dry
+    assert least == pytest.approx(stated, rel=1e-9)
+
+
+def test_the_minimum_at_the_ends() -> None:
+    assert WaterFilmFriction(0.03, 0.001, 5.0, 1e-3).speed_of_least_friction == 0.0
+    assert WaterFilmFriction(0.03, 0.04, 1.0, 0.0).speed_of_least_friction == math.inf
+
+
+def test_a_negative_coefficient_is_refused() -> None:
+    law = LinearFriction(0.06, -0.002)
+    assert float(law.coefficient(30.0)) == pytest.approx(0.0, abs=1e-15)
+    with pytest.raises(ParameterError, match="negative at 31 m/s"):
+        law.coefficient([10.0, 31.0])
+    with pytest.raises(ParameterError, match="negative at 40 m/s"):
+        law.friction_force(800.0, [0.0, 40.0])
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: ConstantFriction(-0.01),
+        lambda: LinearFriction(math.nan, 0.0),
+        lambda: LinearFriction(0.05, math.inf),
+        lambda: QuadraticFriction(0.05, 0.0, math.nan),
+        lambda: WaterFilmFriction(0.03, 0.04, 0.0, 1e-3),
+        lambda: WaterFilmFriction(0.03, -0.04, 1.0, 1e-3),
+        lambda: ConstantFriction(0.05).coefficient(-1.0),
+    ],
+)
+def test_impossible_parameters_are_refused(make: Callable[[], object]) -> None:
+    with pytest.raises(ParameterError):
+        make()

@@ -1,0 +1,244 @@
+"""One set of physics checks over every law for the force of a tool.
+
+A law that fails a check names it in ``exceptions``; then the check must really fail.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from skisnow.errors import ParameterError, RangeWarning
+from skisnow.forces.penetration import (
+    LAWS,
+    AreaLaw,
+    BilinearLaw,
+    DepthLaw,
+    ElementCountLaw,
+    MeanPressureLaw,
+    PenetrationLaw,
+    VolumeLaw,
+    VolumeWithAngleLaw,
+)
+from skisnow.geometry import Disc, LyingCylinder, PlainWedge, SkiPiece, Tool
+
+FloatArray = npt.NDArray[np.float64]
+
+SKI = SkiPiece(length=0.2, width=0.062)
+ANGLES = np.radians([0.0, 0.01, 1.0, 10.0, 30.0, 45.0, 60.0])
+STEEP = math.radians(70.0)
+
+
+@dataclass(frozen=True)
+class Sample:
+    law: PenetrationLaw
+    stronger: PenetrationLaw
+    factor: float
+    outside: tuple[Callable[[], object], ...]
+    """Uses outside the measured range."""
+
+
+def steep(law: PenetrationLaw) -> Callable[[], object]:
+    return lambda: law.reaction_force(SKI, 0.01, STEEP)
+
+
+SAMPLES = (
+    Sample(VolumeLaw(0.2e9), VolumeLaw(0.6e9), 3.0, (lambda: VolumeLaw(0.01e9), lambda: VolumeLaw(100e9))),
+    Sample(VolumeLaw(0.2e9), VolumeLaw(0.1e9), 0.5, (steep(VolumeLaw(0.2e9)),)),
+    Sample(
+        VolumeWithAngleLaw(0.2e9),
+        VolumeWithAngleLaw(0.6e9),
+        3.0,
+        (lambda: VolumeWithAngleLaw(0.01e9), steep(VolumeWithAngleLaw(0.2e9))),
+    ),
+    Sample(
+        BilinearLaw(0.2e9, 0.0, 0.0, 0.9, 0.2),
+        BilinearLaw(0.4e9, 0.0, 0.0, 0.9, 0.2),
+        2.0,
+        (steep(BilinearLaw(0.2e9, 0.0, 0.0, 0.9, 0.2)),),
+    ),
+    Sample(
+        BilinearLaw(0.2e9, 1e-3, 1e-4, 0.9, -0.2),
+        BilinearLaw(0.4e9, 1e-3, 1e-4, 0.9, -0.2),
+        2.0,
+        (steep(BilinearLaw(0.2e9, 1e-3, 1e-4, 0.9, -0.2)),),
+    ),
+    Sample(DepthLaw(40e3), DepthLaw(100e3), 2.5, (steep(DepthLaw(40e3)),)),
+    Sample(AreaLaw(0.2e6), AreaLaw(0.8e6), 4.0, (steep(AreaLaw(0.2e6)),)),
+    Sample(
+        MeanPressureLaw(0.01e9, 0.1e6),
+        MeanPressureLaw(0.03e9, 0.3e6),
+        3.0,
+        (
+            lambda: MeanPressureLaw(0.04e9, 0.1e6),
+            lambda: MeanPressureLaw(0.01e9, 0.4e6),
+            lambda: MeanPressureLaw(0.01e9, 0.0),
+        ),
+    ),
+    Sample(ElementCountLaw(2e9, 0.1), ElementCountLaw(2e9, 0.3), 3.0, (lambda: ElementCountLaw(2e9, 1e-3),)),
+    Sample(ElementCountLaw(2e9, 0.1), ElementCountLaw(6e9, 0.1), 3.0, (steep(ElementCountLaw(2e9, 0.1)),)),
+)
+
+
+def bodies() -> list[tuple[Tool, float]]:
+    other: list[tuple[Tool, float]] = [(Disc(diameter=0.1), 0.0), (LyingCylinder(radius=0.03, width=0.1), 0.0)]
+    return other + [(SKI, float(angle)) for angle in ANGLES]
+
+
+def zero_at_zero_depth(law: PenetrationLaw) -> None:
+    for tool, angle in bodies():
+        deep = float(law.reaction_force(tool, 0.01, angle))
+        assert float(law.reaction_force(tool, -1e-3, angle)) == 0.0
+        assert float(law.reaction_force(tool, 0.0, angle)) == 0.0
+        # the slowest beginning among these bodies is A ~ √e of the cylinder: √(10⁻¹⁴/10⁻²) = 10⁻⁶
+        assert float(law.reaction_force(tool, 1e-14, angle)) <= 1e-5 * deep
+
+
+def never_tension(law: PenetrationLaw) -> None:
+    for tool, angle in bodies():
+        force = law.reaction_force(tool, np.linspace(-0.01, 0.05, 601), angle)
+        assert np.all(np.isfinite(force)) and np.all(force >= 0.0)
+
+
+def growing_with_depth(law: PenetrationLaw) -> None:
+    for tool, angle in bodies():
+        force = law.reaction_force(tool, np.linspace(-0.01, 0.05, 601), angle)
+        assert np.all(np.diff(force) >= -1e-12 * force[-1])  # rounding
+        assert force[-1] > 0.0
+
+
+def continuous_in_depth(law: PenetrationLaw) -> None:
+    for tool, angle in bodies():
+        kinks = np.array([0.03, 0.062 * math.sin(angle), 0.01])
+        kinks = kinks[kinks > 0]
+        below, above = (law.reaction_force(tool, kinks + side, angle) for side in (-1e-10, 1e-10))
+        # the force of no law here changes more than a hundredfold within a millimetre
+        assert np.all(np.abs(above - below) <= 1e-4 * (above + below))
+        assert no_jump(partial(force_at, law, tool, angle), 1e-4, 0.05)
+
+
+def continuous_in_angle(law: PenetrationLaw) -> None:
+    for depth in (1e-3, 0.01, 0.04):
+        flat, nearly = law.reaction_force(SKI, depth, np.array([0.0, 1e-9]))
+        assert nearly == pytest.approx(flat, rel=1e-6)
+        edge = math.asin(depth / SKI.width)
+        if edge < math.radians(60.0):
+            below, above = law.reaction_force(SKI, depth, np.array([edge - 1e-9, edge + 1e-9]))
+            assert above == pytest.approx(below, rel=1e-6)
+        assert no_jump(partial(law.reaction_force, SKI, depth), 0.0, math.radians(60.0))
+
+
+def force_at(law: PenetrationLaw, tool: Tool, angle: float, depth: FloatArray) -> FloatArray:
+    return law.reaction_force(tool, depth, angle)
+
+
+def no_jump(force: Callable[[FloatArray], FloatArray], start: float, end: float) -> bool:
+    """Halve the step: the largest change of a continuous function shrinks (√½ at a root), that of a jump does not."""
+    coarse, fine = (np.abs(np.diff(force(np.linspace(start, end, n)))).max() for n in (4001, 8001))
+    return bool(fine <= 0.75 * coarse)
+
+
+CHECKS: dict[str, Callable[[PenetrationLaw], None]] = {
+    "zero at zero depth": zero_at_zero_depth,
+    "never tension": never_tension,
+    "growing with depth": growing_with_depth,
+    "continuous in depth": continuous_in_depth,
+    "continuous in angle": continuous_in_angle,
+}
+
+
+def test_every_registered_law_has_a_sample() -> None:
+    assert {type(sample.law) for sample in SAMPLES} == set(LAWS)
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: repr(sample.law))
+@pytest.mark.parametrize("name", CHECKS)
+def test_physics(name: str, sample: Sample) -> None:
+    if name in sample.law.exceptions:
+        with pytest.raises(AssertionError):
+            CHECKS[name](sample.law)
+    else:
+        CHECKS[name](sample.law)
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: repr(sample.law))
+def test_exceptions_name_checks_and_reasons(sample: Sample) -> None:
+    assert sample.law.exceptions.keys() <= CHECKS.keys()
+    assert all(len(reason) > 20 for reason in sample.law.exceptions.values())
+
+
+def work(law: PenetrationLaw, start: float, end: float, angle: float) -> float:
+    """∫ F de, exact for the laws here: between its kinks the force is a polynomial of at most second degree."""
+    low, high = min(start, end), max(start, end)
+    kinks = [e for e in (0.0, SKI.width * math.sin(angle)) if low < e < high]
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    total = 0.0
+    edges = [low, *kinks, high]
+    for left, right in pairwise(edges):
+        depth = (left + right) / 2 + (right - left) / 2 * nodes
+        total += float(law.reaction_force(SKI, depth, angle) @ weights) * (right - left) / 2
+    return total if end >= start else -total
+
+
+DEPTHS = st.lists(st.floats(-0.01, 0.06), min_size=1, max_size=12)
+
+
+@given(DEPTHS, st.floats(0.0, math.radians(60.0)))
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: repr(sample.law))
+def test_no_energy_gained_over_any_load_path(sample: Sample, depths: list[float], angle: float) -> None:
+    """From above the snow every path costs work; one that leads back costs none: the laws are of the depth alone."""
+    path = [-0.01, *depths]
+    steps = [work(sample.law, a, b, angle) for a, b in pairwise(path)]
+    scale = math.fsum(map(abs, steps)) + 1e-12
+    assert math.fsum(steps) >= -1e-9 * scale
+    back = work(sample.law, path[-1], -0.01, angle)
+    assert abs(math.fsum(steps) + back) <= 1e-9 * scale
+
+
+@given(st.floats(1e-6, 0.06), st.floats(0.0, math.radians(60.0)))
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: repr(sample.law))
+def test_scaling_with_the_parameter(sample: Sample, depth: float, angle: float) -> None:
+    force = float(sample.law.reaction_force(SKI, depth, angle))
+    assert float(sample.stronger.reaction_force(SKI, depth, angle)) == pytest.approx(sample.factor * force, rel=1e-12)
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: repr(sample.law))
+def test_scalar_equals_array(sample: Sample) -> None:
+    depths = np.array([-1e-3, 0.0, 1e-3, 0.01, 0.05])[:, None]
+    table = sample.law.reaction_force(SKI, depths, ANGLES)
+    assert table.shape == (5, ANGLES.size)
+    for row, depth in zip(table, depths[:, 0], strict=True):
+        for value, angle in zip(row, ANGLES, strict=True):
+            single = sample.law.reaction_force(SKI, float(depth), float(angle))
+            assert single.shape == () and float(single) == value
+    assert sample.law.reaction_force(SKI, np.array([]), 0.1).shape == (0,)
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: repr(sample.law))
+def test_a_warning_outside_the_measured_range(sample: Sample) -> None:
+    assert sample.outside
+    for use in sample.outside:
+        with pytest.warns(RangeWarning, match="2013|2006") as caught:
+            use()
+        assert [warning.filename for warning in caught] == [__file__]  # it points at the user's line
+
+
+@pytest.mark.parametrize("law", [sample.law for sample in SAMPLES], ids=repr)
+def test_degrees_for_radians_are_refused(law: PenetrationLaw) -> None:
+    for wrong in (45.0, -0.1, math.nan):
+        with pytest.raises(ParameterError, match="must be between 0 and π/2"):
+            law.reaction_force(SKI, 0.01, np.array([0.5, wrong]))
+
+
+def test_the_plain_wedge_of_the_paper_is_not_continuous_in_the_angle() -> None:
+    """The checks above rest on the continued geometry: Eqn 2 alone diverges as ϑ → 0."""
+    wedge = PlainWedge(length=0.2, width=0.062)
+    flat, nearly = VolumeLaw(0.2e9).reaction_force(wedge, 0.01, np.array([0.0, 1e-3]))
+    assert nearly > 50 * flat

@@ -1,0 +1,213 @@
+"""One set of physics checks over every law for the shear force.
+
+A law that fails a check names it in ``exceptions``; then the check must really fail.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from skisnow.errors import ParameterError, RangeWarning
+from skisnow.forces.shear import (
+    LAWS,
+    AngleShear,
+    ConstantShear,
+    DensityShear,
+    IceCuttingShear,
+    MachiningShear,
+    NaturalDensityShear,
+    ShearLaw,
+)
+
+ALL_ANGLES = np.radians(np.linspace(0.0, 90.0, 91))
+LEAST, MOST = math.radians(30.0), math.radians(75.0)
+"""Edge angles at which every law is finite and none is outside its range."""
+ICE = ((8e6, -2e6), (1e9, 0.0))
+
+
+@dataclass(frozen=True)
+class Sample:
+    law: ShearLaw
+    stronger: ShearLaw
+    factor: float
+    outside: tuple[Callable[[], object], ...]
+    depths: tuple[float, float] = (0.0, 0.03)
+
+
+SAMPLES = (
+    Sample(
+        ConstantShear(0.1e6),
+        ConstantShear(0.3e6),
+        3.0,
+        (lambda: ConstantShear(0.03e6), lambda: ConstantShear(0.6e6)),
+    ),
+    Sample(AngleShear(0.1e6, 0.266), AngleShear(0.2e6, 0.266), 2.0, (lambda: AngleShear(0.6e6, 0.266),)),
+    Sample(
+        DensityShear(430.0),  # 0.0863 N/mm², twice of which Eqn 14 gives at (0.1726 + 0.047)/0.00031
+        DensityShear(0.2196 / 0.00031),
+        2.0,
+        (lambda: DensityShear(419.0), lambda: DensityShear(741.0)),
+    ),
+    Sample(
+        NaturalDensityShear(300.0),  # (30.81 - 11.5323)², four times of which is the square of twice the root
+        NaturalDensityShear((2 * (30.81 - 11.5323) + 11.5323) / 0.1027),
+        4.0,
+        (lambda: NaturalDensityShear(501.0),),
+    ),
+    Sample(
+        MachiningShear(0.05e6, 0.06),
+        MachiningShear(0.15e6, 0.06),
+        3.0,
+        (lambda: MachiningShear(0.01e6, 0.0), lambda: MachiningShear(0.3e6, 0.0)),
+    ),
+    Sample(
+        IceCuttingShear(ICE),
+        IceCuttingShear(ICE, snow_over_ice=0.06),
+        3.0,
+        (
+            lambda: IceCuttingShear(ICE).failure_force(1.1e-3, 1.0, LEAST + 0.1),
+            lambda: IceCuttingShear(ICE).failure_stress(0.5e-3, LEAST - 0.1),
+        ),
+        depths=(0.0, 1e-3),
+    ),
+)
+EVERY_SAMPLE = pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: type(sample.law).__name__)
+
+
+def depths(sample: Sample, count: int = 101) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    return np.linspace(*sample.depths, count)
+
+
+def angles(sample: Sample) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """All angles; of the ice law those that were measured, outside of which it warns."""
+    if sample.law.edge_angle_range is None:
+        return ALL_ANGLES
+    return ALL_ANGLES[30:76]
+
+
+def zero_at_zero_depth(sample: Sample) -> None:
+    force = sample.law.failure_force(np.array([0.0, 1e-9]), 1.7, MOST)
+    assert force[0] == 0.0 and force[1] <= 1e-5 * float(sample.law.failure_force(1e-3, 1.7, MOST))
+
+
+def never_tension(sample: Sample) -> None:
+    force = sample.law.failure_force(depths(sample)[:, None], 1.7, angles(sample))
+    assert not np.any(force < 0.0)
+    assert not np.any(sample.law.thrust_force(depths(sample)[:, None], 1.7, angles(sample)[1:]) < -1e-9)
+
+
+def finite_at_every_edge_angle(sample: Sample) -> None:
+    assert np.all(np.isfinite(sample.law.failure_force(depths(sample)[:, None], 1.7, angles(sample))))
+
+
+def growing_with_depth(sample: Sample) -> None:
+    force = sample.law.failure_force(depths(sample), 1.7, LEAST + 0.1)
+    assert np.all(np.diff(force) > 0.0)
+
+
+def continuous_in_depth(sample: Sample) -> None:
+    coarse, fine = (
+        np.abs(np.diff(sample.law.failure_force(depths(sample, n), 1.7, MOST - 0.1))).max() for n in (1001, 2001)
+    )
+    assert fine <= 0.75 * coarse
+
+
+def continuous_in_angle(sample: Sample) -> None:
+    def largest_step(count: int) -> float:
+        angle = np.linspace(LEAST, MOST, count)
+        return float(np.abs(np.diff(sample.law.failure_force(sample.depths[1], 1.7, angle))).max())
+
+    scale = float(sample.law.failure_force(sample.depths[1], 1.7, MOST))
+    assert largest_step(2001) <= max(0.75 * largest_step(1001), 1e-12 * scale)
+
+
+CHECKS: dict[str, Callable[[Sample], None]] = {
+    "zero at zero depth": zero_at_zero_depth,
+    "never tension": never_tension,
+    "finite at every edge angle": finite_at_every_edge_angle,
+    "growing with depth": growing_with_depth,
+    "continuous in depth": continuous_in_depth,
+    "continuous in angle": continuous_in_angle,
+}
+
+
+def test_every_registered_law_has_a_sample() -> None:
+    assert {type(sample.law) for sample in SAMPLES} == set(LAWS)
+
+
+@EVERY_SAMPLE
+@pytest.mark.parametrize("name", CHECKS)
+def test_physics(name: str, sample: Sample) -> None:
+    if name in sample.law.exceptions:
+        with pytest.raises(AssertionError):
+            CHECKS[name](sample)
+    else:
+        CHECKS[name](sample)
+
+
+@EVERY_SAMPLE
+def test_exceptions_name_checks(sample: Sample) -> None:
+    assert sample.law.exceptions.keys() <= CHECKS.keys()
+
+
+@EVERY_SAMPLE
+@given(st.floats(0.01, 1.0), st.floats(LEAST, MOST), st.floats(0.01, 2.0))
+def test_scaling(sample: Sample, share: float, angle: float, length: float) -> None:
+    """With the parameter, and with the length of the edge."""
+    depth = share * sample.depths[1]
+    force = float(sample.law.failure_force(depth, length, angle))
+    assert float(sample.stronger.failure_force(depth, length, angle)) == pytest.approx(sample.factor * force, rel=1e-9)
+    assert float(sample.law.failure_force(depth, 3 * length, angle)) == pytest.approx(3 * force, rel=1e-12)
+    assert force == pytest.approx(float(sample.law.failure_stress(depth, angle)) * depth * length, rel=1e-12)
+    thrust = float(sample.law.thrust_force(depth, length, angle))
+    assert float(sample.stronger.thrust_force(depth, length, angle)) == pytest.approx(sample.factor * thrust, rel=1e-9)
+
+
+@EVERY_SAMPLE
+@given(st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(0.0, 1.0)), min_size=1, max_size=12))
+def test_no_energy_gained_over_any_path(sample: Sample, path: list[tuple[float, float]]) -> None:
+    """Sliding sideways against F_t at any sequence of depths costs work, there and back."""
+    done = 0.0
+    for slide, share in path:
+        done += float(sample.law.failure_force(share * sample.depths[1], 1.7, MOST - 0.1)) * abs(slide)
+        assert done >= 0.0
+
+
+@EVERY_SAMPLE
+def test_scalar_equals_array(sample: Sample) -> None:
+    depth, length, angle = depths(sample, 4)[:, None, None], np.array([0.5, 1.7])[:, None], np.array([LEAST, 0.8, MOST])
+    for method in (sample.law.failure_force, sample.law.thrust_force):
+        table = method(depth, length, angle)
+        assert table.shape == (4, 2, 3)
+        for i, j, k in np.ndindex(4, 2, 3):
+            single = method(float(depth[i, 0, 0]), float(length[j, 0]), float(angle[k]))
+            assert single.shape == () and float(single) == table[i, j, k]
+    assert sample.law.failure_stress(depth[:, 0], angle).shape == (4, 3)
+
+
+@EVERY_SAMPLE
+def test_a_warning_outside_the_measured_range(sample: Sample) -> None:
+    assert sample.outside
+    for use in sample.outside:
+        with pytest.warns(RangeWarning, match="that were measured") as caught:
+            use()
+        assert [warning.filename for warning in caught] == [__file__]
+
+
+@EVERY_SAMPLE
+def test_an_edge_above_the_snow_holds_nothing(sample: Sample) -> None:
+    assert float(sample.law.failure_force(-0.01, 1.0, 1.0)) == 0.0
+    assert float(sample.law.thrust_force(-0.01, 1.0, 1.0)) == 0.0
+
+
+@EVERY_SAMPLE
+def test_degrees_for_radians_are_refused(sample: Sample) -> None:
+    with pytest.raises(ParameterError, match=r"math\.radians"):
+        sample.law.failure_force(1e-3, 1.0, 60.0)
+    with pytest.raises(ParameterError, match=r"math\.radians"):
+        sample.law.thrust_force(1e-3, 1.0, 60.0)
