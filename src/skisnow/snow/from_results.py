@@ -49,6 +49,8 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
         sites = sorted({str(row["site"]) for row in results["penetration"]["experiments"] if row["used"]})
         asked = "" if site is None else f" of site {site!r}"
         raise ParameterError(f"{path} has no used penetration experiment{asked}; it has {sites or 'none at any site'}")
+    if not (np.all(hardness > 0) and np.all(stress >= 0) and (stress.size == 0 or np.any(stress > 0))):
+        raise ParameterError(f"{path}: H_V of a used experiment must be above 0, and S_f of one at least")
     H_V, H_V_interval = _mean(np.log(hardness))
     S_f, S_f_interval = _mean(stress * N_PER_MM2) if stress.size else (None, None)
     return SnowProperties(

@@ -1,0 +1,144 @@
+"""The snow of an analysed campaign."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from skisnow.errors import ParameterError
+from skisnow.snow import snow_from_results
+
+Row = dict[str, Any]
+
+
+def penetration(value: float | None, site: str = "A", *, used: bool = True) -> Row:
+    return {"experiment": "P", "site": site, "used": used, "H_V_N_per_mm3": value}
+
+
+def shear(value: float | None, site: str = "A", *, used: bool = True) -> Row:
+    return {"experiment": "S", "site": site, "used": used, "S_f_N_per_mm2": value}
+
+
+def results_file(folder: Path, hardness: list[Row], stress: list[Row]) -> Path:
+    path = folder / "results.json"
+    contents = {"penetration": {"experiments": hardness}, "shear": {"experiments": stress}}
+    path.write_text(json.dumps(contents), encoding="utf-8")
+    return path
+
+
+def test_means_and_intervals_by_hand(tmp_path: Path) -> None:
+    """Three experiments: t₀.₉₇₅(2) = 4.3027. ln 0.1, ln 0.2, ln 0.4: mean ln 0.2, s = ln 2."""
+    path = results_file(tmp_path, [penetration(v) for v in (0.1, 0.2, 0.4)], [shear(v) for v in (0.1, 0.2, 0.3)])
+    snow = snow_from_results(path)
+    assert snow.snow_hardness == pytest.approx(0.2e9)
+    low, high = snow.snow_hardness_interval or (0.0, 0.0)
+    factor = math.exp(4.302653 * math.log(2) / math.sqrt(3))
+    assert (low, high) == pytest.approx((0.2e9 / factor, 0.2e9 * factor), rel=1e-6)
+    assert snow.failure_shear_stress == pytest.approx(0.2e6)
+    half = 4.302653 * 0.1e6 / math.sqrt(3)
+    assert snow.failure_shear_stress_interval == pytest.approx((0.2e6 - half, 0.2e6 + half), rel=1e-6)
+
+
+def test_intervals_cover_in_19_of_20(tmp_path: Path) -> None:
+    """400 campaigns of five from known snow: 95 % of the intervals hold it; 3 % is three standard errors."""
+    generator = np.random.default_rng(20)
+    held = np.zeros(2)
+    for _ in range(400):
+        hardness = 0.2 * np.exp(0.5 * generator.standard_normal(5))
+        stress = 0.2 + 0.03 * generator.standard_normal(5)
+        path = results_file(tmp_path, [penetration(v) for v in hardness], [shear(v) for v in stress])
+        snow = snow_from_results(path)
+        assert snow.snow_hardness_interval is not None and snow.failure_shear_stress_interval is not None
+        held += [
+            snow.snow_hardness_interval[0] <= 0.2e9 <= snow.snow_hardness_interval[1],
+            snow.failure_shear_stress_interval[0] <= 0.2e6 <= snow.failure_shear_stress_interval[1],
+        ]
+    assert held / 400 == pytest.approx([0.95, 0.95], abs=0.033)
+
+
+def test_interval_agrees_with_scipy(tmp_path: Path) -> None:
+    values = [0.11, 0.23, 0.19, 0.35]
+    snow = snow_from_results(results_file(tmp_path, [penetration(v) for v in values], []))
+    logs = np.log(values)
+    expected = stats.t.interval(0.95, 3, loc=logs.mean(), scale=stats.sem(logs))
+    assert snow.snow_hardness_interval == pytest.approx(np.exp(expected) * 1e9)
+
+
+def test_one_experiment_has_no_interval_and_no_shear_no_stress(tmp_path: Path) -> None:
+    snow = snow_from_results(results_file(tmp_path, [penetration(0.2)], []))
+    assert snow.snow_hardness == pytest.approx(0.2e9)
+    assert snow.snow_hardness_interval is None
+    assert snow.failure_shear_stress is None and snow.failure_shear_stress_interval is None
+
+
+def test_only_used_rows_of_the_site_count(tmp_path: Path) -> None:
+    rows = [penetration(0.2), penetration(0.9, used=False), penetration(None), penetration(0.5, "B")]
+    path = results_file(tmp_path, rows, [shear(0.1), shear(0.4, used=False), shear(None), shear(0.3, "B")])
+    snow = snow_from_results(path, site="A")
+    assert snow.snow_hardness == pytest.approx(0.2e9)
+    assert snow.failure_shear_stress == pytest.approx(0.1e6)
+    assert snow.source == f"{path}, site A: 1 penetration and 1 shear experiments"
+    both = snow_from_results(path)
+    assert both.snow_hardness == pytest.approx(math.sqrt(0.1) * 1e9)
+    assert both.failure_shear_stress == pytest.approx(0.2e6)
+
+
+def test_a_site_that_is_not_there(tmp_path: Path) -> None:
+    path = results_file(tmp_path, [penetration(0.2, "B"), penetration(0.2, "A")], [])
+    with pytest.raises(ParameterError, match=r"no used penetration experiment of site 'C'; it has \['A', 'B'\]"):
+        snow_from_results(path, site="C")
+
+
+def test_shear_alone_is_no_snow(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="no used penetration experiment; it has none at any site"):
+        snow_from_results(results_file(tmp_path, [], [shear(0.2)]))
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=r"absent\.json cannot be read \(No such file"):
+        snow_from_results(tmp_path / "absent.json")
+    with pytest.raises(ParameterError, match="cannot be read"):
+        snow_from_results(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("contents", "told"),
+    [
+        (b"", "is not JSON"),
+        (b"experiment,site\n", "is not JSON"),
+        (b"\xff\xfe\x00", "is not JSON"),
+        (b"[]", "has no entries 'penetration' and 'shear'"),
+        (b'{"outcome": "finished"}', "has no entries 'penetration' and 'shear'"),
+        (b'{"penetration": {}, "shear": {}}', "penetration.experiments is not a list"),
+        (b'{"penetration": {"experiments": [1]}, "shear": {}}', "penetration.experiments is not a list"),
+        (b'{"penetration": null, "shear": {}}', "penetration.experiments is not a list"),
+        (
+            b'{"penetration": {"experiments": [{"used": true, "site": "A", "H_V_N_per_mm3": "hard"}]}, "shear": {}}',
+            "penetration.experiments is not a list",
+        ),
+        (b'{"penetration": {"experiments": []}, "shear": {"experiments": [{}]}}', "shear.experiments is not a list"),
+    ],
+)
+def test_what_is_no_results_file_is_named(tmp_path: Path, contents: bytes, told: str) -> None:
+    path = tmp_path / "results.json"
+    path.write_bytes(contents)
+    with pytest.raises(ParameterError, match=told) as caught:
+        snow_from_results(path)
+    assert str(path) in str(caught.value) and "skisnow analyse" in str(caught.value)
+
+
+@pytest.mark.parametrize("hardness", [0.0, -0.2])
+def test_a_hardness_without_logarithm_is_told(tmp_path: Path, hardness: float) -> None:
+    with pytest.raises(ParameterError, match=r"results\.json: H_V"):
+        snow_from_results(results_file(tmp_path, [penetration(0.2), penetration(hardness)], []))
+
+
+def test_shear_tests_without_any_moment_give_no_strength(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="S_f of one at least"):
+        snow_from_results(results_file(tmp_path, [penetration(0.2)], [shear(0.0), shear(0.0)]))
+    one = snow_from_results(results_file(tmp_path, [penetration(0.2)], [shear(0.0), shear(0.2)]))
+    assert one.failure_shear_stress == pytest.approx(0.1e6)
