@@ -46,6 +46,8 @@ class FileParts:
     def ski(self) -> Ski:
         """Put the ski together."""
         values = self.values
+        if LIST_KEYS.keys() - {"stiffness_station_mm"} <= self.table.keys():
+            values.refuse_together(["stiffness_station_mm"], "a table with both stiffnesses", "Leave it out")
         layout, width, name = self._shaped() if "shape" in values else self._laid_out()
         bevel, edge = values.number("base_bevel_deg"), values.number("edge_width_mm")
         mass_per_length = self.table.get("mass_per_length_kg_per_m")
@@ -64,16 +66,15 @@ class FileParts:
             stations=self.table["station_m"].station if self.table else None,
         ).assembled()
         self._require_mass(ski)
-        self._require_lengths(ski)
+        self._warn_of_lengths(ski)
         return ski
 
     def _shaped(self) -> tuple[Layout, Along, str]:
         values = self.values
         said = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, "tail_overhang_mm", "boot_position_mm")
         values.refuse_together(said, "shape", "Leave one of them out")
-        shape = monkeycam_shape(
-            values.file.parent / (values.text("shape") or ""), running_length=values.number("running_length_mm")
-        )
+        file = values.beside("shape") or values.file
+        shape = monkeycam_shape(file, running_length=values.number("running_length_mm"))
         return shape.outline.layout, shape.outline.width_at, shape.name
 
     def _laid_out(self) -> tuple[Layout, Along, str]:
@@ -92,9 +93,13 @@ class FileParts:
 
     def _layout_of_keys(self) -> Layout:
         values = self.values
-        overhang = values.number("tail_overhang_mm")
+        overhang, length = values.number("tail_overhang_mm"), values.needed("length_mm")
+        least = _LEAST_LENGTH_IN_WIDTHS * (values.number("tip_width_mm") or 0.0)
+        if length < least:
+            allowed = f"at least {least * 1e3:.0f}, {_LEAST_LENGTH_IN_WIDTHS:g} times the tip width"
+            values.refuse("length_mm", values.values["length_mm"], allowed, "Is it in centimetres? Write it in mm")
         return layout_of_lengths(
-            length=values.needed("length_mm"),
+            length=length,
             running_length=values.needed("running_length_mm"),
             sidecut_length=values.needed("sidecut_length_mm"),
             tail_overhang=TAIL_OVERHANG if overhang is None else overhang,
@@ -152,12 +157,8 @@ class FileParts:
             allowed = f"{ski.mass:.4g}, which the column mass_per_length_kg_per_m integrates to"
             self.values.refuse("mass_kg", mass, allowed, "Correct one of them or leave mass_kg out")
 
-    def _require_lengths(self, ski: Ski) -> None:
-        least = _LEAST_LENGTH_IN_WIDTHS * ski.tip_width
-        if ski.length < least:
-            allowed = f"at least {_LEAST_LENGTH_IN_WIDTHS:g} times the tip width, {least * 1e3:.0f}"
-            self.values.refuse("the length in mm", round(ski.length * 1e3, 3), allowed, "Is it in centimetres? Use mm")
+    def _warn_of_lengths(self, ski: Ski) -> None:
         for key, length in (("running_length_mm", ski.running_length), ("sidecut_length_mm", ski.sidecut_length)):
             if length < _LEAST_SHARE_OF_LENGTH * ski.length:
                 text = f"{self.values.file}: {key} is {length * 1e3:g}, the ski {ski.length * 1e3:g} mm long"
-                warnings.warn(f"{text}; usual are 0.7 to 0.95 of it. Is it in mm?", RangeWarning, stacklevel=5)
+                warnings.warn(f"{text}; usual are 0.7 to 0.95 of it. Is it in mm?", RangeWarning, stacklevel=2)

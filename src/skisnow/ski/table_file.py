@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from .file_keys import COLUMNS
-from .file_values import checked_number, nearest, refuse
+from .file_values import checked_number, nearest, refuse, warn_of_unusual
 from .station_table import StationTable
 
 if TYPE_CHECKING:
@@ -34,22 +34,23 @@ def read_table(path: Path) -> dict[str, StationTable]:
         stations do not fall. Line numbers are those of the file.
     """
     lines = _lines(path)
-    header = lines[0][1]
+    first, header = lines[0]
     for place, name in enumerate(header):
         if name not in COLUMNS:
-            raise ParameterError(
-                f"{path}, line {lines[0][0]}: the column {name!r} is not known. {nearest(name, COLUMNS)}"
-            )
+            raise ParameterError(f"{path}, line {first}: the column {name!r} is not known. {nearest(name, COLUMNS)}")
         if name in header[:place]:
-            raise ParameterError(f"{path}, line {lines[0][0]}: the column {name} stands there twice. Remove one.")
+            raise ParameterError(f"{path}, line {first}: the column {name} stands there twice. Remove one.")
     if "station_m" not in header or len(header) < 2:
-        raise ParameterError(
-            f"{path}, line {lines[0][0]}: needed are the column station_m and one or more others. Add it."
-        )
+        raise ParameterError(f"{path}, line {first}: needed are the column station_m and one or more others. Add it.")
     rows = [_row(path, line, header, cells) for line, cells in lines[1:]]
     columns = dict(zip(header, np.array(rows).T, strict=True))
-    _require_falling(path, columns["station_m"], [line for line, _ in lines[1:]])
-    return {name: StationTable(columns["station_m"], column) for name, column in columns.items()}
+    numbers = [line for line, _ in lines[1:]]
+    station = columns["station_m"]  # in m, as it is
+    _require_falling(path, station, numbers)
+    for name, column in columns.items():
+        places = {f"line {line}, {name}": float(value) for line, value in zip(numbers, column, strict=True)}
+        warn_of_unusual(path, places, COLUMNS[name])
+    return {name: StationTable(station, column * COLUMNS[name].unit) for name, column in columns.items()}
 
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:

@@ -6,10 +6,12 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..errors import OutputError
 from ..files import write_file
 from ..units import DEGREE, MM
-from .file_keys import COLUMNS
+from .file_keys import COLUMNS, RIGID
 
 if TYPE_CHECKING:
     from .ski import Ski
@@ -39,7 +41,7 @@ def write_ski(ski: Ski, path: str | Path) -> None:
 
 
 def _keys_text(ski: Ski, table: str) -> str:
-    values = {
+    values: dict[str, str | float] = {
         "name": ski.name,
         "source": ski.source,
         "table": table,
@@ -49,21 +51,30 @@ def _keys_text(ski: Ski, table: str) -> str:
         "base_bevel_deg": _plain(ski.base_bevel / DEGREE),
         "edge_width_mm": _plain(ski.edge_width / MM),
     }
-    return "".join(f"{key} = {_toml(value)}\n" for key, value in values.items())
+    if not ski.source.strip():
+        del values["source"]
+    rigid = "rigid = true\n" if _is_rigid(ski) else ""
+    return "".join(f"{key} = {_toml(value)}\n" for key, value in values.items()) + rigid
 
 
 def _table_text(ski: Ski) -> str:
-    tables = (
-        ski.station,
-        ski.width,
-        ski.base_height,
-        ski.bending_stiffness,
-        ski.torsional_stiffness,
-        ski.mass_per_length,
-    )
-    columns = [table / key.unit for table, key in zip(tables, COLUMNS.values(), strict=True)]
+    tables = {
+        "station_m": ski.station,
+        "width_mm": ski.width,
+        "base_height_mm": ski.base_height,
+        "EI_N_m2": ski.bending_stiffness,
+        "GJ_N_m2": ski.torsional_stiffness,
+        "mass_per_length_kg_per_m": ski.mass_per_length,
+    }
+    if _is_rigid(ski):
+        del tables["EI_N_m2"], tables["GJ_N_m2"]
+    columns = [table / COLUMNS[name].unit for name, table in tables.items()]
     rows = (",".join(f"{value:.15g}" for value in row) for row in zip(*columns, strict=True))
-    return "\n".join([",".join(COLUMNS), *rows, ""])
+    return "\n".join([",".join(tables), *rows, ""])
+
+
+def _is_rigid(ski: Ski) -> bool:
+    return bool(np.all(ski.bending_stiffness == RIGID) and np.all(ski.torsional_stiffness == RIGID))
 
 
 def _plain(value: float) -> float:
