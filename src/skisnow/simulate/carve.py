@@ -1,8 +1,8 @@
 """A ski in snow under a load: flat or edged, at rest or carving steadily.
 
-The ski is held at the boot with a given edge angle. A load along the snow normal presses it, and in a balanced turn the snow's
-side force is load × tan ϑ, so that the whole reaction is normal to the base under the boot. The edge is held: whether
-the snow can hold it is a result (`Equilibrium.holds`), not part of the balance.
+The ski is held at the boot with a given edge angle. A load along the snow normal presses it, and in a balanced turn the
+snow's side force is load × tan ϑ, so that the whole reaction is normal to the base under the boot. The edge is held:
+whether the snow can hold it is a result (`Equilibrium.holds`), not part of the balance.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ SINKING_DEPTH: Final = 0.30
 """Edge depth (m) beyond which a ski counts as swallowed: no balance above it (Choice)."""
 GREATEST_EDGE_ANGLE: Final = math.radians(85.0)
 LARGE_SLOPE: Final = 0.35
-"""Slope of the bent ski, and twist (rad), beyond which small-deflection beams no longer hold (Choice: 6 % in the cosine)."""
+"""Slope of the bent ski, and twist (rad), beyond which beams of small deflection fail (Choice: 6 % in the cosine)."""
 _MOST_PATHS: Final = 40
 _PATH_TOLERANCE: Final = 1e-6  # relative change of the radius
 
 REMEDIES: Final[dict[Outcome, str]] = {
     "equilibrium": "",
-    "slips": "the snow cannot hold the side force: less edge angle or load, or a stronger snow; the numbers are those of an edge "
-    "held by something else",
+    "slips": "the snow cannot hold the side force: less edge angle or load, or stronger snow; the numbers are those of "
+    "an edge held by something else",
     "sinks": f"no balance above {SINKING_DEPTH * 1e2:.0f} cm: the snow is too soft for this load",
-    "bridges": "the ski stands on separate pieces, or not under the boot: more load or a softer ski would close the gap",
+    "bridges": "the ski stands on separate pieces, or not under the boot: more load or a softer ski closes the gap",
     "not_converged": "no equilibrium was found: try a smaller unloading ratio, more elements or a lower edge angle",
 }
 """What to do about an outcome, in words."""
@@ -70,7 +70,10 @@ class Equilibrium:
     turn_radius_chord
         Radius of the circle through the edge line at the boot and at both ends of the contact (m).
     contact_length
-        Between the first and the last place that bears (m).
+        Between the first and the last place at which the edge is below the undisturbed surface (m): there it meets
+        snow or its groove, and can hold side force.
+    bearing_length
+        Of the places that carry force (m): in a groove that does not spring back, parts of the contact carry none.
     afterbody_depth_ratio
         Mean edge depth of the contact behind the boot over that before it.
     station
@@ -101,6 +104,7 @@ class Equilibrium:
     turn_radius_boot: float | None
     turn_radius_chord: float | None
     contact_length: float | None
+    bearing_length: float | None
     afterbody_depth_ratio: float | None
     station: FloatArray
     edge_depth: FloatArray | None
@@ -147,8 +151,8 @@ def carve(
     side_force_bends
         Whether the side force, too, bends and twists the ski (it does: the part sin ϑ of it is normal to the base).
     groove
-        "edge": the groove of the forebody lies under the edge of the afterbody. "path": it lies on the circle through the
-        edge line at the boot and 0.4 m before and behind, and the afterbody's edge beside it by what its edge line differs.
+        "edge": the groove of the forebody lies under the edge of the afterbody. "path": it lies on the circle through
+        the edge line at the boot and 0.4 m before and behind, and each edge beside it by what its edge line differs.
     twists
         Whether the ski twists (GJ) or keeps its edge angle everywhere.
     elements
@@ -161,8 +165,9 @@ def carve(
 
     Notes
     -----
-    The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight is left
-    out. The side force draws the same share of the shear strength everywhere along the edge (Choice): τ e per length.
+    The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight
+    is left out. The side force draws the same share of the shear strength everywhere along the edge (Choice): τ e per
+    length.
     """
     _require(edge_angle, load, unloading_ratio, moment)
     if snow.failure_shear_stress is None:
@@ -260,19 +265,19 @@ def _described(model: ClampedSki, conditions: Conditions, snow: SnowProperties, 
     sinks = solution.converged and float(np.max(solution.edge_depth)) > SINKING_DEPTH
     if not solution.converged or sinks:
         outcome: Outcome = "sinks" if sinks else "not_converged"
-        nothing = (None,) * 7
+        nothing = (None,) * 8
         return Equilibrium(outcome, REMEDIES[outcome], *nothing, station, *(None,) * 7, (), solution.iterations)
     line = EdgeLine(model, conditions.edge_angle, solution)
     weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
-    loaded = force > 0.0
+    below = depth > 0.0
     limit = (
         None
         if snow.failure_shear_stress is None
         else snow.failure_shear_stress * float(weight @ np.maximum(depth, 0.0))
     )
     holds = True if conditions.side_force == 0.0 else limit is not None and conditions.side_force <= limit
-    outcome = "slips" if not holds else "bridges" if _bridges(station, loaded) else "equilibrium"
-    ends = line.contact_ends(depth, loaded)
+    outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
+    ends = line.contact_ends(depth)
     return Equilibrium(
         outcome=outcome,
         remedy=REMEDIES[outcome],
@@ -282,7 +287,8 @@ def _described(model: ClampedSki, conditions: Conditions, snow: SnowProperties, 
         turn_radius_boot=line.radius_at_boot(),
         turn_radius_chord=line.radius_over(*ends),
         contact_length=ends[0] - ends[1],
-        afterbody_depth_ratio=_depth_ratio(station, weight, depth, loaded),
+        bearing_length=float(weight[force > 0.0].sum()),
+        afterbody_depth_ratio=_depth_ratio(station, weight, depth),
         station=station,
         edge_depth=depth,
         force_per_length=force,
@@ -296,20 +302,18 @@ def _described(model: ClampedSki, conditions: Conditions, snow: SnowProperties, 
     )
 
 
-def _bridges(station: FloatArray, loaded: npt.NDArray[np.bool_]) -> bool:
-    pieces = int(loaded[0]) + int(np.count_nonzero(np.diff(loaded.astype(int)) == 1))
-    bearing = station[loaded]
-    return pieces != 1 or not bearing[-1] <= 0.0 <= bearing[0]
+def _bridges(station: FloatArray, below: npt.NDArray[np.bool_]) -> bool:
+    pieces = int(below[0]) + int(np.count_nonzero(np.diff(below.astype(int)) == 1))
+    contact = station[below]
+    return pieces != 1 or not contact[-1] <= 0.0 <= contact[0]
 
 
-def _depth_ratio(
-    station: FloatArray, weight: FloatArray, depth: FloatArray, loaded: npt.NDArray[np.bool_]
-) -> float | None:
-    before, behind = loaded & (station > 0.0), loaded & (station < 0.0)
+def _depth_ratio(station: FloatArray, weight: FloatArray, depth: FloatArray) -> float | None:
+    before, behind = (depth > 0.0) & (station > 0.0), (depth > 0.0) & (station < 0.0)
     if not (before.any() and behind.any()):
         return None
     mean_before, mean_behind = (float(weight[part] @ depth[part] / weight[part].sum()) for part in (before, behind))
-    return mean_behind / mean_before if mean_before > 0.0 else None
+    return mean_behind / mean_before
 
 
 def _warnings(line: EdgeLine) -> tuple[str, ...]:

@@ -1,7 +1,8 @@
 """Snow pressure across one section of the base, integrated in closed form.
 
-Across the ski the depth of the base and the depth of the groove are straight lines between break points, and the pressure
-law is piecewise linear, so the force per length of ski is exact: no points across the ski, no error at the waterline.
+Across the ski the depth of the base and the depth of the groove are straight lines between break points, and the
+pressure law is piecewise linear, so the force per length of ski is exact: no points across the ski, no error at the
+waterline.
 
 The point law (hypoplastic): p = H_V ε on virgin snow, ε ≥ g, with g the deepest this place has ever been pushed;
 p = max(0, H_V g - k_u (g - ε)) in the groove. Both in one line: p = max(0, H_V ε - (k_u - H_V) max(g - ε, 0)).

@@ -1,8 +1,9 @@
 """Forces and tangents of a clamped ski in snow, station by station from tip to tail.
 
-Unknowns: the beam's degrees of freedom u; as border the depth of the boot b₀ (m), its slope along the ski b₁, and the shear
-stress τ (N/m²) that the edge draws from the snow; and, one pair for each station whose groove carries a station behind it,
-the edge depth and twist of that station, so that Newton's method sees how the afterbody hangs on the forebody's groove.
+Unknowns: the beam's degrees of freedom u; as border the depth of the boot b₀ (m), its slope along the ski b₁, and the
+shear stress τ (N/m²) that the edge draws from the snow; and, one pair for each station whose groove carries a station
+behind it, the edge depth and twist of that station, so that Newton's method sees how the afterbody hangs on the
+forebody's groove.
 
 A section at the station s (positive forward) has the depth d = b₀ + b₁ s - cos ϑ (h + w) of its middle, the edge angle
 ϑ + φ and the edge depth e = d + (W/2) sin(ϑ + φ). ξ is the distance from the edge in the snow surface.
@@ -16,6 +17,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...ski.beam.banded import HALF_BANDWIDTH
 from ..contact.strip import SUMS, add_interval
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -62,7 +64,7 @@ class Conditions(NamedTuple):
 
 
 class System(NamedTuple):
-    """The linearised equations: banded matrix, border columns and rows, corner, residuals; and what each station feels."""
+    """The linearised equations: banded matrix, border, residuals; and what each station feels."""
 
     matrix: FloatArray  # (n, 11)
     columns: FloatArray  # (p, n), transposed
@@ -72,7 +74,6 @@ class System(NamedTuple):
     border_residual: FloatArray  # (p,)
     depth: FloatArray  # (m,) edge depth e
     force: FloatArray  # (m,) snow force per length along the snow normal
-    moment: FloatArray  # (m,) twisting moment per length of that force
     used: IntArray  # (1,) border unknowns in use
 
 
@@ -88,7 +89,6 @@ def new_system(size: int, stations: int) -> System:
         np.zeros(border),
         np.zeros(stations),
         np.zeros(stations),
-        np.zeros(stations),
         np.zeros(1, np.int64),
     )
 
@@ -96,14 +96,14 @@ def new_system(size: int, stations: int) -> System:
 class Groove(NamedTuple):
     """What the stations ahead have left, and which of them did it.
 
-    Following the edge: the greatest depth at each place ξ across, counted from the edge. Following the path: the outline's
-    steps, each from its left end outwards as deep as one station's base would reach.
+    Following the edge: the greatest depth at each place ξ across, counted from the edge. Following the path: the
+    outline's steps, each from its left end outwards as deep as one station's base would reach.
     """
 
     left: FloatArray
     depth: FloatArray
     source: IntArray
-    count: IntArray  # (1,)
+    steps: IntArray  # (1,)
 
 
 class Linked(NamedTuple):
@@ -111,22 +111,37 @@ class Linked(NamedTuple):
 
     station: IntArray  # (m,)
     column: IntArray  # (m,) border unknown of each station, 0 where not linked
-    count: IntArray  # (1,)
+    known: IntArray  # (1,)
+
+
+class Section(NamedTuple):
+    """One section of the ski in the snow."""
+
+    half: float  # half its width
+    sine: float
+    cosine: float
+    tangent: float  # of its own edge angle, twist included
+    corner: float  # depth that the edge would have without a bevel
+    depth: float  # of the edge
+    reach: float  # of the base across, in the snow surface
+    strip: float  # width of the bevelled strip
+    rise: float  # of the strip against the base, per length
 
 
 @numba.njit(cache=True, error_model="numpy", inline="always")
-def _base_depth(xi: float, corner: float, tangent: float, strip: float, rise: float, cosine: float) -> float:
+def _base_depth(xi: float, section: Section) -> float:
     """Depth ε of the base at ξ (m): a straight line, but for the bevelled strip along the edge."""
-    return corner - xi * tangent - max(0.0, strip - xi / cosine) * rise
+    bevel = max(0.0, section.strip - xi / section.cosine) * section.rise
+    return section.corner - xi * section.tangent - bevel
 
 
 @numba.njit(cache=True, error_model="numpy")
 def _column_of(linked: Linked, source: int) -> int:
     """First border unknown of a source station; links it if it is new."""
     if linked.column[source] == 0:
-        linked.station[linked.count[0]] = source
-        linked.column[source] = BORDER + 2 * linked.count[0]
-        linked.count[0] += 1
+        linked.station[linked.known[0]] = source
+        linked.column[source] = BORDER + 2 * linked.known[0]
+        linked.known[0] += 1
     return linked.column[source]
 
 
@@ -142,48 +157,40 @@ def _link(pulls: FloatArray, column: int, xi: float, square: float, force: float
 
 @numba.njit(cache=True, error_model="numpy")
 def _across_following_edge(
-    sums: FloatArray, pulls: FloatArray, linked: Linked, groove: Groove, place: FloatArray, reach: float,
-    corner: float, tangent: float, strip: float, rise: float, cosine: float, hardness: float, excess: float,
-) -> None:  # fmt: skip
+    sums: FloatArray,
+    pulls: FloatArray,
+    linked: Linked,
+    groove: Groove,
+    place: FloatArray,
+    section: Section,
+    conditions: Conditions,
+) -> None:
     """Add up a section over the places at which the groove is kept."""
-    square = 1.0 + tangent * tangent
+    square = 1.0 + section.tangent * section.tangent
     for k in range(len(place) - 1):
-        start = place[k]
-        length = min(place[k + 1], reach) - start
+        start, spacing = place[k], place[k + 1] - place[k]
+        length = min(place[k + 1], section.reach) - start
         if length <= 0.0:
             break
-        depth0 = _base_depth(start, corner, tangent, strip, rise, cosine)
-        depth1 = _base_depth(start + length, corner, tangent, strip, rise, cosine)
+        depth0, depth1 = _base_depth(start, section), _base_depth(start + length, section)
         if depth0 <= 0.0 and depth1 <= 0.0:
             continue
-        share = length / (place[k + 1] - start)
         groove0 = groove.depth[k]
-        groove1 = groove0 + share * (groove.depth[k + 1] - groove0)
+        groove1 = groove0 + length / spacing * (groove.depth[k + 1] - groove0)
         sums[5:] = 0.0
-        add_interval(sums, start, length, depth0, depth1, groove0, groove1, hardness, excess)
+        add_interval(sums, start, length, depth0, depth1, groove0, groove1, conditions.hardness, conditions.excess)
         if sums[5] != 0.0:
-            spacing = place[k + 1] - start
             far, far_moment = (sums[6] - start * sums[5]) / spacing, (sums[7] - start * sums[6]) / spacing
-            near = _column_of(linked, groove.source[k])
-            _link(pulls, near, start, square, sums[5] - far, sums[6] - far_moment)
-            next_one = _column_of(linked, groove.source[k + 1])
-            _link(pulls, next_one, place[k + 1], square, far, far_moment)
+            near_column, far_column = _column_of(linked, groove.source[k]), _column_of(linked, groove.source[k + 1])
+            _link(pulls, near_column, start, square, sums[5] - far, sums[6] - far_moment)
+            _link(pulls, far_column, place[k + 1], square, far, far_moment)
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _pass_along_edge(
-    groove: Groove,
-    place: FloatArray,
-    station: int,
-    corner: float,
-    tangent: float,
-    strip: float,
-    rise: float,
-    cosine: float,
-) -> None:
+def _pass_along_edge(groove: Groove, place: FloatArray, station: int, section: Section) -> None:
     """Deepen the groove where this station lies deeper."""
     for k in range(len(place)):
-        depth = _base_depth(place[k], corner, tangent, strip, rise, cosine)
+        depth = _base_depth(place[k], section)
         if depth >= groove.depth[k]:
             groove.depth[k] = depth
             groove.source[k] = station
@@ -191,52 +198,50 @@ def _pass_along_edge(
 
 @numba.njit(cache=True, error_model="numpy")
 def _across_following_path(
-    sums: FloatArray, pulls: FloatArray, linked: Linked, groove: Groove, offset: float, reach: float,
-    corner: float, tangent: float, strip: float, rise: float, cosine: float, hardness: float, excess: float,
-) -> None:  # fmt: skip
+    sums: FloatArray,
+    pulls: FloatArray,
+    linked: Linked,
+    groove: Groove,
+    offset: float,
+    section: Section,
+    conditions: Conditions,
+) -> None:
     """Add up a section over the steps of the groove's outline, whose cross-section is taken parallel to the base."""
     low = 0.0
-    bevel_end = strip * cosine
-    for piece in range(groove.count[0] + 1):
-        high = reach
-        if piece < groove.count[0]:
-            high = min(reach, max(low, groove.left[piece] + offset))
+    bevel_end = section.strip * section.cosine
+    for piece in range(groove.steps[0] + 1):
+        high = section.reach
+        if piece < groove.steps[0]:
+            high = min(high, max(low, groove.left[piece] + offset))
         deeper = FAR_ABOVE
         if piece > 0:
-            deeper = groove.depth[piece - 1] + (groove.left[piece - 1] + offset) * tangent - corner
+            deeper = groove.depth[piece - 1] + (groove.left[piece - 1] + offset) * section.tangent - section.corner
         sums[5:] = 0.0
-        for half in range(2):
-            start, end = (low, min(high, bevel_end)) if half == 0 else (max(low, bevel_end), high)
+        for bevelled in range(2):
+            start, end = (low, min(high, bevel_end)) if bevelled == 0 else (max(low, bevel_end), high)
             if end > start:
-                depth0 = _base_depth(start, corner, tangent, strip, rise, cosine)
-                depth1 = _base_depth(end, corner, tangent, strip, rise, cosine)
+                depth0, depth1 = _base_depth(start, section), _base_depth(end, section)
+                groove0, groove1 = depth0 + deeper, depth1 + deeper
                 add_interval(
-                    sums, start, end - start, depth0, depth1, depth0 + deeper, depth1 + deeper, hardness, excess
+                    sums, start, end - start, depth0, depth1, groove0, groove1, conditions.hardness, conditions.excess
                 )
         if sums[5] != 0.0:
-            column = _column_of(linked, groove.source[piece - 1])
-            _link(pulls, column, 0.0, 0.0, sums[5], sums[6])
+            _link(pulls, _column_of(linked, groove.source[piece - 1]), 0.0, 0.0, sums[5], sums[6])
         low = max(low, high)
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _pass_along_path(groove: Groove, offset: float, station: int, corner: float, tangent: float) -> None:
+def _pass_along_path(groove: Groove, offset: float, station: int, section: Section) -> None:
     """Put this station's base into the outline: it covers the steps to its right that are less deep."""
-    left = -offset
-    level = corner + left * tangent
-    steps = groove.count[0]
-    kept = 0
-    covered = False
-    for k in range(steps):
-        old = groove.depth[k] + groove.left[k] * tangent
-        if groove.left[k] <= left and old > level:
-            covered = True
-        if groove.left[k] < left or old > level:
-            groove.left[kept], groove.depth[kept], groove.source[kept] = (
-                groove.left[k],
-                groove.depth[k],
-                groove.source[k],
-            )
+    left, tangent = -offset, section.tangent
+    level = section.corner + left * tangent
+    kept, covered = 0, False
+    for k in range(groove.steps[0]):
+        deeper = groove.depth[k] + groove.left[k] * tangent > level
+        covered = covered or (deeper and groove.left[k] <= left)
+        if deeper or groove.left[k] < left:
+            groove.left[kept], groove.depth[kept] = groove.left[k], groove.depth[k]
+            groove.source[kept] = groove.source[k]
             kept += 1
     if not covered and kept < MOST_STEPS:
         k = kept
@@ -244,9 +249,9 @@ def _pass_along_path(groove: Groove, offset: float, station: int, corner: float,
             groove.left[k], groove.depth[k] = groove.left[k - 1], groove.depth[k - 1]
             groove.source[k] = groove.source[k - 1]
             k -= 1
-        groove.left[k], groove.depth[k], groove.source[k] = left, corner, station
+        groove.left[k], groove.depth[k], groove.source[k] = left, section.corner, station
         kept += 1
-    groove.count[0] = kept
+    groove.steps[0] = kept
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -270,9 +275,9 @@ def _start(stiffness: FloatArray, u: FloatArray, out: System) -> None:
 
 @numba.njit(cache=True, error_model="numpy")
 def _link_rows(sections: Sections, conditions: Conditions, u: FloatArray, linked: Linked, out: System) -> None:
-    """The equations of the linked stations: their unknowns are the edge depth and twist that beam and boot give them."""
+    """The equations of the linked stations: their unknowns are what beam and boot give them, edge depth and twist."""
     cosine = np.cos(conditions.edge_angle)
-    for k in range(linked.count[0]):
+    for k in range(linked.known[0]):
         i, c = linked.station[k], BORDER + 2 * k
         phi = 0.0
         for a in range(6):
@@ -292,115 +297,174 @@ def _link_rows(sections: Sections, conditions: Conditions, u: FloatArray, linked
                 out.rows[c + 1, j] -= twisted
 
 
+class Load(NamedTuple):
+    """What the snow does to a section, per length of ski, and how it grows with depth, twist and τ."""
+
+    normal: float  # force normal to the base
+    moment: float  # growth of the edge angle
+    normal_by_depth: float
+    normal_by_twist: float
+    normal_by_stress: float
+    moment_by_depth: float
+    moment_by_twist: float
+    moment_by_stress: float
+    force: float  # along the snow normal
+    force_by_depth: float
+    force_by_twist: float
+    bite: float  # depth of the edge where it is below the surface
+
+
+@numba.njit(cache=True, error_model="numpy", inline="always")
+def _section(
+    sections: Sections, conditions: Conditions, i: int, u: FloatArray, border: FloatArray, boot_cosine: float
+) -> Section:
+    deflection, phi = 0.0, 0.0
+    for k in range(6):
+        j = sections.dof[i, k]
+        if j >= 0:
+            deflection += sections.deflection[i, k] * u[j]
+            phi += sections.twist[i, k] * u[j] * conditions.twists
+    angle = conditions.edge_angle + phi
+    sine, cosine = np.sin(angle), np.cos(angle)
+    half = 0.5 * sections.width[i]
+    height = boot_cosine * (sections.base_height[i] + deflection)
+    corner = border[0] + border[1] * sections.station[i] - height + half * sine
+    strip = conditions.bevel_width if conditions.bevel > 0.0 else 0.0
+    rise = sine - np.sin(angle - conditions.bevel)
+    return Section(half, sine, cosine, sine / cosine, corner, corner - strip * rise, 2.0 * half * cosine, strip, rise)
+
+
+@numba.njit(cache=True, error_model="numpy", inline="always")
+def _load(
+    section: Section, conditions: Conditions, sums: FloatArray, stress: float, sine: float, cosine: float
+) -> Load:
+    """Combine the snow's force along its normal, from the sums across, with the shear stress that the edge draws.
+
+    The force along the snow normal turns the section about its middle, with the lever W/2 cos at the edge and less
+    inwards; the shear τ e acts at the edge. `sine` and `cosine` are those of the boot's edge angle.
+    """
+    lever, square = section.half * section.cosine, 1.0 + section.tangent * section.tangent
+    force, moment = sums[0], sums[1] - lever * sums[0]
+    force_d, force_phi = sums[2], lever * sums[2] - square * sums[3]
+    moment_d = sums[3] - lever * sums[2]
+    moment_phi = lever * sums[3] - square * sums[4] - lever * force_phi + section.half * section.sine * sums[0]
+    held = 1.0 if section.depth > 0.0 else 0.0
+    bite = held * section.depth
+    up = conditions.side_force_bends * sine
+    turn, turn_phi = -conditions.side_force_bends * section.half * section.sine, -conditions.side_force_bends * lever
+    return Load(
+        cosine * force + up * stress * bite,
+        moment + turn * stress * bite,
+        cosine * force_d + up * stress * held,
+        cosine * force_phi + up * stress * held * lever,
+        up * bite,
+        moment_d + turn * stress * held,
+        moment_phi + (turn * held * lever + turn_phi * bite) * stress,
+        turn * bite,
+        force,
+        force_d,
+        force_phi,
+        bite,
+    )
+
+
+@numba.njit(cache=True, error_model="numpy", inline="always")
+def _add_to_border(out: System, load: Load, weight: float, s: float, stress: float) -> None:
+    right, corner = out.border_residual, out.corner
+    held = 1.0 if load.bite > 0.0 else 0.0
+    right[0] += weight * load.force
+    right[1] += weight * load.force * s
+    right[2] += weight * stress * load.bite
+    corner[0, 0] += weight * load.force_by_depth
+    corner[0, 1] += weight * load.force_by_depth * s
+    corner[1, 0] += weight * load.force_by_depth * s
+    corner[1, 1] += weight * load.force_by_depth * s * s
+    corner[2, 0] += weight * stress * held
+    corner[2, 1] += weight * stress * held * s
+    corner[2, 2] += weight * load.bite
+
+
+@numba.njit(cache=True, error_model="numpy", inline="always")
+def _add_to_beam(
+    out: System, sections: Sections, load: Load, i: int, stress: float, cosine: float, lever: float, twists: float
+) -> None:
+    """Add the station's load to the beam's equations, and what beam and border do to it to the tangent."""
+    weight, s = sections.weight[i], sections.station[i]
+    held = stress if load.bite > 0.0 else 0.0
+    for a in range(6):
+        j = sections.dof[i, a]
+        if j < 0:
+            continue
+        bends, turns = sections.deflection[i, a], sections.twist[i, a] * twists
+        w, t = weight * bends, weight * turns
+        out.residual[j] -= w * load.normal + t * load.moment
+        by_depth = w * load.normal_by_depth + t * load.moment_by_depth
+        by_twist = w * load.normal_by_twist + t * load.moment_by_twist
+        out.columns[0, j] -= by_depth
+        out.columns[1, j] -= by_depth * s
+        out.columns[2, j] -= w * load.normal_by_stress + t * load.moment_by_stress
+        slope = weight * (load.force_by_twist * turns - load.force_by_depth * cosine * bends)
+        out.rows[0, j] += slope
+        out.rows[1, j] += slope * s
+        out.rows[2, j] += weight * held * (lever * turns - cosine * bends)
+        for b in range(6):
+            jb = sections.dof[i, b]
+            if jb >= 0:
+                by_b = by_twist * sections.twist[i, b] * twists - by_depth * cosine * sections.deflection[i, b]
+                out.matrix[j, jb - j + HALF_BANDWIDTH] -= by_b
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _add_pulls(
+    out: System, sections: Sections, pulls: FloatArray, used: int, i: int, cosine: float, lever: float, twists: float
+) -> None:
+    """Add what a deeper groove, cut by the linked stations, does to this station's load."""
+    weight, s = sections.weight[i], sections.station[i]
+    for k in range(used):
+        by_force, by_moment = pulls[k, 0], pulls[k, 1] - lever * pulls[k, 0]
+        if by_force == 0.0 and by_moment == 0.0:
+            continue
+        c = BORDER + k
+        out.corner[0, c] += weight * by_force
+        out.corner[1, c] += weight * by_force * s
+        for a in range(6):
+            j = sections.dof[i, a]
+            if j >= 0:
+                normal, turn = cosine * sections.deflection[i, a] * by_force, sections.twist[i, a] * twists * by_moment
+                out.columns[c, j] -= weight * (normal + turn)
+
+
 @numba.njit(cache=True, error_model="numpy")
 def assemble(
     sections: Sections, conditions: Conditions, stiffness: FloatArray, u: FloatArray, border: FloatArray, out: System
 ) -> None:
     """Fill `out` at the state (u, border)."""
     _start(stiffness, u, out)
-    matrix, columns, rows, corner, right = out.matrix, out.columns, out.rows, out.corner, out.border_residual
-    boot_sine, boot_cosine = np.sin(conditions.edge_angle), np.cos(conditions.edge_angle)
-    hardness, excess = conditions.hardness, conditions.excess
-    bends, stress = conditions.side_force_bends, border[2]
-    strip = conditions.bevel_width if conditions.bevel > 0.0 else 0.0
+    sine, cosine, stress = np.sin(conditions.edge_angle), np.cos(conditions.edge_angle), border[2]
+    n = len(sections.station)
     groove = Groove(
         np.zeros(MOST_STEPS), np.full(MOST_STEPS, FAR_ABOVE), np.zeros(MOST_STEPS, np.int64), np.zeros(1, np.int64)
     )
-    n_stations = len(sections.station)
-    linked = Linked(np.zeros(n_stations, np.int64), np.zeros(n_stations, np.int64), np.zeros(1, np.int64))
-    sums, pulls = np.zeros(SUMS), np.zeros((2 * n_stations, 2))
-    local_d, local_phi = np.zeros(6), np.zeros(6)
-
-    for i in range(n_stations):
-        s, weight, half = sections.station[i], sections.weight[i], 0.5 * sections.width[i]
-        deflection, phi = 0.0, 0.0
-        for k in range(6):
-            j = sections.dof[i, k]
-            local_d[k], local_phi[k] = 0.0, 0.0
-            if j >= 0:
-                deflection += sections.deflection[i, k] * u[j]
-                phi += sections.twist[i, k] * u[j] * conditions.twists
-                local_d[k] = -boot_cosine * sections.deflection[i, k]
-                local_phi[k] = sections.twist[i, k] * conditions.twists
-        angle = conditions.edge_angle + phi
-        sine, cosine = np.sin(angle), np.cos(angle)
-        tangent, square = sine / cosine, 1.0 / (cosine * cosine)
-        rise = sine - np.sin(angle - conditions.bevel)
-        edge = border[0] + border[1] * s - boot_cosine * (sections.base_height[i] + deflection) + half * sine
-        depth = edge - strip * rise
-        reach = 2.0 * half * cosine
-
+    linked = Linked(np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(1, np.int64))
+    sums, pulls = np.zeros(SUMS), np.zeros((2 * n, 2))
+    for i in range(n):
+        section = _section(sections, conditions, i, u, border, cosine)
         sums[:] = 0.0
-        pulls[: 2 * linked.count[0]] = 0.0
+        pulls[: 2 * linked.known[0]] = 0.0
         if conditions.groove_follows_path > 0.0:
-            offset = sections.offset[i]
-            _across_following_path(
-                sums, pulls, linked, groove, offset, reach, edge, tangent, strip, rise, cosine, hardness, excess
-            )
-            _pass_along_path(groove, offset, i, edge, tangent)
+            _across_following_path(sums, pulls, linked, groove, sections.offset[i], section, conditions)
+            _pass_along_path(groove, sections.offset[i], i, section)
         else:
-            place = sections.place
-            _across_following_edge(
-                sums, pulls, linked, groove, place, reach, edge, tangent, strip, rise, cosine, hardness, excess
-            )
-            _pass_along_edge(groove, place, i, edge, tangent, strip, rise, cosine)
-
-        # the force along the snow normal turns the section about its middle: lever half·cos at the edge, less inwards
-        lever = half * cosine
-        force, moment = sums[0], sums[1] - lever * sums[0]
-        force_d, force_phi = sums[2], lever * sums[2] - square * sums[3]
-        moment_d = sums[3] - lever * sums[2]
-        moment_phi = lever * sums[3] - square * sums[4] - lever * force_phi + half * sine * sums[0]
-        out.depth[i], out.force[i], out.moment[i] = depth, force, moment
-        for k in range(2 * linked.count[0]):
-            by_force, by_moment = pulls[k, 0], pulls[k, 1] - lever * pulls[k, 0]
-            if by_force != 0.0 or by_moment != 0.0:
-                c = BORDER + k
-                corner[0, c] += weight * by_force
-                corner[1, c] += weight * by_force * s
-                for a in range(6):
-                    j = sections.dof[i, a]
-                    if j >= 0:
-                        columns[c, j] += weight * (local_d[a] * by_force - local_phi[a] * by_moment)
-
-        # the edge draws the shear stress τ over its depth; what of it is normal to the base bends and twists too
-        held = 1.0 if depth > 0.0 else 0.0
-        bite = held * depth
-        up, turn = bends * boot_sine, -bends * half * sine
-        q, m = boot_cosine * force + up * stress * bite, moment + turn * stress * bite
-        q_d, q_phi = boot_cosine * force_d + up * stress * held, boot_cosine * force_phi + up * stress * held * lever
-        m_d = moment_d + turn * stress * held
-        m_phi = moment_phi + turn * stress * held * lever - bends * lever * stress * bite
-        right[0] += weight * force
-        right[1] += weight * force * s
-        right[2] += weight * stress * bite
-        corner[0, 0] += weight * force_d
-        corner[0, 1] += weight * force_d * s
-        corner[1, 0] += weight * force_d * s
-        corner[1, 1] += weight * force_d * s * s
-        corner[2, 0] += weight * stress * held
-        corner[2, 1] += weight * stress * held * s
-        corner[2, 2] += weight * bite
-        for a in range(6):
-            j = sections.dof[i, a]
-            if j < 0:
-                continue
-            w, t = weight * sections.deflection[i, a], weight * local_phi[a]
-            out.residual[j] -= w * q + t * m
-            columns[0, j] -= w * q_d + t * m_d
-            columns[1, j] -= (w * q_d + t * m_d) * s
-            columns[2, j] -= (w * up + t * turn) * bite
-            slope = force_d * local_d[a] + force_phi * local_phi[a]
-            rows[0, j] += weight * slope
-            rows[1, j] += weight * slope * s
-            rows[2, j] += weight * stress * held * (local_d[a] + lever * local_phi[a])
-            for b in range(6):
-                jb = sections.dof[i, b]
-                if jb >= 0:
-                    by_q, by_m = q_d * local_d[b] + q_phi * local_phi[b], m_d * local_d[b] + m_phi * local_phi[b]
-                    matrix[j, jb - j + 5] -= w * by_q + t * by_m
-    right[0] -= conditions.load
-    right[1] -= conditions.moment
-    right[2] -= conditions.side_force
+            _across_following_edge(sums, pulls, linked, groove, sections.place, section, conditions)
+            _pass_along_edge(groove, sections.place, i, section)
+        load = _load(section, conditions, sums, stress, sine, cosine)
+        lever = section.half * section.cosine
+        out.depth[i], out.force[i] = section.depth, load.force
+        _add_to_border(out, load, sections.weight[i], sections.station[i], stress)
+        _add_to_beam(out, sections, load, i, stress, cosine, lever, conditions.twists)
+        _add_pulls(out, sections, pulls, 2 * linked.known[0], i, cosine, lever, conditions.twists)
+    out.border_residual[0] -= conditions.load
+    out.border_residual[1] -= conditions.moment
+    out.border_residual[2] -= conditions.side_force
     _link_rows(sections, conditions, u, linked, out)
-    out.used[0] = BORDER + 2 * linked.count[0]
+    out.used[0] = BORDER + 2 * linked.known[0]

@@ -41,7 +41,7 @@ class EdgeLine:
         return np.asarray(across + (section.base_height + deflection) * math.sin(self._edge_angle))
 
     def radius_over(self, front: float, rear: float) -> float | None:
-        """Radius (m) of the circle through the edge at `front`, the boot and `rear`; positive where the ends lead inwards.
+        """Radius (m) of the circle through the edge at `front`, the boot and `rear`; positive: the ends lead inwards.
 
         None where the boot is not between them, a station is beyond the ski, or the three lie on a line.
         """
@@ -60,7 +60,7 @@ class EdgeLine:
         radius = self.radius_at_boot()
         if radius is None:
             raise ValueError("a straight edge line has no circle")
-        y_front, y_boot, y_rear = (float(y) for y in self.at([BOOT_REACH, 0.0, -BOOT_REACH]))
+        y_front, y_rear = (float(y) for y in self.at([BOOT_REACH, -BOOT_REACH]))
         heading = math.atan2(y_front - y_rear, 2.0 * BOOT_REACH)
         middle_x, middle_y = 0.0, (y_front + y_rear) / 2.0
         # the centre lies on the chord's normal, on the inner side
@@ -70,16 +70,16 @@ class EdgeLine:
         distance = np.hypot(self.station - centre_x, self.position - centre_y)
         return np.asarray(math.copysign(1.0, radius) * (abs(radius) - distance))
 
-    def contact_ends(self, depth: FloatArray, loaded: npt.NDArray[np.bool_]) -> tuple[float, float]:
-        """Stations (m) of the front and the rear end of what bears: where the depth passes zero, or half way between."""
-        bearing = np.flatnonzero(loaded)
-        return self._end(depth, int(bearing[0]), -1), self._end(depth, int(bearing[-1]), 1)
+    def contact_ends(self, depth: FloatArray) -> tuple[float, float]:
+        """Stations (m) of the front and the rear end of the contact: where the edge depth passes zero."""
+        below = np.flatnonzero(depth > 0.0)
+        return self._end(depth, int(below[0]), -1), self._end(depth, int(below[-1]), 1)
 
     def _end(self, depth: FloatArray, last: int, outwards: int) -> float:
         beyond = last + outwards
         if not 0 <= beyond < len(depth):
             return float(self.station[last])
-        share = depth[last] / (depth[last] - depth[beyond]) if depth[beyond] < 0.0 else 0.5
+        share = depth[last] / (depth[last] - depth[beyond])
         return float(self.station[last] + share * (self.station[beyond] - self.station[last]))
 
     def greatest_slope(self) -> float:

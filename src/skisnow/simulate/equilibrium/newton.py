@@ -1,7 +1,8 @@
 """Newton's method with damping by the natural monotonicity test, on the bordered banded system.
 
-Source of the test: P. Deuflhard (2004), *Newton methods for nonlinear problems*, section 3.3: a step is accepted when the
-simplified Newton correction that follows it is smaller than the step's own. It does not depend on how the equations are scaled.
+Source of the test: P. Deuflhard (2004), *Newton methods for nonlinear problems*, section 3.3: a step is accepted when
+the simplified Newton correction that follows it is smaller than the step's own. It does not depend on how the
+equations are scaled.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 STRESS_AS_DEPTH = 1e-3
 """A change of the shear stress by its whole counts like a change of depth by this (m)."""
 SMALLEST_DAMPING = 1e-4
+FORCE_TOLERANCE = 1e-8
+"""Force left unbalanced, as a share of the load."""
 
 
 class Factored(NamedTuple):
@@ -158,7 +161,8 @@ def newton(
             return False, iteration
         u[:], border[:] = new_u, new_border
         system, spare = spare, system
-        if damping == 1.0 and following < tolerance:
+        balanced = abs(system.border_residual[0]) <= FORCE_TOLERANCE * conditions.load
+        if damping == 1.0 and following < tolerance and balanced:
             assemble(sections, conditions, stiffness, u, border, result)
             return True, iteration + 1
     return False, most

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -11,7 +12,7 @@ import numpy.typing as npt
 
 from ...ski.beam.clamped import ClampedSki
 from ...ski.ski import Ski
-from .assembly import BORDER, Conditions, Sections, System, new_system
+from .assembly import BORDER, Conditions, Sections, new_system
 from .newton import newton
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -22,6 +23,7 @@ RIGID_PLASTIC: Final = 1000.0
 """Unloading ratio that stands for rigid-plastic snow: the groove springs back by a thousandth of its depth."""
 MOST_ITERATIONS: Final = 60
 MOST_STAGES: Final = 40
+SOFTENINGS: Final = (1000.0, 30.0, 3.0)
 _SHALLOWEST_WEDGE: Final = 0.01  # rad; flatter than this the first guess treats the base as flat
 _CONFORMING_SHARE: Final = 0.9  # of the running length that the first guess bends onto the snow
 _CONTACT_SHARE: Final = 0.9  # of the running length that the first guess loads evenly
@@ -55,8 +57,75 @@ class Solution:
     force_per_length: FloatArray
 
 
+class _Search:
+    """Newton's method on one ski, from the state that it has reached."""
+
+    def __init__(self, model: ClampedSki, conditions: Conditions, offset: FloatArray | None) -> None:
+        stations = model.stations
+        n = len(stations.station)
+        self._model, self._conditions = model, conditions
+        self._sections = Sections(
+            stations.station,
+            stations.weight,
+            stations.width,
+            stations.base_height,
+            stations.dof,
+            stations.deflection,
+            stations.twist,
+            _places_across(model, conditions, np.zeros(1)),
+            np.zeros(n) if offset is None else offset,
+        )
+        self._spare = new_system(model.size, n)
+        self.system = new_system(model.size, n)
+        self.iterations = 0
+        self.restart(conditions)
+
+    def restart(self, conditions: Conditions) -> None:
+        """Go back to the first guess for these conditions."""
+        self.u, self.border = _first_guess(self._model, conditions)
+
+    def place_groove(self) -> None:
+        """Keep the groove where the present state has its waterline."""
+        place = _places_across(self._model, self._conditions, self.system.depth)
+        self._sections = self._sections._replace(place=place)
+
+    def reaches(self, conditions: Conditions) -> bool:
+        """Go to the equilibrium under other conditions; stay where it was if that fails."""
+        kept = self.u.copy(), self.border.copy()
+        converged, iterations = newton(
+            self._sections,
+            conditions,
+            self._model.stiffness,
+            self.u,
+            self.border,
+            self.system,
+            self._spare,
+            TOLERANCE,
+            MOST_ITERATIONS,
+        )
+        self.iterations += int(iterations)
+        if not converged:
+            self.u[:], self.border[:] = kept
+        return bool(converged)
+
+    def follows(self, path: Callable[[float], Conditions]) -> bool:
+        """Go along a path of conditions from 0 (where it stands) to 1, in one step or as many as it needs."""
+        reached, stride = 0.0, 1.0
+        for _ in range(MOST_STAGES):
+            target = min(reached + stride, 1.0)
+            if self.reaches(path(target)):
+                if target == 1.0:
+                    return True
+                reached, stride = target, 2.0 * stride
+            else:
+                stride /= 3.0
+        return False
+
+
 def solved(model: ClampedSki, conditions: Conditions, *, offset: FloatArray | None = None) -> Solution:
     """Find the equilibrium of a ski under the conditions.
+
+    Elastic snow first, from there to the steeper unloading; where that fails, all of it on softer snow that hardens.
 
     Parameters
     ----------
@@ -67,78 +136,33 @@ def solved(model: ClampedSki, conditions: Conditions, *, offset: FloatArray | No
     offset
         Of the edge from the path at each station (m), where the groove follows the path; None: 0.
     """
-    stations = model.stations
-    n = len(stations.station)
-    u, border = _first_guess(model, conditions)
-    system, spare = new_system(model.size, n), new_system(model.size, n)
-
-    def sections(place: FloatArray) -> Sections:
-        return Sections(
-            stations.station, stations.weight, stations.width, stations.base_height, stations.dof,
-            stations.deflection, stations.twist, place, np.zeros(n) if offset is None else offset,
-        )  # fmt: skip
-
-    def attempt(at: Sections, case: Conditions) -> tuple[bool, int]:
-        return newton(at, case, model.stiffness, u, border, system, spare, TOLERANCE, MOST_ITERATIONS)
-
-    elastic = conditions._replace(excess=0.0)
-    whole = _places_across(model, elastic, np.zeros(1))
-    converged, iterations = attempt(sections(whole), elastic)
-    if not converged:
-        converged, more = _from_softer_snow(sections(whole), elastic, model, u, border, system, spare)
-        iterations += more
-    if converged and conditions.excess > 0.0:
-        place = _places_across(model, conditions, system.depth)
-        converged, more = _with_memory(sections(place), conditions, model, u, border, system, spare)
-        iterations += more
-    return Solution(converged, iterations, u, *(float(b) for b in border), system.depth, system.force)
+    search = _Search(model, conditions, offset)
+    converged = _loaded(search, conditions) or any(_hardened(search, conditions, share) for share in SOFTENINGS)
+    depth, slope, stress = (float(value) for value in search.border)
+    system = search.system
+    return Solution(converged, search.iterations, search.u, depth, slope, stress, system.depth, system.force)
 
 
-def _from_softer_snow(
-    sections: Sections,
-    conditions: Conditions,
-    model: ClampedSki,
-    u: FloatArray,
-    border: FloatArray,
-    system: System,
-    spare: System,
-) -> tuple[bool, int]:
-    """Harden the snow step by step from a thousandth of its hardness."""
-    u[:], border[:] = _first_guess(model, conditions._replace(hardness=conditions.hardness / 1000.0))
-    converged, iterations = False, 0
-    for share in np.logspace(-3.0, 0.0, 10):
-        case = conditions._replace(hardness=float(share) * conditions.hardness)
-        converged, more = newton(sections, case, model.stiffness, u, border, system, spare, TOLERANCE, MOST_ITERATIONS)
-        iterations += more
-    return converged, iterations
-
-
-def _with_memory(
-    sections: Sections,
-    conditions: Conditions,
-    model: ClampedSki,
-    u: FloatArray,
-    border: FloatArray,
-    system: System,
-    spare: System,
-) -> tuple[bool, int]:
-    """Steepen the unloading from the elastic state to what was asked, at once or in steps of its logarithm."""
+def _loaded(search: _Search, conditions: Conditions) -> bool:
+    """Elastic snow, then memory: the logarithm of the unloading ratio grows from 0."""
+    if not search.reaches(conditions._replace(excess=0.0)):
+        return False
+    if conditions.excess == 0.0:
+        return True
+    search.place_groove()
     goal = math.log1p(conditions.excess / conditions.hardness)
-    reached, stride, iterations = 0.0, goal, 0
-    for _ in range(MOST_STAGES):
-        target = min(reached + stride, goal)
-        case = conditions._replace(excess=conditions.hardness * math.expm1(target))
-        kept_u, kept_border = u.copy(), border.copy()
-        converged, more = newton(sections, case, model.stiffness, u, border, system, spare, TOLERANCE, MOST_ITERATIONS)
-        iterations += more
-        if converged:
-            reached, stride = target, 2.0 * stride
-            if reached == goal:
-                return True, iterations
-        else:
-            u[:], border[:] = kept_u, kept_border
-            stride /= 3.0
-    return False, iterations
+    return search.follows(lambda share: conditions._replace(excess=conditions.hardness * math.expm1(share * goal)))
+
+
+def _hardened(search: _Search, conditions: Conditions, softening: float) -> bool:
+    """The same on softer snow, which is then hardened."""
+
+    def softer(share: float) -> Conditions:
+        factor = softening ** (share - 1.0)
+        return conditions._replace(hardness=factor * conditions.hardness, excess=factor * conditions.excess)
+
+    search.restart(softer(0.0))
+    return _loaded(search, softer(0.0)) and search.follows(softer)
 
 
 def _first_guess(model: ClampedSki, conditions: Conditions) -> tuple[FloatArray, FloatArray]:
@@ -182,7 +206,7 @@ def _ends(ski: Ski) -> tuple[float, float]:
 
 
 def _places_across(model: ClampedSki, conditions: Conditions, edge_depth: FloatArray) -> FloatArray:
-    """Places across the ski at which the groove is kept: about the waterline, and at the bevel's and the base's ends."""
+    """Places across at which the groove is kept: about the waterline, and at the ends of bevel and base."""
     tangent = math.tan(max(conditions.edge_angle, 1e-9))
     reach = float(model.stations.width.max()) * math.cos(conditions.edge_angle)
     waterline = max(float(np.max(edge_depth)), 0.0) / tangent

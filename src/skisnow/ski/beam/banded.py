@@ -1,8 +1,8 @@
 """Banded linear systems of a beam: storage, assembly, LU without pivoting.
 
 Row i of a banded matrix keeps the columns i - 5 … i + 5: two neighbouring nodes with three degrees of freedom each. The
-matrices here are stiffness plus contact tangent (or mass plus steps of them): their symmetric part is positive definite,
-so no pivoting is needed.
+matrices here are stiffness plus contact tangent (or mass plus steps of them): their symmetric part is positive
+definite, so no pivoting is needed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A flexible ski held at the boot: two beams, tip to binding and binding to tail, and the stations that meet the snow."""
+"""A flexible ski held at the boot: two beams, tip to binding and binding to tail, and the stations that meet snow."""
 
 from __future__ import annotations
 
@@ -91,8 +91,8 @@ def clamped(ski: Ski, clamp_length: float, elements: int) -> ClampedSki:
     front, rear = float(ski.station[0]), float(ski.station[-1])
     if not 0.0 <= clamp_length / 2.0 < min(front, -rear):
         raise ParameterError(
-            f"clamp_length is {clamp_length} m; it must be 0 or more and its half less than the distance from boot to tip "
-            f"and to tail ({front:.3f} and {-rear:.3f} m)"
+            f"clamp_length is {clamp_length} m; it must be 0 or more and its half less than the distance from boot to "
+            f"tip and to tail ({front:.3f} and {-rear:.3f} m)"
         )
     if elements < 4:
         raise ParameterError(f"elements is {elements}; a ski needs 4 or more")

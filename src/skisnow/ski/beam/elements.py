@@ -1,8 +1,8 @@
 """Hermite bending and St-Venant torsion elements of a straight beam with stiffness that varies along it.
 
-Degrees of freedom of an element between the nodes a and b: (w_a, w'_a, φ_a, w_b, w'_b, φ_b), w the deflection (m), w' its
-slope, φ the twist (rad). Bending is Euler-Bernoulli with cubic Hermite shape functions, torsion is linear: bending and
-torsion do not couple. Sources: any text on finite elements, Bathe (1996) *Finite element procedures* for one.
+Degrees of freedom of an element between the nodes a and b: (w_a, w'_a, φ_a, w_b, w'_b, φ_b), w the deflection (m), w'
+its slope, φ the twist (rad). Bending is Euler-Bernoulli with cubic Hermite shape functions, torsion is linear: bending
+and torsion do not couple. Sources: any text on finite elements, Bathe (1996) *Finite element procedures* for one.
 """
 
 from __future__ import annotations

@@ -1,0 +1,109 @@
+"""A carved turn as JSON values: SI numbers become the units that the keys name; nothing is rounded, nothing is NaN."""
+
+from __future__ import annotations
+
+import math
+from importlib.metadata import version
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..snow import SnowProperties
+from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from .carve import Equilibrium
+from .carve_answer import CarveAnswer
+from .equilibrium.solve import RIGID_PLASTIC
+
+SCHEMA_VERSION: Final = 1
+
+SCALARS: Final = (
+    "side_force_N",
+    "side_force_limit_N",
+    "turn_radius_boot_m",
+    "turn_radius_chord_m",
+    "contact_length_m",
+    "afterbody_depth_ratio",
+    "residual_force_N",
+    "residual_moment_Nm",
+)
+"""The single numbers of an equilibrium, by their keys."""
+
+
+def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
+    """The JSON of `skisnow carve` for one ski; its JSON Schema is schemas/carve.schema.json."""
+    return {
+        "schema_version": SCHEMA_VERSION,
+        **equilibrium_dict(answer.equilibrium),
+        "inputs": inputs_dict(answer),
+        "snow": _snow_dict(answer.snow),
+        "ski": {
+            "name": answer.ski.name,
+            "source": answer.ski.source,
+            "length_m": answer.ski.length,
+            "mass_kg": answer.ski.mass,
+            "sidecut_radius_of_three_widths_m": _finite(answer.ski.sidecut_radius_of_three_widths),
+            "sidecut_radius_of_edge_line_m": _finite(answer.ski.sidecut_radius_of_edge_line),
+        },
+        "warnings": list(answer.warnings),
+        "provenance": {"skisnow": version("skisnow")},
+    }
+
+
+def equilibrium_dict(equilibrium: Equilibrium) -> dict[str, Any]:
+    """An equilibrium under the keys of the contract; None where a number does not exist."""
+    return {
+        "outcome": equilibrium.outcome,
+        "remedy": equilibrium.remedy,
+        "holds": None if equilibrium.holds is None else bool(equilibrium.holds),
+        "side_force_N": _finite(equilibrium.side_force),
+        "side_force_limit_N": _finite(equilibrium.side_force_limit),
+        "turn_radius_boot_m": _finite(equilibrium.turn_radius_boot),
+        "turn_radius_chord_m": _finite(equilibrium.turn_radius_chord),
+        "contact_length_m": _finite(equilibrium.contact_length),
+        "afterbody_depth_ratio": _finite(equilibrium.afterbody_depth_ratio),
+        "station_m": _numbers(equilibrium.station, 1.0),
+        "edge_depth_mm": _numbers(equilibrium.edge_depth, MM),
+        "force_per_length_N_per_m": _numbers(equilibrium.force_per_length, 1.0),
+        "bending_mm": _numbers(equilibrium.bending, MM),
+        "twist_deg": _numbers(equilibrium.twist, DEGREE),
+        "edge_line_mm": _numbers(equilibrium.edge_line, MM),
+        "residual_force_N": _finite(equilibrium.residual_force),
+        "residual_moment_Nm": _finite(equilibrium.residual_moment),
+        "iterations": int(equilibrium.iterations),
+    }
+
+
+def inputs_dict(answer: CarveAnswer) -> dict[str, Any]:
+    """Every input with the value in force, that of the snow's numbers too; an infinite unloading ratio as computed."""
+    given = answer.question.as_dict()
+    ratio, stress = given["unloading_ratio"], answer.snow.failure_shear_stress
+    return given | {
+        "H_V_N_per_mm3": _in_unit(given["H_V_N_per_mm3"], answer.snow.snow_hardness, N_PER_MM3),
+        "S_f_N_per_mm2": _in_unit(given["S_f_N_per_mm2"], stress, N_PER_MM2),
+        "unloading_ratio": RIGID_PLASTIC if ratio is not None and math.isinf(ratio) else ratio,
+    }
+
+
+def _in_unit(given: float | None, value: float | None, unit: float) -> float | None:
+    """The number as given: there and back over the unit could change its last digit."""
+    return given if given is not None or value is None else value / unit
+
+
+def _snow_dict(snow: SnowProperties) -> dict[str, Any]:
+    def interval(ends: tuple[float, float] | None, unit: float) -> list[float] | None:
+        return None if ends is None else [end / unit for end in ends]
+
+    return {
+        "source": snow.source,
+        "H_V_interval_N_per_mm3": interval(snow.snow_hardness_interval, N_PER_MM3),
+        "S_f_interval_N_per_mm2": interval(snow.failure_shear_stress_interval, N_PER_MM2),
+    }
+
+
+def _finite(value: float | None) -> float | None:
+    return None if value is None or not math.isfinite(value) else float(value)
+
+
+def _numbers(values: npt.NDArray[np.float64] | None, unit: float) -> list[float | None] | None:
+    return None if values is None else [_finite(float(value)) for value in values / unit]
