@@ -65,7 +65,7 @@ class SkiParts:
             The result breaks a rule of `Ski`.
         """
         station = self._grid()
-        width = self.width(station)
+        width, base_height = self.width(station), self.base_height(station)
         mass_per_length = width if self.mass_per_length is None else self.mass_per_length(station)
         if self.mass_per_length is None:
             mass_per_length = width * (self.mass / -np.trapezoid(width, station))
@@ -74,7 +74,7 @@ class SkiParts:
             source=self.source,
             station=station,
             width=width,
-            base_height=self.base_height(station) - self.base_height(np.zeros(1)),
+            base_height=base_height - np.interp(0.0, station[::-1], base_height[::-1]),
             bending_stiffness=self.bending_stiffness(station),
             torsional_stiffness=self.torsional_stiffness(station),
             mass_per_length=mass_per_length,

@@ -1,0 +1,86 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.ski.base_profile import BaseShape
+from skisnow.ski.layout import layout_of_lengths
+
+LAYOUT = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458)
+FRONT, REAR = LAYOUT.contact_points
+
+
+def heights(shape: BaseShape, *stations: float) -> list[float]:
+    return [float(h) for h in shape.height_at(np.array(stations), LAYOUT)]
+
+
+def test_camber_shovel_and_tail_heights() -> None:
+    shape = BaseShape(camber=0.007, shovel_height=0.060, tail_height=0.010)
+    boot, front, rear, tip, tail = heights(shape, 0.0, FRONT, REAR, LAYOUT.tip, LAYOUT.tail)
+    assert boot == 0.0
+    assert (front, rear) == pytest.approx((-0.007, -0.007), abs=1e-15)
+    assert (tip - front, tail - rear) == pytest.approx((0.060, 0.010), abs=1e-15)
+
+
+def test_camber_half_way_to_the_contact_point() -> None:
+    """(1 - 1/4)² = 9/16 of the arch is left, so the base has come down by 7/16 of the camber."""
+    assert heights(BaseShape(camber=0.016), FRONT / 2.0) == pytest.approx([-0.007], abs=1e-15)
+
+
+def test_heights_left_out_are_the_stated_defaults() -> None:
+    tip, tail = heights(BaseShape(), LAYOUT.tip, LAYOUT.tail)
+    assert (tip, tail) == pytest.approx((0.050, 0.008), abs=1e-15)
+
+
+def test_base_has_no_kink_also_with_rocker() -> None:
+    shape = BaseShape(
+        camber=0.005,
+        tip_rocker_length=0.25,
+        tip_rocker_height=0.008,
+        tail_rocker_length=0.1,
+        tail_rocker_height=0.002,
+    )
+    station = np.linspace(LAYOUT.tip, LAYOUT.tail, 100001)
+    slope = np.diff(shape.height_at(station, LAYOUT)) / np.diff(station)
+    # the largest curvature is that of the shovel, below 10 per metre: in steps of 0.016 mm the slope changes by 2e-4
+    assert np.max(np.abs(np.diff(slope))) < 2e-4
+
+
+def test_rocker_draws_the_contact_points_in() -> None:
+    shape = BaseShape(camber=0.004, tip_rocker_length=0.2, tip_rocker_height=0.010)
+    lowest, end = heights(shape, FRONT - 0.2, FRONT)
+    assert end - lowest == pytest.approx(0.010, abs=1e-15)
+    middle = (FRONT - 0.2 + REAR) / 2.0
+    assert heights(shape, middle)[0] - lowest == pytest.approx(0.004, abs=1e-15)
+
+
+def test_boot_away_from_the_middle_is_still_at_zero() -> None:
+    layout = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458, boot_position=-0.1)
+    shape = BaseShape(camber=0.007)
+    at_boot, at_middle = shape.height_at(np.array([0.0, layout.middle]), layout)
+    assert at_boot == 0.0
+    share = (0.1 / 0.698) ** 2
+    assert at_middle == pytest.approx(0.007 * (1.0 - (1.0 - share) ** 2), abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("shape", "named"),
+    [
+        (BaseShape(tip_rocker_length=0.9, tail_rocker_length=0.6), "leave nothing of the running length of 1396.0 mm"),
+        (BaseShape(tip_rocker_height=0.01), "shovel has a height of 10.0 mm but no length"),
+        (BaseShape(tip_rocker_length=0.1, tip_rocker_height=0.03, shovel_height=0.05), "already"),
+    ],
+)
+def test_impossible_bases_are_refused(shape: BaseShape, named: str) -> None:
+    with pytest.raises(ParameterError, match=named):
+        shape.height_at(np.zeros(1), LAYOUT)
+
+
+def test_shovel_height_without_a_shovel_is_refused() -> None:
+    piece = layout_of_lengths(length=0.2, running_length=0.2, sidecut_length=0.2, tail_overhang=0.0)
+    assert np.all(BaseShape().height_at(np.linspace(0.1, -0.1, 5), piece) == 0.0)
+    with pytest.raises(
+        ParameterError, match=r"shovel height is 50\.0 mm, but the running length ends where the ski does"
+    ):
+        BaseShape(shovel_height=0.05).height_at(np.zeros(1), piece)

@@ -1,0 +1,141 @@
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.ski import BaseShape, Ski, read_monkeycam, read_ski
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+SHAPES = Path(__file__).parents[3] / "shared" / "data" / "ski-shapes"
+
+# the outline of MonkeyCAM's own sample ski, whose overview page (version 4.0.7) prints total length 178.5 cm and
+# nose, waist and tail widths 12.8812, 9.3000, 11.4812 cm
+BOARD: dict[str, Any] = {
+    "name": "Sample-ski",
+    "nose length": "11cm",
+    "effective edge length": "161cm",
+    "tail length": "6.5cm",
+    "sidecut radius": "2250cm",
+    "waist width": "9.3cm",
+    "taper": "1.4cm",
+    "edge shape": {"type": "Basic Arc"},
+    "stance setback": "6cm",
+}
+
+
+@pytest.fixture
+def design(tmp_path: Path) -> Callable[..., Path]:
+    def written(**changes: Any) -> Path:
+        named = {key.replace("_", " "): value for key, value in changes.items()}
+        board = {key: value for key, value in {**BOARD, **named}.items() if value is not None}
+        path = tmp_path / "ski-def.json"
+        path.write_text(json.dumps({"board": board, "profile": {}}), encoding="utf-8")
+        return path
+
+    return written
+
+
+def ski_of(path: Path) -> Ski:
+    return read_monkeycam(path, mass=2.0, bending_stiffness=[100, 400, 100], torsional_stiffness=[50, 150, 50])
+
+
+def require_sample_ski(ski: Ski) -> None:
+    assert ski.name == "Sample-ski"
+    assert ski.length == pytest.approx(1.785, abs=1e-12)
+    # MonkeyCAM computes in whole steps of 1e-4 cm and prints a sagitta of 1.4406 cm for 1.44052, which counts twice
+    assert [w * 100 for w in ski.sidecut_widths] == pytest.approx([12.8812, 9.3, 11.4812], abs=2.1e-4)
+    assert ski.sidecut_length == ski.running_length == pytest.approx(1.61)
+    assert ski.sidecut_radius_of_edge_line == pytest.approx(22.5, rel=2e-3)  # through three points of the arc, tapered
+    assert ski.sidecut_middle == pytest.approx(0.06)  # the boot is set back by 6 cm
+    assert ski.station[-1] == pytest.approx(0.06 - 0.805 - 0.065)
+
+
+def test_widths_are_those_that_monkeycam_prints(design: Callable[..., Path]) -> None:
+    require_sample_ski(ski_of(design()))
+
+
+def test_the_sample_file_itself() -> None:
+    path = SHAPES / "ski-def.json"
+    if not path.exists():
+        pytest.skip("the shapes of MonkeyCAM are not beside the repository")
+    require_sample_ski(ski_of(path))
+
+
+def test_a_snowboard_is_an_arc_too() -> None:
+    path = SHAPES / "board-def.json"
+    if not path.exists():
+        pytest.skip("the shapes of MonkeyCAM are not beside the repository")
+    board = ski_of(path)
+    sagitta = 11.0 - math.sqrt(11.0**2 - 0.68**2)
+    assert board.sidecut_widths == pytest.approx((0.250 + 2 * sagitta - 0.002, 0.246, 0.246 + 2 * sagitta - 0.002))
+
+
+@pytest.mark.parametrize("text", ["161cm", "1610mm", "1.61 m", 161, "161", "63.38582677165354in", '63.38582677165354"'])
+def test_lengths_in_any_unit(design: Callable[..., Path], text: object) -> None:
+    assert ski_of(design(effective_edge_length=text)).sidecut_length == pytest.approx(1.61, rel=1e-12)
+
+
+def test_what_a_shape_does_not_know_is_the_users(design: Callable[..., Path]) -> None:
+    ski = read_monkeycam(
+        design(),
+        mass=2.0,
+        bending_stiffness=[300],
+        torsional_stiffness=[100],
+        running_length=1.5,
+        base=BaseShape(camber=0.004),
+        base_bevel=0.01,
+    )
+    assert (ski.running_length, ski.base_bevel) == (1.5, 0.01)
+    heights = ski.at([0.06, *ski.contact_points]).base_height
+    assert heights[0] - heights[1:] == pytest.approx([0.004, 0.004], abs=1e-12)
+    with pytest.raises(TypeError, match="bending_stiffness"):
+        read_monkeycam(design(), mass=2.0, torsional_stiffness=[100])  # type: ignore[call-arg]
+
+
+def test_a_file_names_a_shape(design: Callable[..., Path]) -> None:
+    path = design().parent / "mine.toml"
+    path.write_text('shape = "ski-def.json"\nmass_kg = 2\nEI_N_m2 = [100, 400, 100]\nGJ_N_m2 = [50, 150, 50]\n')
+    require_sample_ski(read_ski(path))
+    path.write_text('shape = "ski-def.json"\nmass_kg = 2\n')
+    with pytest.raises(ParameterError, match=r"mine\.toml: the key EI_N_m2 is missing"):
+        read_ski(path)
+    path.write_text('shape = "ski-def.json"\ntip_width_mm = 120\n')
+    with pytest.raises(ParameterError, match="tip_width_mm = 120 cannot stand beside shape"):
+        read_ski(path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"edge_shape": {"type": "Bezier"}}, "edge shape: type is 'Bezier'; allowed is 'Basic Arc'"),
+        ({"edge_shape": None}, "edge shape: type is None"),
+        ({"splitboard": True}, "splitboard is true"),
+        ({"taper": None}, "board: taper is None; allowed is a number in cm or a text"),
+        ({"waist_width": "9.3 feet"}, "waist width is '9.3 feet'"),
+        ({"waist_width": True}, "waist width is True"),
+        ({"sidecut_radius": "70cm"}, "sidecut radius is '70cm'; allowed is more than half the edge length"),
+        ({"taper": "8cm"}, "waist, 93.00 mm, is wider than its tail"),
+    ],
+)
+def test_shapes_that_are_refused(design: Callable[..., Path], changes: dict[str, Any], named: str) -> None:
+    with pytest.raises(ParameterError, match=named):
+        ski_of(design(**changes))
+
+
+@pytest.mark.parametrize(
+    ("text", "named"), [("{", "is no JSON text"), ("[]", "no section 'board'"), ("{}", "no section")]
+)
+def test_what_is_no_design_file(tmp_path: Path, text: str, named: str) -> None:
+    path = tmp_path / "ski-def.json"
+    path.write_text(text)
+    with pytest.raises(ParameterError, match=named):
+        ski_of(path)
+    with pytest.raises(ParameterError, match="cannot be read"):
+        ski_of(tmp_path / "gone.json")

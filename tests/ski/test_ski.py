@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.ski import Ski
+
+N = 801
+STATION = np.linspace(0.8, -0.8, N)
+
+
+def arc_table(radius: float = 14.0, **changes: Any) -> Ski:
+    """A ski whose edge is a true circle of the given radius, 60 mm wide at the waist."""
+    tables: dict[str, Any] = {
+        "name": "arc",
+        "source": "test",
+        "station": STATION,
+        "width": 0.060 + 2.0 * (radius - np.sqrt(radius**2 - STATION**2)),
+        "base_height": np.zeros(N),
+        "bending_stiffness": np.full(N, 200.0),
+        "torsional_stiffness": np.full(N, 100.0),
+        "mass_per_length": np.full(N, 1.5),
+        "running_length": 1.4,
+        "sidecut_length": 1.5,
+    }
+    return Ski(**{**tables, **changes})
+
+
+def test_both_radii_of_a_true_arc() -> None:
+    ski = arc_table(radius=14.0)
+    # interpolated linearly over 2 mm the edge is off by h²/8R = 4e-8 m of a sagitta of 20 mm
+    assert ski.sidecut_radius_of_edge_line == pytest.approx(14.0, rel=1e-5)
+    # of a circle L²/8δ = R (1 + cos φ)/2 with φ = half the arc: 0.07 % less here
+    half_arc = math.asin(0.75 / 14.0)
+    assert ski.sidecut_radius_of_three_widths == pytest.approx(14.0 * (1.0 + math.cos(half_arc)) / 2.0, rel=1e-5)
+
+
+def test_sidecut_depth_of_a_true_arc() -> None:
+    """δ is the sagitta of the arc over the sidecut length: R - √(R² - L²/4)."""
+    assert arc_table(radius=14.0).sidecut_depth == pytest.approx(14.0 - math.sqrt(14.0**2 - 0.75**2), abs=1e-7)
+
+
+def test_tapered_ski_has_the_depth_of_its_mean_width() -> None:
+    ski = arc_table(width=0.060 + 0.02 * (STATION / 0.75) ** 2 + 0.004 * STATION / 0.75)
+    assert ski.sidecut_widths == pytest.approx((0.084, 0.060, 0.076), abs=1e-6)
+    assert ski.sidecut_depth == pytest.approx(0.010, abs=1e-6)
+    assert ski.sidecut_radius_of_three_widths == pytest.approx(1.5**2 / 0.080, rel=1e-4)
+
+
+def test_straight_ski_has_no_radius() -> None:
+    ski = arc_table(width=np.full(N, 0.062))
+    assert ski.sidecut_radius_of_three_widths == math.inf
+    assert ski.sidecut_radius_of_edge_line == math.inf
+    assert (ski.tip_width, ski.waist_width, ski.tail_width) == (0.062, 0.062, 0.062)
+
+
+def test_length_mass_and_torsional_inertia() -> None:
+    ski = arc_table(width=np.full(N, 0.06), mass_per_length=np.linspace(1.0, 2.0, N))
+    assert ski.length == pytest.approx(1.6, abs=1e-15)
+    assert ski.mass == pytest.approx(1.5 * 1.6, rel=1e-12)  # the trapezoid is exact for a line
+    assert ski.torsional_inertia_per_length[0] == pytest.approx(1.0 * 0.06**2 / 12.0, rel=1e-15)
+
+
+def test_sections_between_stations() -> None:
+    ski = arc_table(bending_stiffness=200.0 + 100.0 * STATION)
+    sections = ski.at([[0.1234, -0.4321]])
+    assert sections.bending_stiffness == pytest.approx(np.array([[212.34, 156.79]]), rel=1e-12)
+    assert sections.station.shape == (1, 2)
+    assert float(ski.at(0.8).width) == ski.width[0]
+
+
+@pytest.mark.parametrize("station", [0.81, -0.8001, math.nan])
+def test_no_sections_beyond_the_ski(station: float) -> None:
+    with pytest.raises(ParameterError, match=r"is not on the ski: it reaches from 0\.8000 to -0\.8000"):
+        arc_table().at(station)
+
+
+def test_tables_are_copied_and_cannot_be_written() -> None:
+    stiffness = np.full(N, 200.0)
+    ski = arc_table(bending_stiffness=stiffness)
+    stiffness[0] = 1.0
+    assert ski.bending_stiffness[0] == 200.0
+    with pytest.raises(ValueError, match="read-only"):
+        ski.width[0] = 1.0
+
+
+def test_replaced_field_is_checked_too() -> None:
+    with pytest.raises(ParameterError, match=r"base_bevel is 1\.0 rad"):
+        dataclasses.replace(arc_table(), base_bevel=1.0)
+
+
+def with_one(value: float) -> np.ndarray[Any, Any]:
+    table = np.full(N, 100.0)
+    table[600] = value
+    return table
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"name": " "}, "name is blank"),
+        ({"bending_stiffness": with_one(-100.0)}, "bending_stiffness is -100 at -0.4000 m from the boot"),
+        ({"torsional_stiffness": with_one(0.0)}, "torsional_stiffness is 0 at"),
+        ({"mass_per_length": with_one(-1.0)}, "mass_per_length is -1 at"),
+        ({"width": np.full(N, -0.06)}, "width is -0.06 at"),
+        ({"bending_stiffness": with_one(math.nan)}, r"bending_stiffness\[600\] is nan"),
+        ({"base_height": with_one(math.inf)}, r"base_height\[600\] is inf"),
+        ({"bending_stiffness": np.full(N - 1, 100.0)}, r"bending_stiffness has shape \(800,\), station \(801,\)"),
+        ({"station": STATION[::-1]}, r"station\[1\] = -0.798 m is not below"),
+        ({"station": STATION * 2.0}, "stations are up to 4 mm apart"),
+        ({"station": STATION - 0.9}, r"shorter than the running_length, from 0\.7000"),
+        ({"running_length": 1.7}, "shorter than the running_length, from 0.8500 to -0.8500 m"),
+        ({"sidecut_length": 1.7}, "shorter than the sidecut_length"),
+        ({"running_length": -1.0}, "running_length is -1.0 m"),
+        ({"sidecut_length": math.nan}, "sidecut_length is nan m"),
+        ({"base_bevel": -0.01}, "base_bevel is -0.01 rad"),
+        ({"edge_width": 0.04}, "edge_width is 0.04 m; it must be 0 to half the waist, 0.0300 m"),
+        ({"base_height": np.full(N, 0.001)}, "base_height is 0.001 m at the boot"),
+        ({"width": 0.06 + 0.01 * STATION}, "waist, 60.00 mm, is wider than its tail, 52.50 mm"),
+        ({"width": 0.06 - 0.01 * STATION}, "waist, 60.00 mm, is wider than its tip, 52.50 mm"),
+    ],
+)
+def test_what_is_no_ski(changes: dict[str, Any], named: str) -> None:
+    with pytest.raises(ParameterError, match=named):
+        arc_table(**changes)
