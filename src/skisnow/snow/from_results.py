@@ -52,16 +52,21 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     if not (np.all(hardness > 0) and np.all(stress >= 0) and (stress.size == 0 or np.any(stress > 0))):
         raise ParameterError(f"{path}: H_V of a used experiment must be above 0, and S_f of one at least")
     H_V, H_V_interval = _mean(np.log(hardness))
-    S_f, S_f_interval = _mean(stress * N_PER_MM2) if stress.size else (None, None)
+    S_f, S_f_interval = _mean(stress) if stress.size else (None, None)
     return SnowProperties(
         snow_hardness=math.exp(H_V) * N_PER_MM3,
-        failure_shear_stress=S_f,
+        failure_shear_stress=None if S_f is None else S_f * N_PER_MM2,
         source=f"{path}, {'all sites' if site is None else 'site ' + site}: {hardness.size} penetration and "
         f"{stress.size} shear experiments",
-        snow_hardness_interval=H_V_interval
-        and (math.exp(H_V_interval[0]) * N_PER_MM3, math.exp(H_V_interval[1]) * N_PER_MM3),
-        failure_shear_stress_interval=S_f_interval,
+        snow_hardness_interval=_scaled(
+            H_V_interval and (math.exp(H_V_interval[0]), math.exp(H_V_interval[1])), N_PER_MM3
+        ),
+        failure_shear_stress_interval=_scaled(S_f_interval, N_PER_MM2),
     )
+
+
+def _scaled(interval: Interval | None, unit: float) -> Interval | None:
+    return interval and (interval[0] * unit, interval[1] * unit)
 
 
 def _mean(values: npt.NDArray[np.float64]) -> tuple[float, Interval | None]:
