@@ -35,8 +35,8 @@ SINKING_DEPTH: Final = 0.30
 GREATEST_EDGE_ANGLE: Final = math.radians(85.0)
 LARGE_SLOPE: Final = 0.35
 """Slope of the bent ski, and twist (rad), beyond which beams of small deflection fail (Choice: 6 % in the cosine)."""
-_MOST_PATHS: Final = 40
-_PATH_TOLERANCE: Final = 1e-6  # relative change of the radius
+_MOST_PATHS: Final = 80
+_PATH_TOLERANCE: Final = 1e-5  # m, of the edge from the path that was assumed
 
 REMEDIES: Final[dict[Outcome, str]] = {
     "equilibrium": "",
@@ -246,17 +246,22 @@ def _following_path(model: ClampedSki, conditions: Conditions) -> Solution:
     solution = solved(model, conditions)
     path = conditions._replace(groove_follows_path=1.0)
     offset = np.zeros(len(model.stations.station))
-    before = math.inf
+    share, before = 0.5, math.inf
     for _ in range(_MOST_PATHS):
         if not solution.converged:
             return solution
         line = EdgeLine(model, conditions.edge_angle, solution)
-        radius = line.radius_at_boot()
-        if radius is None or abs(radius - before) <= _PATH_TOLERANCE * abs(radius):
+        if line.radius_at_boot() is None:
             return solution
-        before = radius
-        offset = 0.5 * (offset + line.offset_from_circle())
-        solution = solved(model, path, offset=offset)
+        change = line.offset_from_circle() - offset
+        size = float(np.max(np.abs(change[solution.edge_depth > 0.0])))
+        if size <= _PATH_TOLERANCE:
+            return solution
+        if size > 0.9 * before:
+            share *= 0.7
+        before = size
+        offset = offset + share * change
+        solution = solved(model, path, offset=offset, near=solution)
     return Solution(False, *(getattr(solution, name) for name in Solution.__slots__[1:]))
 
 

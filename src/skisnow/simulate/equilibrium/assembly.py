@@ -25,8 +25,6 @@ IntArray: TypeAlias = npt.NDArray[np.int64]
 
 BORDER = 3
 """Unknowns of the border that are always there: b₀, b₁, τ."""
-MOST_STEPS = 64
-"""Places across the ski, or steps of the groove's outline, that are kept."""
 FAR_ABOVE = -1e3
 """Depth (m) that stands for snow never touched."""
 
@@ -97,7 +95,8 @@ class Groove(NamedTuple):
     """What the stations ahead have left, and which of them did it.
 
     Following the edge: the greatest depth at each place ξ across, counted from the edge. Following the path: the
-    outline's steps, each from its left end outwards as deep as one station's base would reach.
+    outline's steps, each from its left end outwards as deep as one station's base reaches, told as the depth that base
+    would have at the path; bases are taken parallel to each other there.
     """
 
     left: FloatArray
@@ -208,14 +207,13 @@ def _across_following_path(
 ) -> None:
     """Add up a section over the steps of the groove's outline, whose cross-section is taken parallel to the base."""
     low = 0.0
+    level = section.corner - offset * np.tan(conditions.edge_angle)
     bevel_end = section.strip * section.cosine
     for piece in range(groove.steps[0] + 1):
         high = section.reach
         if piece < groove.steps[0]:
             high = min(high, max(low, groove.left[piece] + offset))
-        deeper = FAR_ABOVE
-        if piece > 0:
-            deeper = groove.depth[piece - 1] + (groove.left[piece - 1] + offset) * section.tangent - section.corner
+        deeper = groove.depth[piece - 1] - level if piece > 0 else FAR_ABOVE
         sums[5:] = 0.0
         for bevelled in range(2):
             start, end = (low, min(high, bevel_end)) if bevelled == 0 else (max(low, bevel_end), high)
@@ -231,25 +229,25 @@ def _across_following_path(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _pass_along_path(groove: Groove, offset: float, station: int, section: Section) -> None:
+def _pass_along_path(groove: Groove, offset: float, station: int, section: Section, edge_angle: float) -> None:
     """Put this station's base into the outline: it covers the steps to its right that are less deep."""
-    left, tangent = -offset, section.tangent
-    level = section.corner + left * tangent
+    left = -offset
+    level = section.corner + left * np.tan(edge_angle)
     kept, covered = 0, False
     for k in range(groove.steps[0]):
-        deeper = groove.depth[k] + groove.left[k] * tangent > level
+        deeper = groove.depth[k] > level
         covered = covered or (deeper and groove.left[k] <= left)
         if deeper or groove.left[k] < left:
             groove.left[kept], groove.depth[kept] = groove.left[k], groove.depth[k]
             groove.source[kept] = groove.source[k]
             kept += 1
-    if not covered and kept < MOST_STEPS:
+    if not covered:
         k = kept
         while k > 0 and groove.left[k - 1] > left:
             groove.left[k], groove.depth[k] = groove.left[k - 1], groove.depth[k - 1]
             groove.source[k] = groove.source[k - 1]
             k -= 1
-        groove.left[k], groove.depth[k], groove.source[k] = left, section.corner, station
+        groove.left[k], groove.depth[k], groove.source[k] = left, level, station
         kept += 1
     groove.steps[0] = kept
 
@@ -442,9 +440,8 @@ def assemble(
     _start(stiffness, u, out)
     sine, cosine, stress = np.sin(conditions.edge_angle), np.cos(conditions.edge_angle), border[2]
     n = len(sections.station)
-    groove = Groove(
-        np.zeros(MOST_STEPS), np.full(MOST_STEPS, FAR_ABOVE), np.zeros(MOST_STEPS, np.int64), np.zeros(1, np.int64)
-    )
+    kept = max(n, len(sections.place))
+    groove = Groove(np.zeros(kept), np.full(kept, FAR_ABOVE), np.zeros(kept, np.int64), np.zeros(1, np.int64))
     linked = Linked(np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(1, np.int64))
     sums, pulls = np.zeros(SUMS), np.zeros((2 * n, 2))
     for i in range(n):
@@ -453,7 +450,7 @@ def assemble(
         pulls[: 2 * linked.known[0]] = 0.0
         if conditions.groove_follows_path > 0.0:
             _across_following_path(sums, pulls, linked, groove, sections.offset[i], section, conditions)
-            _pass_along_path(groove, sections.offset[i], i, section)
+            _pass_along_path(groove, sections.offset[i], i, section, conditions.edge_angle)
         else:
             _across_following_edge(sums, pulls, linked, groove, sections.place, section, conditions)
             _pass_along_edge(groove, sections.place, i, section)

@@ -84,6 +84,15 @@ class _Search:
         """Go back to the first guess for these conditions."""
         self.u, self.border = _first_guess(self._model, conditions)
 
+    def continues(self, near: Solution, conditions: Conditions) -> bool:
+        """Start from another solution; back at the first guess if that fails."""
+        self.u[:], self.border[:] = near.u, (near.boot_depth, near.boot_slope, near.shear_stress)
+        self._sections = self._sections._replace(place=_places_across(self._model, conditions, near.edge_depth))
+        converged = self.reaches(conditions)
+        if not converged:
+            self.restart(conditions)
+        return converged
+
     def place_groove(self) -> None:
         """Keep the groove where the present state has its waterline."""
         place = _places_across(self._model, self._conditions, self.system.depth)
@@ -122,7 +131,9 @@ class _Search:
         return False
 
 
-def solved(model: ClampedSki, conditions: Conditions, *, offset: FloatArray | None = None) -> Solution:
+def solved(
+    model: ClampedSki, conditions: Conditions, *, offset: FloatArray | None = None, near: Solution | None = None
+) -> Solution:
     """Find the equilibrium of a ski under the conditions.
 
     Elastic snow first, from there to the steeper unloading; where that fails, all of it on softer snow that hardens.
@@ -135,9 +146,14 @@ def solved(model: ClampedSki, conditions: Conditions, *, offset: FloatArray | No
         Snow, load and choices.
     offset
         Of the edge from the path at each station (m), where the groove follows the path; None: 0.
+    near
+        A solution that this one is thought to be close to; tried first.
     """
     search = _Search(model, conditions, offset)
-    converged = _loaded(search, conditions) or any(_hardened(search, conditions, share) for share in SOFTENINGS)
+    converged = near is not None and search.continues(near, conditions)
+    converged = (
+        converged or _loaded(search, conditions) or any(_hardened(search, conditions, share) for share in SOFTENINGS)
+    )
     depth, slope, stress = (float(value) for value in search.border)
     system = search.system
     return Solution(converged, search.iterations, search.u, depth, slope, stress, system.depth, system.force)
