@@ -12,8 +12,12 @@ The public names, loaded when first used:
     The embedded store that keeps campaigns byte for byte.
 ``write_reference``
     A synthetic campaign with the design of Mössner and others (2013).
-``SnowProperties``, ``snow_from_results``
-    Snow as the force laws need it.
+``SnowProperties``, ``snow_from_results``, ``published_snow``, ``published_names``
+    Snow as the force laws need it: from numbers, from an analysed campaign, by the name of a publication.
+``Ski``, ``read_ski``, ``ski_names``
+    A ski from its file or from the catalogue.
+``carve``, ``rest``, ``Equilibrium``
+    A ski in snow under a load, carving steadily or at rest.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 """
@@ -28,19 +32,29 @@ if TYPE_CHECKING:
     from .field import Campaign, check_campaign, read_campaign, write_reference
     from .field.store import Store
     from .report import write_report
-    from .snow import SnowProperties, snow_from_results
+    from .simulate import Equilibrium, carve, rest
+    from .ski import Ski, read_ski, ski_names
+    from .snow import SnowProperties, published_names, published_snow, snow_from_results
     from .statistics import regress
 
 __all__ = [
     "Analysis",
     "Campaign",
+    "Equilibrium",
+    "Ski",
     "SnowProperties",
     "Store",
     "analyse",
+    "carve",
     "check_campaign",
+    "published_names",
+    "published_snow",
     "read_campaign",
+    "read_ski",
     "regress",
+    "rest",
     "results_dict",
+    "ski_names",
     "snow_from_results",
     "write_reference",
     "write_report",
@@ -51,7 +65,9 @@ _ROOMS = {
     "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
     "field.store": ("Store",),
     "report": ("write_report",),
-    "snow": ("SnowProperties", "snow_from_results"),
+    "simulate": ("Equilibrium", "carve", "rest"),
+    "ski": ("Ski", "read_ski", "ski_names"),
+    "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),
     "statistics": ("regress",),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}

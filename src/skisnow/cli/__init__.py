@@ -9,7 +9,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from ..errors import FieldDataError, SkisnowError
-from . import analyse, check, reference, store
+from . import analyse, carve, check, reference, store, study
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,11 +20,12 @@ def build_parser() -> argparse.ArgumentParser:
     from importlib.metadata import version
 
     parser = argparse.ArgumentParser(
-        prog="skisnow", description="From field tests of a ski slope to snow parameters, figures and a report."
+        prog="skisnow",
+        description="From field tests of a ski slope to snow parameters, and from those to what a ski does on it.",
     )
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in (check, analyse, store, reference):
+    for command in (check, analyse, store, reference, carve, study):
         command.add_parser(commands)
     return parser
 

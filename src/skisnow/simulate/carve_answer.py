@@ -80,7 +80,9 @@ class Sources:
         return self.ski_file(word) or word
 
     def _read_snow(self, published: str | None, results: str | None, site: str | None) -> SnowProperties:
-        return published_snow(published) if results is None else snow_from_results(self.path(results), site=site)  # type: ignore[arg-type]
+        if results is not None:
+            return snow_from_results(self.path(results), site=site)
+        return published_snow(published or "")
 
 
 def answered(question: CarveQuestion, *, sources: Sources | None = None) -> CarveAnswer:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any, Final
 
@@ -17,24 +18,13 @@ from .equilibrium.solve import RIGID_PLASTIC
 
 SCHEMA_VERSION: Final = 1
 
-SCALARS: Final = (
-    "side_force_N",
-    "side_force_limit_N",
-    "turn_radius_boot_m",
-    "turn_radius_chord_m",
-    "contact_length_m",
-    "afterbody_depth_ratio",
-    "residual_force_N",
-    "residual_moment_Nm",
-)
-"""The single numbers of an equilibrium, by their keys."""
-
 
 def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
     """The JSON of `skisnow carve` for one ski; its JSON Schema is schemas/carve.schema.json."""
     return {
         "schema_version": SCHEMA_VERSION,
         **equilibrium_dict(answer.equilibrium),
+        **radii_of_a_turn(answer),
         "inputs": inputs_dict(answer),
         "snow": _snow_dict(answer.snow),
         "ski": {
@@ -42,36 +32,55 @@ def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
             "source": answer.ski.source,
             "length_m": answer.ski.length,
             "mass_kg": answer.ski.mass,
-            "sidecut_radius_of_three_widths_m": _finite(answer.ski.sidecut_radius_of_three_widths),
-            "sidecut_radius_of_edge_line_m": _finite(answer.ski.sidecut_radius_of_edge_line),
+            "sidecut_radius_of_three_widths_m": finite(answer.ski.sidecut_radius_of_three_widths),
+            "sidecut_radius_of_edge_line_m": finite(answer.ski.sidecut_radius_of_edge_line),
         },
         "warnings": list(answer.warnings),
         "provenance": {"skisnow": version("skisnow")},
     }
 
 
+def answers_dict(answers: Sequence[CarveAnswer]) -> dict[str, Any]:
+    """The JSON of `skisnow carve`: one answer as it is, several under `skis`."""
+    each = [answer_dict(answer) for answer in answers]
+    return each[0] if len(each) == 1 else {"skis": each}
+
+
 def equilibrium_dict(equilibrium: Equilibrium) -> dict[str, Any]:
     """An equilibrium under the keys of the contract; None where a number does not exist."""
     return {
-        "outcome": equilibrium.outcome,
-        "remedy": equilibrium.remedy,
-        "holds": None if equilibrium.holds is None else bool(equilibrium.holds),
-        "side_force_N": _finite(equilibrium.side_force),
-        "side_force_limit_N": _finite(equilibrium.side_force_limit),
-        "turn_radius_boot_m": _finite(equilibrium.turn_radius_boot),
-        "turn_radius_chord_m": _finite(equilibrium.turn_radius_chord),
-        "contact_length_m": _finite(equilibrium.contact_length),
-        "afterbody_depth_ratio": _finite(equilibrium.afterbody_depth_ratio),
+        **scalars_dict(equilibrium),
         "station_m": _numbers(equilibrium.station, 1.0),
         "edge_depth_mm": _numbers(equilibrium.edge_depth, MM),
         "force_per_length_N_per_m": _numbers(equilibrium.force_per_length, 1.0),
         "bending_mm": _numbers(equilibrium.bending, MM),
         "twist_deg": _numbers(equilibrium.twist, DEGREE),
         "edge_line_mm": _numbers(equilibrium.edge_line, MM),
-        "residual_force_N": _finite(equilibrium.residual_force),
-        "residual_moment_Nm": _finite(equilibrium.residual_moment),
+    }
+
+
+def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
+    """Outcome and single numbers under the keys of the contract."""
+    return {
+        "outcome": equilibrium.outcome,
+        "remedy": equilibrium.remedy,
+        "holds": None if equilibrium.holds is None else bool(equilibrium.holds),
+        "side_force_N": finite(equilibrium.side_force),
+        "side_force_limit_N": finite(equilibrium.side_force_limit),
+        "turn_radius_boot_m": finite(equilibrium.turn_radius_boot),
+        "turn_radius_chord_m": finite(equilibrium.turn_radius_chord),
+        "contact_length_m": finite(equilibrium.contact_length),
+        "afterbody_depth_ratio": finite(equilibrium.afterbody_depth_ratio),
+        "residual_force_N": finite(equilibrium.residual_force),
+        "residual_moment_Nm": finite(equilibrium.residual_moment),
         "iterations": int(equilibrium.iterations),
     }
+
+
+def radii_of_a_turn(answer: CarveAnswer) -> dict[str, None]:
+    """The radii of a flat ski, or of one at rest, which does not turn: none."""
+    turns = answer.question.edge_angle_deg > 0.0 and not answer.question.at_rest
+    return {} if turns else {"turn_radius_boot_m": None, "turn_radius_chord_m": None}
 
 
 def inputs_dict(answer: CarveAnswer) -> dict[str, Any]:
@@ -101,9 +110,13 @@ def _snow_dict(snow: SnowProperties) -> dict[str, Any]:
     }
 
 
-def _finite(value: float | None) -> float | None:
+def finite(value: float | None) -> float | None:
+    """None in place of what JSON has no number for."""
     return None if value is None or not math.isfinite(value) else float(value)
 
 
 def _numbers(values: npt.NDArray[np.float64] | None, unit: float) -> list[float | None] | None:
-    return None if values is None else [_finite(float(value)) for value in values / unit]
+    if values is None:
+        return None
+    numbers: list[float | None] = (values / unit).tolist()
+    return numbers if np.isfinite(values).all() else [None if n is None else finite(n) for n in numbers]

@@ -1,0 +1,109 @@
+"""``skisnow carve``: how deep, what pressure where, what bend and twist, what radius: a ski in snow, in one line."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .announced import announced
+
+if TYPE_CHECKING:
+    from ..simulate.carve_answer import CarveAnswer
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "carve",
+        help="equilibrium of a ski in snow: depth, pressure, bend, twist, turn radius",
+        description="Equilibrium of a ski that carves a steady turn, or is set down on snow. The snow is given in one "
+        "of three ways: --H-V-N-per-mm3 with --S-f-N-per-mm2, --results, or --published.",
+    )
+    _add_question(parser)
+    _add_snow(parser)
+    _add_choices(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
+    parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a figure: .png, .svg or .pdf")
+    parser.set_defaults(run=run)
+
+
+def _add_question(parser: argparse.ArgumentParser) -> None:
+    named: dict[str, Any] = {"action": "append", "required": True, "metavar": "NAME|FILE"}
+    parser.add_argument("--ski", **named, help="a ski of the catalogue or a ski file; several times to compare")
+    angle = "of the base under the boot to the snow, 0 to 85"
+    parser.add_argument("--edge-angle-deg", type=float, required=True, metavar="DEGREES", help=angle)
+    load = "on this ski, along the snow normal, at the boot"
+    parser.add_argument("--load-N", type=float, required=True, metavar="NEWTONS", help=load)
+    parser.add_argument("--moment-Nm", type=float, metavar="N_M", help="at the boot, positive presses the tip down")
+
+
+def _add_snow(parser: argparse.ArgumentParser) -> None:
+    snow = parser.add_argument_group("snow")
+    snow.add_argument("--H-V-N-per-mm3", type=float, metavar="H_V", help="snow hardness")
+    snow.add_argument("--S-f-N-per-mm2", type=float, metavar="S_f", help="failure shear stress")
+    snow.add_argument("--results", metavar="PATH", help="results.json of an analysed campaign")
+    snow.add_argument("--site", metavar="S", help="one site of those results; left out: all sites together")
+    snow.add_argument("--published", metavar="NAME", help="a published snow, such as race-piste")
+    ratio = "k_u/H_V: 1 is elastic snow, inf rigid-plastic; no default; plays no part with --at-rest"
+    snow.add_argument("--unloading-ratio", type=float, metavar="RATIO", help=ratio)
+
+
+def _add_choices(parser: argparse.ArgumentParser) -> None:
+    choices = parser.add_argument_group("modelling choices; those in force are printed with the answer")
+    choices.add_argument("--clamp-length-m", type=float, metavar="M", help="length that boot and binding keep straight")
+    off: dict[str, Any] = {"action": "store_const", "const": False}
+    choices.add_argument(
+        "--no-side-force-bending", dest="side_force_bending", **off, help="the side force does not bend the ski"
+    )
+    choices.add_argument("--groove", choices=("edge", "path"), help="what the groove of the forebody follows")
+    choices.add_argument("--no-twist", dest="twist", **off, help="the ski keeps its edge angle everywhere")
+    choices.add_argument("--elements", type=int, metavar="N", help="finite elements over the whole ski")
+    choices.add_argument(
+        "--at-rest", action="store_const", const=True, help="set down on virgin snow, without side force"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Answer for each ski, print, draw; 0 with every outcome, which is said in words."""
+    from ..simulate.carve_dict import answers_dict
+
+    if options.figure is not None:
+        from ..report.figures.figure_file import require_drawable
+
+        require_drawable(options.figure)
+    answers = _answers(options)
+    _warn(answers)
+    found = answers_dict(answers)
+    if options.figure is not None:
+        from ..report.figures.carved_skis import carved_skis
+        from ..report.figures.figure_file import write_figure
+
+        write_figure(options.figure, lambda: carved_skis(found))
+        print(f"Figure: {options.figure}", file=sys.stderr)
+    if options.json:
+        print(json.dumps(found, ensure_ascii=False, allow_nan=False, indent=1))
+    else:
+        from ..report.carve_summary import carve_summary
+
+        print(carve_summary(found))
+    return 0
+
+
+def _answers(options: argparse.Namespace) -> list[CarveAnswer]:
+    with announced("loading and, on a machine's first run, compiling the solver, once"):
+        from ..simulate.carve_answer import answered
+        from ..simulate.carve_keys import CARVE_KEYS
+        from ..simulate.carve_question import carve_question
+
+        given = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
+        return [answered(carve_question(given | {"ski": ski})) for ski in options.ski]
+
+
+def _warn(answers: list[CarveAnswer]) -> None:
+    several = len(answers) > 1
+    lines = [f"{a.question.ski}: {text}" if several else text for a in answers for text in a.warnings]
+    for line in dict.fromkeys(lines):
+        print(f"warning: {line}", file=sys.stderr)

@@ -1,0 +1,96 @@
+"""``skisnow study``: a grid or a sample of carved turns, in parallel, resumable, to one table and its maps."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .progress import Progress
+
+if TYPE_CHECKING:
+    from ..study import Study, StudyTable
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "study",
+        help="carved turns over a grid or a sample of inputs, as one table",
+        description="Run a study. Its table goes where STUDY.toml says; an interrupted one goes on when started again.",
+    )
+    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="what varies, what is fixed, and `out`")
+    parser.add_argument("--workers", type=int, metavar="N", help="processes; left out: one for each core")
+    parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a map of the table: .png, .svg or .pdf")
+    about = "radius over edge angle, or where the edge lets go; left out: radius"
+    parser.add_argument("--map", choices=("radius", "grip"), default="radius", help=about)
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run or finish the study; 1 if not one of its points could be asked."""
+    if options.figure is not None:
+        from ..report.figures.figure_file import require_drawable
+
+        require_drawable(options.figure)
+    from ..study import StudyState, read_study, run_study, study_state
+
+    study = read_study(options.study)
+    state = study_state(study)
+    if state is StudyState.ANOTHER:
+        print(f"{study.out} holds another study; it is replaced when this one is finished.", file=sys.stderr)
+    if state is StudyState.FINISHED:
+        print(f"{study.out} holds this study already; nothing is computed again.", file=sys.stderr)
+    try:
+        with Progress() as progress:
+            table = run_study(study, workers=options.workers, progress=_Pace(progress))
+    except KeyboardInterrupt:
+        print(f"\nskisnow: interrupted; finished points are kept in {study.partial}.", file=sys.stderr)
+        print("The same command goes on with them.", file=sys.stderr)
+        return 130
+    _tell(study, table)
+    if options.figure is not None:
+        _draw(options, table)
+    return 1 if table.counts().get("error", 0) == len(table.rows) else 0
+
+
+def _tell(study: Study, table: StudyTable) -> None:
+    counts = ", ".join(f"{outcome} {count}" for outcome, count in table.counts().items())
+    print(f"{study.out}: points {len(table.rows)} ({counts})")
+    failed = [(place, row["reason"]) for place, row in enumerate(table.rows, start=1) if row["outcome"] == "error"]
+    if failed:
+        place, reason = failed[0]
+        print(f"warning: {len(failed)} points could not be asked; the first, row {place}: {reason}", file=sys.stderr)
+
+
+def _draw(options: argparse.Namespace, table: StudyTable) -> None:
+    from ..report.figures.figure_file import write_figure
+    from ..report.figures.grip_map import grip_map
+    from ..report.figures.radius_map import radius_map
+
+    draw = {"radius": radius_map, "grip": grip_map}[options.map]
+    write_figure(options.figure, lambda: draw(table))
+    print(f"Figure: {options.figure}", file=sys.stderr)
+
+
+class _Pace:
+    """Finished points with their rate and the time left, counted from the first new ones on."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self._kept: int | None = None
+        self._begun: tuple[float, int] | None = None
+
+    def __call__(self, done: int, total: int) -> None:
+        if self._kept is None:
+            self._kept = done
+            kept = f"{done} of {total} points are finished already; " if done else ""
+            self._progress(f"{kept}starting the workers (the first run on a machine compiles the solver, once)")
+        elif self._begun is None:
+            self._begun = (time.monotonic(), done)
+        else:
+            start, before = self._begun
+            rate = (done - before) / max(time.monotonic() - start, 1e-9)
+            self._progress(f"{done} of {total} points, {rate:.3g} per second, {(total - done) / rate:.0f} s left")

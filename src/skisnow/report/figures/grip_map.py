@@ -1,0 +1,151 @@
+"""The grip map: at which edge angle and load, on which snow, the side force is more than the snow can hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.lines import Line2D
+
+from .map_layout import axes_of_panels, label, label_outside, map_layout, panel_columns, panels_of
+from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, logarithmic, new_figure, plain_number
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...study import StudyTable
+    from .map_layout import MapLayout
+
+Json = dict[str, Any]
+FloatArray = npt.NDArray[np.float64]
+
+LEVELS: Final = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""Shares of the side force in its limit at which the colour changes; at 1 the edge lets go."""
+_COLOURS: Final = ("#2166AC", "#5E9BC9", "#A6CDE3", "#DDEBF3", "#FBE3D0", "#F4B183", "#DD7F4B", "#B8431C")
+_LEAST: Final = 1e-3  # a flat ski draws no side force; its logarithm must exist
+_LOG_FROM: Final = 20.0
+
+
+def grip_map(table: StudyTable) -> Figure:
+    """Draw the share of the side force in what the snow can hold, and the line at which the edge lets go.
+
+    Raises
+    ------
+    ParameterError
+        The table has nothing to put along the axis, or too many panels.
+    """
+    layout = map_layout(table, second_is_number=True)
+    panels = panels_of(table, layout)
+    columns = panel_columns(table, layout, len(panels))
+    rows = -(-len(panels) // columns)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=18.0 + (70.0 if rows == 1 else 50.0 * rows))
+    every = axes_of_panels(figure, [title for title, _ in panels], columns)
+    for axes, (_, of_panel) in zip(every, panels, strict=True):
+        if layout.second is None:
+            _share_lines(axes, of_panel, layout)
+        else:
+            if not layout.sampled:
+                _field(axes, of_panel, layout)
+            _points(axes, of_panel, layout)
+    ordinate = "side force / limit" if layout.second is None else label(layout.second)
+    _scales(every[0], table.rows, layout)
+    label_outside(every, columns, label(layout.x), ordinate)
+    if layout.second is not None and not layout.sampled:
+        _colour_bar(figure, every)
+    legend_below(figure, _handles(layout, table.rows))
+    return figure
+
+
+def share_of_limit(row: Json) -> float:
+    """Side force over its limit; NaN where there is no equilibrium."""
+    force, limit = row["side_force_N"], row["side_force_limit_N"]
+    if force is None or limit is None:
+        return float("nan")
+    if force == 0.0:
+        return 0.0
+    return float(force / limit) if limit > 0.0 else float("inf")
+
+
+def _field(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    x, y, share = _grid(rows, layout)
+    logarithm = np.log(np.clip(share, _LEAST, 1.0 / _LEAST))
+    bounds = np.log([_LEAST / 10.0, *LEVELS, 10.0 / _LEAST])
+    axes.contourf(x, y, logarithm, levels=bounds, colors=_COLOURS, zorder=0)
+    if np.nanmin(logarithm) < 0.0 < np.nanmax(logarithm):
+        axes.contour(x, y, logarithm, levels=[0.0], colors=[BLACK], linewidths=1.8, zorder=2)
+
+
+def _grid(rows: Sequence[Json], layout: MapLayout) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Shares (y, x), averaged over nothing: a grid has one row for each place."""
+    second = str(layout.second)
+    x, y = (np.array(sorted({float(row[name]) for row in rows})) for name in (layout.x, second))
+    share = np.full((len(y), len(x)), np.nan)
+    for row in rows:
+        share[np.searchsorted(y, row[second]), np.searchsorted(x, row[layout.x])] = share_of_limit(row)
+    return x, y, share
+
+
+def _points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    for holds, look in _looks(layout.sampled).items():
+        chosen = [row for row in rows if row["holds"] is holds]
+        axes.plot(
+            [row[layout.x] for row in chosen], [row[str(layout.second)] for row in chosen], linestyle="none", zorder=3,
+            clip_on=False, **look,
+        )  # fmt: skip
+
+
+def _looks(sampled: bool) -> dict[bool | None, dict[str, Any]]:
+    size = 3.6 if sampled else 2.4
+    return {
+        True: {"marker": "o", "color": BLUE, "markersize": size},
+        False: {"marker": "^", "color": VERMILLION, "markerfacecolor": "white", "markersize": size + 0.6},
+        None: {"marker": "x", "color": GREY, "markersize": size},
+    }
+
+
+def _share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    ordered = sorted(rows, key=lambda row: float(row[layout.x]))
+    axes.plot([row[layout.x] for row in ordered], [share_of_limit(row) for row in ordered], color=GREY, zorder=1)
+    for holds, look in _looks(True).items():
+        chosen = [row for row in ordered if row["holds"] is holds]
+        axes.plot([row[layout.x] for row in chosen], [share_of_limit(row) for row in chosen], linestyle="none", **look)
+    axes.axhline(1.0, color=BLACK, linewidth=1.8, zorder=2)
+
+
+def _scales(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    for which, name in (("x", layout.x), ("y", layout.second)):
+        if name is None:
+            shares = np.array([share_of_limit(row) for row in rows])
+            known = shares[np.isfinite(shares)]
+            axes.set_ylim(0.0, 1.08 * max(1.0, float(known.max(initial=1.0))))
+            continue
+        values = np.array([float(row[name]) for row in rows])
+        if values.min() > 0 and values.max() > _LOG_FROM * values.min():
+            logarithmic(axes, which, values)
+
+
+def _colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
+    bounds = [LEVELS[0] / 2.0, *LEVELS, LEVELS[-1] * 2.0]
+    scale = ScalarMappable(BoundaryNorm(bounds, len(_COLOURS)), ListedColormap(_COLOURS))
+    bar = figure.colorbar(scale, ax=list(panels), pad=0.01, aspect=35, spacing="uniform")
+    bar.set_ticks(list(LEVELS), labels=[plain_number(level) for level in LEVELS])
+    bar.set_label("side force / what the snow can hold")
+    bar.ax.axhline(1.0, color=BLACK, linewidth=1.8)
+
+
+def _handles(layout: MapLayout, rows: Sequence[Json]) -> list[Line2D]:
+    texts = {True: "holds", False: "slips", None: "no equilibrium"}
+    handles = [
+        Line2D([], [], linestyle="none", label=texts[holds], **look)
+        for holds, look in _looks(layout.sampled).items()
+        if any(row["holds"] is holds for row in rows)
+    ]
+    if not layout.sampled:
+        handles.append(Line2D([], [], color=BLACK, linewidth=1.8, label="the edge lets go"))
+    return handles

@@ -1,0 +1,184 @@
+"""Which input of a study goes where in its maps: along the axis, as lines, as panels."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from ...errors import ParameterError
+from ..symbols import figure_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...study import StudyTable
+
+Json = dict[str, Any]
+
+MOST_PANELS: Final = 12
+MOST_LINES: Final = 7
+MOST_COLUMNS: Final = 5
+_LETTERS: Final = 105
+"""Of a title, over the whole width of a figure."""
+
+LABELS: Final = {
+    "edge_angle_deg": "edge angle ϑ (°)",
+    "load_N": "load (N)",
+    "H_V_N_per_mm3": "snow hardness $H_V$ (N/mm³)",
+    "S_f_N_per_mm2": "failure shear stress $S_f$ (N/mm²)",
+    "unloading_ratio": "$k_u/H_V$",
+    "moment_Nm": "boot moment (N m)",
+    "clamp_length_m": "clamp length (m)",
+    "elements": "elements",
+}
+"""Axis labels; an input that is not here is labelled by its name."""
+_SHORT: Final = {
+    "edge_angle_deg": "ϑ = {}°",
+    "load_N": "{} N",
+    "H_V_N_per_mm3": "$H_V$ = {} N/mm³",
+    "S_f_N_per_mm2": "$S_f$ = {} N/mm²",
+    "unloading_ratio": "$k_u/H_V$ = {}",
+    "moment_Nm": "{} N m",
+    "clamp_length_m": "clamp {} m",
+    "elements": "{} elements",
+    "ski": "{}",
+    "published": "{}",
+    "results": "{}",
+    "site": "{}",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MapLayout:
+    """Names of inputs by their place in a map.
+
+    Attributes
+    ----------
+    x
+        Along the axis.
+    second
+        The lines of the radius map, the ordinate of the grip map; None where nothing else varies.
+    panels
+        What is left.
+    sampled
+        Whether the points are a sample and no grid: then what is left has no panels but for names and switches.
+    """
+
+    x: str
+    second: str | None
+    panels: tuple[str, ...]
+    sampled: bool
+
+
+def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
+    """Choose: the edge angle along the axis and the load beside it where they vary, else the next number that does.
+
+    Raises
+    ------
+    ParameterError
+        No number varies, or there would be too many panels.
+    """
+    varied = [name for name in table.varied if len(_distinct(table, name)) > 1]
+    numbers = [name for name in varied if all(_is_number(row[name]) for row in table.rows)]
+    if not numbers:
+        raise ParameterError("the map needs a number that varies, such as edge_angle_deg; only names and switches vary")
+    x = "edge_angle_deg" if "edge_angle_deg" in numbers else numbers[0]
+    others = [name for name in numbers if name != x]
+    names = [name for name in varied if name not in numbers]
+    second = "load_N" if "load_N" in others else next(iter(others), None)
+    if second is None and not second_is_number:
+        second = next(iter(names), None)
+    sampled = math.prod(len(_distinct(table, name)) for name in varied) != len(table.rows)
+    left = [name for name in varied if name not in (x, second) and (name in names or not sampled)]
+    count = math.prod(len(_distinct(table, name)) for name in left)
+    if count > MOST_PANELS:
+        told = ", ".join(f"{name} with {len(_distinct(table, name))} values" for name in left)
+        raise ParameterError(
+            f"the map would have {count} panels ({told}); at most {MOST_PANELS} are readable. The table is written; "
+            "make a study of fewer of them for the map"
+        )
+    return MapLayout(x, second, tuple(left), sampled)
+
+
+def panels_of(table: StudyTable, layout: MapLayout) -> list[tuple[str, list[Json]]]:
+    """Title and rows of each panel."""
+    combinations = itertools.product(*(_distinct(table, name) for name in layout.panels))
+    found = []
+    for values in combinations:
+        rows = [row for row in table.rows if all(row[n] == v for n, v in zip(layout.panels, values, strict=True))]
+        if rows:
+            title = ", ".join(short(name, value) for name, value in zip(layout.panels, values, strict=True))
+            found.append((title, rows))
+    return found
+
+
+def panel_columns(table: StudyTable, layout: MapLayout, count: int) -> int:
+    """Columns of panels: one for each value of the last input where they fit, else as even as possible."""
+    last = len(_distinct(table, layout.panels[-1])) if layout.panels else 1
+    if len(layout.panels) > 1 and last <= MOST_COLUMNS and count % last == 0:
+        return last
+    rows = -(-count // MOST_COLUMNS)
+    return -(-count // rows)
+
+
+def lines_of(rows: Sequence[Json], name: str | None) -> Iterator[tuple[Any, list[Json]]]:
+    """The rows of each value of an input, values rising."""
+    if name is None:
+        yield None, list(rows)
+        return
+    for value in sorted({row[name] for row in rows}):
+        yield value, [row for row in rows if row[name] == value]
+
+
+def short(name: str, value: Any) -> str:
+    """One value of an input for a title or a legend.
+
+    >>> short("load_N", 800.0), short("ski", "slalom"), short("twist", False)
+    ('800 N', 'slalom', 'twist false')
+    """
+    if isinstance(value, bool):
+        text = "true" if value else "false"
+    else:
+        text = figure_text(value) if isinstance(value, str) else f"{value:.4g}".replace("-", "−")
+    return _SHORT.get(name, name.replace("_", " ") + " {}").format(text)
+
+
+def label(name: str) -> str:
+    """The axis label of an input."""
+    return LABELS.get(name, name)
+
+
+def axes_of_panels(figure: Figure, titles: Sequence[str], columns: int) -> list[Axes]:
+    """One pair of axes for each title, sharing both scales; unused places stay empty."""
+    rows = -(-len(titles) // columns)
+    grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    every: list[Axes] = list(grid.flat)
+    for spare in every[len(titles) :]:
+        spare.set_visible(False)
+    long = max(len(title) for title in titles) > _LETTERS // columns
+    for place, (axes, title) in enumerate(zip(every, titles, strict=False)):
+        axes.set_title(title.replace(", ", "\n") if long else title, loc="left", fontsize=7.5)
+        axes.tick_params(labelbottom=place + columns >= len(titles), labelleft=place % columns == 0)
+    return every[: len(titles)]
+
+
+def label_outside(panels: Sequence[Axes], columns: int, x: str, y: str) -> None:
+    """Axis labels at the left and the lower rim of the panels alone."""
+    for place, axes in enumerate(panels):
+        if place + columns >= len(panels):
+            axes.set_xlabel(x)
+        if place % columns == 0:
+            axes.set_ylabel(y)
+
+
+def _distinct(table: StudyTable, name: str) -> list[Any]:
+    return list(dict.fromkeys(row[name] for row in table.rows))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

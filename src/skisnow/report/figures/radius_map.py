@@ -1,0 +1,161 @@
+"""Turn radius over edge angle, by load, snow and ski: the parametric study that Federolf and others (2010) did."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.lines import Line2D
+
+from ...units import DEGREE
+from .map_layout import (
+    MOST_LINES,
+    axes_of_panels,
+    label,
+    label_outside,
+    lines_of,
+    map_layout,
+    panel_columns,
+    panels_of,
+    short,
+)
+from .style import BLUE, COLOURS, DOUBLE_MM, GREY, MARKERS, legend_below, logarithmic, new_figure
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...study import StudyTable
+    from .map_layout import MapLayout
+
+Json = dict[str, Any]
+RADIUS: Final = "turn_radius_boot_m"
+_LOG_FROM: Final = 20.0  # ratio of the ends of an input above which its axis is logarithmic
+
+
+def radius_map(table: StudyTable) -> Figure:
+    """Draw the radius of the circle at the boot; filled symbols: the edge holds, open: it slips.
+
+    Raises
+    ------
+    ParameterError
+        The table has nothing to put along the axis, or too many panels.
+    """
+    layout = map_layout(table, second_is_number=False)
+    panels = panels_of(table, layout)
+    columns = panel_columns(table, layout, len(panels))
+    colours = _Colours.of(layout, table.rows)
+    rows = -(-len(panels) // columns)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=18.0 + (75.0 if rows == 1 else 52.0 * rows))
+    values = [value for value, _ in lines_of(table.rows, layout.second)]
+    every = axes_of_panels(figure, [title for title, _ in panels], columns)
+    for axes, (_, of_panel) in zip(every, panels, strict=True):
+        if layout.x == "edge_angle_deg":
+            _sidecut(axes, of_panel)
+        if _lined(layout, values):
+            _lines(axes, of_panel, layout, values)
+        else:
+            _cloud(axes, of_panel, layout, colours)
+    _limits(every[0], table.rows, layout)
+    label_outside(every, columns, label(layout.x), "turn radius (m)")
+    if colours is not None and not _lined(layout, values):
+        colours.bar(figure)
+    legend_below(figure, _handles(layout, values))
+    return figure
+
+
+def _lined(layout: MapLayout, values: list[Any]) -> bool:
+    return not layout.sampled and len(values) <= MOST_LINES
+
+
+def _lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: list[Any]) -> None:
+    for value, of_line in lines_of(rows, layout.second):
+        place = values.index(value)
+        ordered = sorted(of_line, key=lambda row: float(row[layout.x]))
+        x, y = _numbers(ordered, layout.x), _numbers(ordered, RADIUS)
+        look: dict[str, Any] = {"color": COLOURS[place % len(COLOURS)], "marker": MARKERS[place % len(MARKERS)]}
+        axes.plot(x, y, color=look["color"], linewidth=0.8, zorder=2)
+        for holds in (True, False):
+            chosen = np.array([row["holds"] is holds for row in ordered], dtype=bool)
+            face = look["color"] if holds else "white"
+            axes.plot(x[chosen], y[chosen], linestyle="none", markerfacecolor=face, zorder=3, **look)
+
+
+@dataclass(frozen=True, slots=True)
+class _Colours:
+    """The second input as a colour, where the points are a sample or it has too many values for lines."""
+
+    name: str
+    ends: tuple[float, float]
+
+    @classmethod
+    def of(cls, layout: MapLayout, rows: Sequence[Json]) -> _Colours | None:
+        """None where no number varies beside the one along the axis."""
+        values = [] if layout.second is None else [row[layout.second] for row in rows]
+        if layout.second is None or isinstance(values[0], str | bool):
+            return None
+        return cls(layout.second, (min(values), max(values)))
+
+    def bar(self, figure: Figure) -> None:
+        """The scale of the colours."""
+        scale = ScalarMappable(Normalize(*self.ends), "cividis")
+        figure.colorbar(scale, ax=figure.axes, label=label(self.name), pad=0.01, aspect=40)
+
+
+def _cloud(axes: Axes, rows: Sequence[Json], layout: MapLayout, colours: _Colours | None) -> None:
+    for holds, marker in ((True, "o"), (False, "X")):
+        chosen = [row for row in rows if row["holds"] is holds]
+        x, y = _numbers(chosen, layout.x), _numbers(chosen, RADIUS)
+        if colours is None:
+            axes.scatter(x, y, color=BLUE, marker=marker, s=12, linewidths=0)
+        else:
+            low, high = colours.ends
+            shade = _numbers(chosen, colours.name)
+            axes.scatter(x, y, c=shade, vmin=low, vmax=high, cmap="cividis", marker=marker, s=12, linewidths=0)
+
+
+def _sidecut(axes: Axes, rows: Sequence[Json]) -> None:
+    """R_sc cos ϑ, the radius of a ski that is bent onto a hard plane without twist."""
+    radii = {row["sidecut_radius_of_three_widths_m"] for row in rows} - {None}
+    ends = [float(row["edge_angle_deg"]) for row in rows]
+    angle = np.linspace(min(ends), max(ends), 91)
+    for radius in radii:
+        axes.plot(angle, radius * np.cos(angle * DEGREE), color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9, zorder=1)
+
+
+def _limits(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
+    x = _numbers(rows, layout.x)
+    if float(x.min()) > 0 and float(x.max()) > _LOG_FROM * float(x.min()):
+        logarithmic(axes, "x", x)
+    radii = _numbers(rows, RADIUS)
+    if np.isfinite(radii).any():
+        axes.set_ylim(0.0, 1.08 * float(np.nanmax(radii)))
+
+
+def _handles(layout: MapLayout, values: list[Any]) -> list[Line2D]:
+    handles = []
+    lined = _lined(layout, values)
+    if lined and layout.second is not None:
+        handles = [
+            Line2D(
+                [], [], color=COLOURS[place % len(COLOURS)], marker=MARKERS[place % len(MARKERS)], linewidth=0.8,
+                label=short(layout.second, value),
+            )
+            for place, value in enumerate(values)
+        ]  # fmt: skip
+    holds, slips = (("o", GREY), ("o", "white")) if lined else (("o", GREY), ("X", GREY))
+    for (marker, face), text in ((holds, "holds"), (slips, "slips: radius of an edge held by something else")):
+        handles.append(Line2D([], [], linestyle="none", marker=marker, color=GREY, markerfacecolor=face, label=text))
+    if layout.x == "edge_angle_deg":
+        text = "sidecut radius × cos ϑ"
+        handles.append(Line2D([], [], color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9, label=text))
+    return handles
+
+
+def _numbers(rows: Sequence[Json], name: str) -> np.ndarray[Any, np.dtype[np.float64]]:
+    return np.array([np.nan if row[name] is None else float(row[name]) for row in rows])

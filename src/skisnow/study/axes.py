@@ -1,0 +1,145 @@
+"""What varies in a study: lists and ranges, as a grid or as a Latin hypercube."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from ..simulate.carve_question import nearest
+from ..simulate.input_keys import InputKey
+from .study import Point
+
+FloatArray = npt.NDArray[np.float64]
+
+MOST_POINTS: Final = 1_000_000
+"""Of one study: a table of half a gigabyte (Choice)."""
+_RANGE_KEYS: Final = ("from", "to", "n", "log")
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """Values of one input: a list, or a range with ends.
+
+    Attributes
+    ----------
+    key
+        The input.
+    values
+        The list; empty for a range.
+    ends
+        From and to, for a range.
+    n
+        Number of values of a range on a grid; None where a sample does not need it.
+    log
+        Whether the range is even in the logarithm.
+    """
+
+    key: InputKey
+    values: tuple[Any, ...] = ()
+    ends: tuple[float, float] = (0.0, 0.0)
+    n: int | None = None
+    log: bool = False
+
+    @classmethod
+    def of(cls, key: InputKey, value: object) -> Self:
+        """Read what stands behind a key: one value, a list of values, or {from, to, n, log}.
+
+        Raises
+        ------
+        ParameterError
+            It is none of these; the message names the key.
+        """
+        if isinstance(value, dict):
+            return cls._of_range(key, value)
+        values = value if isinstance(value, list) else [value]
+        if not values:
+            raise ParameterError(f"{key.name} is an empty list; write at least one value")
+        checked = tuple(key.of_kind(each) for each in values)
+        repeated = next((each for place, each in enumerate(checked) if each in checked[:place]), None)
+        if repeated is not None:
+            raise ParameterError(f"{key.name} holds {repeated!r} twice; write each value once")
+        return cls(key, checked)
+
+    @classmethod
+    def _of_range(cls, key: InputKey, table: Mapping[str, Any]) -> Self:
+        for name in table:
+            if name not in _RANGE_KEYS:
+                raise ParameterError(f"{key.name}: {name} is no key of a range. {nearest(name, _RANGE_KEYS)}")
+        if key.kind not in ("number", "whole number"):
+            raise ParameterError(f"{key.name} has no range; write a list such as {key.name} = [...]")
+        low, high = (_end(key, table, name) for name in ("from", "to"))
+        log, n = table.get("log", False), table.get("n")
+        if not isinstance(log, bool):
+            raise ParameterError(f"{key.name}: log is {log!r}; it must be true or false")
+        if log and not (low > 0 and high > 0):
+            raise ParameterError(f"{key.name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}")
+        if n is not None and (isinstance(n, bool) or not isinstance(n, int) or n < 2):
+            raise ParameterError(f"{key.name}: n is {n!r}; it must be a whole number from 2 on")
+        if low == high:
+            raise ParameterError(f"{key.name}: from and to are both {low:g}; write the value under [fixed]")
+        return cls(key, ends=(low, high), n=n, log=log)
+
+    def on_grid(self) -> list[Any]:
+        """The values of a grid."""
+        if self.values:
+            return list(self.values)
+        if self.n is None:
+            raise ParameterError(f"{self.key.name}: n, the number of values, is missing")
+        low, high = self.ends
+        share = np.linspace(0.0, 1.0, self.n)
+        middle = self._at(share)
+        return [self._in_kind(x) for x in (low, *middle[1:-1].tolist(), high)]
+
+    def sampled(self, share: FloatArray) -> list[Any]:
+        """The values at shares from 0 to 1 of the axis; of a list each value has the same share."""
+        if self.values:
+            index = np.minimum((share * len(self.values)).astype(int), len(self.values) - 1)
+            return [self.values[place] for place in index.tolist()]
+        if self.n is not None:
+            raise ParameterError(f"{self.key.name}: n stands once in [latin_hypercube], not in a range")
+        return [self._in_kind(x) for x in self._at(share).tolist()]
+
+    def _at(self, share: FloatArray) -> FloatArray:
+        low, high = (math.log(end) for end in self.ends) if self.log else self.ends
+        even = low + (high - low) * share
+        return np.exp(even) if self.log else even
+
+    def _in_kind(self, number: float) -> float | int:
+        return round(number) if self.key.kind == "whole number" else number
+
+
+def grid_points(axes: list[Axis]) -> list[Point]:
+    """Every combination; the last axis varies fastest."""
+    values = [axis.on_grid() for axis in axes]
+    require_count(math.prod(len(each) for each in values))
+    return [dict(zip((axis.key.name for axis in axes), each, strict=True)) for each in itertools.product(*values)]
+
+
+def hypercube_points(axes: list[Axis], n: int, seed: int) -> list[Point]:
+    """A Latin hypercube: each of n equal slices of every axis holds one point, at a random place in its slice."""
+    require_count(n)
+    generator = np.random.default_rng(seed)
+    columns = {axis.key.name: axis.sampled((generator.permutation(n) + generator.uniform(size=n)) / n) for axis in axes}
+    return [{name: values[place] for name, values in columns.items()} for place in range(n)]
+
+
+def require_count(n: int) -> None:
+    """Refuse a study that nobody can wait for."""
+    if n > MOST_POINTS:
+        raise ParameterError(f"the study has {n} points; at most {MOST_POINTS} are allowed. Take fewer values")
+
+
+def _end(key: InputKey, table: Mapping[str, Any], name: str) -> float:
+    if name not in table:
+        raise ParameterError(f"{key.name}: {name} is missing; a range is written {{ from = 20, to = 70, n = 11 }}")
+    value = table[name]
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ParameterError(f"{key.name}: {name} is {value!r}; it must be a finite number")
+    return float(value)

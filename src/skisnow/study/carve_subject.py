@@ -1,0 +1,104 @@
+"""Studies of carved turns: the inputs and results of `skisnow carve`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ..errors import SkisnowError
+from ..simulate.batch_file import Row
+from ..simulate.carve_answer import CarveAnswer, Sources, answered
+from ..simulate.carve_dict import finite, inputs_dict, radii_of_a_turn, scalars_dict
+from ..simulate.carve_keys import CARVE_KEYS
+from ..simulate.carve_question import carve_question, require_complete
+from ..simulate.input_keys import InputKey
+from ..units import MM
+from .study import Point
+
+RESULTS: Final = (
+    "outcome",
+    "holds",
+    "side_force_N",
+    "side_force_limit_N",
+    "turn_radius_boot_m",
+    "turn_radius_chord_m",
+    "contact_length_m",
+    "afterbody_depth_ratio",
+    "greatest_edge_depth_mm",
+    "greatest_force_per_length_N_per_m",
+    "residual_force_N",
+    "residual_moment_Nm",
+    "sidecut_radius_of_three_widths_m",
+    "warnings",
+    "reason",
+)
+"""Columns behind the inputs; `outcome` is "error" where a point could not be asked, and `reason` says why."""
+
+
+@dataclass(slots=True)
+class CarveSubject:
+    """Answers points with one row each. Relative paths start at `folder`."""
+
+    folder: Path
+    _sources: Sources = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._sources = Sources(self.folder)
+
+    @property
+    def keys(self) -> Mapping[str, InputKey]:
+        """The inputs by name."""
+        return CARVE_KEYS
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        """The columns of results."""
+        return RESULTS
+
+    def require_sound(self, points: list[Point]) -> None:
+        """Refuse a study that lacks an input or names the snow in two ways."""
+        carving = [point for point in points if point.get("at_rest") is not True]
+        for point in (carving or points)[:1]:
+            require_complete(point)
+
+    def files(self, points: list[Point]) -> list[Path]:
+        """Ski files and results files."""
+        skis = (self._sources.ski_file(word) for word in _distinct(points, "ski"))
+        return [path for path in skis if path] + [self._sources.path(word) for word in _distinct(points, "results")]
+
+    def __call__(self, point: Point) -> Row:
+        """One row; whatever is wrong with a point stands in it."""
+        try:
+            return _row(answered(carve_question(point), sources=self._sources))
+        except SkisnowError as error:
+            return _failure(point, str(error))
+        except Exception as error:  # a study never stops for one point
+            return _failure(point, f"unexpected {type(error).__name__}: {error}")
+
+
+def _distinct(points: list[Point], name: str) -> list[str]:
+    return list(dict.fromkeys(point[name] for point in points if name in point))
+
+
+def _row(answer: CarveAnswer) -> Row:
+    equilibrium = answer.equilibrium
+    scalars = scalars_dict(equilibrium) | radii_of_a_turn(answer)
+    depth, force = equilibrium.edge_depth, equilibrium.force_per_length
+    return {
+        **inputs_dict(answer),
+        **{name: scalars[name] for name in RESULTS if name in scalars},
+        "greatest_edge_depth_mm": None if depth is None else float(np.max(depth)) / MM,
+        "greatest_force_per_length_N_per_m": None if force is None else float(np.max(force)),
+        "sidecut_radius_of_three_widths_m": finite(answer.ski.sidecut_radius_of_three_widths),
+        "warnings": "; ".join(answer.warnings),
+        "reason": equilibrium.remedy,
+    }
+
+
+def _failure(point: Point, reason: str) -> Row:
+    given: dict[str, Any] = {name: key.default for name, key in CARVE_KEYS.items()} | point
+    return {**given, **dict.fromkeys(RESULTS), "outcome": "error", "warnings": "", "reason": reason}

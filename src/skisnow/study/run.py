@@ -1,0 +1,74 @@
+"""Running a study: what is finished is kept, what is missing is computed, the table is complete or not there."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from ..errors import ParameterError
+from ..files import write_file
+from ..simulate.batch import Told, run_batch
+from ..simulate.batch_file import KeptRows
+from .study import Study
+from .table import StudyTable, read_table
+
+
+class StudyState(Enum):
+    """What stands at the place of a study's table."""
+
+    NEW = "new"
+    FINISHED = "finished"
+    ANOTHER = "another study"
+
+
+def study_state(study: Study) -> StudyState:
+    """Whether the table of this study, or of another one, is there.
+
+    Raises
+    ------
+    ParameterError
+        A file that is no study's table stands in its place: it is not replaced.
+    """
+    if not study.out.exists():
+        return StudyState.NEW
+    try:
+        table = read_table(study.out, study.subject.keys)
+    except ParameterError as error:
+        raise ParameterError(f"{error}. It is not replaced: name another place in out, or move it away") from error
+    names = {row["study"] for row in table.rows}
+    same = names == {study.fingerprint()} and len(table.rows) == len(study.points)
+    return StudyState.FINISHED if same else StudyState.ANOTHER
+
+
+def run_study(study: Study, *, workers: int | None = None, progress: Told | None = None) -> StudyTable:
+    """Compute the points that are missing and write the table.
+
+    Parameters
+    ----------
+    study
+        What to do. A table of the same study is read and not computed again; one of another study is replaced.
+    workers
+        Number of processes; None: one for each core. The table does not depend on it.
+    progress
+        Is told the number of finished points and that of all.
+
+    Raises
+    ------
+    ParameterError
+        Finished points of another study stand beside the table, or something that is no table stands in its place.
+    OutputError
+        The table's place cannot be written.
+    """
+    fingerprint = study.fingerprint()
+    if study_state(study) is StudyState.FINISHED:
+        if study.partial.exists():  # a kill between writing the one and removing the other
+            KeptRows.opened(study.partial, fingerprint).remove()
+        return read_table(study.out, study.subject.keys, varied=study.varied)
+    kept = KeptRows.opened(study.partial, fingerprint)
+    try:
+        rows = run_batch(study.points, study.subject, kept=kept, workers=workers, progress=progress)
+        table = StudyTable(study.columns, [row | {"study": fingerprint} for row in rows], study.varied)
+        write_file(study.out, table.csv())
+        kept.remove()
+    finally:
+        kept.close()
+    return table

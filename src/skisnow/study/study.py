@@ -1,0 +1,89 @@
+"""A study: its points, who answers them, and where the table goes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Protocol, TypeAlias
+
+from ..simulate.batch_file import Row
+from ..simulate.input_keys import InputKey
+
+Point: TypeAlias = dict[str, Any]
+
+
+class Subject(Protocol):
+    """What can be studied. It is pickled for each worker; one more subject is one more class."""
+
+    @property
+    def keys(self) -> Mapping[str, InputKey]:
+        """The inputs by name, in the order of the table's columns."""
+        ...
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        """The columns of results."""
+        ...
+
+    def require_sound(self, points: list[Point]) -> None:
+        """Refuse points that cannot be a study: an input is missing, or two say the same."""
+        ...
+
+    def files(self, points: list[Point]) -> list[Path]:
+        """Files that the points name: when one of them changes, the study is another."""
+        ...
+
+    def __call__(self, point: Point) -> Row:
+        """Inputs and results of one point; never raises for a bad point."""
+        ...
+
+
+SubjectIn: TypeAlias = Callable[[Path], Subject]
+"""Makes a subject whose relative paths start at a folder."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Study:
+    """A study as its file says it.
+
+    Attributes
+    ----------
+    file
+        The file it was read from.
+    out
+        Where the table goes.
+    subject
+        What is studied.
+    varied
+        Names of the inputs that vary, in the order of the file: the last varies fastest.
+    points
+        The inputs of every point.
+    """
+
+    file: Path
+    out: Path
+    subject: Subject
+    varied: tuple[str, ...]
+    points: list[Point]
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of the table."""
+        return (*self.subject.keys, *self.subject.results, "study")
+
+    @property
+    def partial(self) -> Path:
+        """Where finished points are kept until the table is complete."""
+        return self.out.with_name(f"{self.out.name}.partial")
+
+    def fingerprint(self) -> str:
+        """Sixteen hexadecimal digits that change with any point, any file that points name, and skisnow's version."""
+        digest = hashlib.sha256()
+        digest.update(json.dumps([version("skisnow"), self.columns, self.points]).encode())
+        for path in self.subject.files(self.points):
+            digest.update(b"\0" + (path.read_bytes() if path.is_file() else b"absent"))
+        return digest.hexdigest()[:16]

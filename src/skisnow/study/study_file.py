@@ -1,0 +1,130 @@
+"""STUDY.toml: what varies, what is fixed, and where the table goes."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from ..errors import ParameterError
+from ..simulate.carve_question import nearest
+from ..simulate.input_keys import InputKey
+from .axes import Axis, grid_points, hypercube_points
+from .carve_subject import CarveSubject
+from .study import Point, Study, SubjectIn
+
+FORMS: Final = ("grid", "latin_hypercube")
+TOP_KEYS: Final = ("out", "fixed", *FORMS)
+MOST_SEED: Final = 2**63 - 1
+
+
+def read_study(path: str | Path, *, subject: SubjectIn = CarveSubject) -> Study:
+    """Read a study.
+
+    Parameters
+    ----------
+    path
+        STUDY.toml. Paths in it are relative to its folder.
+    subject
+        What is studied.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, a key is unknown (the nearest is named), missing, said twice or of the wrong kind, or
+        the inputs are not complete. A value outside its range is no error of the study but of its points.
+    """
+    path = Path(path)
+    values = _parsed(path)
+    try:
+        return _study(path, values, subject)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def _parsed(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
+    except UnicodeDecodeError as error:
+        raise ParameterError(f"{path} is not UTF-8 text ({error.reason}). Save it as UTF-8") from error
+    except tomllib.TOMLDecodeError as error:
+        raise ParameterError(f"{path} is no TOML: {error}. Correct that place") from error
+
+
+def _study(path: Path, values: Mapping[str, Any], subject: SubjectIn) -> Study:
+    for key in values:
+        if key not in TOP_KEYS:
+            raise ParameterError(f"{key} is no key of a study. {nearest(key, TOP_KEYS)}")
+    asked = subject(path.parent)
+    form = _form(values)
+    fixed = _fixed(_table(values, "fixed"), asked.keys)
+    varying = _table(values, form)
+    own = ("n", "seed") if form == "latin_hypercube" else ()
+    axes = [_axis(form, name, value, asked.keys, fixed) for name, value in varying.items() if name not in own]
+    if not axes:
+        raise ParameterError(f"[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]")
+    points = grid_points(axes) if form == "grid" else hypercube_points(axes, *_sample(varying))
+    points = [{**fixed, **point} for point in points]
+    asked.require_sound(points)
+    return Study(path, _out(path, values), asked, tuple(axis.key.name for axis in axes), points)
+
+
+def _form(values: Mapping[str, Any]) -> str:
+    forms = [form for form in FORMS if form in values]
+    if len(forms) != 1:
+        found = "both are there" if forms else "neither is there"
+        raise ParameterError(f"a study has either [grid] or [latin_hypercube]; {found}")
+    return forms[0]
+
+
+def _table(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    table = values.get(name, {})
+    if not isinstance(table, dict):
+        raise ParameterError(f"{name} is {table!r}; it must be a table, begun by the line [{name}]")
+    return table
+
+
+def _fixed(table: Mapping[str, Any], keys: Mapping[str, InputKey]) -> Point:
+    fixed = {}
+    for name, value in table.items():
+        _require_key("fixed", name, keys)
+        if isinstance(value, list | dict):
+            raise ParameterError(f"fixed.{name} is {value!r}; it takes one value. What varies stands in [grid]")
+        fixed[name] = keys[name].of_kind(value)
+    return fixed
+
+
+def _axis(form: str, name: str, value: object, keys: Mapping[str, InputKey], fixed: Point) -> Axis:
+    _require_key(form, name, keys)
+    if name in fixed:
+        raise ParameterError(f"{name} stands in [{form}] and in [fixed]. Remove one of them")
+    return Axis.of(keys[name], value)
+
+
+def _require_key(table: str, name: str, keys: Mapping[str, InputKey]) -> None:
+    if name not in keys:
+        raise ParameterError(f"{table}.{name} is no input. {nearest(name, keys)}")
+
+
+def _sample(table: Mapping[str, Any]) -> tuple[int, int]:
+    numbers = []
+    for name, lowest, highest in (("n", 1, MOST_SEED), ("seed", 0, MOST_SEED)):
+        value = table.get(name)
+        if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
+            found = "is missing" if value is None else f"is {value!r}"
+            raise ParameterError(f"latin_hypercube.{name} {found}; it must be a whole number from {lowest} on")
+        numbers.append(value)
+    return numbers[0], numbers[1]
+
+
+def _out(path: Path, values: Mapping[str, Any]) -> Path:
+    out = values.get("out")
+    if not isinstance(out, str) or not out.strip():
+        found = "is missing" if out is None else f"is {out!r}"
+        raise ParameterError(f'out {found}; it is the place of the table, such as out = "table.csv"')
+    if Path(out).suffix.lower() != ".csv":
+        raise ParameterError(f"out is {out!r}; the table is a CSV file, so its name must end in .csv")
+    return path.parent / out
