@@ -10,7 +10,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.lines import Line2D
 
-from .map_layout import axes_of_panels, label, label_outside, map_layout, panel_columns, panels_of
+from .map_layout import axes_of_panels, label, label_outside, map_layout, panel_columns, panels_of, wants_logarithm
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, logarithmic, new_figure, plain_number
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ LEVELS: Final = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Shares of the side force in its limit at which the colour changes; at 1 the edge lets go."""
 _COLOURS: Final = ("#2166AC", "#5E9BC9", "#A6CDE3", "#DDEBF3", "#FBE3D0", "#F4B183", "#DD7F4B", "#B8431C")
 _LEAST: Final = 1e-3  # a flat ski draws no side force; its logarithm must exist
-_LOG_FROM: Final = 20.0
 
 
 def grip_map(table: StudyTable) -> Figure:
@@ -55,6 +54,10 @@ def grip_map(table: StudyTable) -> Figure:
             _points(axes, of_panel, layout)
     ordinate = "side force / limit" if layout.second is None else label(layout.second)
     _scales(every[0], table.rows, layout)
+    if layout.second is not None:
+        for axes in every:  # room for the symbols at the rim
+            axes.use_sticky_edges = False
+            axes.margins(0.03)
     label_outside(every, columns, label(layout.x), ordinate)
     if layout.second is not None and not layout.sampled:
         _colour_bar(figure, every)
@@ -96,7 +99,7 @@ def _points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
         chosen = [row for row in rows if row["holds"] is holds]
         axes.plot(
             [row[layout.x] for row in chosen], [row[str(layout.second)] for row in chosen], linestyle="none", zorder=3,
-            clip_on=False, **look,
+            **look,
         )  # fmt: skip
 
 
@@ -126,7 +129,7 @@ def _scales(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
             axes.set_ylim(0.0, 1.08 * max(1.0, float(known.max(initial=1.0))))
             continue
         values = np.array([float(row[name]) for row in rows])
-        if values.min() > 0 and values.max() > _LOG_FROM * values.min():
+        if wants_logarithm(name, values):
             logarithmic(axes, which, values)
 
 

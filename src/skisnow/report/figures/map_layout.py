@@ -7,6 +7,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+import numpy.typing as npt
+
 from ...errors import ParameterError
 from ..symbols import figure_text
 
@@ -19,10 +22,13 @@ if TYPE_CHECKING:
     from ...study import StudyTable
 
 Json = dict[str, Any]
+FloatArray = npt.NDArray[np.float64]
 
 MOST_PANELS: Final = 12
 MOST_LINES: Final = 7
 MOST_COLUMNS: Final = 5
+_LOG_FROM: Final = 20.0
+_CROWDED: Final = 4  # columns, from which neighbours' axis labels would touch
 _LETTERS: Final = 105
 """Of a title, over the whole width of a figure."""
 
@@ -126,6 +132,14 @@ def panel_columns(table: StudyTable, layout: MapLayout, count: int) -> int:
     return -(-count // rows)
 
 
+def wants_logarithm(name: str, values: FloatArray) -> bool:
+    """Whether an input's axis is logarithmic: its values are positive and span more than a factor of twenty.
+
+    An angle is never drawn so.
+    """
+    return name != "edge_angle_deg" and bool(values.min() > 0 and values.max() > _LOG_FROM * values.min())
+
+
 def lines_of(rows: Sequence[Json], name: str | None) -> Iterator[tuple[Any, list[Json]]]:
     """The rows of each value of an input, values rising."""
     if name is None:
@@ -168,9 +182,10 @@ def axes_of_panels(figure: Figure, titles: Sequence[str], columns: int) -> list[
 
 
 def label_outside(panels: Sequence[Axes], columns: int, x: str, y: str) -> None:
-    """Axis labels at the left and the lower rim of the panels alone."""
+    """Axis labels at the left and the lower rim of the panels; of many columns only the middle one is labelled."""
     for place, axes in enumerate(panels):
-        if place + columns >= len(panels):
+        lowest = place + columns >= len(panels)
+        if lowest and (columns < _CROWDED or place % columns == columns // 2 or len(panels) % columns):
             axes.set_xlabel(x)
         if place % columns == 0:
             axes.set_ylabel(y)

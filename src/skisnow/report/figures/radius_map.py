@@ -21,6 +21,7 @@ from .map_layout import (
     panel_columns,
     panels_of,
     short,
+    wants_logarithm,
 )
 from .style import BLUE, COLOURS, DOUBLE_MM, GREY, MARKERS, legend_below, logarithmic, new_figure
 
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
 
 Json = dict[str, Any]
 RADIUS: Final = "turn_radius_boot_m"
-_LOG_FROM: Final = 20.0  # ratio of the ends of an input above which its axis is logarithmic
 
 
 def radius_map(table: StudyTable) -> Figure:
@@ -130,7 +130,7 @@ def _sidecut(axes: Axes, rows: Sequence[Json]) -> None:
 
 def _limits(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     x = _numbers(rows, layout.x)
-    if float(x.min()) > 0 and float(x.max()) > _LOG_FROM * float(x.min()):
+    if wants_logarithm(layout.x, x):
         logarithmic(axes, "x", x)
     radii = _numbers(rows, RADIUS)
     if np.isfinite(radii).any():

@@ -1,0 +1,46 @@
+"""Draw the gallery's maps from the example study: python docs/figures_of_carve_study.py.
+
+The pictures are written with 128 colours: a third of the bytes, and nobody sees it in a drawing of lines.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from pathlib import Path
+
+from PIL import Image
+
+from skisnow.report.figures.carved_skis import carved_skis
+from skisnow.report.figures.figure_file import write_figure
+from skisnow.report.figures.grip_map import grip_map
+from skisnow.report.figures.radius_map import radius_map
+from skisnow.simulate.carve_answer import answered
+from skisnow.simulate.carve_dict import answers_dict
+from skisnow.simulate.carve_question import carve_question
+from skisnow.study import read_study, run_study
+
+DOCS = Path(__file__).resolve().parent
+GALLERY = DOCS / "_static" / "gallery"
+COLOURS = 128
+
+
+def main() -> None:
+    """Run the study in a folder of its own and draw."""
+    with tempfile.TemporaryDirectory() as folder:
+        study_file = Path(shutil.copy(DOCS.parent / "examples" / "carve_study.toml", folder))
+        table = run_study(read_study(study_file))
+    write_figure(GALLERY / "carve-study-radius.png", lambda: radius_map(table))
+    write_figure(GALLERY / "carve-study-grip.png", lambda: grip_map(table))
+    asked = {"edge_angle_deg": 45, "load_N": 800, "H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.35, "unloading_ratio": 10}
+    found = answers_dict([answered(carve_question(asked | {"ski": ski})) for ski in ("slalom", "giant-slalom")])
+    write_figure(GALLERY / "two-skis.png", lambda: carved_skis(found))
+    for name in ("carve-study-radius", "carve-study-grip", "two-skis"):
+        path = GALLERY / f"{name}.png"
+        with Image.open(path) as picture:
+            fewer = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+        fewer.save(path, optimize=True)
+
+
+if __name__ == "__main__":
+    main()
