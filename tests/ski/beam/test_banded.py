@@ -1,0 +1,89 @@
+"""Banded storage and its LU against dense linear algebra."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from skisnow.ski.beam.banded import HALF_BANDWIDTH, assembled, dense, factor, multiplied, solve
+
+from .conftest import FloatArray, banded_solution, chain
+
+
+def random_band(size: int, seed: int) -> FloatArray:
+    """A banded matrix that is not symmetric and whose symmetric part is positive definite."""
+    rng = np.random.default_rng(seed)
+    matrix = rng.uniform(-1.0, 1.0, (size, 2 * HALF_BANDWIDTH + 1))
+    matrix[:, HALF_BANDWIDTH] += 2.5 * HALF_BANDWIDTH
+    for i in range(size):
+        for k in range(2 * HALF_BANDWIDTH + 1):
+            if not 0 <= i + k - HALF_BANDWIDTH < size:
+                matrix[i, k] = 0.0
+    return matrix
+
+
+@settings(deadline=None)  # the first call compiles
+@given(st.integers(1, 40), st.integers(1, 4), st.integers(0, 2**32 - 1))
+def test_solution_is_that_of_numpy(size: int, columns: int, seed: int) -> None:
+    matrix = random_band(size, seed)
+    right = np.random.default_rng(seed + 1).normal(size=(size, columns))
+    expected = np.linalg.solve(dense(matrix), right)
+    factors, found = matrix.copy(), right.copy()
+    factor(factors)
+    solve(factors, found, columns)
+    assert found == pytest.approx(expected, rel=1e-10, abs=1e-13)
+
+
+@settings(deadline=None)  # the first call compiles
+@given(st.integers(1, 40), st.integers(0, 2**32 - 1))
+def test_factors_multiply_to_the_matrix(size: int, seed: int) -> None:
+    matrix = random_band(size, seed)
+    factors = matrix.copy()
+    factor(factors)
+    full = dense(factors)
+    product = (np.tril(full, -1) + np.eye(size)) @ np.triu(full)
+    assert product == pytest.approx(dense(matrix), abs=1e-12)
+
+
+@settings(deadline=None)  # the first call compiles
+@given(st.integers(1, 40), st.integers(0, 2**32 - 1))
+def test_product_is_that_of_numpy(size: int, seed: int) -> None:
+    matrix = random_band(size, seed)
+    vector = np.random.default_rng(seed + 2).normal(size=size)
+    assert multiplied(matrix, vector) == pytest.approx(dense(matrix) @ vector, abs=1e-12)
+
+
+def test_only_the_asked_columns_are_solved() -> None:
+    matrix = random_band(9, 3)
+    factor(matrix)
+    right = np.ones((9, 3))
+    solve(matrix, right, 2)
+    assert np.all(right[:, 2] == 1.0)
+    assert not np.any(right[:, :2] == 1.0)
+
+
+def test_assembly_adds_what_shares_a_number_and_drops_what_is_held() -> None:
+    rng = np.random.default_rng(5)
+    element = rng.normal(size=(3, 6, 6))
+    dof = np.array([[-1, -1, -1, 0, 1, 2], [0, 1, 2, 3, 4, 5], [3, 4, 5, 6, 7, 8]], dtype=np.int64)
+    expected = np.zeros((9, 9))
+    expected[:3, :3] += element[0, 3:, 3:]
+    expected[:6, :6] += element[1]
+    expected[3:, 3:] += element[2]
+    assert dense(assembled(element, dof, 9)) == pytest.approx(expected, abs=1e-15)
+
+
+@pytest.mark.parametrize(("elements", "digits_kept"), [(160, 1e-7), (640, 1e-4)])
+def test_a_fine_beam_loses_no_more_digits_than_numpy(elements: int, digits_kept: float) -> None:
+    """Condition number ~ elements⁴: rounding, not the mesh, limits a tip load that is exact on any mesh."""
+    beam = chain(0.8, elements, held=True)
+    stiffness = beam.stiffness(beam.same(200.0), beam.same(100.0))
+    right = np.zeros(beam.size)
+    right[-3] = 1.0
+    exact = 0.8**3 / 600.0
+    ours = abs(banded_solution(stiffness, right)[-3] / exact - 1.0)
+    numpys = abs(np.linalg.solve(dense(stiffness), right)[-3] / exact - 1.0)
+    assert ours < digits_kept
+    assert ours < 10.0 * numpys

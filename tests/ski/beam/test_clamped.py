@@ -1,0 +1,142 @@
+"""A ski clamped at the boot against plain beams, and the frequencies of the catalogue's skis."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.ski import Ski, read_ski
+from skisnow.ski.beam.banded import dense
+from skisnow.ski.beam.clamped import beam_at, clamped
+
+from .conftest import Chain, FloatArray, banded_solution, frequencies, observed_order
+
+EI, GJ = 240.0, 110.0
+BENDING_HZ, TORSION_HZ = (20.0, 48.0, 92.0), (96.0, 126.0)
+
+
+def plain_ski(front: float = 0.9, rear: float = -0.7, width: float = 0.07) -> Ski:
+    station = np.linspace(front, rear, 801)
+    same = np.ones_like(station)
+    return Ski(
+        name="plain",
+        source="test",
+        station=station,
+        width=width * same,
+        base_height=0.0 * same,
+        bending_stiffness=EI * same,
+        torsional_stiffness=GJ * same,
+        mass_per_length=1.4 * same,
+        running_length=front - rear,
+        sidecut_length=front - rear,
+        sidecut_middle=(front + rear) / 2.0,
+    )
+
+
+@pytest.mark.parametrize(("clamp", "front", "rear"), [(0.0, 0.9, -0.7), (0.3, 0.9, -0.7), (0.25, 0.5, -1.1)])
+def test_both_ends_are_clamped_beams(clamp: float, front: float, rear: float) -> None:
+    """F a³/(3 EI) and M a/GJ with a from the end of the clamp to tip and tail, each end for itself."""
+    model = clamped(plain_ski(front, rear), clamp, 80)
+    ahead, behind = front - clamp / 2.0, -rear - clamp / 2.0
+    load = np.zeros(model.size)
+    load[model.dof[0, 0]], load[model.dof[0, 2]] = 30.0, 5.0
+    load[model.dof[-1, 3]], load[model.dof[-1, 5]] = 20.0, -4.0
+    deflection, twist = beam_at(model, banded_solution(model.stiffness, load), [front, rear])
+    assert deflection == pytest.approx(
+        [30.0 * ahead**3 / (3.0 * EI), 20.0 * behind**3 / (3.0 * EI)], rel=1e-9
+    )  # rounding
+    assert twist == pytest.approx([5.0 * ahead / GJ, -4.0 * behind / GJ], rel=1e-9)
+
+
+def test_nothing_moves_under_the_clamp() -> None:
+    model = clamped(plain_ski(), 0.3, 80)
+    u = np.random.default_rng(1).normal(size=model.size)
+    deflection, twist = beam_at(model, u, np.linspace(0.15, -0.15, 31))
+    assert np.all(deflection == 0.0)
+    assert np.all(twist == 0.0)
+    assert beam_at(model, u, 0.16)[0][0] != 0.0
+    assert beam_at(model, u, -0.16)[0][0] != 0.0
+
+
+def test_smooth_load_at_the_stations() -> None:
+    """EI w⁗ = q sin kx, k = π/l, before the boot; w = w′ = 0 at the clamp, w″ = w‴ = 0 at the tip.
+
+    w = (q/EI) (sin(kx)/k⁴ - x/k³ + l x²/(2k) - x³/(6k)). Order 4 of the two Gauss points at which the snow is felt.
+    """
+    length, q = 0.9, 500.0
+    x = np.array([0.3, 0.55, 0.9])
+    k = math.pi / length
+    exact = q / EI * (np.sin(k * x) / k**4 - x / k**3 + length * x**2 / (2.0 * k) - x**3 / (6.0 * k))
+    error = []
+    for elements in (16, 32, 64):
+        model = clamped(plain_ski(), 0.0, elements)
+        at = model.stations
+        load = np.zeros(model.size)
+        pressure = np.where(at.station > 0.0, q * np.sin(k * at.station), 0.0) * at.weight
+        for a in range(6):
+            held = at.dof[:, a] < 0
+            np.add.at(load, at.dof[~held, a], (pressure * at.deflection[:, a])[~held])
+        error.append(float(np.max(np.abs(beam_at(model, banded_solution(model.stiffness, load), x)[0] / exact - 1.0))))
+    assert np.all(observed_order(error) > 3.7)
+    assert error[-1] < 1e-6
+
+
+def test_stations_measure_the_ski() -> None:
+    """Their weights add up to the length and to its moments, falling from tip to tail; the slope is along the ski."""
+    model = clamped(plain_ski(), 0.3, 160)
+    at = model.stations
+    assert at.weight.sum() == pytest.approx(1.6, rel=1e-12)
+    assert at.weight @ at.station == pytest.approx((0.9**2 - 0.7**2) / 2.0, rel=1e-12)
+    assert at.weight @ at.station**2 == pytest.approx((0.9**3 + 0.7**3) / 3.0, rel=1e-12)
+    assert np.all(np.diff(at.station) < 0.0)
+    u = np.random.default_rng(2).normal(size=model.size) * 1e-3
+    step = 1e-6
+    value = np.where(at.dof >= 0, u[at.dof], 0.0)
+    ahead, behind = (beam_at(model, u, at.station + side * step)[0] for side in (1.0, -1.0))
+    assert np.sum(at.deflection * value, axis=1) == pytest.approx(beam_at(model, u, at.station)[0], abs=1e-14)
+    assert np.sum(at.slope * value, axis=1) == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-7)
+
+
+def test_mass_of_the_free_parts() -> None:
+    """Lifting both free parts with linear shape x - clamp: m' ∫ (x - a)² dx of each."""
+    model = clamped(plain_ski(), 0.3, 80)
+    u = np.zeros(model.size)
+    number = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
+    free = number[:, 0] >= 0
+    u[number[free, 0]] = np.abs(model.node[free]) - 0.15
+    u[number[free, 1]] = -np.sign(model.node[free])  # per length of the element's own direction, tip to tail
+    # the clamped node itself cannot turn: the element beside it bends, so only its neighbours count in full
+    value = u @ dense(model.mass) @ u
+    assert value == pytest.approx(1.4 * (0.75**3 + 0.55**3) / 3.0, rel=1e-4)
+
+
+def free_frequencies(ski: Ski, elements: int) -> tuple[FloatArray, FloatArray]:
+    """First bending and torsion frequencies of the ski in the air (Hz)."""
+    beam = Chain(np.linspace(float(ski.station[-1]), float(ski.station[0]), elements + 1), held=False)
+    at = ski.at(beam.gauss)
+    stiffness = beam.stiffness(at.bending_stiffness, at.torsional_stiffness)
+    mass = beam.mass(at.mass_per_length, at.mass_per_length * at.width**2 / 12.0)
+    bending, torsion = (frequencies(stiffness, mass, which) / (2.0 * math.pi) for which in ((0, 1), (2,)))
+    return bending[2:5], torsion[1:2]
+
+
+@pytest.mark.parametrize("name", ["slalom", "giant-slalom", "carver"])
+def test_frequencies_of_the_catalogue(name: str) -> None:
+    """Alpine skis: bending near 20, 48 and 92 Hz, torsion between 96 and 126 Hz, ± 15 %."""
+    bending, torsion = free_frequencies(read_ski(name), 160)
+    assert bending == pytest.approx(np.array(BENDING_HZ), rel=0.15)
+    assert TORSION_HZ[0] * 0.85 < torsion[0] < TORSION_HZ[1] * 1.15
+
+
+def test_frequencies_do_not_depend_on_the_mesh() -> None:
+    coarse, fine = (np.concatenate(free_frequencies(read_ski("slalom"), elements)) for elements in (80, 320))
+    assert coarse == pytest.approx(fine, rel=1e-3)
+
+
+@pytest.mark.parametrize(("clamp", "elements"), [(-0.1, 80), (1.5, 80), (0.3, 3)])
+def test_what_cannot_be_clamped(clamp: float, elements: int) -> None:
+    with pytest.raises(ParameterError):
+        clamped(plain_ski(), clamp, elements)
