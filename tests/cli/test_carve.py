@@ -1,0 +1,265 @@
+"""`skisnow carve` as a user meets it."""
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+import skisnow
+from skisnow.cli import main
+
+SCHEMA = json.loads((Path(skisnow.__file__).parent / "simulate/schemas/carve.schema.json").read_text("utf-8"))
+CONTRACT = [
+    "outcome",
+    "holds",
+    "side_force_N",
+    "side_force_limit_N",
+    "turn_radius_boot_m",
+    "turn_radius_chord_m",
+    "contact_length_m",
+    "afterbody_depth_ratio",
+    "station_m",
+    "edge_depth_mm",
+    "force_per_length_N_per_m",
+    "bending_mm",
+    "twist_deg",
+    "residual_force_N",
+    "residual_moment_Nm",
+]
+ASKED = ["--ski", "slalom", "--edge-angle-deg", "45", "--load-N", "800"]
+SNOW = ["--H-V-N-per-mm3", "0.2", "--S-f-N-per-mm2", "0.35", "--unloading-ratio", "10"]
+Printed = pytest.CaptureFixture[str]
+
+
+def answer(words: list[str], printed: Printed) -> Any:
+    assert main(["carve", *words, "--json"]) == 0
+    found = json.loads(printed.readouterr().out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
+    jsonschema.validate(found, SCHEMA)
+    return found
+
+
+def refusal(words: list[str], printed: Printed) -> str:
+    assert main(["carve", *words]) == 1
+    out, err = printed.readouterr()
+    assert out == ""
+    return err
+
+
+def test_json_has_the_keys_of_the_contract_and_one_number_for_each_station(capsys: Printed) -> None:
+    found = answer([*ASKED, *SNOW], capsys)
+    assert set(CONTRACT) <= set(found)
+    lists = [found[key] for key in CONTRACT if isinstance(found[key], list)]
+    assert len(lists) == 5
+    assert {len(each) for each in lists} == {len(found["station_m"])}
+    assert found["station_m"] == sorted(found["station_m"], reverse=True)
+    assert found["station_m"][0] > 0 > found["station_m"][-1]
+    assert found["outcome"] == "equilibrium"
+    assert found["side_force_N"] == pytest.approx(800.0, rel=1e-12)  # load × tan 45°
+    assert found["inputs"]["H_V_N_per_mm3"] == 0.2
+    assert found["provenance"]["skisnow"]
+
+
+def test_snow_carries_the_load_and_the_limit_is_the_shear_strength_of_the_held_depth(capsys: Printed) -> None:
+    """∫ p ds is the load and S_f ∫ e ds the limit; the trapezoids over 1 cm are good to some per mille."""
+    found = answer([*ASKED, *SNOW], capsys)
+    station = found["station_m"]
+
+    def integral(values: list[float]) -> float:
+        pairs = zip(values, values[1:], station, station[1:], strict=False)
+        return sum((a + b) / 2.0 * (s - t) for a, b, s, t in pairs)
+
+    assert integral(found["force_per_length_N_per_m"]) == pytest.approx(800.0, rel=5e-3)
+    depth_mm = integral([max(depth, 0.0) for depth in found["edge_depth_mm"]]) * 1e3  # mm²
+    assert found["side_force_limit_N"] == pytest.approx(0.35 * depth_mm, rel=5e-3)
+
+
+def test_rigid_tool_at_rest_is_as_deep_as_the_closed_form(capsys: Printed) -> None:
+    """e = sqrt(2 F tan ϑ/(H_V L)) for a rigid edge of length L: 11.07 mm at 490 N, 45°, 0.04 N/mm³, 200 mm."""
+    words = ["--ski", "paper-tool", "--edge-angle-deg", "45", "--load-N", "490", "--H-V-N-per-mm3", "0.04"]
+    found = answer([*words, "--at-rest", "--clamp-length-m", "0"], capsys)
+    expected = math.sqrt(2.0 * 490.0 / (0.04 * 200.0))
+    # EI = 10⁶ N m² is not quite rigid
+    assert found["edge_depth_mm"] == pytest.approx([expected] * len(found["station_m"]), rel=1e-5)
+    assert found["force_per_length_N_per_m"] == pytest.approx([490.0 / 0.2] * len(found["station_m"]), rel=1e-5)
+    assert (found["side_force_N"], found["holds"]) == (0.0, True)
+    assert found["side_force_limit_N"] is found["inputs"]["S_f_N_per_mm2"] is None
+
+
+def test_rigid_ski_of_a_file_carves_as_deep_as_the_closed_form_on_elastic_snow(tmp_path: Path, capsys: Printed) -> None:
+    """A straight rigid ski file: the same equation at another angle, so that tangent and length are told apart."""
+    path = tmp_path / "plank.toml"
+    shape = "length_mm = 1000\nrunning_length_mm = 1000\nsidecut_length_mm = 1000\ntail_overhang_mm = 0\n"
+    widths = "tip_width_mm = 80\nwaist_width_mm = 80\ntail_width_mm = 80\nmass_kg = 2\nrigid = true\n"
+    path.write_text(shape + widths + "shovel_height_mm = 0\ntail_height_mm = 0\n", encoding="utf-8")
+    words = ["--ski", str(path), "--edge-angle-deg", "30", "--load-N", "600", "--H-V-N-per-mm3", "0.5"]
+    found = answer([*words, "--S-f-N-per-mm2", "0.3", "--unloading-ratio", "1"], capsys)
+    expected = math.sqrt(2.0 * 600.0 * math.tan(math.radians(30.0)) / (0.5 * 1000.0))
+    # EI = 10⁶ N m² is not quite rigid
+    assert found["edge_depth_mm"] == pytest.approx([expected] * len(found["station_m"]), rel=1e-3)
+    assert found["side_force_N"] == pytest.approx(600.0 / math.sqrt(3.0), rel=1e-12)
+    assert found["side_force_limit_N"] == pytest.approx(0.3 * expected * 1000.0, rel=1e-3)
+
+
+def test_flat_ski_has_no_radius_and_no_side_force(capsys: Printed) -> None:
+    found = answer(["--ski", "slalom", "--edge-angle-deg", "0", "--load-N", "800", *SNOW], capsys)
+    assert (found["side_force_N"], found["holds"]) == (0.0, True)
+    assert found["turn_radius_boot_m"] is found["turn_radius_chord_m"] is None
+
+
+def test_slipping_edge_is_an_answer(capsys: Printed) -> None:
+    words = [*ASKED, "--published", "glacier", "--unloading-ratio", "10"]
+    found = answer(words, capsys)
+    assert (found["outcome"], found["holds"]) == ("slips", False)
+    assert found["side_force_limit_N"] < found["side_force_N"]
+    assert found["inputs"]["H_V_N_per_mm3"] == 90.0
+    assert main(["carve", *words]) == 0
+    text = capsys.readouterr().out
+    assert found["remedy"] in text
+    assert "edge holds" in text
+
+
+def test_swallowed_ski_has_an_outcome_in_words_and_no_numbers(capsys: Printed) -> None:
+    words = [*ASKED, "--H-V-N-per-mm3", "1e-5", "--S-f-N-per-mm2", "0.35", "--unloading-ratio", "10"]
+    found = answer(words, capsys)
+    assert found["outcome"] == "sinks"
+    assert found["turn_radius_boot_m"] is found["edge_depth_mm"] is found["holds"] is None
+    assert main(["carve", *words]) == 0
+    assert "sinks: no balance" in capsys.readouterr().out
+
+
+def test_several_skis_share_one_answer_one_table_and_one_figure(tmp_path: Path, capsys: Printed) -> None:
+    words = [*ASKED, "--ski", "giant-slalom", *SNOW]
+    figure = tmp_path / "two.png"
+    found = answer([*words, "--figure", str(figure)], capsys)
+    slalom, giant = found["skis"]
+    assert slalom == answer([*ASKED, *SNOW], capsys)
+    assert giant["turn_radius_boot_m"] > slalom["turn_radius_boot_m"]
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    assert main(["carve", *words]) == 0
+    head, *_ = (line for line in capsys.readouterr().out.splitlines() if line.startswith(" "))
+    assert head.split() == ["slalom", "giant-slalom"]
+
+
+@pytest.mark.parametrize(
+    ("switch", "key", "value"),
+    [
+        (["--no-side-force-bending"], "side_force_bending", False),
+        (["--groove", "path"], "groove", "path"),
+        (["--no-twist"], "twist", False),
+        (["--clamp-length-m", "0"], "clamp_length_m", 0.0),
+        (["--elements", "80"], "elements", 80),
+        (["--moment-Nm", "40"], "moment_Nm", 40.0),
+    ],
+)
+def test_each_choice_is_in_force_and_named(switch: list[str], key: str, value: object, capsys: Printed) -> None:
+    plain, switched = answer([*ASKED, *SNOW], capsys), answer([*ASKED, *SNOW, *switch], capsys)
+    assert switched["inputs"] == plain["inputs"] | {key: value}
+    assert switched["turn_radius_boot_m"] != plain["turn_radius_boot_m"]
+    if key == "twist":
+        assert set(switched["twist_deg"]) == {0.0}
+
+
+def test_moment_presses_the_tip_down(capsys: Printed) -> None:
+    rests = [*ASKED, "--H-V-N-per-mm3", "0.2", "--at-rest"]
+    plain, pressed = answer(rests, capsys), answer([*rests, "--moment-Nm", "40"], capsys)
+
+    def centre(found: Any) -> float:
+        pairs = list(zip(found["station_m"], found["force_per_length_N_per_m"], strict=True))
+        return sum(s * p for s, p in pairs) / sum(p for _, p in pairs)
+
+    # 40 N m on 800 N move the snow's force by 50 mm; plain sums over stations of nearly even spacing
+    assert centre(pressed) - centre(plain) == pytest.approx(0.05, rel=0.05)
+
+
+def test_infinite_unloading_ratio_is_rigid_plastic_snow(capsys: Printed) -> None:
+    found = answer([*ASKED, *SNOW[:-1], "inf"], capsys)
+    assert found["inputs"]["unloading_ratio"] == 1000.0
+
+
+def test_snow_of_a_campaign_with_its_intervals(tmp_path: Path, capsys: Printed) -> None:
+    from skisnow import snow_from_results
+
+    rows = [{"used": True, "site": "A", "H_V_N_per_mm3": value} for value in (0.1, 0.4)]
+    shear = [{"used": True, "site": "A", "S_f_N_per_mm2": value} for value in (0.3, 0.5)]
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps({"penetration": {"experiments": rows}, "shear": {"experiments": shear}}), "utf-8")
+    words = [*ASKED, "--results", str(path), "--unloading-ratio", "10"]
+    found = answer([*words, "--site", "A"], capsys)
+    assert found["inputs"]["H_V_N_per_mm3"] == pytest.approx(0.2, rel=1e-12)  # the geometric mean
+    assert found["inputs"]["S_f_N_per_mm2"] == pytest.approx(0.4, rel=1e-12)
+    interval = snow_from_results(path).snow_hardness_interval
+    assert interval is not None
+    assert found["snow"]["H_V_interval_N_per_mm3"] == pytest.approx([end / 1e9 for end in interval])
+    assert "it has ['A']" in refusal([*words, "--site", "B"], capsys)
+
+
+def test_angle_that_looks_like_radians_is_warned_of(capsys: Printed) -> None:
+    words = ["--ski", "slalom", "--load-N", "800", *SNOW, "--edge-angle-deg"]
+    assert main(["carve", *words, "0.785"]) == 0
+    assert "looks like radians. If it is, write 44.98" in capsys.readouterr().err
+    for angle in ("0", "1.6", "45"):
+        assert main(["carve", *words, angle]) == 0
+        assert "radians" not in capsys.readouterr().err
+
+
+def test_values_beyond_what_was_measured_are_warned_of_and_used(capsys: Printed) -> None:
+    words = [*ASKED, "--H-V-N-per-mm3", "120", "--S-f-N-per-mm2", "0.9", "--unloading-ratio", "10"]
+    assert main(["carve", *words, "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert "H_V 120 N/mm³ is outside" in err
+    assert "S_f 0.9 N/mm² is outside" in err
+    assert json.loads(out)["inputs"]["H_V_N_per_mm3"] == 120.0
+    assert len(json.loads(out)["warnings"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([*ASKED, "--unloading-ratio", "10"], "no snow is given: H_V has no default"),
+        ([*ASKED, *SNOW[:2], "--unloading-ratio", "10"], "S_f_N_per_mm2 is missing"),
+        ([*ASKED, *SNOW[:4]], "unloading_ratio is missing"),
+        ([*ASKED, *SNOW, "--published", "race-piste"], "in two ways, H_V_N_per_mm3 and published"),
+        ([*ASKED, "--published", "race-piste", *SNOW[2:]], "S_f_N_per_mm2 cannot stand beside published"),
+        ([*ASKED, "--published", "race-pist", *SNOW[4:]], "did you mean 'race-piste'?"),
+        ([*ASKED, "--published", "race-piste", "--site", "A", *SNOW[4:]], "site goes with results"),
+        ([*ASKED, "--results", "nowhere.json", *SNOW[4:]], "nowhere.json cannot be read"),
+        ([*ASKED[2:], "--ski", "slalon", *SNOW], "Is slalom meant?"),
+        ([*ASKED[2:], "--ski", "mine/ski.toml", *SNOW], "ski.toml cannot be read"),
+        ([*ASKED[:3], "95", *ASKED[4:], *SNOW], "edge_angle_deg is 95.0; allowed is from 0 to 85 °"),
+        ([*ASKED[:3], "-5", *ASKED[4:], *SNOW], "edge_angle_deg is -5.0"),
+        ([*ASKED[:3], "nan", *ASKED[4:], *SNOW], "edge_angle_deg is nan"),
+        ([*ASKED[:5], "0", *SNOW], "load_N is 0.0; allowed is above 0 N"),
+        ([*ASKED[:5], "inf", *SNOW], "load_N is inf"),
+        ([*ASKED, "--H-V-N-per-mm3", "-1", *SNOW[2:]], "H_V_N_per_mm3 is -1.0; allowed is above 0 N/mm³"),
+        ([*ASKED, *SNOW[:-1], "0.5"], "unloading_ratio is 0.5; allowed is 1 or more"),
+        ([*ASKED, *SNOW, "--elements", "3"], "elements is 3; allowed is whole numbers from 4"),
+        ([*ASKED, *SNOW, "--clamp-length-m", "5"], "clamp_length is 5.0 m"),
+        ([*ASKED, *SNOW, "--figure", "picture.bmp"], "ends in .png, .svg, .pdf"),
+    ],
+)
+def test_bad_input_is_refused_in_a_sentence(words: list[str], told: str, capsys: Printed) -> None:
+    assert told in refusal(words, capsys)
+
+
+@pytest.mark.parametrize("words", [[], ASKED[2:], [*ASKED, "--groove", "sideways"], [*ASKED, "--load-N", "heavy"]])
+def test_wrong_words_exit_2(words: list[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["carve", *words])
+    assert left.value.code == 2
+
+
+def test_help_loads_no_numbers() -> None:
+    """Other commands and --help must not wait for the compiler and the drawing library."""
+    code = (
+        "import sys\nfrom skisnow.cli import main\n"
+        "try:\n    main(['carve', '--help'])\nexcept SystemExit:\n    pass\n"
+        "print({'numba', 'numpy', 'matplotlib'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "set()"
+    assert "--H-V-N-per-mm3" in done.stdout

@@ -1,0 +1,133 @@
+"""`skisnow study` as a user meets it, killed and interrupted too."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from skisnow.cli import main
+
+TEXT = """
+out = "tables/table.csv"
+[fixed]
+ski = "slalom"
+published = "race-piste"
+unloading_ratio = 10
+elements = 40
+[grid]
+load_N = { from = 300, to = 1500, n = 30 }
+edge_angle_deg = { from = 10, to = 60, n = 40 }
+"""
+SMALL = TEXT.replace("n = 30", "n = 2").replace("n = 40", "n = 3")
+POINTS = 30 * 40
+Printed = pytest.CaptureFixture[str]
+
+
+def study_in(folder: Path, text: str) -> Path:
+    folder.mkdir()
+    path = folder / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_table_counts_and_progress(tmp_path: Path, capsys: Printed) -> None:
+    path = study_in(tmp_path / "a", SMALL)
+    assert main(["study", str(path), "--workers", "1"]) == 0
+    out, _ = capsys.readouterr()
+    assert "table.csv: points 6 (equilibrium" in out
+    assert [each.name for each in (tmp_path / "a" / "tables").iterdir()] == ["table.csv"]
+    assert main(["study", str(path)]) == 0
+    assert "nothing is computed again" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("which", "suffix"), [("radius", "png"), ("grip", "svg"), ("grip", "pdf")])
+def test_maps_are_drawn(which: str, suffix: str, tmp_path: Path) -> None:
+    path, figure = study_in(tmp_path / "a", SMALL), tmp_path / f"map.{suffix}"
+    assert main(["study", str(path), "--workers", "1", "--map", which, "--figure", str(figure)]) == 0
+    first = figure.read_bytes()
+    assert first[:5] in (b"\x89PNG\r", b"<?xml", b"%PDF-")
+    assert main(["study", str(path), "--map", which, "--figure", str(figure)]) == 0
+    assert figure.read_bytes() == first
+
+
+def test_study_of_errors_alone_exits_1_and_says_the_first(tmp_path: Path, capsys: Printed) -> None:
+    path = study_in(tmp_path / "a", SMALL.replace('"slalom"', '"slalon"'))
+    assert main(["study", str(path), "--workers", "1"]) == 1
+    out, err = capsys.readouterr()
+    assert "points 6 (error 6)" in out
+    assert "6 points could not be asked; the first, row 1: there is no ski named 'slalon'. Is slalom meant?" in err
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "told"),
+    [
+        (SMALL.replace("load_N", "laod_N"), [], "grid.laod_N is no input. Is load_N meant?"),
+        (SMALL, ["--workers", "0"], "workers is 0"),
+        (SMALL, ["--figure", "map.jpg"], "ends in .png, .svg, .pdf"),
+        (SMALL.replace("tables/table.csv", "study.toml"), [], "must end in .csv"),
+    ],
+)
+def test_bad_input_is_refused_in_a_sentence(
+    text: str, words: list[str], told: str, tmp_path: Path, capsys: Printed
+) -> None:
+    assert main(["study", str(study_in(tmp_path / "a", text)), *words]) == 1
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "a" / "tables" / "table.csv").exists()
+
+
+def started(path: Path, *words: str) -> subprocess.Popen[bytes]:
+    words = ("study", str(path), *words)
+    return subprocess.Popen([sys.executable, "-m", "skisnow", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def wait_for(condition: Callable[[], bool], patience_s: float = 120.0) -> None:
+    end = time.monotonic() + patience_s
+    while not condition():
+        assert time.monotonic() < end, "it did not come to pass"
+        time.sleep(0.01)
+
+
+def lines_of(partial: Path) -> int:
+    return partial.read_bytes().count(b"\n") if partial.exists() else 0
+
+
+def children_of(process: int) -> list[int]:
+    return [int(word) for word in Path(f"/proc/{process}/task/{process}/children").read_text("ascii").split()]
+
+
+def alive(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text("ascii").rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for left workers under /proc")
+@pytest.mark.parametrize(("how", "code"), [(signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, 130)])
+def test_killed_and_interrupted_studies_go_on_to_the_same_bytes(tmp_path: Path, how: signal.Signals, code: int) -> None:
+    broken, whole = study_in(tmp_path / "broken", TEXT), study_in(tmp_path / "whole", TEXT)
+    partial = broken.parent / "tables" / "table.csv.partial"
+    first = started(broken, "--workers", "2")
+    wait_for(lambda: lines_of(partial) > 5 or first.poll() is not None)
+    workers = children_of(first.pid)
+    os.kill(first.pid, how)
+    _, err = first.communicate(timeout=60)
+    assert first.returncode == code, err.decode()
+    assert b"Traceback" not in err
+    kept = lines_of(partial) - 1
+    assert 5 <= kept < POINTS
+    assert not (broken.parent / "tables" / "table.csv").exists()
+    assert workers
+    wait_for(lambda: not any(alive(worker) for worker in workers), 20.0)
+    with partial.open("ab") as stream:
+        stream.write(b'599 {"ski":"sl')  # a line that was torn in the middle
+    assert main(["study", str(broken), "--workers", "1"]) == 0
+    assert main(["study", str(whole), "--workers", "1"]) == 0
+    tables = [path.parent / "tables" / "table.csv" for path in (broken, whole)]
+    assert tables[0].read_bytes() == tables[1].read_bytes()
+    assert not partial.exists()

@@ -1,0 +1,151 @@
+"""The figures of carved skis and of studies show what the numbers say."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.report.figures.carved_skis import arc_through, carved_skis, contact_ends
+from skisnow.report.figures.figure_file import PNG_WIDTH, require_drawable, write_figure
+from skisnow.report.figures.grip_map import grip_map, share_of_limit
+from skisnow.report.figures.map_layout import map_layout
+from skisnow.report.figures.radius_map import radius_map
+from skisnow.report.figures.style import journal_style
+from skisnow.simulate.carve_answer import answered
+from skisnow.simulate.carve_dict import answers_dict
+from skisnow.simulate.carve_question import carve_question
+from skisnow.study import StudyTable
+
+ASKED = {"edge_angle_deg": 45, "load_N": 800, "published": "race-piste", "unloading_ratio": 10}
+
+
+@pytest.fixture(scope="module")
+def found() -> dict[str, Any]:
+    return answers_dict([answered(carve_question(ASKED | {"ski": ski})) for ski in ("slalom", "giant-slalom")])
+
+
+def made_up(**varied: list[Any]) -> StudyTable:
+    """A grid whose side force meets its limit where angle × load is 36,000, and whose radius is 1000/angle."""
+    grid = np.meshgrid(*(np.arange(len(values)) for values in varied.values()), indexing="ij")
+    rows = []
+    for place in zip(*(axis.ravel() for axis in grid), strict=True):
+        row = {name: values[at] for (name, values), at in zip(varied.items(), place, strict=True)}
+        force = row.get("edge_angle_deg", 30.0) * row.get("load_N", 800.0) / 100.0
+        row |= {"side_force_N": force, "side_force_limit_N": 360.0, "holds": force <= 360.0, "outcome": "equilibrium"}
+        row |= {"turn_radius_boot_m": 1000.0 / row.get("edge_angle_deg", 30.0)}
+        rows.append(row | {"sidecut_radius_of_three_widths_m": 13.0})
+    return StudyTable(tuple(rows[0]), rows, tuple(varied))
+
+
+ANGLES, LOADS = [10.0, 30.0, 50.0, 70.0], [400.0, 800.0, 1200.0]
+
+
+def test_curves_are_the_numbers(found: dict[str, Any]) -> None:
+    with journal_style():
+        figure = carved_skis(found)
+    depth, force, bending, twist, _ = figure.axes
+    keys = ("edge_depth_mm", "force_per_length_N_per_m", "bending_mm", "twist_deg")
+    for axes, key in zip((depth, force, bending, twist), keys, strict=True):
+        for line, answer in zip(axes.lines, found["skis"], strict=False):
+            assert np.asarray(line.get_xdata()).tolist() == answer["station_m"]
+            assert np.asarray(line.get_ydata()).tolist() == answer[key]
+    top, bottom = depth.get_ylim()[::-1]
+    assert top < 0 < bottom  # depth grows downwards and the undisturbed surface is in the picture
+
+
+def test_circles_have_the_radii_of_the_answer(found: dict[str, Any]) -> None:
+    """Edge line and contact ends are read off 1 cm stations: the radii agree to half a per cent."""
+    for answer in found["skis"]:
+        station = np.asarray(answer["station_m"])[::-1]
+        line = np.asarray(answer["edge_line_mm"])[::-1] / 1e3
+        line -= np.interp(0.0, station, line)
+        for ends, key in (((-0.4, 0.4), "turn_radius_boot_m"), (contact_ends(answer), "turn_radius_chord_m")):
+            x, y = arc_through(station, line, *ends)
+            slope = np.gradient(y, x)
+            curvature = np.gradient(slope, x) / (1.0 + slope**2) ** 1.5
+            assert float(np.median(curvature)) == pytest.approx(1.0 / answer[key], rel=5e-3)
+            assert y[[0, -1]] == pytest.approx(np.interp(ends, station, line), abs=1e-12)
+
+
+def test_swallowed_ski_leaves_its_place_empty() -> None:
+    soft = {"edge_angle_deg": 45, "load_N": 800, "H_V_N_per_mm3": 1e-5, "S_f_N_per_mm2": 0.3, "unloading_ratio": 10}
+    found = answers_dict([answered(carve_question(soft | {"ski": "slalom"}))])
+    with journal_style():
+        figure = carved_skis(found)
+    (legend,) = figure.legends
+    assert legend.get_texts()[0].get_text() == "slalom (sinks)"
+
+
+def test_angle_lies_along_the_axis_load_as_lines_and_the_rest_as_panels() -> None:
+    table = made_up(ski=["a", "b"], load_N=LOADS, edge_angle_deg=ANGLES)
+    layout = map_layout(table, second_is_number=False)
+    assert (layout.x, layout.second, layout.panels, layout.sampled) == ("edge_angle_deg", "load_N", ("ski",), False)
+    skis = made_up(ski=["a", "b"], edge_angle_deg=ANGLES)
+    assert map_layout(skis, second_is_number=False).second == "ski"
+    grip = map_layout(skis, second_is_number=True)
+    assert (grip.second, grip.panels) == (None, ("ski",))
+
+
+def test_radius_map_draws_every_line_and_tells_slipping_edges() -> None:
+    with journal_style():
+        figure = radius_map(made_up(ski=["a", "b"], load_N=LOADS, edge_angle_deg=ANGLES))
+    panels = figure.axes
+    assert [axes.get_title(loc="left") for axes in panels] == ["a", "b"]
+    for axes in panels:
+        curves = [line for line in axes.lines if line.get_linestyle() == "-"]
+        assert len(curves) == len(LOADS)
+        for line in curves:
+            assert np.asarray(line.get_ydata()) == pytest.approx([1000.0 / angle for angle in ANGLES])
+        marks = [line for line in axes.lines if line.get_linestyle() == "None"]
+        hollow = sum(len(np.asarray(line.get_xdata())) for line in marks if line.get_markerfacecolor() == "white")
+        assert hollow == sum(angle * load > 36_000 for angle in ANGLES for load in LOADS)
+        sidecut = next(line for line in axes.lines if line not in curves and line not in marks)
+        theta, radius = np.asarray(sidecut.get_xdata(), float), np.asarray(sidecut.get_ydata(), float)
+        assert np.interp(60.0, theta, radius) == pytest.approx(13.0 / 2.0, rel=1e-3)
+
+
+def test_grip_map_draws_its_line_where_force_and_limit_are_equal() -> None:
+    table = made_up(load_N=np.linspace(400, 1600, 13).tolist(), edge_angle_deg=np.linspace(10, 80, 15).tolist())
+    with journal_style():
+        figure = grip_map(table)
+    axes = figure.axes[0]
+    line = next(drawn for drawn in axes.collections if np.asarray(drawn.get_linewidth()).max() == 1.8)
+    points = np.concatenate([path.vertices for path in line.get_paths()])
+    # linear interpolation of ln(angle × load) between 20° and 25° is off by (5/22.5)²/8 = 0.6 %
+    assert points[:, 0] * points[:, 1] == pytest.approx(np.full(len(points), 36_000.0), rel=7e-3)
+
+
+def test_share_of_the_limit() -> None:
+    assert share_of_limit({"side_force_N": 300.0, "side_force_limit_N": 600.0}) == 0.5
+    assert share_of_limit({"side_force_N": 0.0, "side_force_limit_N": 0.0}) == 0.0
+    assert math.isnan(share_of_limit({"side_force_N": None, "side_force_limit_N": None}))
+
+
+def test_sample_is_drawn_as_points() -> None:
+    whole = made_up(load_N=LOADS, edge_angle_deg=ANGLES, S_f_N_per_mm2=[0.1, 0.2, 0.3])
+    table = StudyTable(whole.columns, whole.rows[::5], whole.varied)
+    layout = map_layout(table, second_is_number=True)
+    assert layout.sampled
+    assert layout.panels == ()
+    for draw in (radius_map, grip_map):
+        with journal_style():
+            figure = draw(table)
+        assert figure.axes
+
+
+def test_maps_that_cannot_be_drawn_say_why() -> None:
+    with pytest.raises(ParameterError, match="only names and switches vary"):
+        radius_map(made_up(ski=["a", "b"]))
+    with pytest.raises(ParameterError, match="would have 13 panels"):
+        radius_map(made_up(ski=[str(n) for n in range(13)], load_N=LOADS, edge_angle_deg=ANGLES))
+
+
+def test_figure_files(tmp_path: Path, found: dict[str, Any]) -> None:
+    path = tmp_path / "deep" / "skis.png"
+    write_figure(path, lambda: carved_skis(found))
+    assert int.from_bytes(path.read_bytes()[16:20], "big") == PNG_WIDTH  # width in the header of a PNG
+    with pytest.raises(ParameterError, match="Change its ending"):
+        require_drawable(tmp_path / "skis.bmp")
