@@ -1,0 +1,61 @@
+"""The page on carved skis names every input with its default and every key of the JSON."""
+
+import json
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import skisnow
+from skisnow.cli import build_parser
+from skisnow.simulate.carve_keys import CARVE_KEYS
+from skisnow.simulate.input_keys import InputKey
+from skisnow.study import read_study
+from skisnow.study.carve_subject import RESULTS
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = (DOCS / "files" / "carve.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("key", CARVE_KEYS.values(), ids=lambda key: key.name)
+def test_every_input_is_told_with_range_and_default(key: InputKey) -> None:
+    row = next(line for line in PAGE.splitlines() if line.startswith(f"| `{key.name}` |"))
+    cells = [cell.strip() for cell in row.split("|")[1:-1]]
+    assert cells[2] == key.unit
+    if key.choices or key.kind != "text":
+        assert cells[3].removesuffix(", `inf`") == key.allowed
+    told = "none" if key.default is None else str(key.default).lower()
+    assert cells[4].strip("`") in (told, told.removesuffix(".0"))
+
+
+def keys_of(schema: Any) -> Iterator[str]:
+    if isinstance(schema, dict):
+        yield from schema.get("properties", {})
+        for part in schema.values():
+            yield from keys_of(part)
+
+
+def test_every_key_of_the_json_and_every_column_is_told() -> None:
+    path = Path(skisnow.__file__).parent / "simulate/schemas/carve.schema.json"
+    keys = {*keys_of(json.loads(path.read_text(encoding="utf-8"))), *RESULTS}
+    assert {key for key in keys if f"`{key}`" not in PAGE and f"`{{{key!r}: " not in PAGE} <= {"skis"}
+
+
+def test_every_input_is_an_option_of_the_command() -> None:
+    (commands,) = (action.choices for action in build_parser()._actions if isinstance(action.choices, dict))
+    options = {action.dest for action in commands["carve"]._actions}
+    assert set(CARVE_KEYS) <= options
+
+
+def test_studies_of_the_how_to_can_be_read(tmp_path: Path) -> None:
+    page = (DOCS / "how-to" / "study.md").read_text(encoding="utf-8")
+    blocks = [part.split("```")[0] for part in page.split("```toml\n")[1:]]
+    assert len(blocks) == 2
+    counts = []
+    for block in blocks:
+        tomllib.loads(block)
+        (tmp_path / "study.toml").write_text(block, encoding="utf-8")
+        counts.append(len(read_study(tmp_path / "study.toml").points))
+    assert counts == [156, 300]
