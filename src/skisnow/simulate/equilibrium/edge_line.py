@@ -71,14 +71,14 @@ class EdgeLine:
         return np.asarray(math.copysign(1.0, radius) * (abs(radius) - distance))
 
     def contact_ends(self, depth: FloatArray) -> tuple[float, float]:
-        """Stations (m) of the front and the rear end of the contact: where the edge depth passes zero."""
+        """Stations (m) of the front and the rear end of the contact: where the edge depth passes zero, or tip and tail."""
         below = np.flatnonzero(depth > 0.0)
         return self._end(depth, int(below[0]), -1), self._end(depth, int(below[-1]), 1)
 
     def _end(self, depth: FloatArray, last: int, outwards: int) -> float:
         beyond = last + outwards
         if not 0 <= beyond < len(depth):
-            return float(self.station[last])
+            return float(self._model.ski.station[0 if outwards < 0 else -1])
         share = depth[last] / (depth[last] - depth[beyond])
         return float(self.station[last] + share * (self.station[beyond] - self.station[last]))
 

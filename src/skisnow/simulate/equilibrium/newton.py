@@ -21,6 +21,8 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 STRESS_AS_DEPTH = 1e-3
 """A change of the shear stress by its whole counts like a change of depth by this (m)."""
 SMALLEST_DAMPING = 1e-4
+STALL_TOLERANCE = 1e-6
+"""Correction at which rounding may end the iteration, as a share of the greatest depth."""
 FORCE_TOLERANCE = 1e-8
 """Force left unbalanced, as a share of the load."""
 
@@ -162,7 +164,10 @@ def newton(
         u[:], border[:] = new_u, new_border
         system, spare = spare, system
         balanced = abs(system.border_residual[0]) <= FORCE_TOLERANCE * conditions.load
-        if damping == 1.0 and following < tolerance and balanced:
+        # a fine mesh has its rounding floor above the tolerance: there the corrections no longer fall
+        floor = STALL_TOLERANCE * np.max(system.depth)
+        stalled = following > 0.5 * length and max(length, following) < floor
+        if damping == 1.0 and ((following < tolerance and balanced) or stalled):
             assemble(sections, conditions, stiffness, u, border, result)
             return True, iteration + 1
     return False, most
