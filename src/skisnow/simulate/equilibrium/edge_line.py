@@ -71,7 +71,7 @@ class EdgeLine:
         return np.asarray(math.copysign(1.0, radius) * (abs(radius) - distance))
 
     def contact_ends(self, depth: FloatArray) -> tuple[float, float]:
-        """Stations (m) of the front and the rear end of the contact: where the edge depth passes zero, or tip and tail."""
+        """Stations (m) of both ends of the contact, front first: where the edge depth passes zero, or tip and tail."""
         below = np.flatnonzero(depth > 0.0)
         return self._end(depth, int(below[0]), -1), self._end(depth, int(below[-1]), 1)
 

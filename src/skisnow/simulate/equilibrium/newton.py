@@ -87,7 +87,12 @@ def _factored(system: System) -> Factored:
             influence[j, k] = system.columns[k, j]
     solve(matrix, influence, p)
     rows = system.rows[:p].copy()
-    schur = system.corner[:p, :p] - rows @ influence
+    schur = system.corner[:p, :p].copy()
+    # plain loops: the threads of a linear algebra library would stand in each other's way where many skis run at once
+    for a in range(p):
+        for j in range(n):
+            if rows[a, j] != 0.0:
+                schur[a] -= rows[a, j] * influence[j]
     order = _factor_dense(schur)
     return Factored(matrix, influence, rows, schur, order)
 
@@ -101,10 +106,15 @@ def _correction(at: Factored, system: System, step: FloatArray, border_step: Flo
     solve(at.matrix, work, 1)
     y = np.zeros(p)
     y[:BORDER] = -system.border_residual[:BORDER]
-    y -= at.rows @ work[:, 0].copy()
+    for a in range(p):
+        for j in range(n):
+            y[a] -= at.rows[a, j] * work[j, 0]
     _solve_dense(at.schur, at.order, y)
     border_step[:] = y[:BORDER]
-    step[:] = work[:, 0] - at.influence @ y
+    for j in range(n):
+        step[j] = work[j, 0]
+        for a in range(p):
+            step[j] -= at.influence[j, a] * y[a]
     return bool(np.all(np.isfinite(y)) and np.all(np.isfinite(step)))
 
 
