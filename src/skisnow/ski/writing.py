@@ -78,8 +78,8 @@ def _is_rigid(ski: Ski) -> bool:
 
 
 def _plain(value: float) -> float:
-    """The number without the last digit or two, which the change of unit made up."""
-    return float(f"{value:.14g}") + 0.0
+    """The number without the last digits, which the change of unit made up."""
+    return float(f"{value:.15g}") + 0.0
 
 
 def _toml(value: str | float) -> str:
