@@ -66,7 +66,8 @@ class Equilibrium:
     holds
         Whether the limit is not exceeded.
     turn_radius_boot
-        Radius of the circle through the edge line at the boot and 0.4 m before and behind it (m).
+        Radius of the circle through the edge line at the boot and 0.4 m before and behind it (m); None for a ski that
+        is flat or at rest.
     turn_radius_chord
         Radius of the circle through the edge line at the boot and at both ends of the contact (m).
     contact_length
@@ -265,9 +266,16 @@ def _following_path(model: ClampedSki, conditions: Conditions) -> Solution:
     return Solution(False, *(getattr(solution, name) for name in Solution.__slots__[1:]))
 
 
+def _too_soft(model: ClampedSki, conditions: Conditions) -> bool:
+    """Whether the load is beyond what the snow bears with the whole base pushed to the sinking depth."""
+    area = float(model.stations.weight @ model.stations.width) * math.cos(conditions.edge_angle)
+    return conditions.load > conditions.hardness * SINKING_DEPTH * area
+
+
 def _described(model: ClampedSki, conditions: Conditions, snow: SnowProperties, solution: Solution) -> Equilibrium:
     station = model.stations.station
-    sinks = solution.converged and float(np.max(solution.edge_depth)) > SINKING_DEPTH
+    deepest = float(np.max(solution.edge_depth))
+    sinks = deepest > SINKING_DEPTH if solution.converged else _too_soft(model, conditions)
     if not solution.converged or sinks:
         outcome: Outcome = "sinks" if sinks else "not_converged"
         nothing = (None,) * 8
@@ -283,14 +291,15 @@ def _described(model: ClampedSki, conditions: Conditions, snow: SnowProperties, 
     holds = True if conditions.side_force == 0.0 else limit is not None and conditions.side_force <= limit
     outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
     ends = line.contact_ends(depth)
+    turns = conditions.side_force > 0.0
     return Equilibrium(
         outcome=outcome,
         remedy=REMEDIES[outcome],
         holds=holds,
         side_force=conditions.side_force,
         side_force_limit=limit,
-        turn_radius_boot=line.radius_at_boot(),
-        turn_radius_chord=line.radius_over(*ends),
+        turn_radius_boot=line.radius_at_boot() if turns else None,
+        turn_radius_chord=line.radius_over(*ends) if turns else None,
         contact_length=ends[0] - ends[1],
         bearing_length=float(weight[force > 0.0].sum()),
         afterbody_depth_ratio=_depth_ratio(station, weight, depth),

@@ -24,7 +24,6 @@ def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
     return {
         "schema_version": SCHEMA_VERSION,
         **equilibrium_dict(answer.equilibrium),
-        **radii_of_a_turn(answer),
         "inputs": inputs_dict(answer),
         "snow": _snow_dict(answer.snow),
         "ski": {
@@ -75,12 +74,6 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
         "residual_moment_Nm": finite(equilibrium.residual_moment),
         "iterations": int(equilibrium.iterations),
     }
-
-
-def radii_of_a_turn(answer: CarveAnswer) -> dict[str, None]:
-    """The radii of a flat ski, or of one at rest, which does not turn: none."""
-    turns = answer.question.edge_angle_deg > 0.0 and not answer.question.at_rest
-    return {} if turns else {"turn_radius_boot_m": None, "turn_radius_chord_m": None}
 
 
 def inputs_dict(answer: CarveAnswer) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import SkisnowError
 from ..simulate.batch_file import Row
 from ..simulate.carve_answer import CarveAnswer, Sources, answered
-from ..simulate.carve_dict import finite, inputs_dict, radii_of_a_turn, scalars_dict
+from ..simulate.carve_dict import finite, inputs_dict, scalars_dict
 from ..simulate.carve_keys import CARVE_KEYS
 from ..simulate.carve_question import carve_question, require_complete
 from ..simulate.input_keys import InputKey
@@ -86,7 +86,7 @@ def _distinct(points: list[Point], name: str) -> list[str]:
 
 def _row(answer: CarveAnswer) -> Row:
     equilibrium = answer.equilibrium
-    scalars = scalars_dict(equilibrium) | radii_of_a_turn(answer)
+    scalars = scalars_dict(equilibrium)
     depth, force = equilibrium.edge_depth, equilibrium.force_per_length
     return {
         **inputs_dict(answer),

@@ -93,7 +93,7 @@ def circle_radius(front: tuple[float, float], middle: tuple[float, float], rear:
     """Radius of the circle through three points, positive where the middle lies below the chord (y); None if straight.
 
     >>> import math
-    >>> circle_radius((3.0, 1.0), (0.0, 0.0), (-3.0, 1.0))
+    >>> round(circle_radius((3.0, 1.0), (0.0, 0.0), (-3.0, 1.0)), 12)
     5.0
     """
     a = math.dist(middle, front)
