@@ -1,0 +1,96 @@
+"""`carve` against the equilibrium written down again without elements, `reference.py`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from skisnow.simulate.carve import carve
+from skisnow.ski import Ski, read_ski
+
+from . import reference
+from .reference import Case
+from .synthetic import boot_pose, circular_sidecut, plain_ski, shovel, snow
+
+AGREE = 1e-3
+"""Of radius, depth and contact: 30 knots of curvature on each end and 160 points across are good to half of it."""
+
+
+def compare(case: Case) -> None:
+    theirs = reference.solved(case)
+    ours = carve(
+        case.ski,
+        snow(case.hardness / 1e9),
+        edge_angle=case.edge_angle,
+        load=case.load,
+        moment=case.moment,
+        unloading_ratio=case.unloading_ratio,
+        clamp_length=case.clamp_length,
+        side_force_bends=case.side_force_bends,
+        twists=case.twists,
+    )
+    assert ours.edge_depth is not None
+    assert ours.turn_radius_boot == pytest.approx(theirs.radius_at_boot(), rel=AGREE)
+    front, rear = theirs.contact_ends()
+    assert ours.contact_length == pytest.approx(front - rear, rel=AGREE)
+    # the chord's end moves with the contact's, where the sidecut is no circle any more
+    assert ours.turn_radius_chord == pytest.approx(theirs.radius_through(front, rear), rel=2.0 * AGREE)
+    waist = float(case.ski.at(0.0).width) / 2.0 * math.sin(case.edge_angle)
+    depth = boot_pose(ours, case.ski, case.edge_angle)[0] + waist
+    # under a point load with memory behind it 160 elements are themselves 0.15 % off 640
+    assert depth == pytest.approx(theirs.boot_depth + waist, abs=3.0 * AGREE * float(ours.edge_depth.max()))
+
+    def at_ours(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> object:
+        return np.interp(ours.station[::-1], theirs.station[::-1], values[::-1])[::-1]
+
+    below = ours.edge_depth > 0.0
+    scale = float(ours.edge_depth.max())
+    assert np.asarray(at_ours(theirs.edge_depth))[below] == pytest.approx(
+        ours.edge_depth[below], abs=5.0 * AGREE * scale
+    )
+    assert ours.bending is not None
+    assert at_ours(theirs.deflection) == pytest.approx(ours.bending, abs=AGREE * float(ours.bending.max()))
+    assert ours.twist is not None
+    assert at_ours(theirs.twist) == pytest.approx(ours.twist, abs=2.0 * AGREE * math.radians(3.0))
+
+
+def base(ski: Ski | None = None) -> Case:
+    return Case(ski=ski or read_ski("slalom"), hardness=0.2e9, edge_angle=math.radians(45.0), load=800.0)
+
+
+def test_hypoplastic_with_twist_and_side_force() -> None:
+    compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [1.0, 10.0])
+@pytest.mark.parametrize("angle_deg", [30.0, 60.0])
+@pytest.mark.parametrize("clamp", [0.0, 0.3])
+@pytest.mark.parametrize(("twists", "side_force_bends"), [(True, True), (False, True), (True, False)])
+def test_all_choices(ratio: float, angle_deg: float, clamp: float, twists: bool, side_force_bends: bool) -> None:
+    compare(
+        replace(
+            base(),
+            unloading_ratio=ratio,
+            edge_angle=math.radians(angle_deg),
+            clamp_length=clamp,
+            twists=twists,
+            side_force_bends=side_force_bends,
+        )
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("hardness", [0.04e9, 1e9])
+@pytest.mark.parametrize("moment", [-30.0, 30.0])
+def test_other_snow_and_a_moment(hardness: float, moment: float) -> None:
+    compare(replace(base(), hardness=hardness, moment=moment, unloading_ratio=5.0, clamp_length=0.3))
+
+
+@pytest.mark.slow
+def test_a_plain_ski_with_a_shovel() -> None:
+    ski = plain_ski(width=circular_sidecut(13.0), base_height=shovel(1.4, 0.05, 1.6), running_length=1.4)
+    compare(replace(base(ski), unloading_ratio=10.0, clamp_length=0.3))
