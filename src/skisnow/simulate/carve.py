@@ -43,7 +43,8 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "slips": "the snow cannot hold the side force: less edge angle or load, or stronger snow; the numbers are those of "
     "an edge held by something else",
     "sinks": f"no balance above {SINKING_DEPTH * 1e2:.0f} cm: the snow is too soft for this load",
-    "bridges": "the ski stands on separate pieces, or not under the boot: more load or a softer ski closes the gap",
+    "bridges": "the ski stands on separate pieces, or not under the boot: softer snow, a softer ski, less camber or a "
+    "shorter clamp closes the gap",
     "not_converged": "no equilibrium was found: try a smaller unloading ratio, more elements or a lower edge angle",
 }
 """What to do about an outcome, in words."""
@@ -170,7 +171,9 @@ def carve(
     is left out. The side force draws the same share of the shear strength everywhere along the edge (Choice): τ e per
     length.
     """
+    _require_kinds(ski, snow)
     _require(edge_angle, load, unloading_ratio, moment)
+    _require_within(ski, load, moment)
     if snow.failure_shear_stress is None:
         raise ParameterError(
             f"the snow ({snow.source}) has no failure shear stress S_f; a carved turn needs it: give one"
@@ -198,10 +201,21 @@ def rest(
     elements: int = ELEMENTS,
 ) -> Equilibrium:
     """Equilibrium of a ski set down on snow: virgin snow everywhere, no side force. Arguments as in `carve`."""
+    _require_kinds(ski, snow)
     _require(edge_angle, load, 1.0, moment)
+    _require_within(ski, load, moment)
     model = clamped(ski, clamp_length, elements)
     conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twists)._replace(side_force=0.0)
     return _described(model, conditions, snow, solved(model, conditions))
+
+
+def _require_kinds(ski: object, snow: object) -> None:
+    if not isinstance(ski, Ski):
+        raise ParameterError(f"ski is {ski!r}; it must be a Ski: read_ski gives one, from a name or a file")
+    if not isinstance(snow, SnowProperties):
+        raise ParameterError(
+            f"snow is {snow!r}; it must be SnowProperties: from published_snow, from snow_from_results, or from numbers"
+        )
 
 
 def _require(edge_angle: float, load: float, unloading_ratio: float, moment: float) -> None:
@@ -215,6 +229,15 @@ def _require(edge_angle: float, load: float, unloading_ratio: float, moment: flo
         raise ParameterError(f"unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more")
     if not math.isfinite(moment):
         raise ParameterError(f"moment is {moment} N m; it must be finite")
+
+
+def _require_within(ski: Ski, load: float, moment: float) -> None:
+    ahead = moment / load
+    if not ski.station[-1] < ahead < ski.station[0]:
+        raise ParameterError(
+            f"a moment of {moment} N m under a load of {load} N puts the resultant {ahead:.2f} m ahead of the boot, off "
+            f"the ski, which reaches from {ski.station[-1]:.2f} to {ski.station[0]:.2f} m: no snow can balance that"
+        )
 
 
 def _conditions(
