@@ -195,7 +195,45 @@ def test_snow_of_a_campaign_with_its_intervals(tmp_path: Path, capsys: Printed) 
     interval = snow_from_results(path).snow_hardness_interval
     assert interval is not None
     assert found["snow"]["H_V_interval_N_per_mm3"] == pytest.approx([end / 1e9 for end in interval])
-    assert "it has ['A']" in refusal([*words, "--site", "B"], capsys)
+    assert "it has some of 'A'" in refusal([*words, "--site", "B"], capsys)
+
+
+def test_stress_is_given_beside_a_campaign_exactly_where_it_has_none(tmp_path: Path, capsys: Printed) -> None:
+    rows = [{"used": True, "site": site, "H_V_N_per_mm3": 0.2} for site in ("site A", "B")]
+    shear = [{"used": True, "site": "B", "S_f_N_per_mm2": 0.4}]
+    path = tmp_path / "results.json"
+    path.write_text(json.dumps({"penetration": {"experiments": rows}, "shear": {"experiments": shear}}), "utf-8")
+    words = [*ASKED, "--results", str(path), "--unloading-ratio", "10", "--site"]
+    told = refusal([*words, "site A"], capsys)
+    assert "results.json, site A: 1 penetration" in told
+    assert "Give one beside it, S_f_N_per_mm2 (--S-f-N-per-mm2)" in told
+    found = answer([*words, "site A", "--S-f-N-per-mm2", "0.3"], capsys)
+    assert found["inputs"]["S_f_N_per_mm2"] == 0.3
+    assert found["snow"]["source"].endswith("site A: 1 penetration and 0 shear experiments; S_f given as a number")
+    numbers = answer([*ASKED, "--H-V-N-per-mm3", "0.2", "--S-f-N-per-mm2", "0.3", "--unloading-ratio", "10"], capsys)
+    assert found["side_force_limit_N"] == pytest.approx(numbers["side_force_limit_N"], rel=1e-9)
+    assert "which has its own S_f" in refusal([*words, "B", "--S-f-N-per-mm2", "0.3"], capsys)
+    assert answer([*words, "site A", "--at-rest"], capsys)["holds"] is True
+
+
+@pytest.mark.parametrize(
+    ("load", "hardness", "told"),
+    [
+        ("8", "0.2", "load_N is 8: is it in kg or kN?"),
+        ("19", "0.2", "is it in kg or kN?"),
+        ("8000", "0.2", "load_N is 8000: is it in kg or kN?"),
+        ("800", "2e8", "H_V_N_per_mm3 is 2e+08: is it in N/m³? If it is, write 0.2"),
+        ("20", "0.2", None),
+        ("5000", "0.2", None),
+    ],
+)
+def test_numbers_that_look_like_another_unit_are_warned_of(
+    load: str, hardness: str, told: str | None, capsys: Printed
+) -> None:
+    words = ["--ski", "slalom", "--edge-angle-deg", "45", "--load-N", load, "--H-V-N-per-mm3", hardness, *SNOW[2:]]
+    assert main(["carve", *words]) == 0
+    err = capsys.readouterr().err
+    assert (told in err) if told else ("is it in" not in err)
 
 
 def test_angle_that_looks_like_radians_is_warned_of(capsys: Printed) -> None:
@@ -222,9 +260,9 @@ def test_values_beyond_what_was_measured_are_warned_of_and_used(capsys: Printed)
     [
         ([*ASKED, "--unloading-ratio", "10"], "no snow is given: H_V has no default"),
         ([*ASKED, *SNOW[:2], "--unloading-ratio", "10"], "S_f_N_per_mm2 is missing"),
-        ([*ASKED, *SNOW[:4]], "unloading_ratio is missing"),
+        ([*ASKED, *SNOW[:4]], "Give one, e.g. --unloading-ratio 10 (1 elastic, inf rigid-plastic)"),
         ([*ASKED, *SNOW, "--published", "race-piste"], "in two ways, H_V_N_per_mm3 and published"),
-        ([*ASKED, "--published", "race-piste", *SNOW[2:]], "S_f_N_per_mm2 cannot stand beside published"),
+        ([*ASKED, "--published", "race-piste", *SNOW[2:]], "S_f_N_per_mm2 cannot stand beside this snow (Federolf"),
         ([*ASKED, "--published", "race-pist", *SNOW[4:]], "did you mean 'race-piste'?"),
         ([*ASKED, "--published", "race-piste", "--site", "A", *SNOW[4:]], "site goes with results"),
         ([*ASKED, "--results", "nowhere.json", *SNOW[4:]], "nowhere.json cannot be read"),
@@ -238,7 +276,13 @@ def test_values_beyond_what_was_measured_are_warned_of_and_used(capsys: Printed)
         ([*ASKED, "--H-V-N-per-mm3", "-1", *SNOW[2:]], "H_V_N_per_mm3 is -1.0; allowed is above 0 N/mm³"),
         ([*ASKED, *SNOW[:-1], "0.5"], "unloading_ratio is 0.5; allowed is 1 or more"),
         ([*ASKED, *SNOW, "--elements", "3"], "elements is 3; allowed is whole numbers from 4"),
-        ([*ASKED, *SNOW, "--clamp-length-m", "5"], "clamp_length is 5.0 m"),
+        ([*ASKED, *SNOW, "--clamp-length-m", "5"], "less than 1.5 m: write --clamp-length-m 0\n"),
+        ([*ASKED, *SNOW, "--clamp-length-m", "300"], "write --clamp-length-m 0, or 0.3 if the number is in mm"),
+        (
+            [*ASKED[2:], "--ski", "paper-tool", *SNOW],
+            "clamp_length_m (--clamp-length-m) is 0.3 (the default); the ski paper-tool allows less than 0.2 m: write "
+            "--clamp-length-m 0\n",
+        ),
         ([*ASKED, *SNOW, "--figure", "picture.bmp"], "ends in .png, .svg, .pdf"),
     ],
 )

@@ -55,12 +55,49 @@ def test_maps_are_drawn(which: str, suffix: str, tmp_path: Path) -> None:
     assert figure.read_bytes() == first
 
 
-def test_study_of_errors_alone_exits_1_and_says_the_first(tmp_path: Path, capsys: Printed) -> None:
-    path = study_in(tmp_path / "a", SMALL.replace('"slalom"', '"slalon"'))
+ANGLES = "{ from = 10, to = 60, n = 3 }"
+
+
+def test_study_of_errors_alone_exits_1_says_the_first_and_leaves_a_finished_table(
+    tmp_path: Path, capsys: Printed
+) -> None:
+    path = study_in(tmp_path / "a", SMALL)
+    assert main(["study", str(path), "--workers", "1"]) == 0
+    finished = (tmp_path / "a/tables/table.csv").read_bytes()
+    path.write_text(SMALL.replace(ANGLES, "[90, 95]"), encoding="utf-8")
+    capsys.readouterr()
     assert main(["study", str(path), "--workers", "1"]) == 1
     out, err = capsys.readouterr()
-    assert "points 6 (error 6)" in out
-    assert "6 points could not be asked; the first, row 1: there is no ski named 'slalon'. Is slalom meant?" in err
+    assert "points 4 (error 4)" in out
+    assert "4 points could not be asked; the first, row 1: edge_angle_deg is 90.0; allowed is from 0 to 85" in err
+    assert "not one point could be asked" in err
+    assert [(each.name, each.read_bytes()) for each in (tmp_path / "a/tables").iterdir()] == [("table.csv", finished)]
+
+
+def test_slip_in_what_is_fixed_touches_nothing(tmp_path: Path, capsys: Printed) -> None:
+    path = study_in(tmp_path / "a", SMALL)
+    assert main(["study", str(path), "--workers", "1"]) == 0
+    finished = (tmp_path / "a/tables/table.csv").read_bytes()
+    path.write_text(SMALL.replace("race-piste", "race-pist"), encoding="utf-8")
+    assert main(["study", str(path), "--workers", "1"]) == 1
+    assert "did you mean 'race-piste'?" in capsys.readouterr().err
+    assert [(each.name, each.read_bytes()) for each in (tmp_path / "a/tables").iterdir()] == [("table.csv", finished)]
+
+
+def test_another_studys_table_is_kept_and_it_is_said_where(tmp_path: Path, capsys: Printed) -> None:
+    path = study_in(tmp_path / "a", SMALL)
+    assert main(["study", str(path), "--workers", "1"]) == 0
+    path.write_text(SMALL.replace("to = 60", "to = 50"), encoding="utf-8")
+    assert main(["study", str(path), "--workers", "1"]) == 0
+    assert "table.previous.csv when this one is finished" in capsys.readouterr().err
+    assert sorted(each.name for each in (tmp_path / "a/tables").iterdir()) == ["table.csv", "table.previous.csv"]
+
+
+def test_warnings_of_points_are_counted_and_the_first_is_said(tmp_path: Path, capsys: Printed) -> None:
+    path = study_in(tmp_path / "a", SMALL.replace(ANGLES, "[0.5, 30, 0.785]"))
+    assert main(["study", str(path), "--workers", "1"]) == 0
+    told = "warning: 4 points carry warnings; the first, row 1: edge_angle_deg is 0.5: that looks like radians"
+    assert told in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

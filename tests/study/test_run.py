@@ -2,6 +2,7 @@
 
 import csv
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -117,16 +118,69 @@ def test_finished_points_of_a_changed_study_are_refused(study_file: Path) -> Non
     assert len(run_study(changed, workers=1).rows) == 12
 
 
-def test_table_of_another_study_is_replaced_and_anything_else_is_not(study_file: Path) -> None:
+def test_table_of_another_study_is_kept_beside_and_anything_else_is_not_replaced(study_file: Path) -> None:
     run_study(read_study(study_file), workers=1)
-    study_file.write_text(TEXT.replace("[400, 800]", "[900]"), encoding="utf-8")
-    study = read_study(study_file)
-    assert study_state(study) is StudyState.ANOTHER
-    assert len(run_study(study, workers=1).rows) == 6
+    first = read_study(study_file).out.read_bytes()
+    second = b""
+    for load, name in ((900, "table.previous.csv"), (1000, "table.previous-2.csv")):
+        study_file.write_text(TEXT.replace("[400, 800]", f"[{load}]"), encoding="utf-8")
+        study = read_study(study_file)
+        assert study_state(study) is StudyState.ANOTHER
+        assert study.place_for_previous() == study_file.parent / name
+        assert len(run_study(study, workers=1).rows) == 6
+        second = second or study.out.read_bytes()
+    assert (study_file.parent / "table.previous.csv").read_bytes() == first
+    assert (study_file.parent / "table.previous-2.csv").read_bytes() == second
     study.out.write_text("experiment,site\nP1,A\n", encoding="utf-8")
     with pytest.raises(ParameterError, match="It is not replaced"):
         run_study(study, workers=1)
     assert study.out.read_text(encoding="utf-8").startswith("experiment")
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_table_in_which_no_point_could_be_asked_is_not_written(study_file: Path, there: bool) -> None:
+    if there:
+        run_study(read_study(study_file), workers=1)
+    before = sorted((path.name, path.read_bytes()) for path in study_file.parent.glob("table*"))
+    study_file.write_text(TEXT.replace("[0, 30, 95]", "[95]"), encoding="utf-8")
+    table = run_study(read_study(study_file), workers=1)
+    assert (len(table.rows), table.answers()) == (4, [])
+    assert sorted((path.name, path.read_bytes()) for path in study_file.parent.glob("table*")) == before
+
+
+def test_no_workers_are_refused_for_a_finished_study_too(study_file: Path) -> None:
+    run_study(read_study(study_file), workers=1)
+    with pytest.raises(ParameterError, match="workers is 0"):
+        run_study(read_study(study_file), workers=0)
+
+
+@pytest.mark.parametrize(
+    ("damage", "told"),
+    [
+        (lambda lines: [*lines, "junk"], r"table.csv, line 14: a row of this table has \d+ cells, this line has 1"),
+        (lambda lines: [*lines, f"{lines[-1]},7"], "line 14: a row of this table"),
+        (lambda lines: [lines[0], lines[1].replace(",400.0,", ",heavy,"), *lines[2:]], "line 2: load_N is 'heavy'"),
+        (lambda _: ["station_mm,width_mm", "0,60", "10,61,3"], "its first line names no columns outcome and study"),
+    ],
+)
+def test_damaged_table_is_told_with_its_line(
+    study_file: Path, damage: Callable[[list[str]], list[str]], told: str
+) -> None:
+    study = read_study(study_file)
+    run_study(study, workers=1)
+    lines = study.out.read_text(encoding="utf-8").splitlines()
+    study.out.write_text("\n".join(damage(lines)) + "\n", encoding="utf-8")
+    with pytest.raises(ParameterError, match=f"{told}.*It is not replaced"):
+        study_state(study)
+
+
+def test_infinite_ratio_may_be_written_as_a_text(study_file: Path) -> None:
+    text = TEXT.replace("_ratio = 10", '_ratio = "inf"').replace(', "no-such-ski"', "").replace("[0, 30, 95]", "[30]")
+    study_file.write_text(text, encoding="utf-8")
+    as_text = read_study(study_file).points
+    study_file.write_text(text.replace('"inf"', "inf"), encoding="utf-8")
+    assert as_text == read_study(study_file).points
+    assert {row["unloading_ratio"] for row in run_study(read_study(study_file), workers=1).rows} == {1000.0}
 
 
 def test_at_rest_and_carving_stand_in_one_table(study_file: Path) -> None:

@@ -70,12 +70,14 @@ def test_logarithmic_sample_is_even_in_the_logarithm(tmp_path: Path) -> None:
 
 
 def test_paths_are_relative_to_the_study(tmp_path: Path) -> None:
-    found = study(tmp_path, OUT + FIXED.replace('"slalom"', '"mine/ski.toml"') + GRID)
+    fixed = FIXED.replace('ski = "slalom"\n', "")
+    found = study(tmp_path, f'{OUT}{fixed}{GRID}ski = ["mine/ski.toml", "slalom"]\n')
     assert found.subject.files(found.points) == [tmp_path / "mine" / "ski.toml"]
 
 
 def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp_path: Path) -> None:
-    text = OUT + FIXED.replace('"slalom"', '"ski.toml"') + GRID
+    fixed = FIXED.replace('ski = "slalom"\n', "")
+    text = f'{OUT}{fixed}{GRID}ski = ["ski.toml"]\n'
     (tmp_path / "ski.toml").write_text("one", encoding="utf-8")
     first = study(tmp_path, text).fingerprint()
     assert study(tmp_path, text.replace("800", "800.0").replace("table", "other")).fingerprint() == first
@@ -101,6 +103,20 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60 }\n", "n, the number of values, is missing"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, till = 60 }\n", "till is no key of a range"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, n = 60 }\n", "to is missing"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 60, to = 3, n = 6 }\n", "from must be the smaller one"),
+        (OUT + FIXED.replace("race-piste", "race-pist") + GRID, "did you mean 'race-piste'"),
+        (OUT + FIXED.replace("slalom", "slalon") + GRID, "no ski named 'slalon'. Is slalom meant"),
+        (OUT + FIXED.replace("slalom", "mine.toml") + GRID, "mine.toml cannot be read"),
+        (OUT + FIXED.replace("_ratio = 10", "_ratio = 0.5") + GRID, "fixed.unloading_ratio is 0.5; allowed is 1 or"),
+        (OUT + FIXED.replace("= 800", "= -800") + GRID, "fixed.load_N is -800; allowed is above 0 N"),
+        (
+            OUT + FIXED.replace("slalom", "paper-tool") + GRID,
+            r"0.3 \(the default\); the ski paper-tool allows less than",
+        ),
+        (OUT + FIXED + "clamp_length_m = 300\n" + GRID, "or 0.3 if the number is in mm"),
+        (OUT + FIXED + 'results = "nowhere.json"\n' + GRID.replace("[grid]", "[grid]"), "in two ways"),
+        (OUT + FIXED.replace("published", "results") + GRID, "race-piste cannot be read"),
+        (OUT + FIXED + GRID + "S_f_N_per_mm2 = [0.2]\n", "which has its own S_f"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 3, n = 6 }\n", r"under \[fixed\]"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n", "nan; it must be a finite"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 0, to = 3, n = 6, log = true }\n", "both ends above 0"),

@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .ending import Ended, ending_is_an_interrupt
 from .progress import Progress
 
 if TYPE_CHECKING:
@@ -35,34 +36,51 @@ def run(options: argparse.Namespace) -> int:
         from ..report.figures.figure_file import require_drawable
 
         require_drawable(options.figure)
-    from ..study import StudyState, read_study, run_study, study_state
+    from ..study import read_study, run_study
 
     study = read_study(options.study)
-    state = study_state(study)
-    if state is StudyState.ANOTHER:
-        print(f"{study.out} holds another study; it is replaced when this one is finished.", file=sys.stderr)
-    if state is StudyState.FINISHED:
-        print(f"{study.out} holds this study already; nothing is computed again.", file=sys.stderr)
+    _tell_state(study)
     try:
-        with Progress() as progress:
+        with ending_is_an_interrupt(), Progress() as progress:
             table = run_study(study, workers=options.workers, progress=_Pace(progress))
-    except KeyboardInterrupt:
-        print(f"\nskisnow: interrupted; finished points are kept in {study.partial}.", file=sys.stderr)
-        print("The same command goes on with them.", file=sys.stderr)
-        return 130
+    except KeyboardInterrupt as stopped:
+        ended = isinstance(stopped, Ended)
+        print(
+            f"\nskisnow: {'ended' if ended else 'interrupted'}; finished points are kept in", end=" ", file=sys.stderr
+        )
+        print(f"{study.partial}.\nThe same command goes on with them.", file=sys.stderr)
+        return 143 if ended else 130
     _tell(study, table)
+    if not table.answers():
+        print(f"skisnow: not one point could be asked; {study.out} was not written.", file=sys.stderr)
+        return 1
     if options.figure is not None:
         _draw(options, table)
-    return 1 if table.counts().get("error", 0) == len(table.rows) else 0
+    return 0
+
+
+def _tell_state(study: Study) -> None:
+    from ..study import StudyState, study_state
+
+    state = study_state(study)
+    if state is StudyState.ANOTHER:
+        place = study.place_for_previous()
+        print(f"{study.out} holds another study; it goes to {place} when this one is finished.", file=sys.stderr)
+    if state is StudyState.FINISHED:
+        print(f"{study.out} holds this study already; nothing is computed again.", file=sys.stderr)
 
 
 def _tell(study: Study, table: StudyTable) -> None:
     counts = ", ".join(f"{outcome} {count}" for outcome, count in table.counts().items())
     print(f"{study.out}: points {len(table.rows)} ({counts})")
-    failed = [(place, row["reason"]) for place, row in enumerate(table.rows, start=1) if row["outcome"] == "error"]
-    if failed:
-        place, reason = failed[0]
-        print(f"warning: {len(failed)} points could not be asked; the first, row {place}: {reason}", file=sys.stderr)
+    rows = list(enumerate(table.rows, start=1))
+    failed = [(place, row["reason"]) for place, row in rows if row["outcome"] == "error"]
+    warned = [(place, row["warnings"]) for place, row in rows if row["warnings"]]
+    for found, what in ((failed, "could not be asked"), (warned, "carry warnings")):
+        if found:
+            place, text = found[0]
+            count = "1 point" if len(found) == 1 else f"{len(found)} points"
+            print(f"warning: {count} {what}; the first, row {place}: {text}", file=sys.stderr)
 
 
 def _draw(options: argparse.Namespace, table: StudyTable) -> None:

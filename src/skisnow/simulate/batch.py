@@ -73,9 +73,8 @@ def run_batch(
     the usual ``if __name__ == "__main__":``.
     """
     kept = kept if kept is not None else KeptRows()
+    require_workers(workers)
     wanted = available_cores() if workers is None else workers
-    if wanted < 1:
-        raise ParameterError(f"workers is {wanted}; at least 1 is needed")
     missing = [number for number in range(len(points)) if number not in kept.rows]
 
     def tell() -> None:
@@ -90,6 +89,12 @@ def run_batch(
             kept.add(done)
             tell()
     return [kept.rows[number] for number in range(len(points))]
+
+
+def require_workers(workers: int | None) -> None:
+    """Refuse a number of workers that is none."""
+    if workers is not None and workers < 1:
+        raise ParameterError(f"workers is {workers}; at least 1 is needed")
 
 
 def available_cores() -> int:

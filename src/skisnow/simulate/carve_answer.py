@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from ..errors import RangeWarning
 from ..forces.measured_ranges import FAILURE_SHEAR_STRESS, PENETRATION_EDGE_ANGLE, SNOW_HARDNESS
 from ..ski import Ski, read_ski, ski_names
 from ..snow import SnowProperties, published_snow, snow_from_results
 from .carve import Equilibrium, carve, rest
-from .carve_keys import CARVE_KEYS, in_degrees_if_radians
+from .carve_keys import CARVE_KEYS
+from .carve_limits import require_clamp, require_stress, suspicions, with_stress
 from .carve_question import CarveQuestion
 
 T = TypeVar("T")
@@ -59,7 +60,13 @@ class Sources:
                 None if stress is None else stress * CARVE_KEYS["S_f_N_per_mm2"].factor,
                 source="given as numbers",
             )
-        named = (question.published, question.results, question.site)
+        snow = self.named_snow(question.as_dict())
+        require_stress(snow, question.S_f_N_per_mm2, carves=not question.at_rest)
+        return with_stress(snow, question.S_f_N_per_mm2)
+
+    def named_snow(self, words: Mapping[str, Any]) -> SnowProperties:
+        """The snow of the words `published`, or `results` and `site`."""
+        named = (words.get("published"), words.get("results"), words.get("site"))
         if named not in self._snows:
             self._snows[named] = self._read_snow(*named)
         return self._snows[named]
@@ -103,11 +110,12 @@ def answered(question: CarveQuestion, *, sources: Sources | None = None) -> Carv
     sources = sources or Sources()
     ski, told = sources.ski(question.ski)
     snow = sources.snow(question)
+    require_clamp(ski, question.clamp_length_m)
     edge_angle = question.edge_angle_deg * CARVE_KEYS["edge_angle_deg"].factor
     equilibrium = _equilibrium(question, ski, snow, edge_angle)
     _, outside = _warned(lambda: _warn_outside_ranges(snow, edge_angle, at_rest=question.at_rest))
     return CarveAnswer(
-        question, ski, snow, equilibrium, (*told, *_suspicions(question), *outside, *equilibrium.warnings)
+        question, ski, snow, equilibrium, (*told, *suspicions(question), *outside, *equilibrium.warnings)
     )
 
 
@@ -133,14 +141,6 @@ def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_a
         twists=question.twist,
         elements=question.elements,
     )
-
-
-def _suspicions(question: CarveQuestion) -> tuple[str, ...]:
-    degrees = in_degrees_if_radians(question.edge_angle_deg)
-    if degrees is None:
-        return ()
-    given = question.edge_angle_deg
-    return (f"edge_angle_deg is {given:g}: that looks like radians. If it is, write {degrees:.4g}",)
 
 
 def _warn_outside_ranges(snow: SnowProperties, edge_angle: float, *, at_rest: bool) -> None:

@@ -57,6 +57,7 @@ _KEYS: Final = (
         lowest=1.0,
         infinite=True,
         origin="not published: a parameter",
+        example="--unloading-ratio 10 (1 elastic, inf rigid-plastic)",
     ),
     InputKey(
         name="moment_Nm",

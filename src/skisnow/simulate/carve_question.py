@@ -79,7 +79,9 @@ def require_complete(values: Mapping[str, object]) -> None:
     rests = values.get("at_rest") is True
     for name in ("ski", "edge_angle_deg", "load_N", *(() if rests else ("unloading_ratio",))):
         if name not in values:
-            raise ParameterError(f"{name} is missing: {CARVE_KEYS[name].meaning}. It has no default")
+            example = CARVE_KEYS[name].example
+            told = f". Give one, e.g. {example}" if example else ""
+            raise ParameterError(f"{name} is missing: {CARVE_KEYS[name].meaning}. It has no default{told}")
     _require_one_snow(set(values), rests)
 
 
@@ -90,8 +92,6 @@ def _require_one_snow(names: set[str], rests: bool) -> None:
         raise ParameterError(f"no snow is given: H_V has no default. {choices}")
     if len(ways) > 1:
         raise ParameterError(f"the snow is given in two ways, {ways[0]} and {ways[1]}. {choices}")
-    if ways != ["H_V_N_per_mm3"] and "S_f_N_per_mm2" in names:
-        raise ParameterError(f"S_f_N_per_mm2 cannot stand beside {ways[0]}, which has its own. {choices}")
     if ways == ["H_V_N_per_mm3"] and "S_f_N_per_mm2" not in names and not rests:
         raise ParameterError(
             "S_f_N_per_mm2 is missing: a carved turn needs the failure shear stress S_f, which has no default. "

@@ -36,6 +36,8 @@ class InputKey:
         None where there is none.
     origin
         Where the default or the range comes from.
+    example
+        How it is given on the command line, with what its values mean.
     """
 
     name: str
@@ -50,6 +52,7 @@ class InputKey:
     choices: tuple[str, ...] = ()
     default: InputValue | None = None
     origin: str = ""
+    example: str = ""
 
     @property
     def allowed(self) -> str:
@@ -81,6 +84,8 @@ class InputKey:
             return value
         if self.kind == "text" and isinstance(value, str):
             return value.strip()
+        if self.infinite and value == "inf":
+            return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
             return self._number(value)
         wanted = {"switch": "true or false without quotes", "text": "a text in quotes"}.get(self.kind, f"a {self.kind}")

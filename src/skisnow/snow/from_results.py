@@ -48,7 +48,8 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     if not hardness.size:
         sites = sorted({str(row["site"]) for row in results["penetration"]["experiments"] if row["used"]})
         asked = "" if site is None else f" of site {site!r}"
-        raise ParameterError(f"{path} has no used penetration experiment{asked}; it has {sites or 'none at any site'}")
+        known = f"it has some of {', '.join(map(repr, sites))}" if sites else "it has none at any site"
+        raise ParameterError(f"{path} has no used penetration experiment{asked}; {known}")
     if not (np.all(hardness > 0) and np.all(stress >= 0) and (stress.size == 0 or np.any(stress > 0))):
         raise ParameterError(f"{path}: H_V of a used experiment must be above 0, and S_f of one at least")
     H_V, H_V_interval = _mean(np.log(hardness))
@@ -56,13 +57,19 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     return SnowProperties(
         snow_hardness=math.exp(H_V) * N_PER_MM3,
         failure_shear_stress=None if S_f is None else S_f * N_PER_MM2,
-        source=f"{path}, {'all sites' if site is None else 'site ' + site}: {hardness.size} penetration and "
-        f"{stress.size} shear experiments",
+        source=f"{path}, {_site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments",
         snow_hardness_interval=_scaled(
             H_V_interval and (math.exp(H_V_interval[0]), math.exp(H_V_interval[1])), N_PER_MM3
         ),
         failure_shear_stress_interval=_scaled(S_f_interval, N_PER_MM2),
     )
+
+
+def _site_in_words(site: str | None) -> str:
+    """A site that is called "site A" is not called "site site A"."""
+    if site is None:
+        return "all sites"
+    return site if site.casefold().startswith("site") else f"site {site}"
 
 
 def _scaled(interval: Interval | None, unit: float) -> Interval | None:

@@ -82,6 +82,8 @@ class Axis:
             raise ParameterError(f"{key.name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}")
         if n is not None and (isinstance(n, bool) or not isinstance(n, int) or n < 2):
             raise ParameterError(f"{key.name}: n is {n!r}; it must be a whole number from 2 on")
+        if low > high:
+            raise ParameterError(f"{key.name}: from is {low:g} and to is {high:g}; from must be the smaller one")
         if low == high:
             raise ParameterError(f"{key.name}: from and to are both {low:g}; write the value under [fixed]")
         return cls(key, ends=(low, high), n=n, log=log)

@@ -11,9 +11,11 @@ import numpy as np
 
 from ..errors import SkisnowError
 from ..simulate.batch_file import Row
+from ..simulate.carve import CLAMP_LENGTH
 from ..simulate.carve_answer import CarveAnswer, Sources, answered
 from ..simulate.carve_dict import finite, inputs_dict, scalars_dict
 from ..simulate.carve_keys import CARVE_KEYS
+from ..simulate.carve_limits import require_clamp, require_stress
 from ..simulate.carve_question import carve_question, require_complete
 from ..simulate.input_keys import InputKey
 from ..units import MM
@@ -59,11 +61,22 @@ class CarveSubject:
         """The columns of results."""
         return RESULTS
 
-    def require_sound(self, points: list[Point]) -> None:
-        """Refuse a study that lacks an input or names the snow in two ways."""
+    def require_sound(self, points: list[Point], fixed: Point) -> None:
+        """Refuse a study that lacks an input, names the snow in two ways, or whose fixed ski or snow cannot be had."""
         carving = [point for point in points if point.get("at_rest") is not True]
         for point in (carving or points)[:1]:
             require_complete(point)
+            self._require_snow(point, fixed, carves=bool(carving))
+        if "ski" in fixed:
+            ski, _ = self._sources.ski(fixed["ski"])
+            if "clamp_length_m" in fixed or "clamp_length_m" not in points[0]:
+                require_clamp(ski, fixed.get("clamp_length_m", CLAMP_LENGTH))
+
+    def _require_snow(self, point: Point, fixed: Point, *, carves: bool) -> None:
+        """The snow that all points share must be there, with S_f from one side and not from both."""
+        named = {"published", "results", "site"} & set(point)
+        if named and named <= set(fixed):
+            require_stress(self._sources.named_snow(fixed), point.get("S_f_N_per_mm2"), carves=carves)
 
     def files(self, points: list[Point]) -> list[Path]:
         """Ski files and results files."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from enum import Enum
+from pathlib import Path
 
 from ..errors import ParameterError
-from ..files import write_file
-from ..simulate.batch import Told, run_batch
+from ..files import cannot_write, write_file
+from ..simulate.batch import Told, require_workers, run_batch
 from ..simulate.batch_file import KeptRows
 from .study import Study
 from .table import StudyTable, read_table
@@ -45,7 +46,8 @@ def run_study(study: Study, *, workers: int | None = None, progress: Told | None
     Parameters
     ----------
     study
-        What to do. A table of the same study is read and not computed again; one of another study is replaced.
+        What to do. A table of the same study is read and not computed again; one of another study is moved to
+        `Study.place_for_previous`. A table in which no point could be asked is not written.
     workers
         Number of processes; None: one for each core. The table does not depend on it.
     progress
@@ -54,12 +56,15 @@ def run_study(study: Study, *, workers: int | None = None, progress: Told | None
     Raises
     ------
     ParameterError
-        Finished points of another study stand beside the table, or something that is no table stands in its place.
+        Finished points of another study stand beside the table, or something that is no table stands in its place;
+        or the number of workers is below 1.
     OutputError
         The table's place cannot be written.
     """
+    require_workers(workers)
     fingerprint = study.fingerprint()
-    if study_state(study) is StudyState.FINISHED:
+    state = study_state(study)
+    if state is StudyState.FINISHED:
         if study.partial.exists():  # a kill between writing the one and removing the other
             KeptRows.opened(study.partial, fingerprint).remove()
         return read_table(study.out, study.subject.keys, varied=study.varied)
@@ -67,8 +72,18 @@ def run_study(study: Study, *, workers: int | None = None, progress: Told | None
     try:
         rows = run_batch(study.points, study.subject, kept=kept, workers=workers, progress=progress)
         table = StudyTable(study.columns, [row | {"study": fingerprint} for row in rows], study.varied)
-        write_file(study.out, table.csv())
+        if table.answers():
+            if state is StudyState.ANOTHER:
+                _move(study.out, study.place_for_previous())
+            write_file(study.out, table.csv())
         kept.remove()
     finally:
         kept.close()
     return table
+
+
+def _move(table: Path, place: Path) -> None:
+    try:
+        table.rename(place)
+    except OSError as error:
+        raise cannot_write(place, error) from error

@@ -29,8 +29,8 @@ class Subject(Protocol):
         """The columns of results."""
         ...
 
-    def require_sound(self, points: list[Point]) -> None:
-        """Refuse points that cannot be a study: an input is missing, or two say the same."""
+    def require_sound(self, points: list[Point], fixed: Point) -> None:
+        """Refuse points that cannot be a study: an input is missing, two say the same, what is fixed cannot be read."""
         ...
 
     def files(self, points: list[Point]) -> list[Path]:
@@ -79,6 +79,14 @@ class Study:
     def partial(self) -> Path:
         """Where finished points are kept until the table is complete."""
         return self.out.with_name(f"{self.out.name}.partial")
+
+    def place_for_previous(self) -> Path:
+        """Where another study's table goes that stands in this one's place: a name that is free."""
+        place, count = self.out.with_name(f"{self.out.stem}.previous.csv"), 1
+        while place.exists():
+            count += 1
+            place = self.out.with_name(f"{self.out.stem}.previous-{count}.csv")
+        return place
 
     def fingerprint(self) -> str:
         """Sixteen hexadecimal digits that change with any point, any file that points name, and skisnow's version."""

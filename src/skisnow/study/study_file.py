@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from ..errors import ParameterError
 from ..simulate.carve_question import nearest
-from ..simulate.input_keys import InputKey
+from ..simulate.input_keys import InputKey, InputValue
 from .axes import Axis, grid_points, hypercube_points
 from .carve_subject import CarveSubject
 from .study import Point, Study, SubjectIn
@@ -33,7 +33,8 @@ def read_study(path: str | Path, *, subject: SubjectIn = CarveSubject) -> Study:
     ------
     ParameterError
         The file cannot be read, a key is unknown (the nearest is named), missing, said twice or of the wrong kind, or
-        the inputs are not complete. A value outside its range is no error of the study but of its points.
+        the inputs are not complete; or a value under [fixed] is outside its range, or names a ski or a snow that
+        cannot be read. Such a value of what varies is no error of the study but of its points.
     """
     path = Path(path)
     values = _parsed(path)
@@ -68,7 +69,7 @@ def _study(path: Path, values: Mapping[str, Any], subject: SubjectIn) -> Study:
         raise ParameterError(f"[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]")
     points = grid_points(axes) if form == "grid" else hypercube_points(axes, *_sample(varying))
     points = [{**fixed, **point} for point in points]
-    asked.require_sound(points)
+    asked.require_sound(points, fixed)
     return Study(path, _out(path, values), asked, tuple(axis.key.name for axis in axes), points)
 
 
@@ -93,8 +94,15 @@ def _fixed(table: Mapping[str, Any], keys: Mapping[str, InputKey]) -> Point:
         _require_key("fixed", name, keys)
         if isinstance(value, list | dict):
             raise ParameterError(f"fixed.{name} is {value!r}; it takes one value. What varies stands in [grid]")
-        fixed[name] = keys[name].of_kind(value)
+        fixed[name] = _in_range(keys[name], value)
     return fixed
+
+
+def _in_range(key: InputKey, value: object) -> InputValue:
+    try:
+        return key.in_range(value)
+    except ParameterError as error:
+        raise ParameterError(f"fixed.{error}") from error
 
 
 def _axis(form: str, name: str, value: object, keys: Mapping[str, InputKey], fixed: Point) -> Axis:

@@ -32,6 +32,10 @@ class StudyTable:
     rows: list[Row]
     varied: tuple[str, ...]
 
+    def answers(self) -> list[Row]:
+        """The rows whose point could be asked."""
+        return [row for row in self.rows if row["outcome"] != "error"]
+
     def csv(self) -> str:
         """The table as text: numbers with all their digits, true and false, nothing where there is no value."""
         stream = io.StringIO()
@@ -65,16 +69,34 @@ def read_table(path: str | Path, keys: Mapping[str, InputKey], *, varied: Sequen
     """
     try:
         with Path(path).open(newline="", encoding="utf-8") as stream:
-            reader = csv.DictReader(stream)
-            columns = tuple(reader.fieldnames or ())
-            rows = [{name: _value(name, cell, keys) for name, cell in row.items()} for row in reader]
+            reader = csv.reader(stream)
+            columns = tuple(next(reader, ()))
+            _require_columns(path, columns)
+            rows = [_row(f"{path}, line {reader.line_num}", columns, cells, keys) for cells in reader if cells]
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}") from error
-    except (UnicodeDecodeError, csv.Error, TypeError, AttributeError) as error:
+    except (UnicodeDecodeError, csv.Error) as error:
         raise ParameterError(f"{path} is no table of a study: {error}") from error
-    if not {"outcome", "study"} <= set(columns):
-        raise ParameterError(f"{path} is no table of a study: it has no columns outcome and study")
     return StudyTable(columns, rows, tuple(varied))
+
+
+def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
+    if not {"outcome", "study"} <= set(columns):
+        raise ParameterError(f"{path} is no table of a study: its first line names no columns outcome and study")
+
+
+def _row(place: str, columns: Sequence[str], cells: Sequence[str], keys: Mapping[str, InputKey]) -> Row:
+    if len(cells) != len(columns):
+        raise ParameterError(
+            f"{place}: a row of this table has {len(columns)} cells, this line has {len(cells)}. Remove the line"
+        )
+    row = {}
+    for name, cell in zip(columns, cells, strict=True):
+        try:
+            row[name] = _value(name, cell, keys)
+        except ValueError:
+            raise ParameterError(f"{place}: {name} is {cell!r}; it must be a number. Correct or remove it") from None
+    return row
 
 
 def _cell(value: Any) -> str:
@@ -96,7 +118,4 @@ def _value(name: str, cell: str, keys: Mapping[str, InputKey]) -> Any:
         return cell
     if cell in ("true", "false"):
         return cell == "true"
-    try:
-        return int(cell) if name in keys and keys[name].kind == "whole number" else float(cell)
-    except ValueError:  # a point that was refused keeps what was asked
-        return cell
+    return int(cell) if name in keys and keys[name].kind == "whole number" else float(cell)
