@@ -235,8 +235,8 @@ def _require_within(ski: Ski, load: float, moment: float) -> None:
     ahead = moment / load
     if not ski.station[-1] < ahead < ski.station[0]:
         raise ParameterError(
-            f"a moment of {moment} N m under a load of {load} N puts the resultant {ahead:.2f} m ahead of the boot, off "
-            f"the ski, which reaches from {ski.station[-1]:.2f} to {ski.station[0]:.2f} m: no snow can balance that"
+            f"a moment of {moment} N m under a load of {load} N puts the resultant {ahead:.2f} m ahead of the boot: "
+            f"off the ski, which reaches from {ski.station[-1]:.2f} to {ski.station[0]:.2f} m: no snow can balance that"
         )
 
 

@@ -18,6 +18,9 @@ FloatArray = npt.NDArray[np.float64]
 SHOVEL_HEIGHT: Final = 0.050
 """Height of the tip over the contact points (m). Choice: 50 mm, a usual alpine ski."""
 
+ROUNDING: Final = 0.100
+"""Length before a contact point over which the camber is rounded off (m). Choice: 100 mm."""
+
 TAIL_HEIGHT: Final = 0.008
 """Height of the tail over the contact points (m). Choice: 8 mm, a usual square tail."""
 
@@ -28,11 +31,10 @@ class BaseShape:
 
     Choices:
 
-    - Camber is the parabola c (1 - ξ²), ξ from -1 to 1 between the contact points: of one curvature, so that the ends
-      stay down when the middle is pressed flat. It meets the shovel at an angle of about 4 c over the length between
-      the contact points (1.1° for 7 mm), which a real ski rounds off within a few centimetres.
+    - Camber is an arch of one curvature, so that the ends stay down when the middle is pressed flat; over the last
+      100 mm before each contact point (`ROUNDING`) it is rounded so that it meets it with slope 0.
     - The shovel rises quadratically from the front contact point to ``shovel_height`` at the tip, the tail likewise
-      behind.
+      behind. The slope is continuous along the whole base.
     - Rocker draws a contact point in from the end of the running length, by ``…_rocker_length``; over that length the
       base rises quadratically to ``…_rocker_height``, and the shovel or tail goes on from there without a kink.
 
@@ -74,13 +76,22 @@ class BaseShape:
                 f"the rockers, {self.tip_rocker_length * 1e3:.1f} and {self.tail_rocker_length * 1e3:.1f} mm long, "
                 f"leave nothing of the running length of {layout.running_length * 1e3:.1f} mm. Shorten them."
             )
-        arch = (station - (foremost + hindmost) / 2.0) / ((foremost - hindmost) / 2.0)
         shovel = _End("shovel", self.tip_rocker_length, self.tip_rocker_height, layout.tip - front, self.shovel_height)
         tail = _End("tail", self.tail_rocker_length, self.tail_rocker_height, rear - layout.tail, self.tail_height)
-        heights: FloatArray = self.camber * np.maximum(1.0 - arch**2, 0.0)
+        heights = self.camber * _arch(station - (foremost + hindmost) / 2.0, (foremost - hindmost) / 2.0)
         heights += shovel.rise(np.maximum(station - foremost, 0.0))
         heights += tail.rise(np.maximum(hindmost - station, 0.0))
         return heights
+
+
+def _arch(place: FloatArray, half: float) -> FloatArray:
+    """Camber of height 1 over ±half: curvature -k up to half - b from the middle, then a rounding of length b."""
+    rounding = min(ROUNDING, half / 2.0)
+    plain = half - rounding
+    k = 2.0 / (plain * half)  # the whole drop k plain half / 2 is 1
+    inside = np.minimum(np.abs(place), plain)
+    beyond = np.clip(np.abs(place) - plain, 0.0, rounding)
+    return np.asarray(1.0 - k * (inside**2 / 2.0 + plain * beyond * (1.0 - beyond / (2.0 * rounding))))
 
 
 @dataclass(frozen=True, slots=True)

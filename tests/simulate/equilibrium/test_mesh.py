@@ -34,10 +34,13 @@ def results(hardness: float, ratio: float, elements: int) -> np.ndarray[tuple[in
 @pytest.mark.parametrize("hardness", [0.04, 0.2, 1.0, 90.0])
 @pytest.mark.parametrize("ratio", [1.0, 10.0])
 def test_default_elements_are_enough(hardness: float, ratio: float) -> None:
-    """Against 640: radius at the boot 0.01 %, over the chord 0.1 %, greatest depth 0.1 %, contact length 0.1 %."""
+    """Against 640: radius at the boot 0.01 %, over the chord 0.1 %, greatest depth 0.1 %, contact length 0.2 %.
+
+    The contact ends on the shovel, between two stations 5 mm apart: 2 mm of 1.4 m are 0.15 %.
+    """
     assert ELEMENTS == 160
     error = np.abs(results(hardness, ratio, ELEMENTS) / results(hardness, ratio, 640) - 1.0)
-    assert np.all(error < [1e-4, 1e-3, 1e-3, 1e-3])
+    assert np.all(error < [1e-4, 1e-3, 1e-3, 2e-3])
 
 
 @pytest.mark.parametrize("hardness", [0.04, 0.2, 1.0, 90.0])
