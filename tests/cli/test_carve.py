@@ -297,6 +297,43 @@ def test_wrong_words_exit_2(words: list[str]) -> None:
     assert left.value.code == 2
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--ski", "slalom", "--edge-angel-deg", "45"], "no option --edge-angel-deg. Is --edge-angle-deg meant?"),
+        ([*ASKED, "--h-v-n-per-mm3=0.2"], "no option --h-v-n-per-mm3. Is --H-V-N-per-mm3 meant?"),
+        ([*ASKED, "--colour", "red"], "no option --colour. skisnow carve --help names all"),
+        (
+            [*ASKED, "--load-N", "80kg"],
+            "'80kg' is no number; write one with a decimal point in N, without the unit, such as 80\n",
+        ),
+        ([*ASKED, "--H-V-N-per-mm3", "0,2"], "decimal point in N/mm³, without the unit, such as 0.2\n"),
+        ([*ASKED, "--unloading-ratio", "ten"], "'ten' is no number; write one with a decimal point\n"),
+        ([*ASKED, "--elements", "8.5"], "'8.5' is no whole number"),
+    ],
+)
+def test_misspelt_options_and_numbers_are_told(words: list[str], told: str, capsys: Printed) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["carve", *words])
+    assert left.value.code == 2
+    assert told in capsys.readouterr().err
+
+
+def test_beginning_of_an_option_stands_for_it(capsys: Printed) -> None:
+    assert answer([*ASKED[:2], "--edge", "45", "--load", "800", *SNOW], capsys) == answer([*ASKED, *SNOW], capsys)
+
+
+def test_interrupt_while_commands_are_loaded_ends_in_one_line(monkeypatch: pytest.MonkeyPatch, capsys: Printed) -> None:
+    import skisnow.cli
+
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(skisnow.cli, "build_parser", interrupted)
+    assert main(["carve"]) == 130
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
 def test_help_loads_no_numbers() -> None:
     """Other commands and --help must not wait for the compiler and the drawing library."""
     code = (

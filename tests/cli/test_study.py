@@ -145,7 +145,9 @@ def alive(process: int) -> bool:
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="looks for left workers under /proc")
-@pytest.mark.parametrize(("how", "code"), [(signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, 130)])
+@pytest.mark.parametrize(
+    ("how", "code"), [(signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, 130), (signal.SIGTERM, 143)]
+)
 def test_killed_and_interrupted_studies_go_on_to_the_same_bytes(tmp_path: Path, how: signal.Signals, code: int) -> None:
     broken, whole = study_in(tmp_path / "broken", TEXT), study_in(tmp_path / "whole", TEXT)
     partial = broken.parent / "tables" / "table.csv.partial"
@@ -156,6 +158,7 @@ def test_killed_and_interrupted_studies_go_on_to_the_same_bytes(tmp_path: Path, 
     _, err = first.communicate(timeout=60)
     assert first.returncode == code, err.decode()
     assert b"Traceback" not in err
+    assert how == signal.SIGKILL or b"resource_tracker" not in err
     kept = lines_of(partial) - 1
     assert 3 <= kept < POINTS
     assert not (broken.parent / "tables" / "table.csv").exists()

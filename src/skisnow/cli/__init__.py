@@ -9,7 +9,6 @@ import sys
 from typing import TYPE_CHECKING
 
 from ..errors import FieldDataError, SkisnowError
-from . import analyse, carve, check, reference, store, study
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,12 +18,15 @@ def build_parser() -> argparse.ArgumentParser:
     """Put the commands together; nothing heavy is imported before a command runs."""
     from importlib.metadata import version
 
+    from . import analyse, carve, check, reference, store, study
+    from .words import Parser
+
     parser = argparse.ArgumentParser(
         prog="skisnow",
         description="From field tests of a ski slope to snow parameters, and from those to what a ski does on it.",
     )
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=Parser)
     for command in (check, analyse, store, reference, carve, study):
         command.add_parser(commands)
     return parser
@@ -35,8 +37,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # JSON is UTF-8 whatever the terminal's code page
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
-    options = build_parser().parse_args(arguments)
-    try:
+    try:  # from here on: an interrupt may come while commands are still being loaded
+        options = build_parser().parse_args(arguments)
         status: int = options.run(options)
         sys.stdout.flush()
     except FieldDataError as error:

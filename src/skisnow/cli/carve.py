@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .announced import announced
+from .words import number, whole_number
 
 if TYPE_CHECKING:
     from ..simulate.carve_answer import CarveAnswer
@@ -34,33 +35,38 @@ def _add_question(parser: argparse.ArgumentParser) -> None:
     named: dict[str, Any] = {"action": "append", "required": True, "metavar": "NAME|FILE"}
     parser.add_argument("--ski", **named, help="a ski of the catalogue or a ski file; several times to compare")
     angle = "of the base under the boot to the snow, 0 to 85"
-    parser.add_argument("--edge-angle-deg", type=float, required=True, metavar="DEGREES", help=angle)
+    parser.add_argument("--edge-angle-deg", type=number("degrees"), required=True, metavar="DEGREES", help=angle)
     load = "on this ski, along the snow normal, at the boot"
-    parser.add_argument("--load-N", type=float, required=True, metavar="NEWTONS", help=load)
-    parser.add_argument("--moment-Nm", type=float, metavar="N_M", help="at the boot, positive presses the tip down")
+    parser.add_argument("--load-N", type=number("N"), required=True, metavar="NEWTONS", help=load)
+    parser.add_argument(
+        "--moment-Nm", type=number("N m"), metavar="N_M", help="at the boot, positive presses the tip down"
+    )
 
 
 def _add_snow(parser: argparse.ArgumentParser) -> None:
     snow = parser.add_argument_group("snow")
-    snow.add_argument("--H-V-N-per-mm3", type=float, metavar="H_V", help="snow hardness")
-    snow.add_argument("--S-f-N-per-mm2", type=float, metavar="S_f", help="failure shear stress")
+    snow.add_argument("--H-V-N-per-mm3", type=number("N/mm³"), metavar="H_V", help="snow hardness")
+    stress = "failure shear stress; beside --results or --published only where those have none"
+    snow.add_argument("--S-f-N-per-mm2", type=number("N/mm²"), metavar="S_f", help=stress)
     snow.add_argument("--results", metavar="PATH", help="results.json of an analysed campaign")
     snow.add_argument("--site", metavar="S", help="one site of those results; left out: all sites together")
     snow.add_argument("--published", metavar="NAME", help="a published snow, such as race-piste")
     ratio = "k_u/H_V: 1 is elastic snow, inf rigid-plastic; no default; plays no part with --at-rest"
-    snow.add_argument("--unloading-ratio", type=float, metavar="RATIO", help=ratio)
+    snow.add_argument("--unloading-ratio", type=number(""), metavar="RATIO", help=ratio)
 
 
 def _add_choices(parser: argparse.ArgumentParser) -> None:
     choices = parser.add_argument_group("modelling choices; those in force are printed with the answer")
-    choices.add_argument("--clamp-length-m", type=float, metavar="M", help="length that boot and binding keep straight")
+    choices.add_argument(
+        "--clamp-length-m", type=number("m"), metavar="M", help="length that boot and binding keep straight"
+    )
     off: dict[str, Any] = {"action": "store_const", "const": False}
     choices.add_argument(
         "--no-side-force-bending", dest="side_force_bending", **off, help="the side force does not bend the ski"
     )
     choices.add_argument("--groove", choices=("edge", "path"), help="what the groove of the forebody follows")
     choices.add_argument("--no-twist", dest="twist", **off, help="the ski keeps its edge angle everywhere")
-    choices.add_argument("--elements", type=int, metavar="N", help="finite elements over the whole ski")
+    choices.add_argument("--elements", type=whole_number, metavar="N", help="finite elements over the whole ski")
     choices.add_argument(
         "--at-rest", action="store_const", const=True, help="set down on virgin snow, without side force"
     )
