@@ -1,5 +1,6 @@
 """`skisnow carve` as a user meets it."""
 
+import itertools
 import json
 import math
 import subprocess
@@ -143,6 +144,27 @@ def test_several_skis_share_one_answer_one_table_and_one_figure(tmp_path: Path, 
     assert main(["carve", *words]) == 0
     head, *_ = (line for line in capsys.readouterr().out.splitlines() if line.startswith(" "))
     assert head.split() == ["slalom", "giant-slalom"]
+
+
+def test_table_has_skis_own_names_sidecut_radius_and_bearing_length(tmp_path: Path, capsys: Printed) -> None:
+    catalogue = (Path(skisnow.__file__).parent / "ski/catalogue/slalom.toml").read_text("utf-8")
+    path = tmp_path / "a.toml"
+    path.write_text(catalogue.replace('name = "slalom"', 'name = "mine"'), encoding="utf-8")
+    words = [*ASKED[2:], "--ski", "slalom", "--ski", str(path), *SNOW]
+    found = answer(words, capsys)["skis"][0]
+    assert main(["carve", *words]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert next(line for line in lines if line.startswith(" ")).split() == ["slalom", "mine"]
+    told = {line[:44].strip(): line[44:].split() for line in lines}
+    radius, bearing = (told[row][0] for row in ("sidecut radius of three widths (m)", "length that carries load (m)"))
+    assert float(radius) == pytest.approx(found["ski"]["sidecut_radius_of_three_widths_m"], rel=5e-3)  # three digits
+    assert float(bearing) == pytest.approx(found["bearing_length_m"], rel=5e-3)
+    # between neighbouring stations that carry; each end of a bearing piece is off by their distance, 1 cm, at most
+    pairs = list(itertools.pairwise(zip(found["station_m"], found["force_per_length_N_per_m"], strict=True)))
+    length = sum(s - t for (s, force), (t, behind) in pairs if force > 0 and behind > 0)
+    ends = sum((force > 0) != (behind > 0) for (_, force), (_, behind) in pairs)
+    assert found["bearing_length_m"] == pytest.approx(length, abs=0.01 * ends)
+    assert found["bearing_length_m"] < found["contact_length_m"]
 
 
 @pytest.mark.parametrize(

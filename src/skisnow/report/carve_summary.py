@@ -18,6 +18,13 @@ def answers_of(found: Json) -> list[Json]:
     return answers
 
 
+def ski_titles(answers: list[Json]) -> list[str]:
+    """What to call each ski: its own name, or the word it was asked for by where names do not tell the skis apart."""
+    words = [str(answer["inputs"]["ski"]) for answer in answers]
+    names = [str(answer["ski"]["name"]) for answer in answers]
+    return names if len(set(names)) == len(set(zip(words, names, strict=True))) else words
+
+
 def carve_summary(found: Json) -> str:
     """What was asked, the choices in force, and one column for each ski.
 
@@ -38,10 +45,10 @@ def _lines(answers: list[Json]) -> Iterator[str]:
     yield f"model: {_choices(inputs)}"
     yield ""
     yield from _table(answers)
-    for answer in answers:
+    for title, answer in zip(ski_titles(answers), answers, strict=True):
         if answer["remedy"]:
             yield ""
-            yield f"{answer['inputs']['ski']}: {answer['outcome'].replace('_', ' ')}: {answer['remedy']}"
+            yield f"{title}: {answer['outcome'].replace('_', ' ')}: {answer['remedy']}"
 
 
 def _snow(answer: Json) -> str:
@@ -84,6 +91,10 @@ def _number(key: str) -> Callable[[Json], str]:
     return lambda answer: significant(answer[key], style="plain")
 
 
+def _of_ski(answer: Json, key: str) -> str:
+    return significant(answer["ski"][key], style="plain")
+
+
 _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
     ("outcome", lambda answer: answer["outcome"].replace("_", " ")),
     ("edge holds", lambda answer: "-" if answer["holds"] is None else _yes(answer["holds"])),
@@ -91,7 +102,9 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
     ("side force that the snow can hold (N)", _number("side_force_limit_N")),
     ("turn radius, boot and 0.4 m to each side (m)", _number("turn_radius_boot_m")),
     ("turn radius, boot and ends of contact (m)", _number("turn_radius_chord_m")),
+    ("sidecut radius of three widths (m)", lambda answer: _of_ski(answer, "sidecut_radius_of_three_widths_m")),
     ("contact length (m)", _number("contact_length_m")),
+    ("length that carries load (m)", _number("bearing_length_m")),
     ("edge depth, afterbody / forebody", _number("afterbody_depth_ratio")),
     ("edge depth, greatest (mm)", _greatest("edge_depth_mm")),
     ("force per length, greatest (N/m)", _greatest("force_per_length_N_per_m")),
@@ -103,7 +116,7 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
 
 
 def _table(answers: list[Json]) -> Iterator[str]:
-    cells = [["", *(answer["inputs"]["ski"] for answer in answers)]]
+    cells = [["", *ski_titles(answers)]]
     cells += [[name, *(of(answer) for answer in answers)] for name, of in _ROWS]
     widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
     for row in cells if len(answers) > 1 else cells[1:]:

@@ -69,6 +69,7 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
         "turn_radius_boot_m": finite(equilibrium.turn_radius_boot),
         "turn_radius_chord_m": finite(equilibrium.turn_radius_chord),
         "contact_length_m": finite(equilibrium.contact_length),
+        "bearing_length_m": finite(equilibrium.bearing_length),
         "afterbody_depth_ratio": finite(equilibrium.afterbody_depth_ratio),
         "residual_force_N": finite(equilibrium.residual_force),
         "residual_moment_Nm": finite(equilibrium.residual_moment),

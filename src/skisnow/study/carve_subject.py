@@ -35,6 +35,7 @@ RESULTS: Final = (
     "residual_force_N",
     "residual_moment_Nm",
     "sidecut_radius_of_three_widths_m",
+    "ski_name",
     "warnings",
     "reason",
 )
@@ -107,6 +108,7 @@ def _row(answer: CarveAnswer) -> Row:
         "greatest_edge_depth_mm": None if depth is None else float(np.max(depth)) / MM,
         "greatest_force_per_length_N_per_m": None if force is None else float(np.max(force)),
         "sidecut_radius_of_three_widths_m": finite(answer.ski.sidecut_radius_of_three_widths),
+        "ski_name": answer.ski.name,
         "warnings": "; ".join(answer.warnings),
         "reason": equilibrium.remedy,
     }

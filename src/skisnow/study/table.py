@@ -107,7 +107,7 @@ def _cell(value: Any) -> str:
     return value if isinstance(value, str) else repr(value)
 
 
-_TEXTS = ("outcome", "warnings", "reason", "study")
+_TEXTS = ("outcome", "ski_name", "warnings", "reason", "study")
 
 
 def _value(name: str, cell: str, keys: Mapping[str, InputKey]) -> Any:

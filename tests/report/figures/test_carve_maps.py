@@ -124,6 +124,59 @@ def test_share_of_the_limit() -> None:
     assert math.isnan(share_of_limit({"side_force_N": None, "side_force_limit_N": None}))
 
 
+def test_points_that_could_not_be_asked_stand_neither_in_map_nor_in_legend() -> None:
+    whole = made_up(ski=["a", "b", "nowhere.toml"], load_N=LOADS, edge_angle_deg=[*ANGLES, 88.0])
+    results = ("side_force_N", "side_force_limit_N", "holds", "turn_radius_boot_m", "sidecut_radius_of_three_widths_m")
+    rows = [
+        row | dict.fromkeys(results) | {"outcome": "error"}
+        if row["ski"] == "nowhere.toml" or row["edge_angle_deg"] > 85 or row["load_N"] > 1000
+        else row
+        for row in whole.rows
+    ]
+    table = StudyTable(whole.columns, rows, whole.varied)
+    for draw in (radius_map, grip_map):
+        with journal_style():
+            figure = draw(table)
+        titles = [axes.get_title(loc="left") for axes in figure.axes]
+        assert [title for title in titles if title] == ["a", "b"]
+        assert figure.axes[0].get_xlim()[1] < 75.0
+        texts = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert not {"1200 N", "no equilibrium"} & set(texts)
+        assert "holds" in texts
+    with pytest.raises(ParameterError, match="not one point of this table could be asked"):
+        radius_map(StudyTable(whole.columns, [row | {"outcome": "error"} for row in rows], whole.varied))
+
+
+def test_maps_say_what_is_fixed_and_which_radius() -> None:
+    whole = made_up(load_N=LOADS, edge_angle_deg=ANGLES)
+    fixed = {"ski": "slalom", "published": "race-piste", "H_V_N_per_mm3": 0.2067, "unloading_ratio": 10.0}
+    table = StudyTable(whole.columns, [row | fixed | {"twist": True} for row in whole.rows], whole.varied)
+    for draw in (radius_map, grip_map):
+        with journal_style():
+            figure = draw(table)
+        assert figure.get_suptitle() == "slalom, $H_V$ = 0.2067 N/mm³, race-piste, $k_u/H_V$ = 10"  # twist: the default
+    with journal_style():
+        assert "circle through boot and ±0.4 m" in radius_map(table).axes[0].get_ylabel()
+
+
+def test_skis_stand_under_their_own_names_where_these_tell_them_apart(found: dict[str, Any]) -> None:
+    def titles(*names: str) -> list[str]:
+        whole = made_up(ski=["one.toml", "two.toml"], edge_angle_deg=ANGLES)
+        own = dict(zip(("one.toml", "two.toml"), names, strict=True))
+        rows = [row | {"ski_name": own[row["ski"]]} for row in whole.rows]
+        with journal_style():
+            figure = radius_map(StudyTable(whole.columns, rows, whole.varied))
+        return [text.get_text() for text in figure.legends[0].get_texts()][:2]
+
+    assert titles("Short", "Long") == ["Long", "Short"]  # lines are in the order of their names
+    assert titles("Same", "Same") == ["one.toml", "two.toml"]
+    slalom, giant = found["skis"]
+    renamed = {"skis": [slalom | {"ski": slalom["ski"] | {"name": "My own"}}, giant]}
+    with journal_style():
+        figure = carved_skis(renamed)
+    assert [text.get_text() for text in figure.legends[0].get_texts()][:2] == ["My own", "giant-slalom"]
+
+
 def test_sample_is_drawn_as_points() -> None:
     whole = made_up(load_N=LOADS, edge_angle_deg=ANGLES, S_f_N_per_mm2=[0.1, 0.2, 0.3])
     table = StudyTable(whole.columns, whole.rows[::5], whole.varied)

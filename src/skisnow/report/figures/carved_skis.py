@@ -9,7 +9,7 @@ import numpy.typing as npt
 from matplotlib.lines import Line2D
 
 from ...units import MM
-from ..carve_summary import answers_of
+from ..carve_summary import answers_of, ski_titles
 from ..numerals import significant
 from ..symbols import figure_text
 from .style import BLACK, COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
@@ -53,8 +53,8 @@ def carved_skis(found: Json) -> Figure:
     _plan(figure.add_subplot(grid[2, :], sharex=first), answers)
     figure.suptitle(_asked(answers[0]), x=0.01, ha="left", fontsize=8.0)
     handles = [
-        Line2D([], [], color=_colour(place), linestyle=_line(place), label=_name(answer))
-        for place, answer in enumerate(answers)
+        Line2D([], [], color=_colour(place), linestyle=_line(place), label=_label(title, answer["outcome"]))
+        for place, (title, answer) in enumerate(zip(ski_titles(answers), answers, strict=True))
     ]
     circles = (
         ("circle through boot and 0.4 m to each side", _BOOT_CIRCLE),
@@ -73,9 +73,8 @@ def _line(place: int) -> Any:
     return _LINE_STYLES[place % len(_LINE_STYLES)]
 
 
-def _name(answer: Json) -> str:
-    outcome = answer["outcome"].replace("_", " ")
-    return figure_text(answer["inputs"]["ski"]) + ("" if outcome == "equilibrium" else f" ({outcome})")
+def _label(title: str, outcome: str) -> str:
+    return figure_text(title) + ("" if outcome == "equilibrium" else f" ({outcome.replace('_', ' ')})")
 
 
 def _asked(answer: Json) -> str:

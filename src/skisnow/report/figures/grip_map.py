@@ -10,7 +10,18 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.lines import Line2D
 
-from .map_layout import axes_of_panels, label, label_outside, map_layout, panel_columns, panels_of, wants_logarithm
+from .map_layout import (
+    axes_of_panels,
+    caption,
+    drawn_table,
+    label,
+    label_outside,
+    map_layout,
+    panel_columns,
+    panels_of,
+    wants_logarithm,
+    what_is_fixed,
+)
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, logarithmic, new_figure, plain_number
 
 if TYPE_CHECKING:
@@ -40,6 +51,7 @@ def grip_map(table: StudyTable) -> Figure:
         The table has nothing to put along the axis, or too many panels.
     """
     layout = map_layout(table, second_is_number=True)
+    table = drawn_table(table)
     panels = panels_of(table, layout)
     columns = panel_columns(table, layout, len(panels))
     rows = -(-len(panels) // columns)
@@ -61,6 +73,7 @@ def grip_map(table: StudyTable) -> Figure:
     label_outside(every, columns, label(layout.x), ordinate)
     if layout.second is not None and not layout.sampled:
         _colour_bar(figure, every)
+    caption(figure, what_is_fixed(table))
     legend_below(figure, _handles(layout, table.rows))
     return figure
 

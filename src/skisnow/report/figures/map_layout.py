@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,6 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import ParameterError
+from ...simulate.carve_keys import CARVE_KEYS
+from ...study import StudyTable
 from ..symbols import figure_text
 
 if TYPE_CHECKING:
@@ -18,8 +21,6 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from ...study import StudyTable
 
 Json = dict[str, Any]
 FloatArray = npt.NDArray[np.float64]
@@ -29,6 +30,8 @@ MOST_LINES: Final = 7
 MOST_COLUMNS: Final = 5
 _LOG_FROM: Final = 20.0
 _CROWDED: Final = 4  # columns, from which neighbours' axis labels would touch
+_CAPTION_LETTERS: Final = 125
+"""Of a line of the caption, with the signs that set its symbols."""
 _LETTERS: Final = 105
 """Of a title, over the whole width of a figure."""
 
@@ -109,6 +112,41 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
             "make a study of fewer of them for the map"
         )
     return MapLayout(x, second, tuple(left), sampled)
+
+
+def drawn_table(table: StudyTable) -> StudyTable:
+    """The points that could be asked, each ski under its own name where names tell the skis apart.
+
+    Raises
+    ------
+    ParameterError
+        Not one point could be asked.
+    """
+    rows = table.answers()
+    if not rows:
+        raise ParameterError("the map has nothing to draw: not one point of this table could be asked")
+    pairs = {(row.get("ski"), row.get("ski_name")) for row in rows}
+    names = {name for _, name in pairs}
+    if None not in names and len(names) == len(pairs):
+        rows = [row | {"ski": row["ski_name"]} for row in rows]
+    return StudyTable(table.columns, rows, table.varied)
+
+
+def what_is_fixed(table: StudyTable) -> str:
+    """The inputs that are the same in all rows, without those at their defaults: a map's caption."""
+    words = []
+    for name, key in CARVE_KEYS.items():
+        values = {row.get(name) for row in table.rows}
+        value = next(iter(values))
+        if name not in table.varied and len(values) == 1 and value not in (None, key.default):
+            words.append(short(name, value))
+    return "\n".join(textwrap.wrap(", ".join(words), _CAPTION_LETTERS, break_on_hyphens=False))
+
+
+def caption(figure: Figure, text: str) -> None:
+    """Write it over the panels, at the left."""
+    if text:
+        figure.suptitle(text, x=0.01, ha="left", fontsize=8.0)
 
 
 def panels_of(table: StudyTable, layout: MapLayout) -> list[tuple[str, list[Json]]]:

@@ -14,6 +14,8 @@ from ...units import DEGREE
 from .map_layout import (
     MOST_LINES,
     axes_of_panels,
+    caption,
+    drawn_table,
     label,
     label_outside,
     lines_of,
@@ -22,6 +24,7 @@ from .map_layout import (
     panels_of,
     short,
     wants_logarithm,
+    what_is_fixed,
 )
 from .style import BLUE, COLOURS, DOUBLE_MM, GREY, MARKERS, legend_below, logarithmic, new_figure
 
@@ -47,6 +50,7 @@ def radius_map(table: StudyTable) -> Figure:
         The table has nothing to put along the axis, or too many panels.
     """
     layout = map_layout(table, second_is_number=False)
+    table = drawn_table(table)
     panels = panels_of(table, layout)
     columns = panel_columns(table, layout, len(panels))
     colours = _Colours.of(layout, table.rows)
@@ -62,10 +66,11 @@ def radius_map(table: StudyTable) -> Figure:
         else:
             _cloud(axes, of_panel, layout, colours)
     _limits(every[0], table.rows, layout)
-    label_outside(every, columns, label(layout.x), "turn radius (m)")
+    label_outside(every, columns, label(layout.x), "turn radius (m):\ncircle through boot and ±0.4 m")
+    caption(figure, what_is_fixed(table))
     if colours is not None and not _lined(layout, values):
         colours.bar(figure)
-    legend_below(figure, _handles(layout, values))
+    legend_below(figure, _handles(layout, values, table.rows))
     return figure
 
 
@@ -137,7 +142,7 @@ def _limits(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
         axes.set_ylim(0.0, 1.08 * float(np.nanmax(radii)))
 
 
-def _handles(layout: MapLayout, values: list[Any]) -> list[Line2D]:
+def _handles(layout: MapLayout, values: list[Any], rows: Sequence[Json]) -> list[Line2D]:
     handles = []
     lined = _lined(layout, values)
     if lined and layout.second is not None:
@@ -149,7 +154,10 @@ def _handles(layout: MapLayout, values: list[Any]) -> list[Line2D]:
             for place, value in enumerate(values)
         ]  # fmt: skip
     holds, slips = (("o", GREY), ("o", "white")) if lined else (("o", GREY), ("X", GREY))
-    for (marker, face), text in ((holds, "holds"), (slips, "slips: radius of an edge held by something else")):
+    texts = ((holds, True, "holds"), (slips, False, "slips: radius of an edge held by something else"))
+    for (marker, face), value, text in texts:
+        if not any(row["holds"] is value and row[RADIUS] is not None for row in rows):
+            continue
         handles.append(Line2D([], [], linestyle="none", marker=marker, color=GREY, markerfacecolor=face, label=text))
     if layout.x == "edge_angle_deg":
         text = "sidecut radius × cos ϑ"
