@@ -35,6 +35,9 @@ SINKING_DEPTH: Final = 0.30
 GREATEST_EDGE_ANGLE: Final = math.radians(85.0)
 LARGE_SLOPE: Final = 0.35
 """Slope of the bent ski, and twist (rad), beyond which beams of small deflection fail (Choice: 6 % in the cosine)."""
+GENTLER_RATIOS: Final = (500.0, 300.0, 200.0)
+"""Unloading ratios to fall back on, with a warning, where steeper unloading has no numerical end (Choice): between
+200 and 1000 the depth changes by less than 1 %."""
 _MOST_PATHS: Final = 80
 _PATH_TOLERANCE: Final = 1e-5  # m, of the edge from the path that was assumed
 
@@ -145,7 +148,8 @@ def carve(
     load
         Force on this ski along the snow normal, at the boot (N), > 0.
     unloading_ratio
-        k_u/H_V ≥ 1: 1 is elastic snow, `math.inf` rigid-plastic snow (computed as 1000).
+        k_u/H_V ≥ 1: 1 is elastic snow, `math.inf` rigid-plastic snow (computed as 1000). Where such steep unloading
+        does not converge, 500, 300 or 200 is taken and a warning says so.
     moment
         About the horizontal cross axis at the boot, positive where it presses the tip down (N m).
     clamp_length
@@ -182,11 +186,18 @@ def carve(
     conditions = _conditions(
         ski, snow, edge_angle, load, moment, min(unloading_ratio, RIGID_PLASTIC), side_force_bends, twists
     )
-    if groove == "edge":
-        return _described(model, conditions, snow, solved(model, conditions))
-    if groove == "path":
-        return _described(model, conditions, snow, _following_path(model, conditions))
-    raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
+    if groove not in ("edge", "path"):
+        raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
+    find = solved if groove == "edge" else _following_path
+    solution = find(model, conditions)
+    note: tuple[str, ...] = ()
+    for gentler in (ratio for ratio in GENTLER_RATIOS if ratio < unloading_ratio):
+        if solution.converged:
+            break
+        gentler_conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
+        solution = find(model, gentler_conditions)
+        note = (f"computed with k_u/H_V = {gentler:g}: the steeper unloading that was asked did not converge",)
+    return _described(model, conditions, snow, solution, note)
 
 
 def rest(
@@ -295,7 +306,9 @@ def _too_soft(model: ClampedSki, conditions: Conditions) -> bool:
     return conditions.load > conditions.hardness * SINKING_DEPTH * area
 
 
-def _described(model: ClampedSki, conditions: Conditions, snow: SnowProperties, solution: Solution) -> Equilibrium:
+def _described(
+    model: ClampedSki, conditions: Conditions, snow: SnowProperties, solution: Solution, note: tuple[str, ...] = ()
+) -> Equilibrium:
     station = model.stations.station
     deepest = float(np.max(solution.edge_depth))
     sinks = deepest > SINKING_DEPTH if solution.converged else _too_soft(model, conditions)
@@ -334,7 +347,7 @@ def _described(model: ClampedSki, conditions: Conditions, snow: SnowProperties, 
         edge_line=line.position,
         residual_force=float(weight @ force) - conditions.load,
         residual_moment=float(weight @ (force * station)) - conditions.moment,
-        warnings=_warnings(line),
+        warnings=(*note, *_warnings(line)),
         iterations=solution.iterations,
     )
 
