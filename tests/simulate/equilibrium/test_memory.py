@@ -49,20 +49,17 @@ def share_left(found: Equilibrium, place: float) -> float:
 
 @pytest.mark.parametrize("name", ["slalom", "giant-slalom", "carver"])
 def test_published_contrast(name: str) -> None:
-    """Elastic: 0.4 m behind a point load the ski has risen to 24-40 % of its depth. Hypoplastic: it keeps 65-85 %.
+    """0.4 m behind a point load the ski has risen to a third of its depth or less; hypoplastic it keeps two thirds.
 
-    Held straight by a boot over 0.3 m it keeps 94 % or more there, and three quarters 0.6 m behind; elastic, 82 and 60 %
-    at most.
+    Held straight by a boot over 0.3 m it keeps more than 90 % there, and 70 % 0.6 m behind; elastic, 60 % at most.
     """
     elastic, remembering = (carved(read_ski(name), ratio) for ratio in (1.0, 50.0))
-    assert 0.2 < share_left(elastic, -0.4) < 0.45
-    assert 0.6 < share_left(remembering, -0.4) < 0.9
-    assert share_left(remembering, -0.4) > 2.0 * share_left(elastic, -0.4)
+    assert 0.2 < share_left(elastic, -0.4) < 0.4
+    assert 2.0 * share_left(elastic, -0.4) < share_left(remembering, -0.4) < 0.9
     elastic, remembering = (carved(read_ski(name), ratio, clamp=0.3) for ratio in (1.0, 50.0))
-    assert share_left(remembering, -0.4) > 0.93
-    assert share_left(elastic, -0.4) < 0.83
-    assert share_left(remembering, -0.6) > 0.74
-    assert share_left(elastic, -0.6) <= 0.605
+    assert share_left(remembering, -0.4) > 0.9 > share_left(elastic, -0.4)
+    assert share_left(remembering, -0.6) > 0.7
+    assert share_left(elastic, -0.6) < 0.61
 
 
 def test_on_elastic_snow_the_force_is_that_of_the_depth() -> None:

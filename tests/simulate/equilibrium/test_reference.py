@@ -1,4 +1,7 @@
-"""`carve` against the equilibrium written down again without elements, `reference.py`."""
+"""`carve` against the equilibrium written down again without elements, `reference.py`.
+
+With 320 elements: what the default 160 add is in `test_mesh.py`.
+"""
 
 from __future__ import annotations
 
@@ -31,6 +34,7 @@ def compare(case: Case) -> None:
         clamp_length=case.clamp_length,
         side_force_bends=case.side_force_bends,
         twists=case.twists,
+        elements=320,
     )
     assert ours.edge_depth is not None
     assert ours.turn_radius_boot == pytest.approx(theirs.radius_at_boot(), rel=AGREE)
@@ -40,18 +44,19 @@ def compare(case: Case) -> None:
     assert ours.turn_radius_chord == pytest.approx(theirs.radius_through(front, rear), rel=2.0 * AGREE)
     waist = float(case.ski.at(0.0).width) / 2.0 * math.sin(case.edge_angle)
     depth = boot_pose(ours, case.ski, case.edge_angle)[0] + waist
-    # under a point load with memory behind it 160 elements are themselves 0.15 % off 640
-    assert depth == pytest.approx(theirs.boot_depth + waist, abs=3.0 * AGREE * float(ours.edge_depth.max()))
+    assert depth == pytest.approx(theirs.boot_depth + waist, abs=2.0 * AGREE * float(ours.edge_depth.max()))
 
     def at_ours(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> object:
         return np.interp(ours.station[::-1], theirs.station[::-1], values[::-1])[::-1]
 
     below = ours.edge_depth > 0.0
+    inner = np.abs(ours.station) < 0.6
     scale = float(ours.edge_depth.max())
-    assert np.asarray(at_ours(theirs.edge_depth))[below] == pytest.approx(
-        ours.edge_depth[below], abs=5.0 * AGREE * scale
-    )
+    off = np.abs(np.asarray(at_ours(theirs.edge_depth)) - ours.edge_depth)
     assert ours.bending is not None
+    assert np.max(off[below & inner]) < 5.0 * AGREE * scale
+    # towards the ends depth is the small difference of deflection and base height
+    assert np.max(off[below]) < AGREE * float(ours.bending.max())
     assert at_ours(theirs.deflection) == pytest.approx(ours.bending, abs=AGREE * float(ours.bending.max()))
     assert ours.twist is not None
     assert at_ours(theirs.twist) == pytest.approx(ours.twist, abs=2.0 * AGREE * math.radians(3.0))
