@@ -6,7 +6,7 @@ import argparse
 import os
 import platform
 
-from . import campaign_size, command_line, model_table
+from . import campaign_size, command_line, equilibrium, model_table
 from .timing import Measurement
 
 
@@ -16,7 +16,8 @@ def main() -> None:
     options = parser.parse_args()
     print(f"Python {platform.python_version()}, {os.cpu_count()} cores, {platform.machine()}\n")
     print(Measurement.header())
-    for measurements in (model_table.measure(), command_line.measure(), campaign_size.measure(options.rows)):
+    parts = (model_table.measure(), command_line.measure(), equilibrium.measure(), campaign_size.measure(options.rows))
+    for measurements in parts:
         for measurement in measurements:
             print(measurement, flush=True)
 
