@@ -36,8 +36,8 @@ GREATEST_EDGE_ANGLE: Final = math.radians(85.0)
 LARGE_SLOPE: Final = 0.35
 """Slope of the bent ski, and twist (rad), beyond which beams of small deflection fail (Choice: 6 % in the cosine)."""
 GENTLER_RATIOS: Final = (500.0, 300.0, 200.0)
-"""Unloading ratios to fall back on, with a warning, where steeper unloading has no numerical end (Choice): between
-200 and 1000 the depth changes by less than 1 %."""
+"""Unloading ratios to fall back on, with a warning, where steeper unloading has no numerical end (Choice): against 1000
+the greatest depth is 0.6, 1.1 and 1.7 % smaller, the radius less than 0.2 %."""
 _MOST_PATHS: Final = 80
 _PATH_TOLERANCE: Final = 1e-5  # m, of the edge from the path that was assumed
 
