@@ -85,11 +85,10 @@ def test_corners() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["slalom", "giant-slalom", "carver"])
 def test_everything(name: str) -> None:
-    """1,080 points a ski; none is missing but two of a flat ski on rigid-plastic ice."""
+    """1,080 points a ski, each with an outcome."""
     outcomes, missing = sweep((name,), HARDNESSES, ANGLES_DEG, LOADS, RATIOS)
+    assert missing == []
     assert sum(outcomes.values()) == len(HARDNESSES) * len(ANGLES_DEG) * len(LOADS) * len(RATIOS)
-    assert len(missing) <= 2
-    assert set(missing) <= {(90.0, 0.0, math.inf)}
 
 
 @pytest.mark.slow
