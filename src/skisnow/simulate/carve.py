@@ -132,9 +132,9 @@ def carve(
     unloading_ratio: float,
     moment: float = 0.0,
     clamp_length: float = CLAMP_LENGTH,
-    side_force_bends: bool = True,
+    side_force_bending: bool = True,
     groove: GrooveForm = "edge",
-    twists: bool = True,
+    twist: bool = True,
     elements: int = ELEMENTS,
 ) -> Equilibrium:
     """Equilibrium of a ski that carves steadily: every place on the snow meets its stations from tip to tail.
@@ -154,12 +154,12 @@ def carve(
         About the horizontal cross axis at the boot, positive where it presses the tip down (N m).
     clamp_length
         Length of ski kept straight by boot and binding (m).
-    side_force_bends
+    side_force_bending
         Whether the side force, too, bends and twists the ski (it does: the part sin ϑ of it is normal to the base).
     groove
         "edge": the groove of the forebody lies under the edge of the afterbody. "path": it lies on the circle through
         the edge line at the boot and 0.4 m before and behind, and each edge beside it by what its edge line differs.
-    twists
+    twist
         Whether the ski twists (GJ) or keeps its edge angle everywhere.
     elements
         Of the whole ski.
@@ -184,7 +184,7 @@ def carve(
         )
     model = clamped(ski, clamp_length, elements)
     conditions = _conditions(
-        ski, snow, edge_angle, load, moment, min(unloading_ratio, RIGID_PLASTIC), side_force_bends, twists
+        ski, snow, edge_angle, load, moment, min(unloading_ratio, RIGID_PLASTIC), side_force_bending, twist
     )
     if groove not in ("edge", "path"):
         raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
@@ -208,7 +208,7 @@ def rest(
     load: float,
     moment: float = 0.0,
     clamp_length: float = CLAMP_LENGTH,
-    twists: bool = True,
+    twist: bool = True,
     elements: int = ELEMENTS,
 ) -> Equilibrium:
     """Equilibrium of a ski set down on snow: virgin snow everywhere, no side force. Arguments as in `carve`."""
@@ -216,7 +216,7 @@ def rest(
     _require(edge_angle, load, 1.0, moment)
     _require_within(ski, load, moment)
     model = clamped(ski, clamp_length, elements)
-    conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twists)._replace(side_force=0.0)
+    conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twist)._replace(side_force=0.0)
     return _described(model, conditions, snow, solved(model, conditions))
 
 
@@ -258,8 +258,8 @@ def _conditions(
     load: float,
     moment: float,
     unloading_ratio: float,
-    side_force_bends: bool,
-    twists: bool,
+    side_force_bending: bool,
+    twist: bool,
 ) -> Conditions:
     return Conditions(
         edge_angle=edge_angle,
@@ -269,8 +269,8 @@ def _conditions(
         moment=moment,
         side_force=load * math.tan(edge_angle),
         groove_follows_path=0.0,
-        side_force_bends=float(side_force_bends),
-        twists=float(twists and edge_angle > 0.0),
+        side_force_bending=float(side_force_bending),
+        twists=float(twist and edge_angle > 0.0),
         bevel=ski.base_bevel,
         bevel_width=ski.edge_width,
     )

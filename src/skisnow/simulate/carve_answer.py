@@ -127,7 +127,7 @@ def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_a
             snow,
             **shared,
             clamp_length=question.clamp_length_m,
-            twists=question.twist,
+            twist=question.twist,
             elements=question.elements,
         )
     return carve(
@@ -136,9 +136,9 @@ def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_a
         **shared,
         unloading_ratio=question.unloading_ratio,
         clamp_length=question.clamp_length_m,
-        side_force_bends=question.side_force_bending,
+        side_force_bending=question.side_force_bending,
         groove=question.groove,
-        twists=question.twist,
+        twist=question.twist,
         elements=question.elements,
     )
 

@@ -35,8 +35,8 @@ class Case:
     unloading_ratio: float = 1.0
     moment: float = 0.0
     clamp_length: float = 0.0
-    side_force_bends: bool = True
-    twists: bool = True
+    side_force_bending: bool = True
+    twist: bool = True
     knots: int = 30  # of each end
     along: int = 8  # intervals between knots
     across: int = 160
@@ -132,7 +132,7 @@ class _Equations:
 
     def split(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         k = self.case.knots + 1
-        return z[: 2 * k], z[2 * k : 4 * k] * float(self.case.twists), z[4 * k :]
+        return z[: 2 * k], z[2 * k : 4 * k] * float(self.case.twist), z[4 * k :]
 
     def shape(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Deflection and twist at the stations."""
@@ -181,7 +181,7 @@ class _Equations:
         curvature, rate, border = self.split(z)
         edge, force, moment, angle = self.snow(z)
         shear = border[2] * np.maximum(edge, 0.0)
-        bends = float(case.side_force_bends)
+        bends = float(case.side_force_bending)
         normal = math.cos(case.edge_angle) * force + bends * math.sin(case.edge_angle) * shear
         turning = moment - bends * self.width / 2.0 * np.sin(angle) * shear
         k, n = case.knots + 1, len(self.front.x)
@@ -189,7 +189,7 @@ class _Equations:
         m1, t1 = self.rear.moment_and_torque(normal[-len(self.rear.x) :], turning[-len(self.rear.x) :])
         bent = curvature - np.concatenate([m0 / self.front.bending_stiffness, m1 / self.rear.bending_stiffness])
         turned = rate - np.concatenate([t0 / self.front.torsional_stiffness, t1 / self.rear.torsional_stiffness])
-        turned = turned if case.twists else z[2 * k : 4 * k]
+        turned = turned if case.twist else z[2 * k : 4 * k]
         side = case.load * math.tan(case.edge_angle)
         loads = [
             (self.weight @ force) / case.load - 1.0,

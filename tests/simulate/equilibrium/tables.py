@@ -84,7 +84,7 @@ def radii() -> None:
                     load=800.0,
                     unloading_ratio=1.0,
                     clamp_length=clamp,
-                    twists=False,
+                    twist=False,
                     elements=320,
                 )
                 limit = sidecut * math.cos(math.radians(angle_deg))

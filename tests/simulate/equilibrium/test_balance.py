@@ -133,8 +133,8 @@ def bent(ski: Ski, station: FloatArray, normal: FloatArray, turning: FloatArray)
     return deflection, twist
 
 
-@pytest.mark.parametrize("side_force_bends", [True, False])
-def test_bending_and_twist_under_the_returned_loads(side_force_bends: bool) -> None:
+@pytest.mark.parametrize("side_force_bending", [True, False])
+def test_bending_and_twist_under_the_returned_loads(side_force_bending: bool) -> None:
     """EI w⁗ = f cos ϑ + τ e sin ϑ; torque by f about the middle, and by τ e at the edge; solved by `solve_bvp`."""
     ski, angle, load = read_ski("slalom"), math.radians(50.0), 700.0
     found = carve(
@@ -143,13 +143,13 @@ def test_bending_and_twist_under_the_returned_loads(side_force_bends: bool) -> N
         edge_angle=angle,
         load=load,
         unloading_ratio=1.0,
-        side_force_bends=side_force_bends,
+        side_force_bending=side_force_bending,
         elements=320,
     )
     depth, force, phi = given(found.edge_depth), given(found.force_per_length), given(found.twist)
     bite = np.maximum(depth, 0.0)
     stress = load * math.tan(angle) / float(weights(ski, CLAMP, 320) @ bite)
-    shear = stress * bite * float(side_force_bends)
+    shear = stress * bite * float(side_force_bending)
     half = ski.at(found.station).width / 2.0
     # a wedge of pressure: its centre is a third of the waterline from the edge
     lever = half * np.cos(angle + phi) - bite / np.tan(angle + phi) / 3.0

@@ -151,7 +151,7 @@ def test_rest_is_a_carve_without_side_force_or_memory() -> None:
     standing = rest(ski, snow(0.2), edge_angle=math.radians(45.0), load=800.0)
     carving = ask(ski, unloading_ratio=1.0)
     unbent = carve(
-        ski, snow(0.2), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=1.0, side_force_bends=False
+        ski, snow(0.2), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=1.0, side_force_bending=False
     )
     assert standing.edge_depth == pytest.approx(np.asarray(unbent.edge_depth), rel=1e-7, abs=1e-10)
     assert (standing.side_force, standing.holds) == (0.0, True)

@@ -32,8 +32,8 @@ def compare(case: Case) -> None:
         moment=case.moment,
         unloading_ratio=case.unloading_ratio,
         clamp_length=case.clamp_length,
-        side_force_bends=case.side_force_bends,
-        twists=case.twists,
+        side_force_bending=case.side_force_bending,
+        twist=case.twist,
         elements=320,
     )
     assert ours.edge_depth is not None
@@ -74,16 +74,16 @@ def test_hypoplastic_with_twist_and_side_force() -> None:
 @pytest.mark.parametrize("ratio", [1.0, 10.0])
 @pytest.mark.parametrize("angle_deg", [30.0, 60.0])
 @pytest.mark.parametrize("clamp", [0.0, 0.3])
-@pytest.mark.parametrize(("twists", "side_force_bends"), [(True, True), (False, True), (True, False)])
-def test_all_choices(ratio: float, angle_deg: float, clamp: float, twists: bool, side_force_bends: bool) -> None:
+@pytest.mark.parametrize(("twist", "side_force_bending"), [(True, True), (False, True), (True, False)])
+def test_all_choices(ratio: float, angle_deg: float, clamp: float, twist: bool, side_force_bending: bool) -> None:
     compare(
         replace(
             base(),
             unloading_ratio=ratio,
             edge_angle=math.radians(angle_deg),
             clamp_length=clamp,
-            twists=twists,
-            side_force_bends=side_force_bends,
+            twist=twist,
+            side_force_bending=side_force_bending,
         )
     )
 

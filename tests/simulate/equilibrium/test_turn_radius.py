@@ -17,7 +17,7 @@ SIDECUT = 13.0
 
 
 def carved(
-    ski: Ski, angle_deg: float, hardness: float, *, clamp: float = 0.0, twists: bool = False, load: float = 400.0
+    ski: Ski, angle_deg: float, hardness: float, *, clamp: float = 0.0, twist: bool = False, load: float = 400.0
 ) -> Equilibrium:
     return carve(
         ski,
@@ -26,7 +26,7 @@ def carved(
         load=load,
         unloading_ratio=1.0,
         clamp_length=clamp,
-        twists=twists,
+        twist=twist,
         elements=320,
     )
 
@@ -108,7 +108,7 @@ def test_a_radius_is_a_definition(angle_deg: float, race: bool) -> None:
 def test_a_ski_that_cannot_bend_keeps_its_edge_line() -> None:
     """Rigid with a sidecut: from above the edge is the sidecut seen at the angle, R = R_sc/cos ϑ."""
     ski = plain_ski(width=circular_sidecut(SIDECUT), bending=1e16, torsional=1e16)
-    found = carved(ski, 45.0, 0.2, clamp=0.0, twists=True)
+    found = carved(ski, 45.0, 0.2, clamp=0.0, twist=True)
     # three points on the ellipse of half axes R_sc and R_sc cos ϑ: 0.4²/R² of the second order
     assert found.turn_radius_boot == pytest.approx(SIDECUT / math.cos(math.pi / 4.0), rel=1e-3)
 
@@ -124,7 +124,7 @@ def test_a_straight_flexible_edge_turns_by_its_depth_alone() -> None:
 
 def test_twisting_opens_the_angle_of_the_ends() -> None:
     """The snow pushes at the edge, so tip and tail lie flatter than the boot: twist is negative, the radius grows."""
-    stiff, soft = (carved(circle_ski(), 45.0, 0.2, twists=twists) for twists in (False, True))
+    stiff, soft = (carved(circle_ski(), 45.0, 0.2, twist=twist) for twist in (False, True))
     assert np.all(np.asarray(stiff.twist) == 0.0)
     assert np.all(np.asarray(soft.twist)[np.abs(soft.station) > 0.1] < 0.0)
     assert known(soft.turn_radius_boot) != pytest.approx(known(stiff.turn_radius_boot), rel=0.01)

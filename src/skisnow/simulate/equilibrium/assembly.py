@@ -55,7 +55,7 @@ class Conditions(NamedTuple):
     moment: float
     side_force: float
     groove_follows_path: float
-    side_force_bends: float
+    side_force_bending: float
     twists: float
     bevel: float
     bevel_width: float
@@ -348,8 +348,11 @@ def _load(
     moment_phi = lever * sums[3] - square * sums[4] - lever * force_phi + section.half * section.sine * sums[0]
     held = 1.0 if section.depth > 0.0 else 0.0
     bite = held * section.depth
-    up = conditions.side_force_bends * sine
-    turn, turn_phi = -conditions.side_force_bends * section.half * section.sine, -conditions.side_force_bends * lever
+    up = conditions.side_force_bending * sine
+    turn, turn_phi = (
+        -conditions.side_force_bending * section.half * section.sine,
+        -conditions.side_force_bending * lever,
+    )
     return Load(
         cosine * force + up * stress * bite,
         moment + turn * stress * bite,
