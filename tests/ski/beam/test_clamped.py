@@ -113,6 +113,17 @@ def test_mass_of_the_free_parts() -> None:
     assert value == pytest.approx(1.4 * (0.75**3 + 0.55**3) / 3.0, rel=1e-4)
 
 
+def test_inertia_of_the_free_parts() -> None:
+    """Twist growing as x - clamp: m' W²/12 ∫ (x - a)² dx, a thin strip turning about its middle line."""
+    model = clamped(plain_ski(width=0.08), 0.3, 80)
+    u = np.zeros(model.size)
+    number = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
+    free = number[:, 0] >= 0
+    u[number[free, 2]] = np.abs(model.node[free]) - 0.15
+    strip = 1.4 * 0.08**2 / 12.0
+    assert u @ dense(model.mass) @ u == pytest.approx(strip * (0.75**3 + 0.55**3) / 3.0, rel=1e-10)
+
+
 def free_frequencies(ski: Ski, elements: int) -> tuple[FloatArray, FloatArray]:
     """First bending and torsion frequencies of the ski in the air (Hz)."""
     beam = Chain(np.linspace(float(ski.station[-1]), float(ski.station[0]), elements + 1), held=False)
