@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 from ..errors import ParameterError
 from .carve_keys import CARVE_KEYS
+from .input_keys import nearest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,12 +99,3 @@ def _require_one_snow(names: set[str], rests: bool) -> None:
         )
     if "site" in names and ways != ["results"]:
         raise ParameterError("site goes with results: it names one site of an analysed campaign. Leave it out")
-
-
-def nearest(word: str, known: Iterable[str]) -> str:
-    """The known word most like a misspelt one as a question, and all of them."""
-    words = list(known)
-    by_small = {each.lower(): each for each in words}
-    like = difflib.get_close_matches(word.lower(), by_small, n=1, cutoff=0.5)
-    question = f"Is {by_small[like[0]]} meant? " if like else ""
-    return f"{question}There are {', '.join(words)}"

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import difflib
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from ..errors import ParameterError
 
-Kind: TypeAlias = Literal["number", "whole number", "text", "switch"]
-InputValue: TypeAlias = float | int | str | bool
+Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "three numbers"]
+InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,6 +40,8 @@ class InputKey:
         Where the default or the range comes from.
     example
         How it is given on the command line, with what its values mean.
+
+    The range of three numbers is that of each.
     """
 
     name: str
@@ -65,6 +69,8 @@ class InputKey:
             return "true or false"
         if self.kind == "text":
             return " or ".join(self.choices) or "a text that is not blank"
+        if self.kind == "three numbers":
+            return f"three numbers, each {replace(self, kind='number').allowed}"
         kind = "whole numbers " if self.kind == "whole number" else ""
         if self.highest < math.inf:
             return f"{kind}{'above' if self.above else 'from'} {self.lowest:g} to {self.highest:g}"
@@ -84,11 +90,18 @@ class InputKey:
             return value
         if self.kind == "text" and isinstance(value, str):
             return value.strip()
+        if self.kind == "three numbers" and isinstance(value, list | tuple) and len(value) == 3:
+            one = replace(self, kind="number")
+            return tuple(float(one.of_kind(each)) for each in value)  # type: ignore[arg-type]
         if self.infinite and value == "inf":
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
             return self._number(value)
-        wanted = {"switch": "true or false without quotes", "text": "a text in quotes"}.get(self.kind, f"a {self.kind}")
+        wanted = {
+            "switch": "true or false without quotes",
+            "text": "a text in quotes",
+            "three numbers": "[a, b, c]",
+        }.get(self.kind, f"a {self.kind}")
         raise ParameterError(f"{self.name} is {_shown(value)}; it must be {wanted}")
 
     def _number(self, value: float) -> float | int:
@@ -121,9 +134,28 @@ class InputKey:
             return bool(value) and (not self.choices or value in self.choices)
         if isinstance(value, bool):
             return True
+        if isinstance(value, tuple):
+            return all(self._allows(each) for each in value)
         if math.isinf(value):
             return self.infinite and value > 0
         return self.lowest <= value <= self.highest and not (self.above and value == self.lowest)
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The known word most like a misspelt one as a question, and all of them."""
+    words = list(known)
+    return f"{meant(word, words)}There are {', '.join(words)}"
+
+
+def meant(word: str, known: Iterable[str]) -> str:
+    """The known word most like a misspelt one as a question with a space behind; empty where none is like it.
+
+    >>> meant("angel", ["angle", "mass"])
+    'Is angle meant? '
+    """
+    by_small = {each.lower(): each for each in known}
+    like = difflib.get_close_matches(word.lower(), by_small, n=1, cutoff=0.5)
+    return f"Is {by_small[like[0]]} meant? " if like else ""
 
 
 def _shown(value: Any, limit: int = 80) -> str:

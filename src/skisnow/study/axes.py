@@ -12,8 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..simulate.carve_question import nearest
-from ..simulate.input_keys import InputKey
+from ..simulate.input_keys import InputKey, nearest
 from .study import Point
 
 FloatArray = npt.NDArray[np.float64]

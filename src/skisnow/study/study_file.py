@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ..errors import ParameterError
-from ..simulate.carve_question import nearest
-from ..simulate.input_keys import InputKey, InputValue
+from ..simulate.input_keys import InputKey, InputValue, nearest
 from .axes import Axis, grid_points, hypercube_points
 from .carve_subject import CarveSubject
 from .study import Point, Study, SubjectIn

@@ -1,0 +1,26 @@
+"""What a run starts from: slope, snow, sledge, skis, start, and how it is computed."""
+
+from .given import scenario_names, scenario_text
+from .profile_file import read_profile
+from .reading import ScenarioFile, read_scenario, scenario_file
+from .scenario import Air, Contact, Scenario, Solver, Start, Stop
+from .slope import Plane, Profile
+from .values import scenario_values
+
+__all__ = [
+    "Air",
+    "Contact",
+    "Plane",
+    "Profile",
+    "Scenario",
+    "ScenarioFile",
+    "Solver",
+    "Start",
+    "Stop",
+    "read_profile",
+    "read_scenario",
+    "scenario_file",
+    "scenario_names",
+    "scenario_text",
+    "scenario_values",
+]

@@ -1,0 +1,217 @@
+"""What a user gives of a scenario: a file or built-in scenario, and changes to it, under the full names of keys."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Final
+
+from ...errors import ParameterError
+from ..input_keys import InputValue, meant
+from .keys import SCENARIO_KEYS, SECTIONS
+
+PATH_KEYS: Final = ("slope.profile", "snow.results", "ski.file")
+"""Keys that name a file."""
+
+_BARE: Final = {name.split(".")[1]: name for name in SCENARIO_KEYS}
+_SNOW_WAYS: Final = {
+    "snow.H_V_N_per_mm3": ("snow.results", "snow.site", "snow.published"),
+    "snow.results": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.published"),
+    "snow.published": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.results", "snow.site"),
+}
+_REPLACED: Final = {**_SNOW_WAYS, "ski.name": ("ski.file",), "ski.file": ("ski.name",)}
+_REPLACED_BY_VALUE: Final = {
+    ("slope.kind", "plane"): ("slope.profile", "slope.profile_gap"),
+    ("slope.kind", "profile"): ("slope.angle_deg",),
+    ("snow.penetration", "elastic"): ("snow.unloading_ratio",),
+}
+
+_BUILT_IN = files(__package__.rpartition(".")[0]) / "scenarios"
+
+
+@dataclass(frozen=True, slots=True)
+class GivenScenario:
+    """Values as given, in the units that the keys name.
+
+    Attributes
+    ----------
+    title
+        The built-in name, or the file's path.
+    file
+        The file; None where it is built in.
+    values
+        By full names, each in its range.
+    folders
+        Where relative paths start, for each key that names a file.
+    """
+
+    title: str
+    file: Path | None
+    values: Mapping[str, InputValue]
+    folders: Mapping[str, Path]
+
+    def path(self, name: str) -> Path:
+        """The place of the file that a key names."""
+        return self.folders[name] / str(self.values[name])
+
+    def changed(self, changes: Mapping[str, object], *, folder: Path | None = None) -> GivenScenario:
+        """Give the scenario with other values.
+
+        Parameters
+        ----------
+        changes
+            By full names, or by names without their section. What the scenario says in another way gives room: a
+            named snow replaces H_V and S_f, a ski's file its name, elastic snow the unloading ratio.
+        folder
+            Where relative paths among the changes start; None: the current folder.
+
+        Raises
+        ------
+        ParameterError
+            A name is unknown (the nearest is named), or a value is of the wrong kind or outside its range.
+        """
+        new = in_ranges({full_name(name): value for name, value in changes.items()})
+        gone = {each for name, value in new.items() for each in _replaced(name, value)} - set(new)
+        values = {name: value for name, value in self.values.items() if name not in gone} | new
+        folders = dict(self.folders)
+        folders.update((name, folder or Path()) for name in PATH_KEYS if name in new)
+        return GivenScenario(self.title, self.file, values, folders)
+
+
+def _replaced(name: str, value: InputValue) -> tuple[str, ...]:
+    by_value = _REPLACED_BY_VALUE.get((name, value), ()) if isinstance(value, str) else ()
+    return (*_REPLACED.get(name, ()), *by_value)
+
+
+def scenario_names() -> tuple[str, ...]:
+    """Names of the built-in scenarios.
+
+    >>> scenario_names()
+    ('carved-46m', 'carver-42m', 'giant-slalom-67m')
+    """
+    there = (entry.name for entry in _BUILT_IN.iterdir())
+    return tuple(sorted(name.removesuffix(".toml") for name in there if name.endswith(".toml")))
+
+
+def scenario_text(name: str) -> str:
+    """The text of a built-in scenario, every key with where its value comes from."""
+    return (_BUILT_IN / f"{name}.toml").read_text(encoding="utf-8")
+
+
+def given_scenario(name_or_path: str | Path) -> GivenScenario:
+    """Read a scenario as given: a built-in one by its name, any other from its TOML file.
+
+    Raises
+    ------
+    ParameterError
+        There is no such name or file, it is no TOML, a section or key is unknown (the nearest is named), or a value is
+        of the wrong kind or outside its range.
+    """
+    word = str(name_or_path)
+    if word in scenario_names():
+        return _given(word, None, scenario_text(word))
+    path = Path(name_or_path)
+    if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or path.is_file()):
+        raise ParameterError(
+            f"there is no scenario named {word!r}. {meant(word, scenario_names())}There are "
+            f"{', '.join(scenario_names())}. Any other scenario is read from a file ending in .toml"
+        )
+    try:
+        return _given(str(path), path, path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
+    except UnicodeDecodeError as error:
+        raise ParameterError(f"{path} is not UTF-8 text ({error.reason}). Save it as UTF-8") from error
+
+
+def _given(title: str, file: Path | None, text: str) -> GivenScenario:
+    try:
+        parsed = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ParameterError(f"{title} is no TOML: {error}. Correct that place") from error
+    try:
+        values = in_ranges(flat(parsed))
+    except ParameterError as error:
+        raise ParameterError(f"{title}: {error}") from error
+    folder = file.parent if file is not None else Path()
+    return GivenScenario(title, file, values, dict.fromkeys(PATH_KEYS, folder))
+
+
+def flat(sections: Mapping[str, Any]) -> dict[str, object]:
+    """The values of a file's sections under full names; unknown ones are refused."""
+    values: dict[str, object] = {}
+    for section, table in sections.items():
+        if section not in SECTIONS:
+            raise ParameterError(
+                f"there is no section [{section}]. {meant(section, SECTIONS)}There are {', '.join(SECTIONS)}"
+            )
+        if not isinstance(table, dict):
+            raise ParameterError(f"{section} is {table!r}; it must be a table, begun by the line [{section}]")
+        for key, value in table.items():
+            values[full_name(f"{section}.{key}")] = value
+    return values
+
+
+def full_name(name: str) -> str:
+    """The full name of a key that is given with its section or without.
+
+    Raises
+    ------
+    ParameterError
+        There is no such key; the nearest is named.
+
+    Examples
+    --------
+    >>> full_name("mass_kg")
+    'sledge.mass_kg'
+    """
+    if name in SCENARIO_KEYS:
+        return name
+    section, _, key = name.rpartition(".")
+    if not section and key in _BARE:
+        return _BARE[key]
+    if key in _BARE:
+        raise ParameterError(f"{name} is no key of a scenario. Is {_BARE[key]} meant?")
+    known = [each for each in SCENARIO_KEYS if each.startswith(f"{section}.")] if section in SECTIONS else []
+    raise ParameterError(f"{name} is no key of a scenario. {_meant(name, key, known)}".strip())
+
+
+def _meant(name: str, key: str, known: Iterable[str]) -> str:
+    there = list(known)
+    question = meant(name, there or SCENARIO_KEYS) or meant(key, _BARE)
+    return f"{question}There are {', '.join(there)}" if there else question
+
+
+def in_ranges(values: Mapping[str, object]) -> dict[str, InputValue]:
+    """Check each value by its key."""
+    return {name: SCENARIO_KEYS[name].in_range(value) for name, value in values.items()}
+
+
+def change_of(word: str) -> tuple[str, object]:
+    """The full name and the value of ``section.key=value``.
+
+    The value is written as in a TOML file; a text needs no quotes.
+
+    Raises
+    ------
+    ParameterError
+        There is no equals sign, or no such key.
+
+    Examples
+    --------
+    >>> change_of("snow.published=race-piste"), change_of("inertia_kg_m2=[6, 8, 10]")
+    (('snow.published', 'race-piste'), ('sledge.inertia_kg_m2', [6, 8, 10]))
+    """
+    name, equals, text = (part.strip() for part in word.partition("="))
+    if not equals:
+        raise ParameterError(f"{word!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35")
+    name = full_name(name)
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except (tomllib.TOMLDecodeError, KeyError):
+        return name, text
+    is_text = SCENARIO_KEYS[name].kind == "text"
+    return name, text if is_text and not isinstance(value, str) else value
