@@ -1,0 +1,112 @@
+"""Several runs side by side: tracks, distance between them, depth along the ski that carries most."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.lines import Line2D
+
+from ...simulate.scenario import Profile
+from ...units import MM
+from .run_track import plan_axes, plan_height_mm, track_limits
+from .style import COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...simulate.run import Run
+
+FloatArray = npt.NDArray[np.float64]
+LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1, 2)))
+
+
+def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
+    """Draw the runs by their names; the first is the one that the others are held against.
+
+    Parameters
+    ----------
+    runs
+        One at least, on one slope.
+    at
+        Time (s) at which the skis are drawn; None: the latest that all runs reached, less a tenth of it.
+    """
+    named = list(runs.items())
+    limits = track_limits(np.concatenate([run.place for run in runs.values()]))
+    height = plan_height_mm(limits)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + 90.0)
+    grid = figure.add_gridspec(2, 2, height_ratios=(height + 10.0, 62.0))
+    plan = figure.add_subplot(grid[0, :])
+    for place, (_, run) in enumerate(named):
+        plan.plot(run.place[:, 0], run.place[:, 1], **_look(place))
+        plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=_look(place)["color"])
+    plan_axes(plan, limits, profile=isinstance(named[0][1].scenario.slope, Profile))
+    _distances(figure.add_subplot(grid[1, 0]), named)
+    moment = 0.9 * min(run.simulated_s for run in runs.values()) if at is None else at
+    _depths(figure.add_subplot(grid[1, 1]), named, moment)
+    legend_below(figure, [Line2D([], [], label=name, **_look(place)) for place, (name, _) in enumerate(named)])
+    return figure
+
+
+def _look(place: int) -> dict[str, Any]:
+    return {"color": COLOURS[place % len(COLOURS)], "linestyle": LINE_STYLES[place % len(LINE_STYLES)]}
+
+
+def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
+    (first, reference), *others = named
+    for place, (_, run) in enumerate(others, start=1):
+        axes.plot(way(run.place), distance_to_path(run.place, reference.place), **_look(place))
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("way along the track (m)")
+    axes.set_ylabel(f"distance from the track (m)\nof {first}")
+
+
+def way(place: FloatArray) -> FloatArray:
+    """Length of the path up to each of its points (n, 3), (n,) (m)."""
+    steps = np.linalg.norm(np.diff(place, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def distance_to_path(points: FloatArray, path: FloatArray) -> FloatArray:
+    """Distance (n,) of points (n, 3) to the nearest place of a path of straight pieces through (k, 3), k ≥ 2 (m).
+
+    >>> distance_to_path(np.array([[1.0, 2.0, 0.0], [5.0, 3.0, 0.0]]), np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]]))
+    array([2.        , 4.24264069])
+    """
+    start, along = path[:-1], np.diff(path, axis=0)
+    squared = np.maximum((along**2).sum(axis=1), 1e-300)  # two points in one place: the distance to either
+    found = np.empty(len(points))
+    for place, point in enumerate(points):
+        share = np.clip(((point - start) * along).sum(axis=1) / squared, 0.0, 1.0)
+        found[place] = np.sqrt(((start + share[:, None] * along - point) ** 2).sum(axis=1).min())
+    return found
+
+
+def _depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
+    """The ski that carries most in the first run, in all runs at one time."""
+    reference = named[0][1]
+    ski = loaded_ski(reference, moment)
+    for place, (_, run) in enumerate(named):
+        now = int(np.argmin(abs(run.time - moment)))
+        axes.plot(run.skis.station, run.skis.edge_depth[now, ski] / MM, **_look(place))
+    deepest = max(float(np.nanmax(run.skis.edge_depth[_at(run, moment), ski])) for _, run in named) / MM
+    axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
+    axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
+    axes.set_ylim(1.15 * max(deepest, 0.1), -0.35 * max(deepest, 0.1))
+    axes.set_xlabel("station from the boot (m); tail left, tip right")
+    axes.set_ylabel(f"edge depth (mm), {('left', 'right')[ski]} ski,\nat {moment:.2f} s")
+
+
+def _at(run: Run, moment: float) -> int:
+    return int(np.argmin(abs(run.time - moment)))
+
+
+def loaded_ski(run: Run, moment: float) -> int:
+    """Which ski presses harder at a time (s): 0 left, 1 right."""
+    force = run.skis.force_per_length[_at(run, moment)]
+    return int(np.argmax(np.trapezoid(force, -run.skis.station, axis=1)))

@@ -1,0 +1,80 @@
+"""The figures of a run with their words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..units import DEGREE
+from .figures.drawing import Drawing
+from .figures.run_along_ski import run_along_ski
+from .figures.run_energies import run_energies
+from .figures.run_grip import run_grip
+from .figures.run_motion import run_motion
+from .figures.run_track import CUTOUT, run_track
+from .numerals import significant
+from .symbols import prose
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ..simulate.run import Run
+
+
+def run_drawings(run: Run) -> Iterator[Drawing]:
+    """Draw one after the other, inside the house style; a run without any step has none."""
+    if len(run.time) < 2:
+        return
+    yield Drawing(
+        "track",
+        prose(
+            "The run from above, the same scale along both axes. Below, {length} m of it, large: the grooves in their "
+            "true width.",
+            length=significant(CUTOUT, 2),
+        ),
+        f"Tracks of both skis from above, {significant(run.run_length)} m long, and their grooves.",
+        run_track(run),
+        wide=True,
+    )
+    yield Drawing(
+        "motion",
+        prose(
+            "Speed, heading of the skis and radius of the path of the middle between the boots. The radius is left out "
+            "where it is more than three times its median; dotted: the radius of a ski that is bent onto a hard plane "
+            "at {angle}° without twist.",
+            angle=f"{run.scenario.sledge.edge_angle / DEGREE:.3g}",
+        ),
+        "Speed, heading and turn radius over time.",
+        run_motion(run),
+        wide=True,
+    )
+    yield Drawing(
+        "along_ski",
+        prose(
+            "Depth of the edge below the undisturbed surface and force of the snow per length of ski, over time. "
+            "White: the edge is above the snow, or the snow does not press: behind the place of the largest load the "
+            "afterbody runs in the groove that the forebody cut."
+        ),
+        "Maps of edge depth and force per length over station and time, for both skis.",
+        run_along_ski(run),
+        wide=True,
+    )
+    yield Drawing(
+        "grip",
+        prose(
+            "Share of the shear strength S_f e that the side force uses, along each ski and for each whole ski. At 1 "
+            "the snow yields and the edge slides across."
+        ),
+        "Share of the shear strength used over station and time.",
+        run_grip(run),
+        wide=True,
+    )
+    yield Drawing(
+        "energies",
+        prose(
+            "Where the energy is and went. Everything on top of each other must stay at the dashed line; the losses "
+            "alone stand at the right."
+        ),
+        "Stored energies and losses over time, stacked.",
+        run_energies(run),
+        wide=True,
+    )

@@ -1,0 +1,185 @@
+"""The report of a simulated run: run.nc, figures, and one page that needs nothing else."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from markupsafe import Markup
+
+from ..files import require_writable, write_file
+from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from .figures.drawing import pictured
+from .figures.style import journal_style
+from .numerals import counted, significant, whole
+from .run_drawings import run_drawings
+from .run_file import write_run_file
+from .sheet import Header, Section, sheet
+from .symbols import html, prose
+from .tables.run import energies_table, scenario_table, verification_table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from ..simulate.run import Run
+    from .figures.drawing import Picture
+
+Json = dict[str, Any]
+FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
+"""Names of a run's figures, in figures/ as .png and .svg."""
+
+
+def write_run_report(
+    run: Run, summary: Mapping[str, Any], folder: str | Path, *, progress: Callable[[str], None] | None = None
+) -> Path:
+    """Write run.nc, figures/ and report.html.
+
+    Parameters
+    ----------
+    run
+        What came out.
+    summary
+        The contents of summary.json, with ``verification`` where the run was repeated.
+    folder
+        Made where it is missing. Other files in it stay; figures of an earlier run are replaced or removed.
+    progress
+        Called with a line of text now and then.
+
+    Returns
+    -------
+    Path
+        Of report.html, which is written last.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    """
+    folder = Path(folder)
+    require_writable(folder)
+    say = progress or _silent
+    say("run.nc")
+    write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
+    pictures = []
+    with journal_style():
+        for drawing in run_drawings(run):
+            say(f"figure {drawing.name}")
+            pictures.append(pictured(drawing))
+    write_pictures(pictures, folder / "figures", every=FIGURES)
+    say("report.html")
+    write_file(folder / "report.html", run_page(run, summary, pictures))
+    return folder / "report.html"
+
+
+def write_pictures(pictures: Sequence[Picture], folder: Path, *, every: Sequence[str]) -> None:
+    """Write each picture as PNG and SVG; those among ``every`` that are not drawn now are removed."""
+    for picture in pictures:
+        write_file(folder / f"{picture.name}.svg", picture.svg)
+        write_file(folder / f"{picture.name}.png", picture.png)
+    for name in set(every) - {picture.name for picture in pictures}:
+        for ending in (".svg", ".png"):
+            (folder / f"{name}{ending}").unlink(missing_ok=True)
+
+
+def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture]) -> str:
+    """The HTML of a run's report."""
+    by_name = {picture.name: [picture] for picture in pictures}
+    sections = [
+        Section("outcome", "Outcome", key=outcome_sentences(run), pictures=by_name.get("track", ())),
+        Section("motion", "Speed, heading, turn radius", pictures=by_name.get("motion", ())),
+        Section("along-skis", "Along the skis", pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())]),
+        Section("energies", "Energies", pictures=by_name.get("energies", ()), tables=[energies_table(dict(summary))]),
+    ]
+    if not pictures:
+        sections = [Section("outcome", "Outcome", key=outcome_sentences(run), words=[_no_step()])]
+    if summary.get("verification"):
+        sections.append(Section("verification", "Computed finer", tables=[verification_table(summary["verification"])]))
+    sections.append(Section("scenario", "Scenario", tables=[scenario_table(summary["scenario"])]))
+    sections.append(Section("provenance", "Provenance", words=provenance_sentences(run, summary)))
+    return sheet(_header(run), sections)
+
+
+def _header(run: Run) -> Header:
+    scenario, ratio = run.scenario, run.scenario.contact.unloading_ratio
+    facts = [
+        ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u/H_V {significant(ratio)}")),
+        ("Source of the snow", scenario.contact.snow.source),
+        ("Skis", f"{scenario.ski.name}, edge angle {significant(scenario.sledge.edge_angle / DEGREE)}°"),
+        ("Computed", f"skisnow {version('skisnow')}"),
+    ]  # fmt: skip
+    return Header("A simulated run of a sledge on two flexible skis", _title(run), facts)
+
+
+def _title(run: Run) -> str:
+    return f"{significant(run.run_length)} m in {significant(run.simulated_s)} s: {run.outcome.replace('_', ' ')}"
+
+
+def _hardness(run: Run) -> str:
+    return f"{significant(run.scenario.contact.snow.snow_hardness / N_PER_MM3)} N/mm³"
+
+
+def _strength(run: Run) -> str:
+    stress = run.scenario.contact.snow.failure_shear_stress
+    return f"{significant(None if stress is None else stress / N_PER_MM2)} N/mm²"
+
+
+def outcome_sentences(run: Run) -> list[Markup]:
+    """How it ended, what to do, and the numbers that people ask for first."""
+    sentences = [prose("Outcome: {outcome}. {remedy}", outcome=run.outcome.replace("_", " "), remedy=run.remedy)]
+    radius = run.turn_radius[np.isfinite(run.turn_radius)]
+    sentences.append(
+        prose(
+            "{length} m in {time} s, from {first} to {last} m/s, at most {most} m/s.",
+            length=significant(run.run_length), time=significant(run.simulated_s),
+            first=significant(float(run.speed[0])), last=significant(float(run.speed[-1])),
+            most=significant(float(np.nanmax(run.speed))),
+        )
+    )  # fmt: skip
+    sentences.append(
+        prose(
+            "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m.",
+            first=significant(float(run.heading[0]) / DEGREE), last=significant(float(run.heading[-1]) / DEGREE),
+            radius=significant(float(np.median(radius)) if radius.size else None),
+        )
+    )  # fmt: skip
+    deepest = float(np.nanmax(run.skis.edge_depth)) / MM
+    sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=significant(deepest)))
+    return sentences + _balance(run)
+
+
+def _balance(run: Run) -> list[Markup]:
+    error = run.energy_balance_error
+    if error is None:
+        return []
+    return [prose("The balance of energy closes within {error} %.", error=significant(100.0 * error, 2))]
+
+
+def _no_step() -> Markup:
+    return html("The run ended before its first step; there is nothing to draw.")
+
+
+def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
+    """Programs, steps, time."""
+    provenance = summary["provenance"]
+    versions = ", ".join(f"{name} {number}" for name, number in provenance.get("versions", {}).items())
+    numbers = ", ".join(f"{name.replace('_', ' ')} {significant(value)}" for name, value in run.numbers.items())
+    rate = run.simulated_s / run.wall_s if run.wall_s > 0.0 else None
+    return [
+        prose("Programs: {versions}.", versions=versions or f"skisnow {version('skisnow')}"),
+        prose(
+            "{steps} ({rejected} rejected) in {wall} s without compiling: {rate} times real time. {numbers}.",
+            steps=counted(run.steps, "step"), rejected=whole(run.rejected_steps), wall=significant(run.wall_s),
+            rate=significant(rate), numbers=numbers,
+        ),
+        prose(
+            "Unrounded numbers: {summary}, {track}, and everything over time and along the skis in {file}.",
+            summary=Markup("<code>summary.json</code>"), track=Markup("<code>track.csv</code>"),
+            file=Markup("<code>run.nc</code>"),
+        ),
+    ]  # fmt: skip
+
+
+def _silent(_text: str) -> None:
+    return

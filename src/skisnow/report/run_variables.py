@@ -1,0 +1,166 @@
+"""What a run's file holds: every variable with its dimensions, unit and meaning."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..simulate.run import LOST, STORED
+
+if TYPE_CHECKING:
+    from ..simulate.run import Run
+
+Values: TypeAlias = Callable[["Run"], npt.ArrayLike]
+
+TIME, SKI, STATION, PIECE = "time", "ski", "station", "piece"
+
+
+@dataclass(frozen=True, slots=True)
+class RunVariable:
+    """One variable of run.nc.
+
+    Attributes
+    ----------
+    name, dimensions, units
+        As in the file; units are SI in the words of UDUNITS, an angle in rad.
+    meaning
+        Its long_name.
+    values
+        From a run to the array, in that unit.
+    axis
+        "T", "X", "Y" or "Z" where it is a coordinate; empty: it is none.
+    coordinates
+        Names of the variables that place it in space.
+    """
+
+    name: str
+    dimensions: tuple[str, ...]
+    units: str
+    meaning: str
+    values: Values
+    axis: str = ""
+    coordinates: str = ""
+
+
+_PATH: Final = "x y z"
+_EDGE: Final = "ski_x ski_y ski_z"
+_GROOVE: Final = "groove_x groove_y groove_z"
+
+
+def _three(
+    stem: str,
+    dimensions: tuple[str, ...],
+    units: str,
+    meaning: str,
+    values: Callable[[Run], npt.NDArray[np.float64]],
+    **further: str,
+) -> list[RunVariable]:
+    """x, y and z of a vector, each a variable of its own."""
+
+    def part(place: int) -> Values:
+        return lambda run: values(run)[..., place]
+
+    return [
+        RunVariable(stem.format(name), dimensions, units, meaning.format(name), part(place), **further)
+        for place, name in enumerate("xyz")
+    ]
+
+
+def _energies() -> list[RunVariable]:
+    def of(name: str) -> Values:
+        return lambda run: run.energies[name]
+
+    stored = {
+        "kinetic": "kinetic energy",
+        "potential": "potential energy in the field of gravity",
+        "elastic_ski": "elastic energy of both skis",
+        "elastic_snow": "elastic energy of the snow",
+    }
+    lost = {
+        "penetration": "work lost to the grooves in the snow since the start",
+        "shear": "work lost to sliding across the skis since the start",
+        "friction": "work lost to glide friction since the start",
+        "drag": "work lost to air drag since the start",
+        "damping": "work lost to damping of the skis since the start",
+    }
+    found = [RunVariable(f"{name}_energy", (TIME,), "J", stored[name], of(name)) for name in STORED]
+    return found + [RunVariable(f"lost_{name}", (TIME,), "J", lost[name], of(name)) for name in LOST]
+
+
+def _along_skis() -> list[RunVariable]:
+    named: list[tuple[str, str, str, Values]] = [
+        ("edge_depth", "m", "depth of the edge that is down below the undisturbed surface; negative: above it",
+         lambda run: run.skis.edge_depth),
+        ("force_per_length", "N m-1", "force of the snow on the ski along the snow's normal, per length",
+         lambda run: run.skis.force_per_length),
+        ("shear_per_length", "N m-1", "force of the snow on the ski across its edge, per length, positive to the left",
+         lambda run: run.skis.shear_per_length),
+        ("bending", "m", "deflection of the base away from the snow, against the boot", lambda run: run.skis.bending),
+        ("twist", "rad", "growth of the edge angle against that at the boot", lambda run: run.skis.twist),
+    ]  # fmt: skip
+    return [
+        RunVariable(name, (TIME, SKI, STATION), units, meaning, values, coordinates=_EDGE)
+        for name, units, meaning, values in named
+    ]
+
+
+def _coordinates() -> list[RunVariable]:
+    down = (
+        "place of the middle between the boots: {}, of x down the fall line (or horizontal, on a profile), y left, z up"
+    )
+    edge = "loaded edge under the boot, on the snow surface: {}"
+    return [
+        RunVariable("time", (TIME,), "s", "time since the start", lambda run: run.time, axis="T"),
+        RunVariable("station", (STATION,), "m", "place along the ski from the boot, positive forward, tip to tail",
+                    lambda run: run.skis.station),
+        *(_axis(variable) for variable in _three("{}", (TIME,), "m", down, lambda run: run.place)),
+        *_three("ski_{}", (TIME, SKI), "m", edge, lambda run: run.skis.track),
+        *_three("groove_{}", (PIECE,), "m", "middle of a piece of groove, on the undisturbed surface: {}",
+                lambda run: run.groove.middle),
+    ]  # fmt: skip
+
+
+def _axis(variable: RunVariable) -> RunVariable:
+    return RunVariable(
+        variable.name, variable.dimensions, variable.units, variable.meaning, variable.values, variable.name.upper()
+    )
+
+
+def _over_time() -> list[RunVariable]:
+    turned = "path's turn radius, positive to the left; missing where the path is straight"
+    return [
+        *_three("velocity_{}", (TIME,), "m s-1", "velocity of the middle between the boots: {}",
+                lambda run: run.velocity, coordinates=_PATH),
+        RunVariable("speed", (TIME,), "m s-1", "speed of the middle between the boots", lambda run: run.speed,
+                    coordinates=_PATH),
+        RunVariable("heading", (TIME,), "rad", "heading of the skis from the fall line, positive to the left",
+                    lambda run: run.heading, coordinates=_PATH),
+        RunVariable("turn_radius", (TIME,), "m", turned, lambda run: run.turn_radius, coordinates=_PATH),
+        RunVariable("attitude", (TIME, "space_axis", "sledge_axis"), "1",
+                    "rotation matrix from the sledge's axes (forward, left, up) to those of space (x, y, z)",
+                    lambda run: run.attitude),
+        RunVariable("depth", (TIME, SKI), "m",
+                    "depth of the loaded edge under the boot below the undisturbed surface; negative: above it",
+                    lambda run: run.skis.depth, coordinates=_EDGE),
+    ]  # fmt: skip
+
+
+def _of_groove() -> list[RunVariable]:
+    return [
+        *_three("groove_left_{}", (PIECE,), "1", "unit vector along the piece, to the left: {}",
+                lambda run: run.groove.left, coordinates=_GROOVE),
+        RunVariable("groove_width", (PIECE,), "m", "width of the piece, across the path",
+                    lambda run: run.groove.width, coordinates=_GROOVE),
+        RunVariable("groove_depth", (PIECE,), "m", "deepest that the snow was pushed", lambda run: run.groove.depth,
+                    coordinates=_GROOVE),
+        RunVariable("groove_residual_depth", (PIECE,), "m", "depth of the groove that stays",
+                    lambda run: run.groove.residual_depth, coordinates=_GROOVE),
+    ]  # fmt: skip
+
+
+RUN_VARIABLES: Final = (*_coordinates(), *_over_time(), *_along_skis(), *_energies(), *_of_groove())
+"""Every variable of run.nc but the names of the skis, in the order of the file."""

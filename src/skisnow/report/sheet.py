@@ -1,0 +1,68 @@
+"""A short report as one HTML file that needs nothing else: sections of sentences, figures and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from .table_html import table_html
+
+if TYPE_CHECKING:
+    from .figures.drawing import Picture
+    from .table import Table
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """What stands above the sections.
+
+    Attributes
+    ----------
+    eyebrow, title
+        What kind of report, and of what.
+    facts
+        Names with texts.
+    synthetic
+        A sentence where the numbers were not measured; empty: nothing is said.
+    """
+
+    eyebrow: str
+    title: str
+    facts: Sequence[tuple[str, str | Markup]]
+    synthetic: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """One section, drawn in this order: key sentences in a box, paragraphs, figures, tables, paragraphs after them."""
+
+    name: str
+    title: str
+    key: Sequence[Markup] = ()
+    words: Sequence[Markup] = ()
+    pictures: Sequence[Picture] = ()
+    tables: Sequence[Table] = ()
+    after: Sequence[Markup] = ()
+
+
+def sheet(header: Header, sections: Sequence[Section]) -> str:
+    """The HTML."""
+    environment = Environment(
+        loader=PackageLoader("skisnow.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    pictures = [picture for section in sections for picture in section.pictures]
+    every = [table for section in sections for table in section.tables]
+    return environment.get_template("sheet.html").render(
+        header=header,
+        sections=sections,
+        version=version("skisnow"),
+        figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
+        tables={table.name: table_html(table, number=number) for number, table in enumerate(every, start=1)},
+        css=Markup(files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")),
+    )

@@ -1,0 +1,120 @@
+"""Tables of a simulated run: its scenario with every key, its energies, and the same run computed finer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from ...simulate.scenario.keys import SCENARIO_KEYS
+from ..numerals import significant
+from ..table import Column, Table
+
+Json = Mapping[str, Any]
+
+_STORED: Final = (
+    ("kinetic_J", "kinetic"),
+    ("potential_J", "potential"),
+    ("elastic_ski_J", "elastic, in the skis"),
+    ("elastic_snow_J", "elastic, in the snow"),
+)
+_LOST: Final = (
+    ("lost_penetration_J", "lost to the grooves"),
+    ("lost_shear_J", "lost to sliding across"),
+    ("lost_friction_J", "lost to friction"),
+    ("lost_drag_J", "lost to air drag"),
+    ("lost_damping_J", "lost to damping of the skis"),
+)
+
+
+def scenario_table(values: Json) -> Table:
+    """Every key with the value in force, its unit and meaning.
+
+    Parameters
+    ----------
+    values
+        By full name, ``section.key``, or in sections as in a scenario's file.
+    """
+    return Table(
+        "scenario",
+        "The scenario: every key with the value in force; a dash: not given.",
+        (
+            Column("key", "Key", "text"),
+            Column("value", "Value", "text"),
+            Column("unit", "Unit", "text"),
+            Column("meaning", "Meaning", "text"),
+        ),
+        [(name, _told(value), *_unit_and_meaning(name)) for name, value in by_full_name(values)],
+    )
+
+
+def by_full_name(values: Json) -> Iterator[tuple[str, Any]]:
+    """Keys as ``section.key`` with their values, whether they came in sections or not.
+
+    >>> list(by_full_name({"run": {"duration_s": 5.0}, "snow.site": "A"}))
+    [('run.duration_s', 5.0), ('snow.site', 'A')]
+    """
+    for name, value in values.items():
+        if isinstance(value, Mapping):
+            yield from ((f"{name}.{key}", each) for key, each in value.items())
+        else:
+            yield name, value
+
+
+def _unit_and_meaning(name: str) -> tuple[str, str]:
+    key = SCENARIO_KEYS.get(name)
+    return ("", "") if key is None else (key.unit, key.meaning)
+
+
+def _told(value: Any) -> str | None:
+    """A value as it may be given again, with all digits that matter."""
+    if value is None:
+        return None
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(str(_told(each)) for each in value)}]"
+    return f"{value:.10g}" if isinstance(value, int | float) else str(value)
+
+
+def energies_table(summary: Json) -> Table:
+    """Each energy at the start and the end, and each loss."""
+    energies = summary["energies"]
+    rows: list[tuple[Any, ...]] = [
+        (label, energies[f"{_stem(key)}_start_J"], energies[key], energies[key] - energies[f"{_stem(key)}_start_J"])
+        for key, label in _STORED
+    ]
+    rows += [(label, None, energies[key], energies[key]) for key, label in _LOST]
+    error = summary["energy_balance_error"]
+    note = (
+        "Nothing was turned over."
+        if error is None
+        else f"The changes add up to 0 within {significant(100.0 * error, 2)} % of the energy turned over: "
+        "the kinetic energy at the start, all losses and the largest fall in potential energy. The loss to the grooves "
+        "is computed from the snow left behind, not as the remainder."
+    )
+    return Table(
+        "energies",
+        "Energies and losses.",
+        (
+            Column("energy", "Energy", "words"),
+            Column("start_J", "Start", unit="J", digits=4),
+            Column("end_J", "End", unit="J", digits=4),
+            Column("change_J", "Change", unit="J", digits=4),
+        ),
+        rows,
+        note=note,
+    )
+
+
+def _stem(key: str) -> str:
+    return key.removesuffix("_J")
+
+
+def verification_table(verification: Json) -> Table:
+    """Every number that the repetition with a finer computation gave, as it stands in summary.json."""
+    return Table(
+        "verification",
+        "The same run, computed finer.",
+        (Column("quantity", "Quantity", "text"), Column("value", "Value", "text")),
+        [(name, _told(value)) for name, value in by_full_name(verification)],
+    )

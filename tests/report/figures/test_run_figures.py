@@ -1,0 +1,197 @@
+"""The figures of runs show what the numbers say: the right way round, left where left is, in the units of the axis."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection, QuadMesh
+from matplotlib.figure import Figure
+
+from skisnow.report.figures.run_along_ski import run_along_ski
+from skisnow.report.figures.run_energies import run_energies, stacked_energies
+from skisnow.report.figures.run_grip import run_grip, used_share, used_share_of_skis
+from skisnow.report.figures.run_motion import drawn_radius, run_motion
+from skisnow.report.figures.run_track import groove_corners, run_track
+from skisnow.report.figures.runs_compared import distance_to_path, loaded_ski, runs_compared, way
+from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
+from skisnow.report.figures.track_band import TimedTrack, band_of, offsets, track_band
+from skisnow.simulate.run import Run
+
+from ..runs import RADIUS, SPEED, STANCE, circle_run
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return circle_run()
+
+
+def axes_of(figure: Figure) -> list[Axes]:
+    return [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+
+
+def timed(run: Run) -> TimedTrack:
+    return TimedTrack(run.time, run.place[:, 0], run.place[:, 1])
+
+
+def test_track_is_drawn_down_the_fall_line_with_the_left_ski_on_the_left(run: Run) -> None:
+    with journal_style():
+        figure = run_track(run)
+    plan = axes_of(figure)[0]
+    assert plan.get_aspect() == 1.0  # equal scales
+    assert plan.get_xlim()[0] < plan.get_xlim()[1]  # down the fall line is to the right,
+    assert plan.get_ylim()[0] < plan.get_ylim()[1]  # left is up: seen from above, not from below
+    left = next(line for line in plan.lines if line.get_color() == BLUE)
+    right = next(line for line in plan.lines if line.get_color() == VERMILLION)
+    middle = len(run.time) // 2
+    assert np.asarray(left.get_ydata())[middle] - np.asarray(right.get_ydata())[middle] == pytest.approx(STANCE)
+    marks = next(line for line in plan.lines if line.get_marker() == "o")
+    assert len(np.asarray(marks.get_xdata())) == 5  # 0 to 4 s
+
+
+def test_groove_is_drawn_in_its_width(run: Run) -> None:
+    corners = groove_corners(run)
+    across = np.linalg.norm(corners[:, 0] - corners[:, 3], axis=1)
+    along = np.linalg.norm(corners[:, 0] - corners[:, 1], axis=1)
+    assert across == pytest.approx(run.groove.width)
+    assert along == pytest.approx(np.full(len(along), run.numbers["line_spacing_m"]))
+    with journal_style():
+        figure = run_track(run)
+    detail = axes_of(figure)[1]
+    pieces = next(drawn for drawn in detail.collections if isinstance(drawn, PolyCollection))
+    colours = np.asarray(pieces.get_array())
+    assert 5.0 < colours.max() < 50.0  # mm
+
+
+def test_maps_along_the_ski_have_time_across_and_the_tip_up(run: Run) -> None:
+    with journal_style():
+        figure = run_along_ski(run)
+    panels = axes_of(figure)
+    assert [axes.get_title(loc="left") for axes in panels[:2]] == ["left ski", "right ski"]
+    mesh = next(drawn for drawn in panels[1].collections if isinstance(drawn, QuadMesh))
+    values: FloatArray = np.ma.filled(
+        np.ma.asarray(mesh.get_array()).reshape(len(run.skis.station), len(run.time)), np.nan
+    )
+    expected = run.skis.edge_depth[:, 1].T * 1e3
+    assert np.array_equal(np.isfinite(values), expected > 0.0)
+    assert values[expected > 0.0] == pytest.approx(expected[expected > 0.0])  # mm
+    assert panels[1].get_ylim()[0] < 0.0 < panels[1].get_ylim()[1]
+    assert panels[1].get_xlim() == pytest.approx((0.0, run.simulated_s), abs=0.02)
+
+
+def test_motion_is_in_metres_a_second_degrees_and_metres(run: Run) -> None:
+    with journal_style():
+        figure = run_motion(run)
+    speed, heading, radius = axes_of(figure)
+    assert np.asarray(speed.lines[0].get_ydata()) == pytest.approx(np.full(len(run.time), SPEED))
+    turned = np.ptp(np.asarray(heading.lines[0].get_ydata()))
+    assert turned == pytest.approx(math.degrees(SPEED / RADIUS * run.simulated_s))
+    assert np.asarray(radius.lines[0].get_ydata()) == pytest.approx(np.full(len(run.time), RADIUS))
+
+
+def test_nearly_straight_parts_have_no_radius() -> None:
+    radius = drawn_radius(np.array([-10.0, 10.0, 12.0, np.inf, 500.0, -29.0]))
+    assert np.array_equal(np.isnan(radius), [False, False, False, True, True, False])
+    assert radius[0] == -10.0
+    assert np.isnan(drawn_radius(np.full(3, np.inf))).all()
+
+
+def test_energies_stack_to_a_level_rim(run: Run) -> None:
+    total = np.sum(list(stacked_energies(run).values()), axis=0)
+    assert total == pytest.approx(np.full(len(run.time), total[0]), rel=1e-12)
+    assert min(values.min() for values in stacked_energies(run).values()) >= 0.0
+    with journal_style():
+        figure = run_energies(run)
+    every, losses = axes_of(figure)
+    assert len(every.collections) == 9
+    assert len(losses.collections) == 5
+    assert losses.dataLim.y1 == pytest.approx(-run.energies["potential"][-1])
+    # a tenth of the friction gone: the title names what is missing
+    less = run.energies | {"friction": 0.9 * run.energies["friction"]}
+    with journal_style():
+        figure = run_energies(replace(run, energies=less))
+    missing = 0.1 * run.energies["friction"][-1]
+    over = run.energies["kinetic"][0] - 2.0 * run.energies["potential"][-1] - missing
+    assert f"within {100.0 * missing / over:.2f} %" in axes_of(figure)[0].get_title(loc="left")
+
+
+def test_share_of_the_shear_strength(run: Run) -> None:
+    share = used_share(run)
+    assert np.array_equal(np.isnan(share), run.skis.edge_depth <= 0.0)
+    assert share[np.isfinite(share)] == pytest.approx(np.full(int(np.isfinite(share).sum()), 0.4))
+    assert used_share_of_skis(run) == pytest.approx(np.full((len(run.time), 2), 0.4))
+    to_the_right = replace(run.skis, shear_per_length=-run.skis.shear_per_length)
+    assert used_share_of_skis(replace(run, skis=to_the_right)) == pytest.approx(np.full((len(run.time), 2), 0.4))
+    with journal_style():
+        assert run_grip(run).axes
+
+
+def test_distance_between_circles_of_one_centre() -> None:
+    """Circles of 12 and 12.5 m about one centre are 0.5 m apart everywhere but before and behind the ends."""
+    angle = np.linspace(0.0, 1.0, 2001)
+    inner, outer = (
+        np.stack([radius * np.cos(angle), radius * np.sin(angle), 0.0 * angle], axis=1) for radius in (12.0, 12.5)
+    )
+    assert distance_to_path(outer, inner) == pytest.approx(np.full(2001, 0.5), abs=1e-6)
+    assert way(inner)[-1] == pytest.approx(12.0, rel=1e-6)
+
+
+def test_compared_runs_are_held_against_the_first(run: Run) -> None:
+    wider = circle_run(radius=1.1 * RADIUS, deep=0.01)
+    with journal_style():
+        figure = runs_compared({"first": run, "wide": wider}, at=2.0)
+    plan, distance, depth = axes_of(figure)
+    assert len([line for line in plan.lines if len(np.asarray(line.get_xdata())) > 1]) == 2
+    (curve,) = distance.lines
+    assert np.asarray(curve.get_xdata())[-1] == pytest.approx(wider.run_length, rel=1e-3)
+    assert "first" in distance.get_ylabel()
+    now = np.asarray(depth.lines[0].get_ydata()), np.asarray(depth.lines[1].get_ydata())
+    assert now[0] == pytest.approx(run.skis.edge_depth[100, 1] * 1e3)
+    assert now[1] == pytest.approx(now[0] / 2.0)
+    assert depth.get_ylim()[0] > 0.0 > depth.get_ylim()[1]  # depth grows downwards
+    assert "right ski" in depth.get_ylabel()
+    assert loaded_ski(run, 2.0) == 1
+
+
+def test_offset_to_the_left_is_positive_and_ahead_is_ahead() -> None:
+    time = np.linspace(0.0, 2.0, 41)
+    nominal = TimedTrack(time, 5.0 * time, np.zeros(41))
+    faster = TimedTrack(time, 6.0 * time, 0.5 * time)
+    short = TimedTrack(time[:21], 5.0 * time[:21], -0.2 * np.ones(21))
+    aside, ahead = offsets(nominal, [faster, short])
+    assert aside[0] == pytest.approx(0.5 * time)
+    assert ahead[0] == pytest.approx(time, abs=1e-12)
+    assert aside[1, :21] == pytest.approx(np.full(21, -0.2))
+    assert np.isnan(aside[1, 21:]).all()
+    # heading along y: left is -x
+    across = TimedTrack(time, np.zeros(41), 5.0 * time)
+    aside, _ = offsets(across, [TimedTrack(time, -0.3 * np.ones(41), 5.0 * time)])
+    assert aside[0] == pytest.approx(np.full(41, 0.3))
+
+
+def test_bands_hold_half_and_ninety_per_cent() -> None:
+    values = np.linspace(-1.0, 1.0, 201)[:, None] * np.array([1.0, 2.0])
+    band = band_of(values)
+    assert band[:, 0] == pytest.approx([-0.9, -0.5, 0.0, 0.5, 0.9])
+    assert band[:, 1] == pytest.approx([-1.8, -1.0, 0.0, 1.0, 1.8])
+    few = np.array([[0.0, np.nan], [1.0, np.nan], [2.0, 5.0]])
+    assert np.isnan(band_of(few)[:, 1]).all()
+
+
+def test_band_is_drawn_around_the_nominal_track(run: Run) -> None:
+    generator = np.random.default_rng(1)
+    tracks = [timed(circle_run(radius=RADIUS * math.exp(0.03 * generator.standard_normal()))) for _ in range(12)]
+    with journal_style():
+        figure = track_band(timed(run), tracks)
+    plan = axes_of(figure)[0]
+    nominal = next(line for line in plan.lines if line.get_color() == VERMILLION)
+    assert np.asarray(nominal.get_xdata()) == pytest.approx(run.place[:, 0])
+    assert np.asarray(nominal.get_ydata()) == pytest.approx(run.place[:, 1])
+    wide, narrow = (np.asarray(patch.get_path().vertices) for patch in plan.patches[:2])
+    assert np.ptp(wide[:, 0]) > np.ptp(narrow[:, 0])

@@ -1,0 +1,126 @@
+"""The report of a run: complete, self-contained, and its numbers are those of the run."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.report.run_report import FIGURES, write_run_report
+from skisnow.report.tables.run import energies_table, scenario_table
+from skisnow.simulate.run import LOST, STORED, Run, SkiHistory
+from skisnow.simulate.scenario.keys import SCENARIO_KEYS
+from skisnow.simulate.scenario.values import in_sections, scenario_values
+
+from .runs import circle_run
+
+
+def summary_of(run: Run) -> dict[str, Any]:
+    """The parts of summary.json that the report reads."""
+    energies = {f"{name}_J": float(run.energies[name][-1]) for name in STORED}
+    energies |= {f"{name}_start_J": float(run.energies[name][0]) for name in STORED}
+    energies |= {f"lost_{name}_J": float(run.energies[name][-1]) for name in LOST}
+    return {
+        "energies": energies,
+        "energy_balance_error": run.energy_balance_error,
+        "scenario": in_sections(scenario_values(run.scenario)),
+        "provenance": {"versions": {"skisnow": "0", "numpy": "2"}, "time": "2013-01-01T00:00:00+00:00"},
+    }
+
+
+def first_rows(run: Run, count: int) -> Run:
+    """A run that ended after so many rows."""
+    cut = {name: getattr(run, name)[:count] for name in ("time", "place", "attitude", "velocity", "heading")}
+    skis = SkiHistory(
+        station=run.skis.station,
+        **{name: getattr(run.skis, name)[:count] for name in SkiHistory.__slots__ if name != "station"},
+    )
+    energies = {name: values[:count] for name, values in run.energies.items()}
+    return replace(run, **cut, turn_radius=run.turn_radius[:count], skis=skis, energies=energies)
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return circle_run()
+
+
+@pytest.fixture(scope="module")
+def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("run")
+    write_run_report(run, summary_of(run), folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def html(folder: Path) -> str:
+    return (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_everything_is_written(folder: Path) -> None:
+    names = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    figures = {f"figures/{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
+    assert names == {"run.nc", "report.html"} | figures
+
+
+def test_page_needs_nothing_else(html: str) -> None:
+    assert not re.findall(r'(?:src|href)="(?!data:|#)', html)
+    assert html.count('src="data:image/svg+xml;base64,') == len(FIGURES)
+    assert "None" not in re.sub(r"base64,[^\"]*", "", html)
+    assert "nan" not in re.findall(r">([^<]*)<", html)
+
+
+def test_every_key_of_the_scenario_stands_in_its_table(run: Run, html: str) -> None:
+    rows = {row[0]: row for row in scenario_table(summary_of(run)["scenario"]).rows}
+    assert set(rows) == set(SCENARIO_KEYS)
+    assert rows["sledge.edge_angle_deg"][1:3] == ("30", "°")
+    assert rows["snow.S_f_N_per_mm2"][1:3] == ("0.5", "N/mm²")
+    assert rows["sledge.inertia_kg_m2"][1] == "[4, 4, 4]"
+    assert rows["snow.compaction_resistance"][1] == "true"
+    assert all(f">{name}<" in html for name in SCENARIO_KEYS)
+
+
+def test_outcome_and_numbers_are_those_of_the_run(html: str) -> None:
+    assert "finished" in html
+    assert "32.0 m in 4.00 s, from 8.00 to 8.00 m/s" in html
+    assert "median turn radius 12.0 m" in html
+    # a right angle less than a half turn: 8/12 × 4 s = 152.8°, half of it to each side
+    assert "Heading from −76.4° to 76.4°" in html
+
+
+def test_energies_add_up(run: Run) -> None:
+    table = energies_table(summary_of(run))
+    assert sum(row[3] for row in table.rows) == pytest.approx(0.0, abs=1e-9)
+    (kinetic,) = (row for row in table.rows if row[0] == "kinetic")
+    assert kinetic[1:] == pytest.approx((2720.0, 2720.0, 0.0))
+
+
+def test_verification_is_told_where_it_was_asked(run: Run, html: str, tmp_path: Path) -> None:
+    assert "Computed finer" not in html
+    write_run_report(run, summary_of(run) | {"verification": {"end_moved_m": 0.00125}}, tmp_path)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Computed finer" in page
+    assert "0.00125" in page
+
+
+def test_run_without_a_step_says_so_and_leaves_no_figure_of_another(run: Run, tmp_path: Path) -> None:
+    write_run_report(run, summary_of(run), tmp_path)
+    at_once = replace(first_rows(run, 1), outcome="airborne", remedy="Start on the snow.")
+    write_run_report(at_once, summary_of(at_once), tmp_path)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Start on the snow." in page
+    assert "there is nothing to draw" in page
+    assert not list((tmp_path / "figures").iterdir())
+
+
+def test_run_that_never_touches_the_snow_is_drawn(run: Run, tmp_path: Path) -> None:
+    above = {name: 0.0 * getattr(run.skis, name) for name in ("force_per_length", "shear_per_length")}
+    skis = replace(run.skis, edge_depth=np.full_like(run.skis.edge_depth, -0.1), **above)
+    none = {name: getattr(run.groove, name)[:0] for name in ("middle", "left", "width", "depth", "residual_depth")}
+    flying = replace(run, skis=skis, groove=type(run.groove)(**none), outcome="airborne")
+    flying = replace(flying, turn_radius=np.full_like(run.turn_radius, np.inf))
+    page = write_run_report(flying, summary_of(flying), tmp_path).read_text(encoding="utf-8")
+    assert "median turn radius – m" in page
