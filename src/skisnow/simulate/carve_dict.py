@@ -25,7 +25,7 @@ def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
         "schema_version": SCHEMA_VERSION,
         **equilibrium_dict(answer.equilibrium),
         "inputs": inputs_dict(answer),
-        "snow": _snow_dict(answer.snow),
+        "snow": snow_dict(answer.snow),
         "ski": {
             "name": answer.ski.name,
             "source": answer.ski.source,
@@ -93,7 +93,9 @@ def _in_unit(given: float | None, value: float | None, unit: float) -> float | N
     return given if given is not None or value is None else value / unit
 
 
-def _snow_dict(snow: SnowProperties) -> dict[str, Any]:
+def snow_dict(snow: SnowProperties) -> dict[str, Any]:
+    """Where a snow comes from, and its intervals in the units of the contract."""
+
     def interval(ends: tuple[float, float] | None, unit: float) -> list[float] | None:
         return None if ends is None else [end / unit for end in ends]
 

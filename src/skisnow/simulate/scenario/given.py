@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ...errors import ParameterError
-from ..input_keys import InputValue, meant
+from ..input_keys import InputValue, meant, nearest
 from .keys import SCENARIO_KEYS, SECTIONS
 
 PATH_KEYS: Final = ("slope.profile", "snow.results", "ski.file")
@@ -97,7 +97,15 @@ def scenario_names() -> tuple[str, ...]:
 
 
 def scenario_text(name: str) -> str:
-    """The text of a built-in scenario, every key with where its value comes from."""
+    """The text of a built-in scenario, every key with where its value comes from.
+
+    Raises
+    ------
+    ParameterError
+        There is no such scenario; the nearest is named.
+    """
+    if name not in scenario_names():
+        raise ParameterError(f"there is no built-in scenario {name!r}. {nearest(name, scenario_names())}")
     return (_BUILT_IN / f"{name}.toml").read_text(encoding="utf-8")
 
 
@@ -116,8 +124,8 @@ def given_scenario(name_or_path: str | Path) -> GivenScenario:
     path = Path(name_or_path)
     if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or path.is_file()):
         raise ParameterError(
-            f"there is no scenario named {word!r}. {meant(word, scenario_names())}There are "
-            f"{', '.join(scenario_names())}. Any other scenario is read from a file ending in .toml"
+            f"there is no scenario named {word!r}. {nearest(word, scenario_names())}. Any other scenario is read from "
+            "a file ending in .toml"
         )
     try:
         return _given(str(path), path, path.read_text(encoding="utf-8-sig"))

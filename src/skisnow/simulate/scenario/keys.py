@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 from .run_keys import SOLVER_KEYS, START_AND_RUN_KEYS
@@ -49,9 +48,9 @@ def in_si(name: str, value: object) -> float:
 
 
 def in_unit(name: str, value: float | None) -> float | None:
-    """A number in SI in the unit that its key names.
+    """A number in SI in the unit that its key names; None stays.
 
     >>> in_unit("snow.H_V_N_per_mm3", 2e8)
     0.2
     """
-    return None if value is None or not math.isfinite(value) else value / SCENARIO_KEYS[name].factor
+    return None if value is None else value / SCENARIO_KEYS[name].factor

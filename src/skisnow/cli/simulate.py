@@ -1,0 +1,158 @@
+"""``skisnow simulate``: a sledge on two flexible skis from start to end."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .announced import announced
+from .ending import Ending, ending_is_an_interrupt
+from .progress import Progress
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..simulate.run import Run
+    from ..simulate.scenario import Scenario, ScenarioFile
+
+LOADING = "loading and, on a machine's first run, compiling the simulator, once"
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "simulate",
+        help="a simulated run of a sledge on two flexible skis",
+        description="Simulate a scenario: a built-in one by its name, or a TOML file. Ctrl-C ends a run and keeps it.",
+    )
+    parser.add_argument("scenario", nargs="?", metavar="NAME|FILE", help="left out with --list")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        dest="changes",
+        metavar="section.key=value",
+        help="another value for one key, several times for several; the section may be left out",
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json, track.csv, run.nc and a report")
+    finer = "repeat the run finer, one choice of the solver at a time, and say how far its end moves"
+    parser.add_argument("--verify", action="store_true", help=finer)
+    parser.add_argument("--json", action="store_true", help="print summary.json alone to standard output")
+    parser.add_argument("--list", action="store_true", help="name the built-in scenarios; with NAME print that one")
+    parser.set_defaults(run=run, parser=parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Simulate, print, write; 0 with every outcome but an interrupted one, which is kept all the same."""
+    if options.list:
+        return _list(options.scenario)
+    if options.scenario is None:
+        options.parser.error("name a scenario: a built-in one (--list names them) or a TOML file")
+    with announced(LOADING):
+        from ..simulate.scenario import scenario_file
+        from ..simulate.scenario.given import change_of
+
+        asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
+    _prepare(options, asked)
+    with ending_is_an_interrupt() as ending:
+        found, verification = _computed(asked, verify=options.verify)
+        _tell(options, asked, found, verification)
+    return _status(found, ending)
+
+
+def _status(found: Run, ending: Ending) -> int:
+    return ending.status() if ending.asked or found.outcome == "interrupted" else 0
+
+
+def _list(name: str | None) -> int:
+    from ..simulate.scenario import scenario_names, scenario_text
+
+    print("\n".join(scenario_names()) if name is None else scenario_text(name).rstrip())
+    return 0
+
+
+def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
+    """What can be refused is refused before the work."""
+    if options.out is not None:
+        from ..files import require_writable
+
+        require_writable(options.out)
+    for text in asked.warnings:
+        print(f"warning: {text}", file=sys.stderr)
+
+
+def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, dict[str, Any] | None]:
+    with ExitStack() as loading, Progress() as progress:
+        loading.enter_context(announced(LOADING))
+        from ..simulate.simulated_run import simulated_run
+
+        found = simulated_run(asked.scenario, progress=_Pace(progress, begun=loading.close))
+        loading.close()
+        if not verify or found.outcome == "interrupted":
+            return found, None
+        return found, _verified(found, progress)
+
+
+def _verified(found: Run, progress: Progress) -> dict[str, Any]:
+    from ..simulate.simulated_run import simulated_run
+    from ..simulate.verification import refined_solvers, verification_dict, verified
+
+    keys = iter(refined_solvers(found))
+
+    def finer(scenario: Scenario) -> Run:
+        return simulated_run(scenario, progress=_Pace(progress, f"finer {next(keys)}: "))
+
+    return verification_dict(verified(found, finer))
+
+
+def _tell(options: argparse.Namespace, asked: ScenarioFile, found: Run, verification: dict[str, Any] | None) -> None:
+    from ..simulate.run_summary import summary_dict
+
+    summary = summary_dict(found, asked.values, files=asked.files, warnings=asked.warnings, verification=verification)
+    if options.json:
+        print(json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+    else:
+        from ..report.simulate_summary import simulate_summary
+
+        print(simulate_summary(summary, title=asked.title), flush=True)
+    if options.out is not None:
+        _write(options.out, found, summary)
+
+
+def _write(folder: Path, found: Run, summary: dict[str, Any]) -> None:
+    from ..files import write_file
+    from ..report.run_report import write_run_report
+    from ..simulate.track_table import write_track
+
+    text = json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1)
+    write_file(folder / "summary.json", f"{text}\n")
+    write_track(found, folder / "track.csv")
+    with Progress() as progress:
+        page = write_run_report(found, summary, folder, progress=lambda doing: progress(f"writing {doing}"))
+    print(f"Report: {page}", file=sys.stderr)
+
+
+class _Pace:
+    """Simulated time, share, and how that compares with real time, from the first call on."""
+
+    def __init__(self, progress: Progress, prefix: str = "", *, begun: Callable[[], object] = lambda: None) -> None:
+        self._progress = progress
+        self._prefix = prefix
+        self._tell_begun = begun
+        self._begun: tuple[float, float] | None = None
+
+    def __call__(self, simulated_s: float, share: float) -> None:
+        now = time.monotonic()
+        if self._begun is None:
+            self._tell_begun()
+            self._begun = (now, simulated_s)
+        start, before = self._begun
+        rate = (simulated_s - before) / max(now - start, 1e-9)
+        self._progress(
+            f"{self._prefix}{simulated_s:.2f} s simulated, {100.0 * share:.0f} %, {rate:.3g} times real time"
+        )

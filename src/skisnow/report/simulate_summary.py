@@ -1,0 +1,91 @@
+"""A simulated run as a few lines for a terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from .numerals import significant
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+Json = dict[str, Any]
+
+OUTCOMES: Final = {
+    "finished": "the simulated time is over",
+    "distance_reached": "the run length is reached",
+    "end_of_slope": "the slope ends here",
+    "tipped_over": "the sledge tipped over",
+    "airborne": "both skis left the snow",
+    "sunk": "the snow is too soft to float on",
+    "step_too_small": "the time step became too small",
+    "not_finite": "the numbers ceased to be finite",
+    "interrupted": "interrupted",
+}
+"""What each outcome means."""
+
+
+def simulate_summary(summary: Mapping[str, Any], *, title: str) -> str:
+    """What came out of a run.
+
+    Parameters
+    ----------
+    summary
+        What `skisnow.simulate.run_summary.summary_dict` gives.
+    title
+        What the scenario is called.
+    """
+    lines = [f"{title}: {OUTCOMES[summary['outcome']]} ({summary['outcome']})"]
+    if summary["remedy"]:
+        lines.append(summary["remedy"])
+    width = max(len(name) for name, _ in _rows(summary))
+    lines += ["", *(f"{name.ljust(width)}  {text}" for name, text in _rows(summary))]
+    if "verification" in summary:
+        lines += ["", *_verification(summary["verification"])]
+    return "\n".join(lines)
+
+
+def _plain(value: float | None, digits: int = 3) -> str:
+    return significant(value, digits, style="plain")
+
+
+def _rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    end = summary["end"]
+    yield "run length", f"{_plain(summary['run_length_m'], 4)} m in {_plain(summary['simulated_s'], 4)} s"
+    yield "end point", f"x {_plain(end['x_m'], 4)} m, y {_plain(end['y_m'], 4)} m, z {_plain(end['z_m'], 4)} m"
+    yield "heading at the end", f"{_plain(end['heading_deg'])} degrees from the fall line, positive left"
+    yield (
+        "speed",
+        (f"{_plain(end['speed_m_per_s'])} m/s at the end, {_plain(summary['greatest_speed_m_per_s'])} m/s at most"),
+    )
+    yield "least turn radius", _radius(summary["least_turn_radius_m"])
+    yield "energy balance", _balance(summary["energy_balance_error"])
+    yield "steps", f"{summary['steps']}, {summary['rejected_steps']} rejected"
+    yield "computed in", _computed(summary)
+
+
+def _radius(radius: float | None) -> str:
+    return "none, the run is straight" if radius is None else f"{_plain(abs(radius))} m to the {_side(radius)}"
+
+
+def _side(radius: float) -> str:
+    return "left" if radius > 0.0 else "right"
+
+
+def _balance(error: float | None) -> str:
+    return "nothing was turned over" if error is None else f"closes within {_plain(100.0 * error, 2)} %"
+
+
+def _computed(summary: Mapping[str, Any]) -> str:
+    wall, simulated = summary["wall_s"], summary["simulated_s"]
+    rate = f", {_plain(simulated / wall)} times real time" if wall and simulated else ""
+    return f"{_plain(wall)} s without compiling{rate}"
+
+
+def _verification(verification: Mapping[str, Json]) -> Iterator[str]:
+    yield "computed finer, one choice at a time:"
+    width = max((len(key) for key in verification), default=0)
+    for key, found in verification.items():
+        other = "" if found["outcome"] == "finished" else f" ({found['outcome'].replace('_', ' ')})"
+        change = f"{_plain(found['was'])} to {_plain(found['now'])}"
+        yield f"  {key.ljust(width)}  {change}: the end moves by {_plain(found['end_moves_cm'])} cm{other}"

@@ -1,0 +1,110 @@
+"""A run as JSON values: SI numbers become the units that the keys name; nothing is rounded, nothing is NaN."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from ..units import DEGREE
+from .carve_dict import finite, snow_dict
+from .run import LOST, STORED, Run
+from .scenario.values import in_sections, scenario_values
+
+SCHEMA_VERSION: Final = 1
+
+
+def summary_dict(
+    run: Run,
+    values: Mapping[str, Any] | None = None,
+    *,
+    files: Iterable[Path] = (),
+    warnings: Sequence[str] = (),
+    verification: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """The contents of summary.json; its JSON Schema is schemas/summary.schema.json.
+
+    Parameters
+    ----------
+    run
+        What came out.
+    values
+        Every key of the scenario as `ScenarioFile.values` has it; left out: taken from the run's scenario.
+    files
+        What the scenario was read from, for their SHA-256.
+    warnings
+        About the scenario, in words.
+    verification
+        What `verification_dict` gives, where the run was repeated.
+    """
+    checked = {} if verification is None else {"verification": dict(verification)}
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "outcome": run.outcome,
+        "remedy": run.remedy,
+        "run_length_m": finite(run.run_length),
+        "simulated_s": finite(run.simulated_s),
+        "wall_s": finite(run.wall_s),
+        "steps": int(run.steps),
+        "rejected_steps": int(run.rejected_steps),
+        **_moments(run),
+        "energies": energies_dict(run),
+        "energy_balance_error": finite(run.energy_balance_error),
+        "numbers": {name: finite(value) for name, value in run.numbers.items()},
+        "scenario": in_sections(scenario_values(run.scenario) if values is None else values),
+        "snow": snow_dict(run.scenario.contact.snow),
+        "ski": {"name": run.scenario.ski.name, "source": run.scenario.ski.source},
+        **checked,
+        "warnings": list(warnings),
+        "provenance": _provenance(files),
+    }
+
+
+def energies_dict(run: Run) -> dict[str, float | None]:
+    """Energies (J) at the end and at the start, and what was lost between."""
+    stored = {f"{name}_J": finite(run.energies[name][-1]) for name in STORED}
+    start = {f"{name}_start_J": finite(run.energies[name][0]) for name in STORED}
+    return stored | start | {f"lost_{name}_J": finite(run.energies[name][-1]) for name in LOST}
+
+
+def end_dict(run: Run) -> dict[str, float | None]:
+    """Where the middle between the boots is at the end, how fast, and where it heads."""
+    x, y, z = run.place[-1]
+    return {
+        "time_s": finite(run.simulated_s),
+        "x_m": finite(x),
+        "y_m": finite(y),
+        "z_m": finite(z),
+        "speed_m_per_s": finite(run.speed[-1]),
+        "heading_deg": finite(run.heading[-1] / DEGREE),
+    }
+
+
+def least_turn_radius(run: Run) -> float | None:
+    """The tightest turn radius (m), positive left; None of a straight run."""
+    known = run.turn_radius[np.isfinite(run.turn_radius)]
+    return float(known[np.argmin(np.abs(known))]) if known.size else None
+
+
+def _moments(run: Run) -> dict[str, Any]:
+    known = run.speed[np.isfinite(run.speed)]
+    return {
+        "end": end_dict(run),
+        "greatest_speed_m_per_s": float(known.max()) if known.size else None,
+        "least_turn_radius_m": least_turn_radius(run),
+    }
+
+
+def _provenance(files: Iterable[Path]) -> dict[str, Any]:
+    packages = ("skisnow", "numpy", "scipy", "numba")
+    return {
+        "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
+        "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},
+        "time": datetime.now(UTC).isoformat(timespec="seconds"),
+    }

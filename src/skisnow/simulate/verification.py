@@ -1,0 +1,115 @@
+"""How exact a run is: the same run computed finer, one choice of the solver at a time, and how far its end moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+
+from ..units import CM, MM
+from .carve_dict import finite
+from .run import Outcome, Run
+from .scenario import Scenario, Solver
+from .scenario.keys import SCENARIO_KEYS
+
+Simulate: TypeAlias = Callable[[Scenario], Run]
+FINER: Final = 2.0
+"""By how much each choice is refined."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refinement:
+    """What one finer choice changed.
+
+    Attributes
+    ----------
+    key
+        Of the scenario, such as "solver.elements".
+    was, now
+        Its value in force and the finer one, in the unit that the key names.
+    end_moves
+        Distance between the ends of both runs (m); None where one of them is not finite.
+    outcome
+        Of the finer run.
+    """
+
+    key: str
+    was: float
+    now: float
+    end_moves: float | None
+    outcome: Outcome
+
+
+def refined_solvers(run: Run) -> dict[str, Solver]:
+    """Solvers that are finer in one choice each, by the scenario's key.
+
+    A run with control of the error gets half the tolerance, one with a fixed step half the step; twice the elements,
+    half the spacing of the snow's lines, and half the cells.
+    """
+    solver = run.scenario.solver
+    shorter, stricter = replace(solver, step=solver.step / FINER), replace(solver, tolerance=solver.tolerance / FINER)
+    return {
+        **({"solver.step_ms": shorter} if solver.fixed else {"solver.tolerance_mm": stricter}),
+        "solver.elements": replace(solver, elements=round(run.numbers["elements"] * FINER)),
+        "solver.line_spacing_mm": replace(solver, line_spacing=run.numbers["line_spacing_m"] / FINER),
+        "solver.cell_mm": replace(solver, cell=run.numbers["cell_mm"] * MM / FINER),
+    }
+
+
+def verified(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
+    """Repeat a run, finer in one choice at a time.
+
+    Parameters
+    ----------
+    run
+        The run.
+    simulate
+        `skisnow.simulated_run`; it is called in the order of `refined_solvers`.
+
+    Returns
+    -------
+    tuple
+        One entry for each choice. Where a repetition is interrupted, those before it.
+    """
+    found: list[Refinement] = []
+    for key, solver in refined_solvers(run).items():
+        finer = simulate(replace(run.scenario, solver=solver))
+        if finer.outcome == "interrupted":
+            break
+        found.append(Refinement(key, _in_force(run, key), _chosen(solver, key), _distance(run, finer), finer.outcome))
+    return tuple(found)
+
+
+def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str, Any]]:
+    """The entry ``verification`` of summary.json: under each key what was refined and how far the end moved."""
+    return {
+        each.key: {
+            "was": each.was,
+            "now": each.now,
+            "end_moves_cm": None if each.end_moves is None else each.end_moves / CM,
+            "outcome": each.outcome,
+        }
+        for each in refinements
+    }
+
+
+def _in_force(run: Run, key: str) -> float:
+    numbers = run.numbers
+    chosen = replace(
+        run.scenario.solver,
+        elements=round(numbers["elements"]),
+        line_spacing=numbers["line_spacing_m"],
+        cell=numbers["cell_mm"] * MM,
+    )
+    return _chosen(chosen, key)
+
+
+def _chosen(solver: Solver, key: str) -> float:
+    value: float = getattr(solver, key.removeprefix("solver.").removesuffix("_ms").removesuffix("_mm"))
+    return value / SCENARIO_KEYS[key].factor
+
+
+def _distance(run: Run, finer: Run) -> float | None:
+    return finite(float(np.linalg.norm(run.place[-1] - finer.place[-1])))
