@@ -18,6 +18,8 @@ from skisnow.simulate.scenario.values import in_sections, scenario_values
 
 from .runs import circle_run
 
+CHECKED = {"solver.elements": {"was": 40.0, "now": 80.0, "end_moves_cm": 0.125, "outcome": "finished"}}
+
 
 def summary_of(run: Run) -> dict[str, Any]:
     """The parts of summary.json that the report reads."""
@@ -100,10 +102,10 @@ def test_energies_add_up(run: Run) -> None:
 
 def test_verification_is_told_where_it_was_asked(run: Run, html: str, tmp_path: Path) -> None:
     assert "Computed finer" not in html
-    write_run_report(run, summary_of(run) | {"verification": {"end_moved_m": 0.00125}}, tmp_path)
+    write_run_report(run, summary_of(run) | {"verification": CHECKED}, tmp_path)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Computed finer" in page
-    assert "0.00125" in page
+    assert "0.125" in page
 
 
 def test_run_without_a_step_says_so_and_leaves_no_figure_of_another(run: Run, tmp_path: Path) -> None:

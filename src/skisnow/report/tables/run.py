@@ -80,8 +80,7 @@ def energies_table(summary: Json) -> Table:
     """Each energy at the start and the end, and each loss."""
     energies = summary["energies"]
     rows: list[tuple[Any, ...]] = [
-        (label, energies[f"{_stem(key)}_start_J"], energies[key], energies[key] - energies[f"{_stem(key)}_start_J"])
-        for key, label in _STORED
+        (label, *_change(energies[f"{key.removesuffix('_J')}_start_J"], energies[key])) for key, label in _STORED
     ]
     rows += [(label, None, energies[key], energies[key]) for key, label in _LOST]
     error = summary["energy_balance_error"]
@@ -106,15 +105,31 @@ def energies_table(summary: Json) -> Table:
     )
 
 
-def _stem(key: str) -> str:
-    return key.removesuffix("_J")
+def _change(start: float | None, end: float | None) -> tuple[float | None, float | None, float | None]:
+    """None of a run that did not stay finite."""
+    return start, end, None if start is None or end is None else end - start
 
 
 def verification_table(verification: Json) -> Table:
-    """Every number that the repetition with a finer computation gave, as it stands in summary.json."""
+    """How far the end moves when one choice of the solver at a time is made finer.
+
+    Parameters
+    ----------
+    verification
+        What `skisnow.simulate.verification.verification_dict` gives.
+    """
     return Table(
         "verification",
-        "The same run, computed finer.",
-        (Column("quantity", "Quantity", "text"), Column("value", "Value", "text")),
-        [(name, _told(value)) for name, value in by_full_name(verification)],
+        "The same run with one choice of the solver made finer at a time, and how far that moves its end.",
+        (
+            Column("key", "Key", "text"),
+            Column("was", "Was"),
+            Column("now", "Finer"),
+            Column("end_moves_cm", "End moves by", unit="cm"),
+            Column("outcome", "Outcome", "text"),
+        ),
+        [
+            (name, row["was"], row["now"], row["end_moves_cm"], row["outcome"].replace("_", " "))
+            for name, row in verification.items()
+        ],
     )

@@ -1,0 +1,70 @@
+"""Numbers that tell turns apart: the afterbody in its groove, grip that is used, tracks that lie apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .figures.run_grip import used_share_of_skis
+from .figures.runs_compared import distance_to_path
+from .figures.track_band import TimedTrack, band_of, offsets
+
+if TYPE_CHECKING:
+    from ..simulate.run import Run
+
+FloatArray = npt.NDArray[np.float64]
+YIELDS: Final = 0.99
+"""Share of the shear strength from which a ski counts as sliding across."""
+
+
+def loaded_skis(run: Run) -> npt.NDArray[np.intp]:
+    """Which ski presses harder at each time, (n,): 0 left, 1 right."""
+    return np.argmax(np.trapezoid(run.skis.force_per_length, -run.skis.station, axis=2), axis=1)
+
+
+def afterbody_depth_ratio(run: Run) -> float | None:
+    """Mean edge depth of the loaded ski's contact behind the boot over that before it; the median over the second half.
+
+    None where the ski has no contact before or behind the boot in all that time.
+    """
+    late = np.flatnonzero(run.time >= run.time[-1] / 2.0)
+    depth = run.skis.edge_depth[late, loaded_skis(run)[late]]
+    behind, before = (_mean_depth(depth[:, part]) for part in (run.skis.station < 0.0, run.skis.station > 0.0))
+    ratio = behind / before
+    known = ratio[np.isfinite(ratio)]
+    return float(np.median(known)) if known.size else None
+
+
+def _mean_depth(depth: FloatArray) -> FloatArray:
+    """Mean over the stations below the surface, (n,); nan where there is none."""
+    below = depth > 0.0
+    count = below.sum(axis=1)
+    return np.where(count > 0, np.where(below, depth, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
+
+
+def used_grip(run: Run) -> tuple[float | None, float | None]:
+    """Median share of the shear strength that the loaded ski uses, and the share of time in which it slides across."""
+    share = np.take_along_axis(used_share_of_skis(run), loaded_skis(run)[:, None], axis=1)[:, 0]
+    known = share[np.isfinite(share)]
+    return (float(np.median(known)), float(np.mean(known >= YIELDS))) if known.size else (None, None)
+
+
+def greatest_distance(run: Run, reference: Run) -> float:
+    """The farthest that a run's path goes from that of another (m)."""
+    return float(np.nanmax(distance_to_path(run.place, reference.place)))
+
+
+def middle_track(run: Run) -> TimedTrack:
+    """The path of the middle between the boots from above."""
+    return TimedTrack(run.time, run.place[:, 0], run.place[:, 1])
+
+
+def band_width(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[float, float]:
+    """Width of the band of 90 % of the tracks to the side, and ahead, at the last time that three runs reach (m)."""
+    aside, ahead = offsets(nominal, tracks)
+    sides, ways = (band_of(values)[4] - band_of(values)[0] for values in (aside, ahead))
+    last = int(np.flatnonzero(np.isfinite(sides))[-1])
+    return float(sides[last]), float(ways[last])

@@ -1,0 +1,223 @@
+"""One page for the whole chain: a campaign, its snow with intervals, a turn with each contact, an ensemble."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from ..files import require_writable, write_file
+from ..simulate.scenario.values import scenario_values
+from .figures.drawing import Drawing, pictured
+from .figures.run_along_ski import run_along_ski
+from .figures.run_grip import run_grip
+from .figures.runs_compared import runs_compared
+from .figures.style import journal_style
+from .figures.track_band import TimedTrack, track_band
+from .numerals import significant
+from .run_report import write_pictures
+from .sheet import Header, Section, sheet
+from .symbols import html, prose
+from .tables.run import scenario_table
+from .tables.turn import contacts_table, ensemble_table, parameters_table
+from .turn_numbers import middle_track
+from .turn_sentences import ensemble_sentence, key_sentences, meaning
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from markupsafe import Markup
+
+    from ..simulate.run import Run
+    from ..snow import SnowProperties
+    from .figures.drawing import Picture
+
+FIGURES: Final = ("contacts", "along_ski", "grip", "band")
+"""Names of the figures of such a report, in figures/ as .png and .svg."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EnsembleRun:
+    """One run of an ensemble.
+
+    Attributes
+    ----------
+    snow_hardness, failure_shear_stress
+        H_V (N/m³) and S_f (N/m²) that were drawn for it.
+    outcome
+        How it ended.
+    track
+        Of the middle between the boots.
+    """
+
+    snow_hardness: float
+    failure_shear_stress: float
+    outcome: str
+    track: TimedTrack
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class TurnChain:
+    """From a campaign to a turn.
+
+    Attributes
+    ----------
+    campaign, site
+        Names.
+    synthetic
+        Whether nobody measured the campaign.
+    snow
+        H_V and S_f of that site with their intervals.
+    runs
+        By the name of the contact, two or more; the first is the nominal run of the ensemble.
+    ensemble
+        Runs over the intervals, three or more.
+    seed
+        Of the ensemble's draws.
+    """
+
+    campaign: str
+    site: str
+    synthetic: bool
+    snow: SnowProperties
+    runs: Mapping[str, Run]
+    ensemble: Sequence[EnsembleRun]
+    seed: int
+
+
+def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:
+    """Write report.html and figures/ of the chain from a campaign to a turn.
+
+    Returns
+    -------
+    Path
+        Of report.html, which is written last.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    """
+    folder = Path(folder)
+    require_writable(folder)
+    with journal_style():
+        pictures = [pictured(drawing) for drawing in _drawings(chain)]
+    write_pictures(pictures, folder / "figures", every=FIGURES)
+    write_file(folder / "report.html", sheet(_header(chain), _sections(chain, pictures)))
+    return folder / "report.html"
+
+
+def _drawings(chain: TurnChain) -> Iterator[Drawing]:
+    name, nominal = next(iter(chain.runs.items()))
+    yield Drawing(
+        "contacts",
+        html(
+            "The turn with each contact: from above, distance from the first track, and depth along the ski that "
+            "carries most. Squares: ends."
+        ),
+        "Tracks from above, distances and depth along the ski, one line for each contact.",
+        runs_compared(chain.runs),
+        wide=True,
+    )
+    yield Drawing(
+        "along_ski",
+        prose("Edge depth and force per length along both skis, {name}. White: no contact, or no force.", name=name),
+        "Maps of edge depth and force per length over station and time.",
+        run_along_ski(nominal),
+        wide=True,
+    )
+    yield Drawing(
+        "grip",
+        prose("Share of the shear strength S_f e that the side force uses, {name}.", name=name),
+        "Share of the shear strength used over station and time.",
+        run_grip(nominal),
+        wide=True,
+    )
+    yield Drawing(
+        "band",
+        prose(
+            "The turn ({name}) over the uncertainty of the snow: tracks from above, and below how far each run lies "
+            "beside and ahead of the nominal one at the same time.",
+            name=name,
+        ),
+        "Band of tracks from above, and offsets over time.",
+        track_band(middle_track(nominal), [run.track for run in chain.ensemble]),
+        wide=True,
+    )
+
+
+def _header(chain: TurnChain) -> Header:
+    nominal = next(iter(chain.runs.values()))
+    facts = [
+        ("Campaign", chain.campaign),
+        ("Site", chain.site),
+        ("Skis", nominal.scenario.ski.name),
+        ("Computed", f"skisnow {version('skisnow')}"),
+    ]
+    said = (
+        "Nobody measured this snow: the campaign, and with it every parameter, turn and band below, comes from a "
+        "random number generator."
+    )
+    return Header(
+        "From a field campaign to a turn", f"A turn on the snow of {chain.site}", facts, said if chain.synthetic else ""
+    )
+
+
+def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
+    by_name = {picture.name: picture for picture in pictures}
+    name, nominal = next(iter(chain.runs.items()))
+    contacts = html(
+        "The hypoplastic contact remembers: snow that the forebody pressed stays down, and the afterbody runs in that "
+        "groove at nearly its depth, so that its edge has snow to hold on to. The elastic contact springs back: the "
+        "groove closes under the afterbody as the load passes. k_u/H_V is not published; it is a parameter."
+    )
+    drawn = prose(
+        "{count} runs with H_V drawn from a log-normal and S_f from a normal distribution, both with the 95 % "
+        "intervals above (seed {seed}). The intervals are those of the site's means: the snow's change from place to "
+        "place would widen the band, and everything else of the scenario is taken as known.",
+        count=len(chain.ensemble),
+        seed=chain.seed,
+    )
+    return [
+        Section("key-results", "Key results", key=key_sentences(chain)),
+        Section("snow", "The snow that was found", words=[_snow()], tables=[parameters_table(chain.snow)]),
+        Section(
+            "contacts",
+            "The turn with each contact",
+            words=[contacts],
+            pictures=[by_name["contacts"]],
+            tables=[contacts_table(chain.runs)],
+        ),
+        Section("along-skis", f"Along the skis: {name}", pictures=[by_name["along_ski"], by_name["grip"]]),
+        Section(
+            "ensemble",
+            "Over the uncertainty of the snow",
+            words=[drawn],
+            pictures=[by_name["band"]],
+            tables=[ensemble_table(chain.ensemble)],
+            after=[ensemble_sentence(chain)],
+        ),
+        Section("meaning", "What it means", words=meaning(chain)),
+        Section("scenario", "Scenario", tables=[scenario_table(scenario_values(nominal.scenario))]),
+        Section("provenance", "Provenance", words=[_provenance(chain)]),
+    ]
+
+
+def _snow() -> Markup:
+    return html(
+        "H_V is the geometric mean over the used penetration experiments of the site, S_f the mean over its used shear "
+        "experiments, each with its 95 % interval by Student's t."
+    )
+
+
+def _provenance(chain: TurnChain) -> Markup:
+    return prose(
+        "Snow from {source}. Computed with skisnow {version}; {runs} in {seconds} s without compiling, beside the "
+        "ensemble.",
+        source=chain.snow.source,
+        version=version("skisnow"),
+        runs=f"{len(chain.runs)} runs",
+        seconds=significant(sum(run.wall_s for run in chain.runs.values())),
+    )

@@ -1,0 +1,132 @@
+"""The page from a campaign to a turn: its numbers come from the runs, and the right run is called the wider one."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.report.figures.track_band import TimedTrack
+from skisnow.report.tables.turn import contacts_table, ensemble_table, parameters_table
+from skisnow.report.turn_numbers import (
+    afterbody_depth_ratio,
+    band_width,
+    greatest_distance,
+    loaded_skis,
+    middle_track,
+    used_grip,
+)
+from skisnow.report.turn_report import FIGURES, EnsembleRun, TurnChain, write_turn_report
+from skisnow.simulate.run import Run
+from skisnow.snow import SnowProperties
+from skisnow.units import N_PER_MM2, N_PER_MM3
+
+from .runs import RADIUS, circle_run
+
+SNOW = SnowProperties(
+    0.2 * N_PER_MM3,
+    0.5 * N_PER_MM2,
+    source="somewhere",
+    snow_hardness_interval=(0.18 * N_PER_MM3, 0.23 * N_PER_MM3),
+    failure_shear_stress_interval=(0.4 * N_PER_MM2, 0.6 * N_PER_MM2),
+)
+
+
+def with_afterbody(run: Run, share: float) -> Run:
+    """All contact before the boot 20 mm deep, all behind it that times the share."""
+    station = run.skis.station
+    along = np.where(station > 0.0, 0.02, 0.02 * share) * (abs(station) < 0.7) - 0.001 * (abs(station) >= 0.7)
+    return replace(run, skis=replace(run.skis, edge_depth=np.broadcast_to(along, run.skis.edge_depth.shape)))
+
+
+def ensemble() -> list[EnsembleRun]:
+    generator = np.random.default_rng(3)
+    radii = RADIUS * np.exp(0.02 * generator.standard_normal(9))
+    runs = [circle_run(radius=float(radius)) for radius in radii]
+    return [
+        EnsembleRun(0.2 * N_PER_MM3, 0.5 * N_PER_MM2, "tipped_over" if number == 4 else "finished", middle_track(run))
+        for number, run in enumerate(runs)
+    ]
+
+
+@pytest.fixture(scope="module")
+def chain() -> TurnChain:
+    runs = {"hypoplastic, k_u/H_V = 10": circle_run(), "elastic": circle_run(radius=1.2 * RADIUS)}
+    return TurnChain(
+        campaign="A <b> campaign", site="site C", synthetic=True, snow=SNOW, runs=runs, ensemble=ensemble(), seed=1
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(chain: TurnChain, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("turn")
+    write_turn_report(chain, folder)
+    return folder
+
+
+def test_page_stands_alone_with_all_its_figures(folder: Path) -> None:
+    html = (folder / "report.html").read_text(encoding="utf-8")
+    assert not re.findall(r'(?:src|href)="(?!data:|#)', html)
+    assert {path.stem for path in (folder / "figures").iterdir()} == set(FIGURES)
+    assert "Synthetic data." in html
+    assert "A &lt;b&gt; campaign" in html
+    assert "8 of 9 runs ended like the nominal one (finished)" in html
+    assert "H<sub>V</sub> 0.200 N/mm³ [0.180, 0.230]" in html.replace("<i>", "").replace("</i>", "")
+    assert "S<sub>f</sub> 0.500 N/mm² [0.400, 0.600]" in html.replace("<i>", "").replace("</i>", "")
+
+
+def test_parameters_are_in_the_units_of_the_field() -> None:
+    hardness, stress = parameters_table(SNOW).rows
+    assert hardness[2] == pytest.approx(0.2)
+    assert hardness[3] == pytest.approx((0.18, 0.23))
+    assert stress[2] == pytest.approx(0.5)
+    assert stress[3] == pytest.approx((0.4, 0.6))
+
+
+def test_contacts_stand_with_their_own_numbers(chain: TurnChain) -> None:
+    table = contacts_table(chain.runs)
+    keys = [column.key for column in table.columns]
+    first, second = (dict(zip(keys, row, strict=True)) for row in table.rows)
+    assert second["turn_radius_m"] == pytest.approx(1.2 * first["turn_radius_m"])
+    assert first["turned_deg"] == pytest.approx(math.degrees(8.0 / RADIUS * 4.0))  # to the left: positive
+    assert first["depth_mm"] == pytest.approx(24.0, rel=0.01)  # 20 mm times 1.2
+    assert (first["grip"], first["slides"]) == (pytest.approx(0.4), 0.0)
+
+
+def test_afterbody_over_forebody() -> None:
+    run = circle_run()
+    assert afterbody_depth_ratio(with_afterbody(run, 0.8)) == pytest.approx(0.8)
+    assert afterbody_depth_ratio(with_afterbody(run, 0.3)) == pytest.approx(0.3)
+    assert afterbody_depth_ratio(with_afterbody(run, -0.1)) is None  # it hovers
+    assert set(loaded_skis(run)) == {1}
+
+
+def test_skis_that_yield_use_all_their_grip() -> None:
+    run = circle_run()
+    full = 0.5e6 * np.maximum(run.skis.edge_depth, 0.0)
+    full[: len(run.time) // 4] *= 0.5
+    grip, slides = used_grip(replace(run, skis=replace(run.skis, shear_per_length=-full)))
+    assert grip == pytest.approx(1.0)
+    assert slides == pytest.approx(0.75, abs=0.01)
+
+
+def test_distance_of_paths_and_width_of_a_band() -> None:
+    run = circle_run()
+    aside = replace(run, place=run.place + np.array([0.0, 0.0, 0.7]))
+    assert greatest_distance(aside, run) == pytest.approx(0.7)
+    time = np.linspace(0.0, 2.0, 41)
+    nominal = TimedTrack(time, 5.0 * time, np.zeros(41))
+    tracks = [TimedTrack(time, (5.0 + 0.1 * k) * time, 0.05 * k * time) for k in np.linspace(-1.0, 1.0, 201)]
+    assert band_width(nominal, tracks) == pytest.approx((0.05 * 1.8 * 2.0, 0.1 * 1.8 * 2.0))
+    ended = [TimedTrack(track.time[:21], track.x[:21], track.y[:21]) for track in tracks]
+    assert band_width(nominal, ended) == pytest.approx((0.09, 0.18))  # at 1 s, where they ended
+
+
+def test_outcomes_are_counted(chain: TurnChain) -> None:
+    rows = ensemble_table(chain.ensemble).rows
+    assert [(row[0], row[1]) for row in rows] == [("finished", 8), ("tipped over", 1)]
+    assert rows[0][2] == pytest.approx((0.2, 0.2))
