@@ -159,4 +159,4 @@ def test_file_that_is_not_there_or_not_text(tmp_path: Path) -> None:
 
 
 def test_top_keys_are_those_of_the_contract() -> None:
-    assert set(TOP_KEYS) == {"out", "fixed", "grid", "latin_hypercube"}
+    assert set(TOP_KEYS) == {"out", "scenario", "fixed", "grid", "latin_hypercube"}

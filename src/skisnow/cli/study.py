@@ -1,4 +1,4 @@
-"""``skisnow study``: a grid or a sample of carved turns, in parallel, resumable, to one table and its maps."""
+"""``skisnow study``: a grid or a sample of carved turns or simulated runs, in parallel, resumable, to one table."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..errors import ParameterError
 from .ending import Ended, ending_is_an_interrupt
 from .progress import Progress
 from .words import whole_number
@@ -20,7 +21,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "study",
-        help="carved turns over a grid or a sample of inputs, as one table",
+        help="carved turns or simulated runs over a grid or a sample of inputs, as one table",
         description="Run a study. Its table goes where STUDY.toml says; an interrupted one goes on when started again.",
     )
     parser.add_argument("study", type=Path, metavar="STUDY.toml", help="what varies, what is fixed, and `out`")
@@ -40,6 +41,8 @@ def run(options: argparse.Namespace) -> int:
     from ..study import read_study, run_study
 
     study = read_study(options.study)
+    if options.figure is not None and "turn_radius_boot_m" not in study.columns:
+        raise ParameterError("--figure draws maps of carved turns; for simulated runs leave it out and use the table")
     _tell_state(study)
     try:
         with ending_is_an_interrupt(), Progress() as progress:

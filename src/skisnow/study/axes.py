@@ -57,7 +57,7 @@ class Axis:
         """
         if isinstance(value, dict):
             return cls._of_range(key, value)
-        values = value if isinstance(value, list) else [value]
+        values = value if isinstance(value, list) and not _is_one(key, value) else [value]
         if not values:
             raise ParameterError(f"{key.name} is an empty list; write at least one value")
         checked = tuple(key.of_kind(each) for each in values)
@@ -135,6 +135,11 @@ def require_count(n: int) -> None:
     """Refuse a study that nobody can wait for."""
     if n > MOST_POINTS:
         raise ParameterError(f"the study has {n} points; at most {MOST_POINTS} are allowed. Take fewer values")
+
+
+def _is_one(key: InputKey, value: list[Any]) -> bool:
+    """Whether a list is one value: three numbers."""
+    return key.kind == "three numbers" and not any(isinstance(each, list) for each in value)
 
 
 def _end(key: InputKey, table: Mapping[str, Any], name: str) -> float:

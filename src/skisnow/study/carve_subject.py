@@ -62,6 +62,10 @@ class CarveSubject:
         """The columns of results."""
         return RESULTS
 
+    def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
+        """The values of a table of the study by their names, which they have already."""
+        return dict(table)
+
     def require_sound(self, points: list[Point], fixed: Point) -> None:
         """Refuse a study that lacks an input, names the snow in two ways, or whose fixed ski or snow cannot be had."""
         carving = [point for point in points if point.get("at_rest") is not True]

@@ -29,6 +29,10 @@ class Subject(Protocol):
         """The columns of results."""
         ...
 
+    def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
+        """The values of a table of the study under the names of `keys`; a name that is none may stay."""
+        ...
+
     def require_sound(self, points: list[Point], fixed: Point) -> None:
         """Refuse points that cannot be a study: an input is missing, two say the same, what is fixed cannot be read."""
         ...

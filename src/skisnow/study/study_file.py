@@ -11,10 +11,11 @@ from ..errors import ParameterError
 from ..simulate.input_keys import InputKey, InputValue, nearest
 from .axes import Axis, grid_points, hypercube_points
 from .carve_subject import CarveSubject
-from .study import Point, Study, SubjectIn
+from .scenario_subject import ScenarioSubject
+from .study import Point, Study, Subject, SubjectIn
 
 FORMS: Final = ("grid", "latin_hypercube")
-TOP_KEYS: Final = ("out", "fixed", *FORMS)
+TOP_KEYS: Final = ("out", "scenario", "fixed", *FORMS)
 MOST_SEED: Final = 2**63 - 1
 
 
@@ -26,7 +27,7 @@ def read_study(path: str | Path, *, subject: SubjectIn = CarveSubject) -> Study:
     path
         STUDY.toml. Paths in it are relative to its folder.
     subject
-        What is studied.
+        What is studied where the file names no scenario.
 
     Raises
     ------
@@ -58,18 +59,28 @@ def _study(path: Path, values: Mapping[str, Any], subject: SubjectIn) -> Study:
     for key in values:
         if key not in TOP_KEYS:
             raise ParameterError(f"{key} is no key of a study. {nearest(key, TOP_KEYS)}")
-    asked = subject(path.parent)
+    asked = _subject(path, values, subject)
     form = _form(values)
-    fixed = _fixed(_table(values, "fixed"), asked.keys)
+    fixed = _fixed(asked.named(_table(values, "fixed")), asked.keys)
     varying = _table(values, form)
     own = ("n", "seed") if form == "latin_hypercube" else ()
-    axes = [_axis(form, name, value, asked.keys, fixed) for name, value in varying.items() if name not in own]
+    inputs = asked.named({name: value for name, value in varying.items() if name not in own})
+    axes = [_axis(form, name, value, asked.keys, fixed) for name, value in inputs.items()]
     if not axes:
         raise ParameterError(f"[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]")
     points = grid_points(axes) if form == "grid" else hypercube_points(axes, *_sample(varying))
     points = [{**fixed, **point} for point in points]
     asked.require_sound(points, fixed)
     return Study(path, _out(path, values), asked, tuple(axis.key.name for axis in axes), points)
+
+
+def _subject(path: Path, values: Mapping[str, Any], subject: SubjectIn) -> Subject:
+    if "scenario" not in values:
+        return subject(path.parent)
+    word = values["scenario"]
+    if not isinstance(word, str) or not word.strip():
+        raise ParameterError(f'scenario is {word!r}; it is a name or a file, such as scenario = "carved-46m"')
+    return ScenarioSubject(path.parent, word)
 
 
 def _form(values: Mapping[str, Any]) -> str:
@@ -91,7 +102,7 @@ def _fixed(table: Mapping[str, Any], keys: Mapping[str, InputKey]) -> Point:
     fixed = {}
     for name, value in table.items():
         _require_key("fixed", name, keys)
-        if isinstance(value, list | dict):
+        if isinstance(value, dict) or (isinstance(value, list) and keys[name].kind != "three numbers"):
             raise ParameterError(f"fixed.{name} is {value!r}; it takes one value. What varies stands in [grid]")
         fixed[name] = _in_range(keys[name], value)
     return fixed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -104,6 +105,8 @@ def _cell(value: Any) -> str:
         return ""
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, list | tuple):
+        return json.dumps(list(value))
     return value if isinstance(value, str) else repr(value)
 
 
@@ -116,6 +119,8 @@ def _value(name: str, cell: str, keys: Mapping[str, InputKey]) -> Any:
         return "" if name in ("warnings", "reason") else None
     if is_text:
         return cell
+    if cell.startswith("["):
+        return [float(each) for each in json.loads(cell)]
     if cell in ("true", "false"):
         return cell == "true"
     return int(cell) if name in keys and keys[name].kind == "whole number" else float(cell)

@@ -96,6 +96,11 @@ def scenario_names() -> tuple[str, ...]:
     return tuple(sorted(name.removesuffix(".toml") for name in there if name.endswith(".toml")))
 
 
+def scenario_place(name: str) -> Path:
+    """Where a built-in scenario lies."""
+    return Path(str(_BUILT_IN / f"{name}.toml"))
+
+
 def scenario_text(name: str) -> str:
     """The text of a built-in scenario, every key with where its value comes from.
 
