@@ -118,6 +118,21 @@ def test_run_without_a_step_says_so_and_leaves_no_figure_of_another(run: Run, tm
     assert not list((tmp_path / "figures").iterdir())
 
 
+def test_run_that_did_not_stay_finite_is_drawn_up_to_there(run: Run, tmp_path: Path) -> None:
+    place, velocity = run.place.copy(), run.velocity.copy()
+    place[-1], velocity[-1] = np.nan, np.nan
+    energies = {name: np.append(values[:-1], np.nan) for name, values in run.energies.items()}
+    broken = replace(run, place=place, velocity=velocity, energies=energies, outcome="not_finite")
+    summary = summary_of(broken) | {
+        "energies": dict.fromkeys(summary_of(run)["energies"]),
+        "energy_balance_error": None,
+    }
+    page = write_run_report(broken, summary, tmp_path).read_text(encoding="utf-8")
+    words = re.sub(r"base64,[^\"]*", "", page)
+    assert "not finite" in words
+    assert not re.search(r"\bnan\b", words)
+
+
 def test_run_that_never_touches_the_snow_is_drawn(run: Run, tmp_path: Path) -> None:
     above = {name: 0.0 * getattr(run.skis, name) for name in ("force_per_length", "shear_per_length")}
     skis = replace(run.skis, edge_depth=np.full_like(run.skis.edge_depth, -0.1), **above)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from skisnow.errors import ParameterError
 from skisnow.report.figures.track_band import TimedTrack
 from skisnow.report.tables.turn import contacts_table, ensemble_table, parameters_table
 from skisnow.report.turn_numbers import (
@@ -48,7 +49,7 @@ def ensemble() -> list[EnsembleRun]:
     radii = RADIUS * np.exp(0.02 * generator.standard_normal(9))
     runs = [circle_run(radius=float(radius)) for radius in radii]
     return [
-        EnsembleRun(0.2 * N_PER_MM3, 0.5 * N_PER_MM2, "tipped_over" if number == 4 else "finished", middle_track(run))
+        EnsembleRun(SNOW, "tipped_over" if number == 4 else "finished", middle_track(run))
         for number, run in enumerate(runs)
     ]
 
@@ -124,6 +125,12 @@ def test_distance_of_paths_and_width_of_a_band() -> None:
     assert band_width(nominal, tracks) == pytest.approx((0.05 * 1.8 * 2.0, 0.1 * 1.8 * 2.0))
     ended = [TimedTrack(track.time[:21], track.x[:21], track.y[:21]) for track in tracks]
     assert band_width(nominal, ended) == pytest.approx((0.09, 0.18))  # at 1 s, where they ended
+
+
+def test_too_little_to_compare_is_refused(chain: TurnChain, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="2 contacts and 2 runs"):
+        write_turn_report(replace(chain, ensemble=chain.ensemble[:2]), tmp_path)
+    assert not list(tmp_path.iterdir())
 
 
 def test_outcomes_are_counted(chain: TurnChain) -> None:

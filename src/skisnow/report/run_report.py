@@ -10,6 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from ..files import require_writable, write_file
+from ..simulate.carve_dict import finite
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .figures.drawing import pictured
 from .figures.style import journal_style
@@ -113,16 +114,16 @@ def _header(run: Run) -> Header:
 
 
 def _title(run: Run) -> str:
-    return f"{significant(run.run_length)} m in {significant(run.simulated_s)} s: {run.outcome.replace('_', ' ')}"
+    return f"{_number(run.run_length)} m in {_number(run.simulated_s)} s: {run.outcome.replace('_', ' ')}"
 
 
 def _hardness(run: Run) -> str:
-    return f"{significant(run.scenario.contact.snow.snow_hardness / N_PER_MM3)} N/mm³"
+    return f"{_number(run.scenario.contact.snow.snow_hardness / N_PER_MM3)} N/mm³"
 
 
 def _strength(run: Run) -> str:
     stress = run.scenario.contact.snow.failure_shear_stress
-    return f"{significant(None if stress is None else stress / N_PER_MM2)} N/mm²"
+    return f"{_number(None if stress is None else stress / N_PER_MM2)} N/mm²"
 
 
 def outcome_sentences(run: Run) -> list[Markup]:
@@ -132,28 +133,28 @@ def outcome_sentences(run: Run) -> list[Markup]:
     sentences.append(
         prose(
             "{length} m in {time} s, from {first} to {last} m/s, at most {most} m/s.",
-            length=significant(run.run_length), time=significant(run.simulated_s),
-            first=significant(float(run.speed[0])), last=significant(float(run.speed[-1])),
-            most=significant(float(np.nanmax(run.speed))),
+            length=_number(run.run_length), time=_number(run.simulated_s),
+            first=_number(float(run.speed[0])), last=_number(float(run.speed[-1])),
+            most=_number(float(np.nanmax(run.speed))),
         )
     )  # fmt: skip
     sentences.append(
         prose(
             "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m.",
-            first=significant(float(run.heading[0]) / DEGREE), last=significant(float(run.heading[-1]) / DEGREE),
-            radius=significant(float(np.median(radius)) if radius.size else None),
+            first=_number(float(run.heading[0]) / DEGREE), last=_number(float(run.heading[-1]) / DEGREE),
+            radius=_number(float(np.median(radius)) if radius.size else None),
         )
     )  # fmt: skip
     deepest = float(np.nanmax(run.skis.edge_depth)) / MM
-    sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=significant(deepest)))
+    sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)))
     return sentences + _balance(run)
 
 
 def _balance(run: Run) -> list[Markup]:
     error = run.energy_balance_error
-    if error is None:
+    if error is None or finite(error) is None:
         return []
-    return [prose("The balance of energy closes within {error} %.", error=significant(100.0 * error, 2))]
+    return [prose("The balance of energy closes within {error} %.", error=_number(100.0 * error, 2))]
 
 
 def _no_step() -> Markup:
@@ -164,14 +165,14 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
     """Programs, steps, time."""
     provenance = summary["provenance"]
     versions = ", ".join(f"{name} {number}" for name, number in provenance.get("versions", {}).items())
-    numbers = ", ".join(f"{name.replace('_', ' ')} {significant(value)}" for name, value in run.numbers.items())
+    numbers = ", ".join(f"{name.replace('_', ' ')} {_number(value)}" for name, value in run.numbers.items())
     rate = run.simulated_s / run.wall_s if run.wall_s > 0.0 else None
     return [
         prose("Programs: {versions}.", versions=versions or f"skisnow {version('skisnow')}"),
         prose(
             "{steps} ({rejected} rejected) in {wall} s without compiling: {rate} times real time. {numbers}.",
-            steps=counted(run.steps, "step"), rejected=whole(run.rejected_steps), wall=significant(run.wall_s),
-            rate=significant(rate), numbers=numbers,
+            steps=counted(run.steps, "step"), rejected=whole(run.rejected_steps), wall=_number(run.wall_s),
+            rate=_number(rate), numbers=numbers,
         ),
         prose(
             "Unrounded numbers: {summary}, {track}, and everything over time and along the skis in {file}.",
@@ -179,6 +180,11 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
             file=Markup("<code>run.nc</code>"),
         ),
     ]  # fmt: skip
+
+
+def _number(value: float | None, digits: int = 3) -> str:
+    """To a few digits; a dash for what is not finite."""
+    return significant(None if value is None else finite(value), digits)
 
 
 def _silent(_text: str) -> None:

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from ..errors import ParameterError
 from ..files import require_writable, write_file
 from ..simulate.scenario.values import scenario_values
 from .figures.drawing import Drawing, pictured
@@ -15,7 +16,7 @@ from .figures.run_along_ski import run_along_ski
 from .figures.run_grip import run_grip
 from .figures.runs_compared import runs_compared
 from .figures.style import journal_style
-from .figures.track_band import TimedTrack, track_band
+from .figures.track_band import FEWEST, TimedTrack, track_band
 from .numerals import significant
 from .run_report import write_pictures
 from .sheet import Header, Section, sheet
@@ -44,16 +45,15 @@ class EnsembleRun:
 
     Attributes
     ----------
-    snow_hardness, failure_shear_stress
-        H_V (N/m³) and S_f (N/m²) that were drawn for it.
+    snow
+        That was drawn for it.
     outcome
         How it ended.
     track
         Of the middle between the boots.
     """
 
-    snow_hardness: float
-    failure_shear_stress: float
+    snow: SnowProperties
     outcome: str
     track: TimedTrack
 
@@ -97,9 +97,16 @@ def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:
 
     Raises
     ------
+    ParameterError
+        There are fewer than two contacts, or too few runs for a band.
     OutputError
         A file cannot be written.
     """
+    if len(chain.runs) < 2 or len(chain.ensemble) < FEWEST:
+        raise ParameterError(
+            f"there are {len(chain.runs)} contacts and {len(chain.ensemble)} runs of the ensemble; the report needs 2 "
+            f"and {FEWEST} at least"
+        )
     folder = Path(folder)
     require_writable(folder)
     with journal_style():
@@ -123,14 +130,16 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
     )
     yield Drawing(
         "along_ski",
-        prose("Edge depth and force per length along both skis, {name}. White: no contact, or no force.", name=name),
+        prose(
+            "Edge depth and force per length along both skis, {name}. White: no contact, or no force.", name=html(name)
+        ),
         "Maps of edge depth and force per length over station and time.",
         run_along_ski(nominal),
         wide=True,
     )
     yield Drawing(
         "grip",
-        prose("Share of the shear strength S_f e that the side force uses, {name}.", name=name),
+        prose("Share of the shear strength S_f e that the side force uses, {name}.", name=html(name)),
         "Share of the shear strength used over station and time.",
         run_grip(nominal),
         wide=True,
@@ -140,7 +149,7 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
         prose(
             "The turn ({name}) over the uncertainty of the snow: tracks from above, and below how far each run lies "
             "beside and ahead of the nominal one at the same time.",
-            name=name,
+            name=html(name),
         ),
         "Band of tracks from above, and offsets over time.",
         track_band(middle_track(nominal), [run.track for run in chain.ensemble]),
@@ -167,7 +176,7 @@ def _header(chain: TurnChain) -> Header:
 
 def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
     by_name = {picture.name: picture for picture in pictures}
-    name, nominal = next(iter(chain.runs.items()))
+    nominal = next(iter(chain.runs.values()))
     contacts = html(
         "The hypoplastic contact remembers: snow that the forebody pressed stays down, and the afterbody runs in that "
         "groove at nearly its depth, so that its edge has snow to hold on to. The elastic contact springs back: the "
@@ -190,7 +199,9 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
             pictures=[by_name["contacts"]],
             tables=[contacts_table(chain.runs)],
         ),
-        Section("along-skis", f"Along the skis: {name}", pictures=[by_name["along_ski"], by_name["grip"]]),
+        Section(
+            "along-skis", "Along the skis, with the first contact", pictures=[by_name["along_ski"], by_name["grip"]]
+        ),
         Section(
             "ensemble",
             "Over the uncertainty of the snow",

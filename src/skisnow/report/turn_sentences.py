@@ -48,7 +48,7 @@ def _contact(name: str, run: Run) -> Markup:
     return prose(
         "{name}: {outcome} after {length} m and {time} s. The afterbody stands at {ratio} of the forebody's depth; "
         "the ski that carries more uses {grip} of its grip and slides across in {slides} % of the time.",
-        name=name,
+        name=html(name),
         outcome=run.outcome.replace("_", " "),
         length=significant(run.run_length),
         time=significant(run.simulated_s),
@@ -63,8 +63,8 @@ def _apart(chain: TurnChain) -> list[Markup]:
     return [
         prose(
             "The track of {name} leaves that of {first} by up to {distance} m.",
-            name=name,
-            first=first,
+            name=html(name),
+            first=html(first),
             distance=significant(greatest_distance(run, reference)),
         )
         for name, run in others

@@ -81,7 +81,7 @@ def _stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str
 
 def _closing(run: Run) -> str:
     error = run.energy_balance_error
-    if error is None:
-        return "nothing was turned over"
+    if error is None or not np.isfinite(error):
+        return "nothing was turned over" if error is None else "not finite at the end"
     over = significant(run.energy_turned_over)
     return f"closes within {significant(100.0 * error, 2)} % of {over} J turned over; dashed: the start"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -10,6 +11,7 @@ from matplotlib.lines import Line2D
 
 from ...simulate.scenario import Profile
 from ...units import MM
+from ..symbols import figure_text
 from .run_track import plan_axes, plan_height_mm, track_limits
 from .style import COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
 
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from ...simulate.run import Run
 
 FloatArray = npt.NDArray[np.float64]
+_SYMBOL: Final = re.compile(r"(?<!\w)([A-Za-z])_([A-Za-z0-9])(?!\w)")
 LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1, 2)))
 
 
@@ -48,8 +51,19 @@ def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure
     _distances(figure.add_subplot(grid[1, 0]), named)
     moment = 0.9 * min(run.simulated_s for run in runs.values()) if at is None else at
     _depths(figure.add_subplot(grid[1, 1]), named, moment)
-    legend_below(figure, [Line2D([], [], label=name, **_look(place)) for place, (name, _) in enumerate(named)])
+    legend_below(
+        figure, [Line2D([], [], label=mathtext(name), **_look(place)) for place, (name, _) in enumerate(named)]
+    )
     return figure
+
+
+def mathtext(name: str) -> str:
+    """A run's name for a figure, with its symbols set.
+
+    >>> mathtext("hypoplastic, k_u/H_V = 10")
+    'hypoplastic, $k_u$/$H_V$ = 10'
+    """
+    return _SYMBOL.sub(r"$\1_\2$", figure_text(name, longest=60))
 
 
 def _look(place: int) -> dict[str, Any]:
@@ -63,7 +77,7 @@ def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("way along the track (m)")
-    axes.set_ylabel(f"distance from the track (m)\nof {first}")
+    axes.set_ylabel(f"distance from the track (m)\nof {mathtext(first)}")
 
 
 def way(place: FloatArray) -> FloatArray:

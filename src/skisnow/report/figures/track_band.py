@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 QUANTILES: Final = (0.05, 0.25, 0.5, 0.75, 0.95)
-_FEWEST: Final = 3
+FEWEST: Final = 3
+"""Runs that make a band."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,7 +78,7 @@ def offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[FloatArr
 def band_of(values: FloatArray) -> FloatArray:
     """The 5, 25, 50, 75 and 95 % quantiles at each time, (5, n); nan where fewer than three runs are left."""
     band = np.full((len(QUANTILES), values.shape[1]), np.nan)
-    enough = np.isfinite(values).sum(axis=0) >= _FEWEST
+    enough = np.isfinite(values).sum(axis=0) >= FEWEST
     if enough.any():
         band[:, enough] = np.nanquantile(values[:, enough], QUANTILES, axis=0)
     return band

@@ -66,8 +66,8 @@ def contacts_table(runs: Mapping[str, Run]) -> Table:
         ),
         [_contact(name, run) for name, run in runs.items()],
         note="Afterbody / forebody: mean edge depth of the contact behind the boot over that before it, of the ski "
-        "that carries more, median over the second half. Share of grip: of S_f ∫ e ds of that ski, median over the run; it "
-        "slides across where the share is above 0.99.",
+        "that carries more, median over the second half. Share of grip: of S_f ∫ e ds of that ski, median over the "
+        "run; it slides across where the share is above 0.99.",
     )
 
 
@@ -93,8 +93,8 @@ def ensemble_table(ensemble: Sequence[EnsembleRun]) -> Table:
     rows = []
     for outcome, count in counts.most_common():
         those = [run for run in ensemble if run.outcome == outcome]
-        hardness = [run.snow_hardness / N_PER_MM3 for run in those]
-        stress = [run.failure_shear_stress / N_PER_MM2 for run in those]
+        hardness = [run.snow.snow_hardness / N_PER_MM3 for run in those]
+        stress = [(run.snow.failure_shear_stress or 0.0) / N_PER_MM2 for run in those]
         rows.append((outcome.replace("_", " "), count, (min(hardness), max(hardness)), (min(stress), max(stress))))
     return Table(
         "ensemble",

@@ -1,0 +1,48 @@
+"""Snows drawn from a measured one have the intervals that they were drawn from."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.snow import SnowProperties
+from skisnow.snow.drawn import drawn_snows
+
+SNOW = SnowProperties(
+    2.0e8, 1.4e5, source="site X", snow_hardness_interval=(1.0e8, 4.0e8), failure_shear_stress_interval=(1.0e5, 1.8e5)
+)
+
+
+def test_the_intervals_come_back() -> None:
+    """Of 40,000 draws: the 2.5 % quantile of a normal is known to 0.7 % of its half-width (1.96 × 0.0134 × 0.27)."""
+    snows = drawn_snows(SNOW, 40_000, np.random.default_rng(1))
+    hardness = np.array([snow.snow_hardness for snow in snows])
+    stress = np.array([snow.failure_shear_stress for snow in snows])
+    assert np.quantile(hardness, [0.025, 0.5, 0.975]) == pytest.approx([1.0e8, 2.0e8, 4.0e8], rel=0.04)
+    assert np.quantile(stress, [0.025, 0.5, 0.975]) == pytest.approx([1.0e5, 1.4e5, 1.8e5], rel=0.02)
+    assert abs(np.corrcoef(np.log(hardness), stress)[0, 1]) < 0.02
+    assert "site X" in snows[0].source
+
+
+def test_stress_stays_above_zero_where_its_interval_does_not() -> None:
+    poor = replace(SNOW, failure_shear_stress_interval=(-1.0e5, 1.0e5))
+    stress = np.array([s.failure_shear_stress for s in drawn_snows(poor, 20_000, np.random.default_rng(2))])
+    assert stress.min() > 0.0
+    # half a normal distribution with standard deviation 1e5/1.96: its mean is that times √(2/π)
+    assert stress.mean() == pytest.approx(1.0e5 / 1.96 * np.sqrt(2.0 / np.pi), rel=0.02)
+
+
+def test_the_generator_decides() -> None:
+    first, again, other = (drawn_snows(SNOW, 3, np.random.default_rng(seed)) for seed in (5, 5, 6))
+    assert first == again
+    assert first != other
+
+
+def test_snow_without_interval_is_refused() -> None:
+    with pytest.raises(ParameterError, match="no interval of S_f"):
+        drawn_snows(replace(SNOW, failure_shear_stress_interval=None), 3, np.random.default_rng(1))
+    with pytest.raises(ParameterError, match="no snow above 0"):
+        drawn_snows(replace(SNOW, failure_shear_stress_interval=(-2.0, 0.0)), 3, np.random.default_rng(1))
