@@ -56,7 +56,7 @@ def ensemble() -> list[EnsembleRun]:
 
 @pytest.fixture(scope="module")
 def chain() -> TurnChain:
-    runs = {"hypoplastic, k_u/H_V = 10": circle_run(), "elastic": circle_run(radius=1.2 * RADIUS)}
+    runs = {"hypoplastic, k_u / H_V = 10": circle_run(), "elastic": circle_run(radius=1.2 * RADIUS)}
     return TurnChain(
         campaign="A <b> campaign", site="site C", synthetic=True, snow=SNOW, runs=runs, ensemble=ensemble(), seed=1
     )

@@ -105,7 +105,7 @@ def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture]) 
 def _header(run: Run) -> Header:
     scenario, ratio = run.scenario, run.scenario.contact.unloading_ratio
     facts = [
-        ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u/H_V {significant(ratio)}")),
+        ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}")),
         ("Source of the snow", scenario.contact.snow.source),
         ("Skis", f"{scenario.ski.name}, edge angle {significant(scenario.sledge.edge_angle / DEGREE)}°"),
         ("Computed", f"skisnow {version('skisnow')}"),

@@ -48,7 +48,7 @@ def _contact(name: str, run: Run) -> Markup:
     return prose(
         "{name}: {outcome} after {length} m and {time} s. The afterbody stands at {ratio} of the forebody's depth; "
         "the ski that carries more uses {grip} of its grip and slides across in {slides} % of the time.",
-        name=html(name),
+        name=html(name[:1].upper() + name[1:]),
         outcome=run.outcome.replace("_", " "),
         length=significant(run.run_length),
         time=significant(run.simulated_s),
@@ -62,7 +62,7 @@ def _apart(chain: TurnChain) -> list[Markup]:
     (first, reference), *others = chain.runs.items()
     return [
         prose(
-            "The track of {name} leaves that of {first} by up to {distance} m.",
+            "The tracks with the contacts “{name}” and “{first}” lie up to {distance} m apart.",
             name=html(name),
             first=html(first),
             distance=significant(greatest_distance(run, reference)),

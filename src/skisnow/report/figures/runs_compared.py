@@ -60,8 +60,8 @@ def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure
 def mathtext(name: str) -> str:
     """A run's name for a figure, with its symbols set.
 
-    >>> mathtext("hypoplastic, k_u/H_V = 10")
-    'hypoplastic, $k_u$/$H_V$ = 10'
+    >>> mathtext("hypoplastic, k_u / H_V = 10")
+    'hypoplastic, $k_u$ / $H_V$ = 10'
     """
     return _SYMBOL.sub(r"$\1_\2$", figure_text(name, longest=60))
 
