@@ -1,0 +1,224 @@
+"""`skisnow simulate` as a user meets it. The simulator itself is replaced by a straight run in closed form."""
+
+import csv
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import jsonschema
+import pytest
+
+import skisnow
+from skisnow import Run, Scenario
+from skisnow.cli import main
+
+from ..simulate.straight_run import STRAIGHT, straight_run
+
+SCHEMA = json.loads((files(skisnow.simulate) / "schemas" / "summary.schema.json").read_text(encoding="utf-8"))
+ASKED = ["carved-46m", *(word for key, value in STRAIGHT.items() for word in ("--set", f"{key}={value}"))]
+LENGTH = 10.0 + 2.0 * 9.81 * (0.17364817766693033 - 0.05 * 0.984807753012208)  # 2 s from 5 m/s down 10°, μ = 0.05
+Printed = pytest.CaptureFixture[str]
+Simulate = Callable[..., Run]
+Replaced = Callable[[Simulate], None]
+
+
+@pytest.fixture
+def replaced(monkeypatch: pytest.MonkeyPatch) -> Replaced:
+    def put(simulate: Simulate) -> None:
+        module = ModuleType("skisnow.simulate.simulated_run")
+        vars(module)["simulated_run"] = simulate
+        monkeypatch.setitem(sys.modules, "skisnow.simulate.simulated_run", module)
+
+    put(straight_run)
+    return put
+
+
+def interrupted(scenario: Scenario, *, progress: Callable[[float, float], None] | None = None) -> Run:
+    return straight_run(scenario, progress=progress, outcome="interrupted", share=0.5)
+
+
+def answer(words: list[str], printed: Printed) -> Any:
+    assert main(["simulate", *words, "--json"]) == 0
+    found = json.loads(printed.readouterr().out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
+    jsonschema.validate(found, SCHEMA)
+    return found
+
+
+@pytest.mark.usefixtures("replaced")
+def test_json_is_the_summary_alone(capsys: Printed) -> None:
+    found = answer(ASKED, capsys)
+    assert found["outcome"] == "finished"
+    assert found["run_length_m"] == pytest.approx(LENGTH, rel=1e-12)
+    assert found["scenario"]["run"]["duration_s"] == 2.0
+    assert "verification" not in found
+
+
+@pytest.mark.usefixtures("replaced")
+def test_summary_says_in_words_what_came_out(capsys: Printed) -> None:
+    assert main(["simulate", *ASKED]) == 0
+    out, err = capsys.readouterr()
+    told = {line[:20].strip(): line[20:].strip() for line in out.splitlines()[1:] if line}
+    assert out.startswith("carved-46m: the simulated time is over (finished)\n")
+    assert told["run length"] == "12.44 m in 2.000 s"
+    assert told["speed"] == "7.44 m/s at the end, 7.44 m/s at most"
+    assert told["least turn radius"] == "none, the run is straight"
+    assert told["energy balance"].startswith("closes within ")
+    assert told["steps"] == "1000, 7 rejected"
+    assert told["computed in"] == "0.500 s without compiling, 4.00 times real time"
+    assert err == ""
+
+
+@pytest.mark.usefixtures("replaced")
+def test_folder_holds_summary_track_file_and_report(tmp_path: Path, capsys: Printed) -> None:
+    folder = tmp_path / "new" / "run"
+    assert main(["simulate", *ASKED, "--out", str(folder)]) == 0
+    assert {"summary.json", "track.csv", "run.nc", "report.html", "figures"} == {each.name for each in folder.iterdir()}
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    jsonschema.validate(summary, SCHEMA)
+    with (folder / "track.csv").open(newline="", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    assert float(rows[-1]["x_m"]) == summary["end"]["x_m"] == pytest.approx(LENGTH, rel=1e-12)
+    assert str(folder / "report.html") in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("replaced")
+def test_without_out_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["simulate", *ASKED]) == 0
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.usefixtures("replaced")
+def test_verify_repeats_the_run_finer(capsys: Printed) -> None:
+    """The made-up run misses by 40 mm / elements: from 40 to 80 its end moves by 0.05 cm."""
+    found = answer([*ASKED, "--verify"], capsys)["verification"]
+    assert found["solver.elements"]["end_moves_cm"] == pytest.approx(0.05, rel=1e-9)
+    assert main(["simulate", *ASKED, "--verify"]) == 0
+    (line,) = [line for line in capsys.readouterr().out.splitlines() if "solver.elements" in line]
+    assert line.split(maxsplit=1)[1] == "40.0 to 80.0: the end moves by 0.0500 cm"
+
+
+def test_interrupted_run_is_kept(tmp_path: Path, capsys: Printed, replaced: Replaced) -> None:
+    replaced(interrupted)
+    assert main(["simulate", *ASKED, "--out", str(tmp_path), "--verify"]) == 130
+    out, _ = capsys.readouterr()
+    assert out.startswith("carved-46m: interrupted (interrupted)\na longer breath\n")
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    assert (summary["outcome"], summary["simulated_s"]) == ("interrupted", 1.0)
+    assert "verification" not in summary
+    assert (tmp_path / "report.html").is_file()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_run_that_the_system_ends_is_kept_and_says_so(tmp_path: Path, replaced: Replaced) -> None:
+    def ended(scenario: Scenario, **told: Any) -> Run:
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+            signal.pause()
+        except KeyboardInterrupt:
+            return interrupted(scenario, **told)
+        raise AssertionError("not reached")
+
+    replaced(ended)
+    assert main(["simulate", *ASKED, "--json", "--out", str(tmp_path)]) == 143
+    assert (tmp_path / "track.csv").is_file()
+
+
+@pytest.mark.parametrize("outcome", ["tipped_over", "airborne", "sunk", "end_of_slope", "step_too_small", "not_finite"])
+def test_every_outcome_is_an_answer_with_its_remedy(outcome: Any, capsys: Printed, replaced: Replaced) -> None:
+    replaced(lambda scenario, **told: straight_run(scenario, outcome=outcome, **told))
+    assert main(["simulate", *ASKED]) == 0
+    first, second, *_ = capsys.readouterr().out.splitlines()
+    assert first.endswith(f"({outcome})")
+    assert second == "a longer breath"
+
+
+def test_progress_tells_the_real_time_factor(
+    capsys: Printed, replaced: Replaced, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = 100.0
+    for module in ("simulate", "progress"):
+        monkeypatch.setattr(f"skisnow.cli.{module}.time", SimpleNamespace(monotonic=lambda: now))
+
+    def slow(scenario: Scenario, *, progress: Callable[[float, float], None]) -> Run:
+        nonlocal now
+        progress(0.0, 0.0)
+        now += 4.0
+        progress(1.0, 0.5)
+        return straight_run(scenario)
+
+    replaced(slow)
+    assert main(["simulate", *ASKED]) == 0
+    assert "1.00 s simulated, 50 %, 0.25 times real time" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("replaced")
+def test_warnings_go_to_stderr_and_into_the_summary(capsys: Printed) -> None:
+    words = [*ASKED, "--set", "S_f_N_per_mm2=0.9"]
+    assert main(["simulate", *words, "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert "warning: a simulated run: failure shear stress S_f 0.9 N/mm² is outside" in err
+    assert len(json.loads(out)["warnings"]) == 1
+
+
+@pytest.mark.usefixtures("replaced")
+def test_file_and_its_hash(tmp_path: Path, capsys: Printed, monkeypatch: pytest.MonkeyPatch) -> None:
+    from skisnow.simulate.scenario import scenario_text
+
+    monkeypatch.chdir(tmp_path)
+    Path("mine.toml").write_text(scenario_text("carved-46m"), encoding="utf-8")
+    found = answer(["mine.toml", *ASKED[1:]], capsys)
+    assert list(found["provenance"]["files"]) == ["mine.toml"]
+
+
+def test_list_names_the_built_in_scenarios_and_prints_one(capsys: Printed) -> None:
+    assert main(["simulate", "--list"]) == 0
+    assert capsys.readouterr().out.split() == ["carved-46m", "carver-42m", "giant-slalom-67m"]
+    assert main(["simulate", "carver-42m", "--list"]) == 0
+    assert 'published = "race-piste"' in capsys.readouterr().out
+    assert main(["simulate", "carver-42", "--list"]) == 1
+    assert "Is carver-42m meant?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["carved-46"], "Is carved-46m meant?"),
+        (["nowhere.toml"], "nowhere.toml cannot be read"),
+        (["carved-46m", "--set", "mass_kg"], "changes nothing; write section.key=value"),
+        (["carved-46m", "--set", "mas_kg=3"], "Is sledge.mass_kg meant?"),
+        (["carved-46m", "--set", "mass_kg=0"], "sledge.mass_kg is 0; allowed is above 0 to 1000 kg"),
+        (["carved-46m", "--set", "edge_angle_deg=90"], "sledge.edge_angle_deg is 90; allowed is from -85 to 85 °"),
+        (["carved-46m", "--set", "step_ms=1000"], "solver.step_ms is 1000; allowed is from 0.001 to 5 ms"),
+    ],
+)
+def test_bad_input_is_refused_in_a_sentence(words: list[str], told: str, capsys: Printed) -> None:
+    assert main(["simulate", *words]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert told in err
+
+
+def test_out_that_cannot_be_written_is_told_before_the_work(
+    tmp_path: Path, capsys: Printed, replaced: Replaced
+) -> None:
+    def never(*_: object, **__: object) -> Run:
+        raise AssertionError("simulated all the same")
+
+    replaced(never)
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    assert main(["simulate", *ASKED, "--out", str(tmp_path / "file")]) == 1
+    assert "cannot be written" in capsys.readouterr().err
+
+
+def test_scenario_is_needed(capsys: Printed) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["simulate"])
+    assert left.value.code == 2
+    assert "--list names them" in capsys.readouterr().err
