@@ -1,0 +1,80 @@
+"""The page on scenarios names every key and every entry of the JSON; the files and studies of the pages can be read."""
+
+import json
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, get_args
+
+import pytest
+
+import skisnow
+from skisnow.simulate.input_keys import InputKey
+from skisnow.simulate.run import Outcome
+from skisnow.simulate.scenario import read_scenario, scenario_file
+from skisnow.simulate.scenario.keys import SCENARIO_KEYS
+from skisnow.simulate.track_table import COLUMNS
+from skisnow.study import read_study
+from skisnow.study.scenario_subject import RESULTS
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE = (DOCS / "files" / "scenario.md").read_text(encoding="utf-8")
+HOW_TO = (DOCS / "how-to" / "simulate.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("key", SCENARIO_KEYS.values(), ids=lambda key: key.name)
+def test_every_key_is_told_with_unit_range_default_origin_and_meaning(key: InputKey) -> None:
+    (row,) = [line for line in PAGE.splitlines() if line.startswith(f"| `{key.name}` |")]
+    unit, allowed, default, origin, meaning = (cell.strip() for cell in row.split("|")[2:-1])
+    assert (unit, origin, meaning) == (key.unit, key.origin, key.meaning)
+    assert allowed == ("a text" if key.kind == "text" and not key.choices else key.allowed)
+    told = "none" if key.default is None else str(key.default).lower()
+    assert default.strip("`") in (told, told.removesuffix(".0"))
+
+
+def test_no_other_key_is_told() -> None:
+    told = [line.split("`")[1] for line in PAGE.splitlines() if line.startswith("| `") and "." in line.split("`")[1]]
+    files = {"summary.json", "track.csv", "run.nc", "report.html"}
+    assert [name for name in told if name not in files] == list(SCENARIO_KEYS)
+
+
+def keys_of(schema: Any) -> Iterator[str]:
+    if isinstance(schema, dict):
+        yield from schema.get("properties", {})
+        for part in schema.values():
+            yield from keys_of(part)
+
+
+def test_every_key_of_the_summary_and_every_column_is_told() -> None:
+    path = Path(skisnow.__file__).parent / "simulate/schemas/summary.schema.json"
+    schema = json.loads(path.read_text(encoding="utf-8"))
+    del schema["properties"]["scenario"]["properties"]  # the table's
+    assert {key for key in (*keys_of(schema), *COLUMNS, *RESULTS) if f"`{key}`" not in PAGE} == set()
+
+
+@pytest.mark.parametrize("outcome", get_args(Outcome))
+def test_every_outcome_is_told(outcome: str) -> None:
+    assert f"| `{outcome}` |" in PAGE
+
+
+def test_file_of_the_page_is_the_built_in_scenario(tmp_path: Path) -> None:
+    (block,) = [part.split("```")[0] for part in PAGE.split("```toml\n")[1:]]
+    (tmp_path / "mine.toml").write_text(block, encoding="utf-8")
+    assert scenario_file(tmp_path / "mine.toml").values == scenario_file("carved-46m").values
+
+
+def test_commands_of_the_how_to_change_what_can_be_changed() -> None:
+    from skisnow.simulate.scenario.given import change_of
+
+    lines = [line for line in HOW_TO.splitlines() if line.startswith("skisnow simulate") and "--set" in line]
+    assert len(lines) == 3
+    for line in lines:
+        changes = dict(change_of(part.strip()) for part in line.split("--set")[1:])
+        read_scenario(line.split()[2], changes=changes)
+
+
+def test_study_of_the_how_to_can_be_read(tmp_path: Path) -> None:
+    (block,) = [part.split("```")[0] for part in HOW_TO.split("```toml\n")[1:] if "[grid]" in part]
+    tomllib.loads(block)
+    (tmp_path / "runs.toml").write_text(block, encoding="utf-8")
+    assert len(read_study(tmp_path / "runs.toml").points) == 25
