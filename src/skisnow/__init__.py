@@ -18,6 +18,8 @@ The public names, loaded when first used:
     A ski from its file or from the catalogue.
 ``carve``, ``rest``, ``Equilibrium``
     A ski in snow under a load, carving steadily or at rest.
+``read_scenario``, ``scenario_names``, ``Scenario``, ``Run``
+    A scenario from its file or a built-in one, and what comes out of it.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 """
@@ -32,7 +34,7 @@ if TYPE_CHECKING:
     from .field import Campaign, check_campaign, read_campaign, write_reference
     from .field.store import Store
     from .report import write_report
-    from .simulate import Equilibrium, carve, rest
+    from .simulate import Equilibrium, Run, Scenario, carve, read_scenario, rest, scenario_names
     from .ski import Ski, read_ski, ski_names
     from .snow import SnowProperties, published_names, published_snow, snow_from_results
     from .statistics import regress
@@ -41,6 +43,8 @@ __all__ = [
     "Analysis",
     "Campaign",
     "Equilibrium",
+    "Run",
+    "Scenario",
     "Ski",
     "SnowProperties",
     "Store",
@@ -50,10 +54,12 @@ __all__ = [
     "published_names",
     "published_snow",
     "read_campaign",
+    "read_scenario",
     "read_ski",
     "regress",
     "rest",
     "results_dict",
+    "scenario_names",
     "ski_names",
     "snow_from_results",
     "write_reference",
@@ -65,7 +71,7 @@ _ROOMS = {
     "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
     "field.store": ("Store",),
     "report": ("write_report",),
-    "simulate": ("Equilibrium", "carve", "rest"),
+    "simulate": ("Equilibrium", "Run", "Scenario", "carve", "read_scenario", "rest", "scenario_names"),
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),
     "statistics": ("regress",),
