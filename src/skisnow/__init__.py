@@ -18,8 +18,8 @@ The public names, loaded when first used:
     A ski from its file or from the catalogue.
 ``carve``, ``rest``, ``Equilibrium``
     A ski in snow under a load, carving steadily or at rest.
-``read_scenario``, ``scenario_names``, ``Scenario``, ``Run``
-    A scenario from its file or a built-in one, and what comes out of it.
+``read_scenario``, ``scenario_names``, ``Scenario``, ``simulated_run``, ``Run``
+    A sledge on two flexible skis: a scenario from its file or a built-in one, and the run that comes out of it.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 """
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from .field.store import Store
     from .report import write_report
     from .simulate import Equilibrium, Run, Scenario, carve, read_scenario, rest, scenario_names
+    from .simulate.simulated_run import simulated_run
     from .ski import Ski, read_ski, ski_names
     from .snow import SnowProperties, published_names, published_snow, snow_from_results
     from .statistics import regress
@@ -60,6 +61,7 @@ __all__ = [
     "rest",
     "results_dict",
     "scenario_names",
+    "simulated_run",
     "ski_names",
     "snow_from_results",
     "write_reference",
@@ -72,6 +74,7 @@ _ROOMS = {
     "field.store": ("Store",),
     "report": ("write_report",),
     "simulate": ("Equilibrium", "Run", "Scenario", "carve", "read_scenario", "rest", "scenario_names"),
+    "simulate.simulated_run": ("simulated_run",),
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),
     "statistics": ("regress",),
