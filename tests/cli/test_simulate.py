@@ -77,13 +77,17 @@ def test_summary_says_in_words_what_came_out(capsys: Printed) -> None:
 @pytest.mark.usefixtures("replaced")
 def test_folder_holds_summary_track_file_and_report(tmp_path: Path, capsys: Printed) -> None:
     folder = tmp_path / "new" / "run"
-    assert main(["simulate", *ASKED, "--out", str(folder)]) == 0
+    assert main(["simulate", *ASKED, "--verify", "--out", str(folder)]) == 0
     assert {"summary.json", "track.csv", "run.nc", "report.html", "figures"} == {each.name for each in folder.iterdir()}
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     jsonschema.validate(summary, SCHEMA)
     with (folder / "track.csv").open(newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     assert float(rows[-1]["x_m"]) == summary["end"]["x_m"] == pytest.approx(LENGTH, rel=1e-12)
+    assert summary["verification"]["solver.elements"]["now"] == 80.0
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "End moves by" in page  # of the table of what was computed finer
+    assert "sledge.stance_width_m" in page
     assert str(folder / "report.html") in capsys.readouterr().err
 
 
