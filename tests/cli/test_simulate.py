@@ -64,7 +64,7 @@ def test_summary_says_in_words_what_came_out(capsys: Printed) -> None:
     assert main(["simulate", *ASKED]) == 0
     out, err = capsys.readouterr()
     told = {line[:20].strip(): line[20:].strip() for line in out.splitlines()[1:] if line}
-    assert out.startswith("carved-46m: the simulated time is over (finished)\n")
+    assert out.startswith("carved-46m: finished\n")
     assert told["run length"] == "12.44 m in 2.000 s"
     assert told["speed"] == "7.44 m/s at the end, 7.44 m/s at most"
     assert told["least turn radius"] == "none, the run is straight"
@@ -112,7 +112,7 @@ def test_interrupted_run_is_kept(tmp_path: Path, capsys: Printed, replaced: Repl
     replaced(interrupted)
     assert main(["simulate", *ASKED, "--out", str(tmp_path), "--verify"]) == 130
     out, _ = capsys.readouterr()
-    assert out.startswith("carved-46m: interrupted (interrupted)\na longer breath\n")
+    assert out.startswith("carved-46m: interrupted\na longer breath\n")
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     assert (summary["outcome"], summary["simulated_s"]) == ("interrupted", 1.0)
     assert "verification" not in summary
@@ -139,7 +139,7 @@ def test_every_outcome_is_an_answer_with_its_remedy(outcome: Any, capsys: Printe
     replaced(lambda scenario, **told: straight_run(scenario, outcome=outcome, **told))
     assert main(["simulate", *ASKED]) == 0
     first, second, *_ = capsys.readouterr().out.splitlines()
-    assert first.endswith(f"({outcome})")
+    assert first == f"carved-46m: {outcome.replace('_', ' ')}"
     assert second == "a longer breath"
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from .numerals import significant
 
@@ -10,19 +10,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 Json = dict[str, Any]
-
-OUTCOMES: Final = {
-    "finished": "the simulated time is over",
-    "distance_reached": "the run length is reached",
-    "end_of_slope": "the slope ends here",
-    "tipped_over": "the sledge tipped over",
-    "airborne": "both skis left the snow",
-    "sunk": "the snow is too soft to float on",
-    "step_too_small": "the time step became too small",
-    "not_finite": "the numbers ceased to be finite",
-    "interrupted": "interrupted",
-}
-"""What each outcome means."""
 
 
 def simulate_summary(summary: Mapping[str, Any], *, title: str) -> str:
@@ -35,7 +22,7 @@ def simulate_summary(summary: Mapping[str, Any], *, title: str) -> str:
     title
         What the scenario is called.
     """
-    lines = [f"{title}: {OUTCOMES[summary['outcome']]} ({summary['outcome']})"]
+    lines = [f"{title}: {summary['outcome'].replace('_', ' ')}"]
     if summary["remedy"]:
         lines.append(summary["remedy"])
     width = max(len(name) for name, _ in _rows(summary))
