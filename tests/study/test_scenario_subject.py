@@ -72,6 +72,20 @@ def test_table_has_every_key_and_comes_back_as_it_was(tmp_path: Path) -> None:
     assert back.rows == table.rows
 
 
+def test_two_workers_write_the_bytes_of_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the simulator itself: workers are processes of their own."""
+    monkeypatch.delitem(sys.modules, "skisnow.simulate.simulated_run")
+    tables = []
+    for workers in (1, 2):
+        folder = tmp_path / str(workers)
+        folder.mkdir()
+        path = study_file(folder, TEXT.replace("duration_s = 2", "duration_s = 0.03").replace("[0, 10]", "[10]"))
+        run_study(read_study(path), workers=workers)
+        tables.append((folder / "runs.csv").read_bytes())
+    assert tables[0] == tables[1]
+    assert tables[0].count(b"finished") == 3
+
+
 def test_study_without_one_good_point_is_refused_before_the_work(tmp_path: Path) -> None:
     text = TEXT.replace("[0, 10]", "[80, 81]")
     with pytest.raises(ParameterError, match=r"slope\.angle_deg is 80"):
