@@ -10,7 +10,7 @@ SEED ?= 1
 .PHONY: help demo test test-all lint docs bench clean
 
 help:
-	@echo "make demo      a synthetic campaign to snow parameters and a report in $(DEMO)/"
+	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, with reports in $(DEMO)/"
 	@echo "make test      the tests that take minutes, not hours"
 	@echo "make test-all  those and the long ones"
 	@echo "make lint      ruff, mypy, import-linter"
@@ -37,8 +37,9 @@ demo: $(VENV)/.skisnow
 	rm -rf $(DEMO)
 	$(BIN)/skisnow reference $(DEMO)/campaign --seed $(SEED)
 	$(BIN)/skisnow analyse $(DEMO)/campaign --out $(DEMO)/results
+	$(BIN)/python examples/campaign_to_turn.py $(DEMO)/results/results.json $(DEMO)/turn
 	@echo
-	@echo "Open $(DEMO)/results/report.html in a browser."
+	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser."
 
 test: $(VENV)/.skisnow-test
 	$(BIN)/python -m pytest -n 2 -q

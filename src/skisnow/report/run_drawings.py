@@ -27,8 +27,8 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
     yield Drawing(
         "track",
         prose(
-            "The run from above, the same scale along both axes. Below, {length} m of it, large: the grooves in their "
-            "true width.",
+            "The run from above, the same scale along both axes. Below, the grooves over {length} m at half time: "
+            "along the track of the loaded edge in metres, across it in millimetres.",
             length=significant(CUTOUT, 2),
         ),
         f"Tracks of both skis from above, {significant(run.run_length)} m long, and their grooves.",

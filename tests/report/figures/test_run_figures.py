@@ -16,7 +16,7 @@ from skisnow.report.figures.run_along_ski import run_along_ski
 from skisnow.report.figures.run_energies import run_energies, stacked_energies
 from skisnow.report.figures.run_grip import run_grip, used_share, used_share_of_skis
 from skisnow.report.figures.run_motion import drawn_radius, run_motion
-from skisnow.report.figures.run_track import groove_corners, run_track
+from skisnow.report.figures.run_track import beside_track, groove_corners, run_track
 from skisnow.report.figures.runs_compared import distance_to_path, loaded_ski, runs_compared, way
 from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
 from skisnow.report.figures.track_band import TimedTrack, band_of, offsets, track_band
@@ -55,18 +55,32 @@ def test_track_is_drawn_down_the_fall_line_with_the_left_ski_on_the_left(run: Ru
     assert len(np.asarray(marks.get_xdata())) == 5  # 0 to 4 s
 
 
-def test_groove_is_drawn_in_its_width(run: Run) -> None:
-    corners = groove_corners(run)
-    across = np.linalg.norm(corners[:, 0] - corners[:, 3], axis=1)
-    along = np.linalg.norm(corners[:, 0] - corners[:, 1], axis=1)
-    assert across == pytest.approx(run.groove.width)
-    assert along == pytest.approx(np.full(len(along), run.numbers["line_spacing_m"]))
+def test_groove_lies_where_it_was_left() -> None:
+    """A track along y: left of it is -x. And on a circle to the left, the middle is on the left, by R less R'."""
+    track = np.stack([np.full(11, 2.0), np.linspace(0.0, 5.0, 11), np.zeros(11)], axis=1)
+    way, aside = beside_track(np.array([[1.7, 3.1, 0.0], [2.4, 1.0, 0.0]]), track, track[4])
+    assert way == pytest.approx([1.1, -1.0])
+    assert aside == pytest.approx([0.3, -0.4])
+    angle = np.linspace(0.0, 1.0, 2001)
+    circle = np.stack([12.0 * np.sin(angle), 12.0 * (1.0 - np.cos(angle)), 0.0 * angle], axis=1)
+    inside = np.array([[11.9 * np.sin(0.5), 12.0 - 11.9 * np.cos(0.5), 0.0]])
+    way, aside = beside_track(inside, circle, circle[0])
+    assert way == pytest.approx([6.0], abs=1e-4)
+    assert aside == pytest.approx([0.1], abs=1e-5)
+
+
+def test_groove_is_drawn_in_its_width_and_depth(run: Run) -> None:
+    (corners,) = groove_corners(np.array([1.0]), np.array([0.01]), np.array([0.004]), 0.02)
+    assert corners.min(axis=0) == pytest.approx([0.99, 8.0])  # m along, mm across
+    assert corners.max(axis=0) == pytest.approx([1.01, 12.0])
     with journal_style():
         figure = run_track(run)
-    detail = axes_of(figure)[1]
-    pieces = next(drawn for drawn in detail.collections if isinstance(drawn, PolyCollection))
-    colours = np.asarray(pieces.get_array())
-    assert 5.0 < colours.max() < 50.0  # mm
+    for ski, axes in enumerate(axes_of(figure)[1:]):
+        pieces = next(drawn for drawn in axes.collections if isinstance(drawn, PolyCollection))
+        assert len(pieces.get_paths()) > 3
+        expected = run.skis.depth[len(run.time) // 2, ski] * 0.9 * 1e3
+        assert np.median(np.asarray(pieces.get_array())) == pytest.approx(expected, rel=0.1)  # mm
+        assert ("left", "right")[ski] in axes.get_title(loc="left")
 
 
 def test_maps_along_the_ski_have_time_across_and_the_tip_up(run: Run) -> None:

@@ -16,6 +16,8 @@ from ...units import MM
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -30,22 +32,23 @@ CUTOUT: Final = 2.0
 _MARGIN: Final = 0.6
 _LARGEST_MM, _SMALLEST_MM = 130.0, 32.0
 _FRAME_MM: Final = 38.0
-_SIDES_MM: Final = 38.0
-"""What axis and colour bar take at the sides of the large piece."""
+_DETAIL_MM: Final = 38.0
+_LEAST_REACH: Final = 2.0
+"""Half the height (mm) of the detail, at least."""
+_SPACING: Final = 0.02
 _MOST_MARKS: Final = 16
 _LABEL_POINTS: Final = 12.0
 """How far to the left of the track a time stands."""
 
 
 def run_track(run: Run) -> Figure:
-    """Draw the whole run with equal scales, and below it a piece at half time with the groove in its true width."""
+    """Draw the whole run with equal scales, and below it the grooves over a short way at half time."""
     limits = track_limits(run.skis.track.reshape(-1, 3))
-    height, reach = plan_height_mm(limits), _reach(run)
-    detail_height = (DOUBLE_MM - _SIDES_MM) * 2.0 * reach / CUTOUT
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + detail_height + _FRAME_MM)
-    above, detail = figure.subplots(2, 1, height_ratios=(height, detail_height))
-    draw_plan(above, run, limits)
-    _groove_detail(figure, detail, run)
+    height = plan_height_mm(limits)
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DETAIL_MM + _FRAME_MM)
+    grid = figure.add_gridspec(2, 2, height_ratios=(height + 12.0, _DETAIL_MM))
+    draw_plan(figure.add_subplot(grid[0, :]), run, limits)
+    _groove_details(figure, [figure.add_subplot(grid[1, ski]) for ski in (0, 1)], run)
     handles = [Line2D([], [], color=c, label=f"{s} ski") for c, s in zip(SKI_COLOURS, ("left", "right"), strict=True)]
     handles.append(
         Line2D([], [], linestyle="none", marker="o", markersize=3.0, color=BLACK, label="each second; square: end")
@@ -106,47 +109,55 @@ def _time_marks(axes: Axes, run: Run) -> None:
     axes.annotate(ended, (1.0, 1.035), xycoords="axes fraction", ha="right", va="center", fontsize=7.0)
 
 
-def _groove_detail(figure: Figure, axes: Axes, run: Run) -> None:
-    """The groove over a short way, in its true width, coloured by the depth that stays."""
-    middle = len(run.time) // 2
-    centre, heading = run.place[middle, :2], run.heading[middle]
-    ahead = np.array([math.cos(heading), math.sin(heading)])
-    aside = np.array([-ahead[1], ahead[0]])
-    turned = np.stack([ahead, aside], axis=1)
-    half = CUTOUT / 2.0
-    tracks = (run.skis.track[..., :2] - centre) @ turned
-    pieces = (run.groove.middle[:, :2] - centre) @ turned
-    near = (abs(pieces[:, 0]) < 1.05 * half) & (abs(pieces[:, 1]) < half)
-    if near.any():
-        corners = (groove_corners(run)[near] - centre) @ turned
-        drawn = PolyCollection(list(corners), array=run.groove.residual_depth[near] / MM, cmap="cividis_r", linewidth=0)
-        drawn.set_clim(0.0, max(float(run.groove.residual_depth[near].max()) / MM, 1e-9))
+def _groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
+    """The grooves over a short way at half time, stretched across, coloured by the depth that stays."""
+    centre = run.place[len(run.time) // 2]
+    near = np.linalg.norm(run.groove.middle - centre, axis=1) < CUTOUT + run.scenario.sledge.stance_width
+    top = max(float(run.groove.residual_depth[near].max(initial=0.0)) / MM, 1e-9)
+    for ski, axes in enumerate(row):
+        way, aside = beside_track(
+            run.groove.middle[near], run.skis.track[:, ski], run.skis.track[len(run.time) // 2, ski]
+        )
+        chosen = (abs(way) < CUTOUT / 2.0) & (abs(aside) < run.scenario.sledge.stance_width / 2.0)
+        width, depth = (values[near][chosen] for values in (run.groove.width, run.groove.residual_depth))
+        corners = groove_corners(way[chosen], aside[chosen], width, run.numbers.get("line_spacing_m", _SPACING))
+        drawn = PolyCollection(list(corners), array=depth / MM, cmap="cividis_r", edgecolor="face", linewidth=0.2)
+        drawn.set_clim(0.0, top)
         drawn.set_rasterized(True)
         axes.add_collection(drawn)
-        figure.colorbar(drawn, ax=axes, label="depth of the groove\nthat stays (mm)", pad=0.01, aspect=12)
-    for ski, colour in enumerate(SKI_COLOURS):
-        axes.plot(tracks[:, ski, 0], tracks[:, ski, 1], color=colour, linewidth=0.8)
-    axes.set_aspect("equal", adjustable="box")
-    reach = _reach(run)
-    axes.set_xlim(-half, half)
-    axes.set_ylim(-reach, reach)
-    axes.set_xlabel(f"ahead of the place at {run.time[middle]:.2f} s (m); grooves in their true width")
-    axes.set_ylabel("to the left (m)")
+        axes.axhline(0.0, color=SKI_COLOURS[ski], linewidth=0.8)
+        reach = 1.15 * max(float(abs(corners[..., 1]).max(initial=0.0)), _LEAST_REACH)
+        axes.set_xlim(-CUTOUT / 2.0, CUTOUT / 2.0)
+        axes.set_xticks(np.linspace(-CUTOUT / 2.0, CUTOUT / 2.0, 5))
+        axes.set_ylim(-reach, reach)
+        axes.set_xlabel(f"way from the place at {run.time[len(run.time) // 2]:.2f} s (m)")
+        axes.set_title(f"groove of the {('left', 'right')[ski]} ski, stretched across", loc="left", fontsize=7.5)
+    row[0].set_ylabel("to the left of\nthe track (mm)")
+    figure.colorbar(drawn, ax=list(row), label="depth that\nstays (mm)", pad=0.01, aspect=12)
 
 
-def _reach(run: Run) -> float:
-    """Half the height (m) of the piece that is drawn large: both tracks with some snow beside them."""
-    return 0.12 + run.scenario.sledge.stance_width / 2.0
+def beside_track(points: FloatArray, track: FloatArray, origin: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Where points (k, 3) lie along a track (n, 3) and to the left of it, seen from above (m), each (k,).
+
+    The way is counted from the track's point ``origin``; each point belongs to the nearest piece of the track.
+    """
+    start, along = track[:-1, :2], np.diff(track[:, :2], axis=0)
+    length = np.linalg.norm(along, axis=1)
+    ahead = along / np.where(length > 0.0, length, 1.0)[:, None]
+    ways = np.concatenate([[0.0], np.cumsum(length)])
+    zero = ways[int(np.argmin(np.linalg.norm(track - origin, axis=1)))]
+    apart = points[:, None, :2] - start
+    share = np.clip((apart * ahead).sum(axis=2), 0.0, length)
+    nearest = np.argmin(np.linalg.norm(apart - share[..., None] * ahead, axis=2), axis=1)
+    number = np.arange(len(points))
+    direction, offset = ahead[nearest], apart[number, nearest]
+    aside = direction[:, 0] * offset[:, 1] - direction[:, 1] * offset[:, 0]
+    return ways[nearest] + share[number, nearest] - zero, aside
 
 
-def groove_corners(run: Run) -> FloatArray:
-    """Corners (k, 4, 2) of the groove's pieces from above: their width across, the lines' spacing along."""
-    groove = run.groove
-    left = groove.left[:, :2]
-    ahead = np.stack([left[:, 1], -left[:, 0]], axis=1)
-    aside = 0.5 * groove.width[:, None] * left
-    along = 0.5 * run.numbers.get("line_spacing_m", 0.02) * ahead
-    middle = groove.middle[:, :2]
-    return np.stack(
-        [middle + aside - along, middle + aside + along, middle - aside + along, middle - aside - along], axis=1
-    )
+def groove_corners(way: FloatArray, aside: FloatArray, width: FloatArray, spacing: float) -> FloatArray:
+    """Corners (k, 4, 2) of pieces: along the track (m) as long as the lines are apart, across it (mm) their width."""
+    half, wide = spacing / 2.0, width / 2.0
+    x = np.stack([way - half, way + half, way + half, way - half], axis=1)
+    y = np.stack([aside + wide, aside + wide, aside - wide, aside - wide], axis=1) / MM
+    return np.stack([x, y], axis=2)

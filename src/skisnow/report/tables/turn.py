@@ -67,7 +67,7 @@ def contacts_table(runs: Mapping[str, Run]) -> Table:
         [_contact(name, run) for name, run in runs.items()],
         note="Afterbody / forebody: mean edge depth of the contact behind the boot over that before it, of the ski "
         "that carries more, median over the second half. Share of grip: of S_f ∫ e ds of that ski, median over the "
-        "run; it slides across where the share is above 0.99.",
+        "run; it slides across where the share is above 0.95.",
     )
 
 

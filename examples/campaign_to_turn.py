@@ -1,0 +1,77 @@
+"""From an analysed campaign to a turn: each contact on the snow that was found, and a band over its uncertainty.
+
+    python examples/campaign_to_turn.py RESULTS.json OUT [--site SITE] [--runs N] [--seed N] [--workers N]
+
+RESULTS.json is what `skisnow analyse` wrote. Sledge, skis, slope and start are those of the built-in scenario
+`carved-46m`; only the snow is exchanged. OUT/report.html shows the whole chain.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from skisnow import Run, SnowProperties, read_scenario, simulated_run, snow_from_results
+from skisnow.report.figures.track_band import TimedTrack
+from skisnow.report.material import is_synthetic
+from skisnow.report.turn_numbers import greatest_distance
+from skisnow.report.turn_report import EnsembleRun, TurnChain, write_turn_report
+from skisnow.simulate.batch import run_batch
+from skisnow.snow.drawn import drawn_snows
+
+CONTACTS = {"hypoplastic, k_u / H_V = 10": 10.0, "elastic": 1.0}
+EVERY = 5  # of a track's rows the band draws one in so many
+
+
+def turn(snow: SnowProperties, unloading_ratio: float = 10.0) -> Run:
+    """The turn of the scenario on another snow."""
+    scenario = read_scenario("carved-46m")
+    contact = replace(scenario.contact, snow=snow, unloading_ratio=unloading_ratio)
+    return simulated_run(replace(scenario, contact=contact))
+
+
+def track_row(snow: SnowProperties) -> dict[str, Any]:
+    """One run of the ensemble as JSON values: it may come back from another process."""
+    run = turn(snow)
+    time, x, y = (column[::EVERY].tolist() for column in (run.time, run.place[:, 0], run.place[:, 1]))
+    return {"outcome": run.outcome, "track": [time, x, y]}
+
+
+def told(done: int, count: int) -> None:
+    """Say how far the ensemble is."""
+    print(f"run {done} of {count}", file=sys.stderr)
+
+
+def main() -> None:
+    """Simulate, draw, write; print how far the contacts lead apart."""
+    parser = argparse.ArgumentParser(description="From an analysed campaign to a turn.")
+    parser.add_argument("results", type=Path)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--site", default="site C")
+    for name, default in (("--runs", 32), ("--seed", 1), ("--workers", None)):
+        parser.add_argument(name, type=int, default=default)
+    asked = parser.parse_args()
+    snow = snow_from_results(asked.results, site=asked.site)
+    runs = {name: turn(snow, ratio) for name, ratio in CONTACTS.items()}
+    snows = drawn_snows(snow, asked.runs, np.random.default_rng(asked.seed))
+    rows = run_batch(snows, track_row, workers=asked.workers, progress=told)
+    tracks = [TimedTrack(*map(np.array, row["track"])) for row in rows]
+    ensemble = [EnsembleRun(*of) for of in zip(snows, [row["outcome"] for row in rows], tracks, strict=True)]
+    name = json.loads(asked.results.read_text(encoding="utf-8"))["campaign"]["name"]
+    chain = TurnChain(
+        campaign=name, site=asked.site, synthetic=is_synthetic(name), snow=snow, runs=runs, ensemble=ensemble,
+        seed=asked.seed,
+    )  # fmt: skip
+    page = write_turn_report(chain, asked.out)
+    hypoplastic, elastic = runs.values()
+    print(f"the tracks of both contacts lie up to {greatest_distance(elastic, hypoplastic):.2f} m apart: {page}")
+
+
+if __name__ == "__main__":
+    main()
