@@ -42,6 +42,10 @@ class FitError(SkisnowError):
     """A fit has no answer: too few data, or data that do not determine it."""
 
 
+class SolverError(SkisnowError):
+    """A simulation cannot begin: nothing was computed."""
+
+
 class StoreError(SkisnowError):
     """The store of campaigns cannot do what was asked; nothing in it was changed."""
 

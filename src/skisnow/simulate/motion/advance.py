@@ -1,0 +1,271 @@
+"""From one moment of output to the next: fixed steps, or steps whose error is held by halving them."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple, TypeAlias
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from .archive import Archive
+from .equations import add_forces, channel_rows, copy_state
+from .fast import STEPS_PER_TANGENT, fast_step
+from .forces import CHANNELS, FRICTION, NORMAL, RELEASED, SHEAR, SIDEWAYS, Forces, feel, new_forces
+from .lines import Lines
+from .model import PADDING, Model, Snow, State, World, new_state
+from .path import follow, press
+from .ros2 import GAMMA, Room, new_room, ros2_step
+from .system import Factored, Vector, add_band, factor, new_factored, new_vector
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+IntArray: TypeAlias = npt.NDArray[np.int64]
+
+# what `advance` ends with
+GOES_ON, STEP_TOO_SMALL, NOT_FINITE = 0, 1, 2
+# entries of `work`: energy (J) that shear, friction, drag and damping took, was given sideways, released, done by the normal force
+OF_SHEAR, OF_FRICTION, OF_SIDEWAYS, OF_RELEASED, OF_NORMAL, OF_DRAG, OF_DAMPING = 0, 1, 2, 3, 4, 5, 6
+WORKS: Final = 7
+
+SHORTEST_STEP: Final = 1e-7
+"""Step (s) below which a run ends."""
+LONGEST_STEP: Final = 4e-3
+"""Step (s) of the error control, which is halved; a ski at 30 m/s moves 12 cm in it."""
+
+
+class Clock(NamedTuple):
+    """What goes on from call to call: time now, next step, last step taken (s); counts."""
+
+    time: FloatArray  # (3,)
+    counts: IntArray  # (3,) steps taken, rejected, since the tangent was renewed
+    work: FloatArray  # (WORKS,) energies (J)
+    power: FloatArray  # (WORKS,) at the last look (W)
+
+
+class Memory(NamedTuple):
+    """Everything that a run works with."""
+
+    state: State
+    next: State
+    half: State
+    trial: State
+    start: Forces
+    stage: Forces
+    half_start: Forces
+    system: Factored
+    room: Room
+    clock: Clock
+    scratch: Vector
+
+
+def new_memory(size: int, ring: int) -> Memory:
+    """Room for skis with that many unknowns and a ring of that many lines."""
+    return Memory(
+        *(new_state(size) for _ in range(4)),
+        *(new_forces(size, ring) for _ in range(3)),
+        new_factored(size),
+        new_room(size),
+        Clock(np.zeros(3), np.zeros(3, np.int64), np.zeros(WORKS), np.zeros(WORKS)),
+        new_vector(size),
+    )
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def observe(
+    model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tangent: bool
+) -> None:
+    """Look at the snow at the state reached: forces, powers, and what the snow remembers of it."""
+    state, start, clock = memory.state, memory.start, memory.clock
+    follow(model, snow, world, lines, archive, state)
+    feel(model, snow, lines, state, tangent, True, start)
+    press(snow, lines, archive)
+    scratch = memory.scratch
+    scratch.rigid[:] = 0.0
+    scratch.bend[:] = 0.0
+    drag = add_forces(model, world, state, start, 0.0, scratch)
+    damping = 0.0
+    for k in range(2):
+        add_band(model.stiffness, state.bend_rate[k], 1.0, scratch.bend[k])
+        for i in range(PADDING, state.bend.shape[1] - PADDING):
+            damping += scratch.bend[k, i] * state.bend_rate[k, i]
+    now = (
+        -start.power[SHEAR], -start.power[FRICTION], start.power[SIDEWAYS], start.power[RELEASED],
+        -start.power[NORMAL], -drag, model.damping * damping,
+    )  # fmt: skip
+    half = 0.5 * clock.time[2]
+    for a in range(WORKS):
+        clock.work[a] += half * (clock.power[a] + now[a])
+        clock.power[a] = now[a]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _factor(
+    model: Model, lines: Lines, memory: Memory, h: float, gamma: float
+) -> bool:  # fmt: skip
+    rows = np.zeros((2, CHANNELS, 6))
+    channel_rows(model, lines, memory.state, rows)
+    gh = gamma * h
+    return factor(model, memory.start, rows, gh * (gh + model.damping), gh * gh, memory.system)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def advance_fixed(
+    model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, fast: bool, step: float,
+    until: float,
+) -> int:  # fmt: skip
+    """Take equal steps of about `step` (s) until the time `until`; the forces at the start are known, and at the end."""
+    clock = memory.clock
+    left = until - clock.time[0]
+    if left <= 0.0:
+        return GOES_ON
+    steps = max(1, int(np.ceil(left / step - 1e-9)))
+    h = left / steps
+    changed = h != clock.time[1]
+    clock.time[1] = h
+    for i in range(steps):
+        if fast:
+            if changed or clock.counts[2] % STEPS_PER_TANGENT == 0:
+                if not _factor(model, lines, memory, h, 1.0):
+                    return NOT_FINITE
+                clock.counts[2] = 0
+                changed = False
+            fast_step(model, world, memory.state, memory.start, memory.system, h, memory.room, memory.next)
+        else:
+            if not _factor(model, lines, memory, h, GAMMA):
+                return NOT_FINITE
+            ros2_step(
+                model, snow, world, lines, memory.state, memory.start, memory.stage, memory.system, h, memory.room,
+                memory.next,
+            )  # fmt: skip
+        copy_state(memory.next, memory.state)
+        clock.time[0] = until if i == steps - 1 else clock.time[0] + h
+        clock.time[2] = h
+        clock.counts[0] += 1
+        clock.counts[2] += 1
+        if not _is_finite(memory.state):
+            return NOT_FINITE
+        renew = not fast or clock.counts[2] % STEPS_PER_TANGENT == 0
+        observe(model, snow, world, lines, archive, memory, renew)
+    return GOES_ON
+
+
+@numba.njit(cache=True, error_model="numpy")
+def advance_controlled(
+    model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tolerance: float,
+    until: float,
+) -> int:  # fmt: skip
+    """Take pairs of steps whose error of place, estimated against one step of twice the length, stays below `tolerance` (m)."""
+    clock = memory.clock
+    while clock.time[0] < until:
+        left = until - clock.time[0]
+        h = min(clock.time[1], left)
+        if h > 0.5 * left and h < left:
+            h = 0.5 * left  # no crumbs at the end
+        error = _try_pair(model, snow, world, lines, memory, h)
+        larger = 0.9 * (tolerance / max(error, 1e-30)) ** (1.0 / 3.0) if error == error else 0.1
+        if not error <= tolerance:
+            clock.counts[1] += 1
+            clock.time[1] = h * min(max(larger, 0.1), 0.7)
+            if clock.time[1] < SHORTEST_STEP:
+                return STEP_TOO_SMALL
+            continue
+        copy_state(memory.next, memory.state)
+        if h < left or larger < 1.0:  # a step cut short by the output tells little
+            clock.time[1] = min(h * min(max(larger, 0.3), 2.0), LONGEST_STEP)
+        elif clock.time[1] < h * larger:
+            clock.time[1] = min(max(clock.time[1], h * min(larger, 2.0)), LONGEST_STEP)
+        clock.time[0] = until if h == left else clock.time[0] + h
+        clock.time[2] = h
+        clock.counts[0] += 2
+        observe(model, snow, world, lines, archive, memory, True)
+    return GOES_ON
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _try_pair(model: Model, snow: Snow, world: World, lines: Lines, memory: Memory, h: float) -> float:
+    """Fill `next` with the state after two steps of h/2, and return how far one step of h is off (m)."""
+    if not _factor(model, lines, memory, h, GAMMA):
+        return np.nan
+    ros2_step(
+        model, snow, world, lines, memory.state, memory.start, memory.stage, memory.system, h, memory.room, memory.trial
+    )  # fmt: skip
+    if not _factor(model, lines, memory, 0.5 * h, GAMMA):
+        return np.nan
+    ros2_step(
+        model, snow, world, lines, memory.state, memory.start, memory.stage, memory.system, 0.5 * h, memory.room,
+        memory.half,
+    )  # fmt: skip
+    if not (_is_finite(memory.half) and _is_finite(memory.trial)):
+        return np.nan
+    feel(model, snow, lines, memory.half, False, False, memory.half_start)
+    ros2_step(
+        model, snow, world, lines, memory.half, memory.half_start, memory.stage, memory.system, 0.5 * h, memory.room,
+        memory.next,
+    )  # fmt: skip
+    return _difference(memory.trial, memory.next, h) / 3.0
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _difference(one: State, other: State, h: float) -> float:
+    """Largest difference of place (m): of the boots, of ends a metre off that turn with them, of the skis' bend."""
+    worst = 0.0
+    for a in range(3):
+        worst = max(worst, abs(one.place[a] - other.place[a]))
+        worst = max(worst, h * abs(one.velocity[a] - other.velocity[a]))
+        for b in range(3):
+            worst = max(worst, abs(one.turn[a, b] - other.turn[a, b]))
+    for k in range(2):
+        for i in range(PADDING, one.bend.shape[1] - PADDING, 3):
+            worst = max(worst, abs(one.bend[k, i] - other.bend[k, i]))
+    if not _is_finite(one) or not _is_finite(other):
+        return np.nan
+    return worst
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _is_finite(state: State) -> bool:
+    total = 0.0
+    for a in range(6):
+        total += state.velocity[a]
+    for a in range(3):
+        total += state.place[a] + state.turn[a, 0] + state.turn[a, 1] + state.turn[a, 2]
+    for k in range(2):
+        for i in range(state.bend.shape[1]):
+            total += state.bend[k, i]
+    return bool(np.isfinite(total))
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def mechanical_energy(model: Model, world: World, state: State, scratch: Vector) -> tuple[float, float, float]:
+    """Kinetic, potential and the skis' elastic energy (J)."""
+    from_skis = 0.0
+    elastic = 0.0
+    V = state.velocity
+    kinetic = 0.0
+    for a in range(6):
+        for b in range(6):
+            kinetic += 0.5 * V[a] * model.rigid[a, b] * V[b]
+    scratch.bend[:] = 0.0
+    for k in range(2):
+        add_band(model.mass, state.bend_rate[k], 1.0, scratch.bend[k])
+        for i in range(len(model.mass)):
+            u = state.bend_rate[k, i + PADDING]
+            from_skis += 0.5 * u * scratch.bend[k, i + PADDING]
+            for a in range(6):
+                from_skis += u * model.coupling[k, i, a] * V[a]
+        scratch.bend[k, :] = 0.0
+        add_band(model.stiffness, state.bend[k], 0.5, scratch.bend[k])
+        for i in range(PADDING, state.bend.shape[1] - PADDING):
+            elastic += scratch.bend[k, i] * state.bend[k, i]
+    potential = 0.0
+    c = model.first_moment
+    for a in range(3):
+        centre = state.turn[a, 0] * c[0] + state.turn[a, 1] * c[1] + state.turn[a, 2] * c[2]
+        potential -= world.gravity[a] * (model.total_mass * state.place[a] + centre)
+        for k in range(2):
+            n = state.turn[a, 1] * model.normal[1] + state.turn[a, 2] * model.normal[2]
+            for i in range(len(model.mass)):
+                # the coupling's place part is the mass that each unknown lifts along the base's normal
+                lifted = model.coupling[k, i, 1] * model.normal[1] + model.coupling[k, i, 2] * model.normal[2]
+                potential -= world.gravity[a] * n * lifted * state.bend[k, i + PADDING]
+    return kinetic + from_skis, potential, elastic

@@ -1,0 +1,282 @@
+"""Tracks left behind: pieces of lines, found again by place."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from .lines import (
+    CELL,
+    DEEPEST,
+    FROM,
+    HIGH,
+    KEPT,
+    LOST,
+    LOW,
+    MARGIN,
+    NOTHING,
+    SLOPE,
+    TO,
+    WINDOW,
+    Lines,
+    energy_left,
+    open_window,
+)
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+SmallArray: TypeAlias = npt.NDArray[np.float32]
+IntArray: TypeAlias = npt.NDArray[np.int64]
+
+BUCKET = 0.5
+"""Size (m) of the squares in which pieces are looked up."""
+LONGEST = 0.25
+"""Longest piece (m): less than half a square."""
+BUCKETS = 4096
+
+
+class Archive(NamedTuple):
+    """Pieces of lines. `frame` as in `Lines`, `cells` in one pool."""
+
+    frame: FloatArray  # (m, 12)
+    cell: FloatArray  # (m,)
+    slope: FloatArray  # (m,)
+    start: IntArray  # (m, 3): number of the first cell, how many, place in the pool
+    pool: SmallArray  # (l, 3): deepest, covered from and to, both from the cell's middle (m)
+    head: IntArray  # (BUCKETS,) newest piece of each square, -1: none
+    before: IntArray  # (m,) the next older piece of its square
+    used: IntArray  # (2,) pieces, places in the pool
+    lost: FloatArray  # (1,) energy lost in what left the skis (J)
+
+
+def new_archive(pieces: int, places: int) -> Archive:
+    """Room for that many pieces, and places of cells."""
+    return Archive(
+        np.zeros((pieces, 12)),
+        np.zeros(pieces),
+        np.zeros(pieces),
+        np.zeros((pieces, 3), np.int64),
+        np.zeros((places, 3), np.float32),
+        np.full(BUCKETS, -1, np.int64),
+        np.zeros(pieces, np.int64),
+        np.zeros(2, np.int64),
+        np.zeros(1),
+    )
+
+
+def grown(archive: Archive, pieces: int, places: int) -> Archive:
+    """The same archive with room for more."""
+    larger = new_archive(pieces, places)
+    m, l = (int(n) for n in archive.used)
+    larger.frame[:m], larger.cell[:m], larger.slope[:m] = archive.frame[:m], archive.cell[:m], archive.slope[:m]
+    larger.start[:m], larger.before[:m] = archive.start[:m], archive.before[:m]
+    larger.pool[:l] = archive.pool[:l]
+    larger.head[:], larger.used[:], larger.lost[:] = archive.head, archive.used, archive.lost
+    return larger
+
+
+@numba.njit(cache=True, error_model="numpy", inline="always")
+def _bucket(a: int, b: int) -> int:
+    return (a * 73856093 ^ b * 19349663) & (BUCKETS - 1)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def put_away(archive: Archive, lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> None:
+    """Archive the cells first ≤ j < last of a line where a base has been, and count the energy lost there."""
+    archive.lost[0] += energy_left(lines, row, first, last, hardness, excess)
+    mask = lines.cells.shape[1] - 1
+    most = max(1, int(LONGEST / lines.value[row, CELL]))
+    j = first
+    while j < last:
+        if lines.cells[row, j & mask, TO] <= lines.cells[row, j & mask, FROM]:
+            j += 1
+            continue
+        end = j
+        while end < last and end - j < most and lines.cells[row, end & mask, TO] > lines.cells[row, end & mask, FROM]:
+            end += 1
+        _add(archive, lines, row, j, end)
+        j = end
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> None:
+    m, place = archive.used[0], archive.used[1]
+    if m >= len(archive.cell) or place + last - first > len(archive.pool):
+        return  # the caller keeps room; see `room_left`
+    mask = lines.cells.shape[1] - 1
+    cell = lines.value[row, CELL]
+    for a in range(12):
+        archive.frame[m, a] = lines.frame[row, a]
+    archive.cell[m], archive.slope[m] = cell, lines.value[row, SLOPE]
+    archive.start[m, 0], archive.start[m, 1], archive.start[m, 2] = first, last - first, place
+    for j in range(first, last):
+        i, p, middle = j & mask, place + j - first, (j + 0.5) * cell
+        archive.pool[p, 0] = lines.cells[row, i, DEEPEST]
+        archive.pool[p, 1] = lines.cells[row, i, FROM] - middle
+        archive.pool[p, 2] = lines.cells[row, i, TO] - middle
+    y = 0.5 * (first + last) * cell
+    a = int(np.floor((archive.frame[m, 0] + y * archive.frame[m, 6]) / BUCKET))
+    b = int(np.floor((archive.frame[m, 1] + y * archive.frame[m, 7]) / BUCKET))
+    square = _bucket(a, b)
+    archive.before[m] = archive.head[square]
+    archive.head[square] = m
+    archive.used[0] = m + 1
+    archive.used[1] = place + last - first
+
+
+@numba.njit(cache=True, error_model="numpy")
+def meets_older(archive: Archive, x: float, y: float) -> bool:
+    """Whether there is any older track near a place."""
+    a, b = int(np.floor(x / BUCKET)), int(np.floor(y / BUCKET))
+    for i in range(-1, 2):
+        for j in range(-1, 2):
+            if archive.head[_bucket(a + i, b + j)] >= 0:
+                return True
+    return False
+
+
+@numba.njit(cache=True, error_model="numpy")
+def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> bool:
+    """Bring older tracks into the cells first ≤ j < last of a line; their energy is counted already. Whether there was any."""
+    cell = lines.value[row, CELL]
+    mask = lines.cells.shape[1] - 1
+    frame = lines.frame[row]
+    y = 0.5 * (first + last) * cell
+    reach = 0.5 * (last - first) * cell
+    x0, y0, z0 = frame[0] + y * frame[6], frame[1] + y * frame[7], frame[2] + y * frame[8]
+    a, b = int(np.floor(x0 / BUCKET)), int(np.floor(y0 / BUCKET))
+    around = 1 + int(np.ceil(reach / BUCKET))
+    found = False
+    for i in range(-around, around + 1):
+        for j in range(-around, around + 1):
+            piece = archive.head[_bucket(a + i, b + j)]
+            while piece >= 0:
+                half = 0.5 * archive.start[piece, 1] * archive.cell[piece]
+                middle = archive.start[piece, 0] * archive.cell[piece] + half
+                ex = archive.frame[piece, 0] + middle * archive.frame[piece, 6] - x0
+                ey = archive.frame[piece, 1] + middle * archive.frame[piece, 7] - y0
+                ez = archive.frame[piece, 2] + middle * archive.frame[piece, 8] - z0
+                far = reach + half + lines.spacing[0]
+                if ex * ex + ey * ey + ez * ez < far * far:
+                    found = _take_over(archive, piece, lines, row, first, last, mask) or found
+                piece = archive.before[piece]
+    if found:
+        lines.value[row, LOST] += energy_left(lines, row, first, last, hardness, excess)
+    return found
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int, last: int, mask: int) -> bool:
+    cell, old = lines.value[row, CELL], archive.cell[piece]
+    frame, other = lines.frame[row], archive.frame[piece]
+    found = False
+    for j in range(first, last):
+        middle = (j + 0.5) * cell
+        ex = frame[0] + middle * frame[6] - other[0]
+        ey = frame[1] + middle * frame[7] - other[1]
+        ez = frame[2] + middle * frame[8] - other[2]
+        along = ex * other[3] + ey * other[4] + ez * other[5]
+        if abs(along) > 0.5 * lines.spacing[0]:
+            continue
+        y = ex * other[6] + ey * other[7] + ez * other[8]
+        number = int(np.floor(y / old))
+        at = number - archive.start[piece, 0]
+        if at < 0 or at >= archive.start[piece, 1]:
+            continue
+        p = archive.start[piece, 2] + at
+        offset = y - (number + 0.5) * old
+        if offset < archive.pool[p, 1] or offset > archive.pool[p, 2]:
+            continue
+        here = archive.pool[p, 0] + archive.slope[piece] * offset
+        i = j & mask
+        if here > max(lines.cells[row, i, DEEPEST], 0.0):
+            lines.cells[row, i, DEEPEST] = here
+            lines.cells[row, i, FROM], lines.cells[row, i, TO] = j * cell, (j + 1) * cell
+            found = True
+    return found
+
+
+@numba.njit(cache=True, error_model="numpy")
+def look_ahead(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
+    """Give a fresh line the older tracks that lie on it, if there are any."""
+    if not meets_older(archive, lines.frame[row, 0], lines.frame[row, 1]):
+        return
+    cells = lines.cells.shape[1]
+    open_window(lines, row, -cells // 2)
+    if not recall(archive, lines, row, -cells // 2, cells - cells // 2, hardness, excess):
+        lines.flag[row, KEPT] = 0
+
+
+@numba.njit(cache=True, error_model="numpy")
+def make_room(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
+    """Bring a line's cells to where it is touched now: open them, move them along, or make them coarser."""
+    cells = lines.cells.shape[1]
+    low, high = lines.value[row, LOW], lines.value[row, HIGH]
+    fresh = lines.flag[row, KEPT] == 0
+    while (high - low) / lines.value[row, CELL] > cells - 4 * MARGIN:
+        if fresh:
+            lines.value[row, CELL] *= 2.0
+        else:
+            _coarsen(lines, row)
+    cell = lines.value[row, CELL]
+    first, last = int(np.floor(low / cell)) - MARGIN, int(np.floor(high / cell)) + MARGIN
+    start = lines.flag[row, WINDOW]
+    if not fresh and start <= first and last < start + cells:
+        return
+    new = (first + last) // 2 - cells // 2
+    if fresh:
+        open_window(lines, row, new)
+        if meets_older(archive, lines.frame[row, 0], lines.frame[row, 1]):
+            recall(archive, lines, row, new, new + cells, hardness, excess)
+        return
+    before = lines.value[row, LOST]
+    if new >= start + cells or new + cells <= start:
+        put_away(archive, lines, row, start, start + cells, hardness, excess)
+        archive.lost[0] -= before
+        lines.value[row, LOST] = 0.0
+        open_window(lines, row, new)
+        recall(archive, lines, row, new, new + cells, hardness, excess)
+        return
+    gone_from, gone_to = (start, new) if new > start else (new + cells, start + cells)
+    put_away(archive, lines, row, gone_from, gone_to, hardness, excess)
+    mask = cells - 1
+    for j in range(gone_from, gone_to):
+        lines.cells[row, j & mask, DEEPEST] = -NOTHING
+        lines.cells[row, j & mask, FROM], lines.cells[row, j & mask, TO] = NOTHING, -NOTHING
+    lines.flag[row, WINDOW] = new
+    if new > start:
+        recall(archive, lines, row, start + cells, new + cells, hardness, excess)
+    else:
+        recall(archive, lines, row, new, start, hardness, excess)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _coarsen(lines: Lines, row: int) -> None:
+    """Double the size of a line's cells."""
+    cells = lines.cells.shape[1]
+    mask = cells - 1
+    start, cell, slope = lines.flag[row, WINDOW], lines.value[row, CELL], lines.value[row, SLOPE]
+    deepest, low, high = np.full(cells, -NOTHING), np.full(cells, NOTHING), np.full(cells, -NOTHING)
+    new = int(np.floor(start / 2)) - cells // 4
+    for j in range(start, start + cells):
+        i, target = j & mask, int(np.floor(j / 2))
+        if lines.cells[row, i, TO] > lines.cells[row, i, FROM]:
+            t = target & mask
+            shift = slope * ((target + 0.5) * 2.0 * cell - (j + 0.5) * cell)
+            deepest[t] = max(deepest[t], lines.cells[row, i, DEEPEST] + shift)
+            low[t], high[t] = min(low[t], lines.cells[row, i, FROM]), max(high[t], lines.cells[row, i, TO])
+    lines.value[row, CELL], lines.flag[row, WINDOW] = 2.0 * cell, new
+    for i in range(cells):
+        lines.cells[row, i, DEEPEST], lines.cells[row, i, FROM], lines.cells[row, i, TO] = deepest[i], low[i], high[i]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def leave_line(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
+    """Archive a line that the ski has left."""
+    if lines.flag[row, KEPT] == 1:
+        start = lines.flag[row, WINDOW]
+        put_away(archive, lines, row, start, start + lines.cells.shape[1], hardness, excess)
+        archive.lost[0] -= lines.value[row, LOST]
+        lines.flag[row, KEPT] = 0

@@ -1,0 +1,124 @@
+"""Equations of motion of sledge and skis: everything that accelerates them, but for the skis' stiffness and damping.
+
+Velocities are those of the sledge's frame (Hamel's equations): with the momentum p and the angular momentum L about the moving
+origin, p' = f - ω × p and L' = τ - ω × L - v × p. The mass matrix is constant.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from .forces import CHANNELS, Forces
+from .lines import Lines
+from .model import PADDING, Model, State, World
+from .system import Vector
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def add_forces(model: Model, world: World, state: State, snow: Forces, scale: float, out: Vector) -> float:
+    """Add scale × all generalised forces but stiffness and damping, and return the power of the drag (W)."""
+    R, v = state.turn, state.velocity
+    g = world.gravity
+    g0 = R[0, 0] * g[0] + R[1, 0] * g[1] + R[2, 0] * g[2]
+    g1 = R[0, 1] * g[0] + R[1, 1] * g[1] + R[2, 1] * g[2]
+    g2 = R[0, 2] * g[0] + R[1, 2] * g[1] + R[2, 2] * g[2]
+    p = np.zeros(6)
+    for a in range(6):
+        for b in range(6):
+            p[a] += model.rigid[a, b] * v[b]
+    for k in range(2):
+        B, bend, rate = model.coupling[k], out.bend[k], state.bend_rate[k]
+        for i in range(len(B)):
+            u = rate[i + PADDING]
+            for a in range(6):
+                p[a] += B[i, a] * u
+            bend[i + PADDING] += scale * (snow.bend[k, i + PADDING] + B[i, 0] * g0 + B[i, 1] * g1 + B[i, 2] * g2)
+    m, c = model.total_mass, model.first_moment
+    # air drag at the centre of pressure
+    high = world.drag_height
+    a0, a1, a2 = v[0] + v[4] * high, v[1] - v[3] * high, v[2]
+    speed = np.sqrt(a0 * a0 + a1 * a1 + a2 * a2)
+    drag = -world.drag * speed
+    out.rigid[0] += scale * (snow.rigid[0] + m * g0 + drag * a0 - (v[4] * p[2] - v[5] * p[1]))
+    out.rigid[1] += scale * (snow.rigid[1] + m * g1 + drag * a1 - (v[5] * p[0] - v[3] * p[2]))
+    out.rigid[2] += scale * (snow.rigid[2] + m * g2 + drag * a2 - (v[3] * p[1] - v[4] * p[0]))
+    out.rigid[3] += scale * (
+        snow.rigid[3] + c[1] * g2 - c[2] * g1 - high * drag * a1
+        - (v[4] * p[5] - v[5] * p[4]) - (v[1] * p[2] - v[2] * p[1])
+    )  # fmt: skip
+    out.rigid[4] += scale * (
+        snow.rigid[4] + c[2] * g0 - c[0] * g2 + high * drag * a0
+        - (v[5] * p[3] - v[3] * p[5]) - (v[2] * p[0] - v[0] * p[2])
+    )  # fmt: skip
+    out.rigid[5] += scale * (
+        snow.rigid[5] + c[0] * g1 - c[1] * g0 - (v[3] * p[4] - v[4] * p[3]) - (v[0] * p[1] - v[1] * p[0])
+    )
+    return drag * speed * speed
+
+
+@numba.njit(cache=True, error_model="numpy")
+def channel_rows(model: Model, lines: Lines, state: State, rows: FloatArray) -> None:
+    """Fill in how depth, roll and place across of each ski's sections follow from the rigid body: (2, CHANNELS, 6)."""
+    ring = len(lines.flag) // 2
+    R = state.turn
+    n, t = np.zeros(3), np.zeros(3)
+    for k in range(2):
+        row = k * ring + (lines.first[k] + lines.count[k] // 2) % ring
+        for a in range(3):
+            n[a] = R[0, a] * lines.frame[row, 9] + R[1, a] * lines.frame[row, 10] + R[2, a] * lines.frame[row, 11]
+        size = 1.0 / np.sqrt(n[1] * n[1] + n[2] * n[2])
+        t[1], t[2] = n[2] * size, -n[1] * size  # n × forwards
+        y, z = model.middle[k, 1], model.middle[k, 2]
+        for a in range(CHANNELS):
+            for b in range(6):
+                rows[k, a, b] = 0.0
+        for a in range(3):
+            rows[k, 0, a], rows[k, 3, a] = -n[a], t[a]
+        rows[k, 0, 3], rows[k, 0, 4], rows[k, 0, 5] = -(y * n[2] - z * n[1]), -z * n[0], y * n[0]
+        rows[k, 3, 3], rows[k, 3, 4], rows[k, 3, 5] = y * t[2] - z * t[1], z * t[0], -y * t[0]
+        rows[k, 1, 4], rows[k, 1, 5] = n[2], -n[1]
+        rows[k, 2, 3] = -1.0
+        rows[k, 4, 4], rows[k, 4, 5] = -t[2], t[1]
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def move(state: State, rigid: FloatArray, bend: FloatArray, scale: float, out: State) -> None:
+    """Fill `out` with place, turn and bend after scale × the increments, in the frame of `state`."""
+    R = state.turn
+    for a in range(3):
+        out.place[a] = state.place[a] + scale * (R[a, 0] * rigid[0] + R[a, 1] * rigid[1] + R[a, 2] * rigid[2])
+    x, y, z = scale * rigid[3], scale * rigid[4], scale * rigid[5]
+    angle2 = x * x + y * y + z * z
+    if angle2 > 1e-8:
+        angle = np.sqrt(angle2)
+        s, c = np.sin(angle) / angle, (1.0 - np.cos(angle)) / angle2
+    else:  # the next terms are below 1e-18
+        s, c = 1.0 - angle2 / 6.0, 0.5 - angle2 / 24.0
+    a00, a11, a22 = 1.0 - c * (y * y + z * z), 1.0 - c * (x * x + z * z), 1.0 - c * (x * x + y * y)
+    a01, a10 = c * x * y - s * z, c * x * y + s * z
+    a02, a20 = c * x * z + s * y, c * x * z - s * y
+    a12, a21 = c * y * z - s * x, c * y * z + s * x
+    for a in range(3):
+        b0, b1, b2 = R[a, 0], R[a, 1], R[a, 2]
+        out.turn[a, 0] = b0 * a00 + b1 * a10 + b2 * a20
+        out.turn[a, 1] = b0 * a01 + b1 * a11 + b2 * a21
+        out.turn[a, 2] = b0 * a02 + b1 * a12 + b2 * a22
+    for k in range(2):
+        for i in range(bend.shape[1]):
+            out.bend[k, i] = state.bend[k, i] + scale * bend[k, i]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def copy_state(source: State, target: State) -> None:
+    """Copy a state."""
+    target.place[:] = source.place
+    target.turn[:] = source.turn
+    target.velocity[:] = source.velocity
+    target.bend[:] = source.bend
+    target.bend_rate[:] = source.bend_rate

@@ -1,0 +1,193 @@
+"""Lines laid ahead of the skis and taken up behind them; what the skis do to the snow once a step is accepted."""
+
+from __future__ import annotations
+
+from typing import Final, TypeAlias
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from .archive import Archive, leave_line, look_ahead, make_room
+from .lines import (
+    ANCHOR,
+    ANCHORED,
+    CELL,
+    EDGE,
+    HIGH,
+    KEPT,
+    LOST,
+    LOW,
+    MARGIN,
+    TOUCHED,
+    WINDOW,
+    Lines,
+    begin_line,
+    energy_left,
+    mark_cells,
+)
+from .model import Model, Snow, State, World
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+AHEAD: Final = 0.12
+"""Distance (m) before tip and behind tail in which lines are laid: more than a ski moves in a step."""
+BESIDE: Final = 0.04
+"""Half the width of a ski (m), about: where the edge will cross a line (no accuracy hangs on it)."""
+MOST_TURN: Final = 0.3
+"""Angle (rad) between a line's direction ahead and the ski beyond which the lines are laid anew (Choice)."""
+
+
+@numba.njit(cache=True, error_model="numpy")
+def surface(world: World, x: float) -> tuple[float, float]:
+    """Height of the slope (m) and its gradient at x."""
+    if len(world.heights) == 1:
+        return 0.0, 0.0
+    at = (x - world.slope_start) / world.slope_step
+    i = min(max(int(np.floor(at)), 0), len(world.heights) - 2)
+    h = world.slope_step
+    f = min(max(at - i, 0.0), 1.0)
+    z0, z1, g0, g1 = world.heights[i, 0], world.heights[i + 1, 0], world.heights[i, 1], world.heights[i + 1, 1]
+    e = 1.0 - f
+    height = e * e * (1.0 + 2.0 * f) * z0 + f * f * (3.0 - 2.0 * f) * z1 + h * f * e * (e * g0 - f * g1)
+    gradient = 6.0 * f * e * (z1 - z0) / h + e * (1.0 - 3.0 * f) * g0 + f * (3.0 * f - 2.0) * g1
+    return height + (at - i - f) * h * gradient, gradient
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _lay(
+    model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, state: State, k: int, s: float, front: bool
+) -> None:  # fmt: skip
+    """Lay a line of ski k at station s of its straight axis, before the others or behind them."""
+    ring = len(lines.flag) // 2
+    R = state.turn
+    y = model.middle[k, 1]
+    lateral, frame = np.zeros(3), np.zeros(12)
+    for a in range(3):
+        lateral[a] = R[a, 1] * model.lateral[1] + R[a, 2] * model.lateral[2]
+    side = min(max(-lateral[2] / snow.one_sided, -1.0), 1.0) * BESIDE
+    for a in range(3):
+        frame[a] = state.place[a] + R[a, 1] * y + s * R[a, 0] + side * lateral[a]
+    height, gradient = surface(world, frame[0])
+    frame[2] = height
+    size = 1.0 / np.sqrt(1.0 + gradient * gradient)
+    n0, n2 = -gradient * size, size
+    # ahead: the ski's axis in the surface
+    up = R[0, 0] * n0 + R[2, 0] * n2
+    d0, d1, d2 = R[0, 0] - up * n0, R[1, 0], R[2, 0] - up * n2
+    size = 1.0 / np.sqrt(d0 * d0 + d1 * d1 + d2 * d2)
+    d0, d1, d2 = d0 * size, d1 * size, d2 * size
+    frame[3], frame[4], frame[5] = d0, d1, d2
+    frame[6], frame[7], frame[8] = -n2 * d1, n2 * d0 - n0 * d2, n0 * d1
+    frame[9], frame[10], frame[11] = n0, 0.0, n2
+    if front:
+        row = k * ring + (lines.first[k] + lines.count[k]) % ring
+    else:
+        lines.first[k] = (lines.first[k] - 1) % ring
+        row = k * ring + lines.first[k]
+    lines.count[k] += 1
+    begin_line(lines, row, frame)
+    look_ahead(archive, lines, row, snow.hardness, snow.excess)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _station(model: Model, lines: Lines, state: State, k: int, number: int) -> float:
+    """Station on ski k's straight axis of its line `number`, counted from the tail."""
+    ring = len(lines.flag) // 2
+    row = k * ring + (lines.first[k] + number) % ring
+    R, y = state.turn, model.middle[k, 1]
+    total = 0.0
+    for a in range(3):
+        total += (lines.frame[row, a] - state.place[a] - R[a, 1] * y) * R[a, 0]
+    return total
+
+
+@numba.njit(cache=True, error_model="numpy")
+def follow(model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, state: State) -> None:
+    """Take up the lines that the skis have left, lay those they will meet."""
+    ring = len(lines.flag) // 2
+    spacing = lines.spacing[0]
+    for k in range(2):
+        if lines.count[k] > 0 and _has_turned(lines, state, k):
+            _leave_all(snow, lines, archive, k)
+        while lines.count[k] > 0 and _station(model, lines, state, k, 0) < model.tail - AHEAD - 3.0 * spacing:
+            leave_line(archive, lines, k * ring + lines.first[k], snow.hardness, snow.excess)
+            lines.first[k] = (lines.first[k] + 1) % ring
+            lines.count[k] -= 1
+        while lines.count[k] > 0 and _station(model, lines, state, k, lines.count[k] - 1) > (
+            model.tip + AHEAD + 3.0 * spacing
+        ):
+            last = (lines.first[k] + lines.count[k] - 1) % ring
+            leave_line(archive, lines, k * ring + last, snow.hardness, snow.excess)
+            lines.count[k] -= 1
+        if lines.count[k] == 0:
+            _lay(model, snow, world, lines, archive, state, k, 0.0, True)
+        s = _station(model, lines, state, k, lines.count[k] - 1)
+        while s < model.tip + AHEAD and lines.count[k] < ring:
+            s += spacing
+            _lay(model, snow, world, lines, archive, state, k, s, True)
+        s = _station(model, lines, state, k, 0)
+        while s > model.tail - AHEAD and lines.count[k] < ring:
+            s -= spacing
+            _lay(model, snow, world, lines, archive, state, k, s, False)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _has_turned(lines: Lines, state: State, k: int) -> bool:
+    ring = len(lines.flag) // 2
+    row = k * ring + lines.first[k] % ring
+    R = state.turn
+    ahead = R[0, 0] * lines.frame[row, 3] + R[1, 0] * lines.frame[row, 4] + R[2, 0] * lines.frame[row, 5]
+    across = R[0, 0] * lines.frame[row, 6] + R[1, 0] * lines.frame[row, 7] + R[2, 0] * lines.frame[row, 8]
+    return abs(np.arctan2(across, ahead)) > MOST_TURN
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _leave_all(snow: Snow, lines: Lines, archive: Archive, k: int) -> None:
+    ring = len(lines.flag) // 2
+    for c in range(lines.count[k]):
+        leave_line(archive, lines, k * ring + (lines.first[k] + c) % ring, snow.hardness, snow.excess)
+    lines.count[k] = 0
+
+
+@numba.njit(cache=True, error_model="numpy")
+def press(snow: Snow, lines: Lines, archive: Archive) -> None:
+    """Let the snow remember the bases that touch its lines now, and where the edges hold."""
+    ring = len(lines.flag) // 2
+    value, flag, cells = lines.value, lines.flag, lines.cells
+    size = cells.shape[1]
+    for k in range(2):
+        for c in range(lines.count[k]):
+            row = k * ring + (lines.first[k] + c) % ring
+            if flag[row, TOUCHED] == 0:
+                continue
+            cell, start = value[row, CELL], flag[row, WINDOW]
+            reach = MARGIN * cell
+            if (
+                flag[row, KEPT] == 0
+                or value[row, LOW] - reach < start * cell
+                or value[row, HIGH] + reach >= (start + size) * cell
+            ):
+                make_room(archive, lines, row, snow.hardness, snow.excess)
+            mark_cells(cells, value, row)
+            edge = value[row, EDGE]
+            if flag[row, ANCHORED] == 0:
+                flag[row, ANCHORED] = 1
+                value[row, ANCHOR] = edge
+            else:
+                value[row, ANCHOR] = max(min(value[row, ANCHOR], edge + snow.holding), edge - snow.holding)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def energy_in_snow(snow: Snow, lines: Lines, archive: Archive) -> float:
+    """Energy lost to the grooves so far (J), those under the skis included."""
+    ring = len(lines.flag) // 2
+    total = archive.lost[0]
+    for k in range(2):
+        for c in range(lines.count[k]):
+            row = k * ring + (lines.first[k] + c) % ring
+            if lines.flag[row, KEPT] == 1:
+                start = lines.flag[row, WINDOW]
+                total += energy_left(lines, row, start, start + lines.cells.shape[1], snow.hardness, snow.excess)
+                total -= lines.value[row, LOST]
+    return total

@@ -1,0 +1,89 @@
+"""Static start: depth, roll, pitch and bend in equilibrium, place and heading held."""
+
+from __future__ import annotations
+
+from typing import Final, TypeAlias
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from .equations import add_forces, channel_rows, move
+from .forces import CHANNELS, Forces, feel
+from .lines import Lines
+from .model import Model, Snow, State, World
+from .ros2 import Room
+from .system import Factored, add_band, backwards, factor, forwards
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+LONGEST_STEP: Final = 0.004
+"""Of Newton's method (m)."""
+MOST_STEPS: Final = 600
+SETTLED: Final = 1e-10
+"""Last Newton step (m) that counts as equilibrium."""
+
+
+@numba.njit(cache=True, error_model="numpy")
+def settle(
+    model: Model, snow: Snow, world: World, lines: Lines, state: State, start: Forces, system: Factored, room: Room,
+    calm: State,
+) -> float:  # fmt: skip
+    """Move `state` to equilibrium by Newton's method and return its last step (m); `calm` is working space."""
+    vector = room.first
+    rows = np.zeros((2, CHANNELS, 6))
+    size = 1e9
+    scale = 1.0
+    for _ in range(MOST_STEPS):
+        feel(model, snow, lines, state, True, False, start)
+        vector.rigid[:] = 0.0
+        vector.bend[:] = 0.0
+        add_forces(model, world, state, start, 1.0, vector)
+        add_band(model.stiffness, state.bend[0], -1.0, vector.bend[0])
+        add_band(model.stiffness, state.bend[1], -1.0, vector.bend[1])
+        channel_rows(model, lines, state, rows)
+        # so stiff a system has next to no inertia: M is what keeps it definite off the snow
+        held = factor(model, start, rows, 1e6, 1e6, system)
+        if not held:
+            return 1e9
+        forwards(system, vector)
+        _solve_free(system.corner, vector.rigid)
+        backwards(system, vector)
+        for a in range(6):
+            vector.rigid[a] *= 1e6
+        size = 0.0
+        for a in range(6):
+            size = max(size, abs(vector.rigid[a]) * (1.0 if a < 3 else 0.5))
+        for k in range(2):
+            for i in range(vector.bend.shape[1]):
+                vector.bend[k, i] *= 1e6
+                if (i - 5) % 3 == 0:
+                    size = max(size, abs(vector.bend[k, i]))
+        scale = min(1.0, LONGEST_STEP / size)
+        move(state, vector.rigid, vector.bend, scale, calm)
+        state.place[:] = calm.place
+        state.turn[:] = calm.turn
+        state.bend[:] = calm.bend
+        if size < SETTLED:
+            break
+    return size
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _solve_free(corner: FloatArray, right: FloatArray) -> None:
+    """Solve for height, roll and pitch alone, from the Cholesky factor of the whole corner."""
+    whole = np.zeros((6, 6))
+    for a in range(6):
+        for b in range(6):
+            for c in range(min(a, b) + 1):
+                left = 1.0 / corner[a, a] if a == c else corner[a, c]
+                top = 1.0 / corner[b, b] if b == c else corner[b, c]
+                whole[a, b] += left * top
+    inner, free = np.zeros((3, 3)), np.zeros(3)
+    for a in range(3):
+        free[a] = right[a + 2]
+        for b in range(3):
+            inner[a, b] = whole[a + 2, b + 2]
+    found = np.linalg.solve(inner, free)
+    right[:] = 0.0
+    right[2:5] = found

@@ -1,0 +1,164 @@
+"""A run: what came out of a scenario, over time and along the skis, and how it ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .scenario import Scenario
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Outcome: TypeAlias = Literal[
+    "finished",
+    "distance_reached",
+    "end_of_slope",
+    "tipped_over",
+    "airborne",
+    "sunk",
+    "step_too_small",
+    "not_finite",
+    "interrupted",
+]
+
+STORED: Final = ("kinetic", "potential", "elastic_ski", "elastic_snow")
+LOST: Final = ("penetration", "shear", "friction", "drag", "damping")
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class SkiHistory:
+    """The skis over time: index 0 the time (n), 1 the ski (0 left, 1 right), 2 the station (m) or the coordinate.
+
+    Attributes
+    ----------
+    station
+        Places along the ski, tip to tail, positive before the boot (m), (m,).
+    track
+        (n, 2, 3) the loaded edge under the boot, on the snow surface (m).
+    depth
+        (n, 2) of that edge below the undisturbed surface (m); negative: above it.
+    edge_depth
+        (n, 2, m) of the edge that is down, below the undisturbed surface (m); negative: above it.
+    force_per_length, shear_per_length
+        (n, 2, m) of the snow along its normal, and across the edge, positive left (N/m).
+    bending, twist
+        (n, 2, m) deflection of the base away from the snow (m), growth of the edge angle (rad), against the boot.
+    """
+
+    station: FloatArray
+    track: FloatArray
+    depth: FloatArray
+    edge_depth: FloatArray
+    force_per_length: FloatArray
+    shear_per_length: FloatArray
+    bending: FloatArray
+    twist: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Groove:
+    """What the skis left in the snow, one entry for each piece of a line across the path.
+
+    Attributes
+    ----------
+    middle
+        (k, 3) of the piece, on the undisturbed surface (m).
+    left
+        (k, 3) unit vector along it, to the left.
+    width
+        (k,) across (m).
+    depth
+        (k,) deepest that the snow was pushed (m).
+    residual_depth
+        (k,) of the groove that stays (m).
+    """
+
+    middle: FloatArray
+    left: FloatArray
+    width: FloatArray
+    depth: FloatArray
+    residual_depth: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Run:
+    """What came out.
+
+    Attributes
+    ----------
+    scenario
+        What was asked.
+    outcome, remedy
+        How it ended, and what that means and what to do, in words.
+    time
+        (n,) from the start (s).
+    place
+        (n, 3) of the middle between the boots, at the level of the bases (m).
+    attitude
+        (n, 3, 3) rotation matrix from the sledge's frame (x forward, y left, z up) to space.
+    velocity
+        (n, 3) of that middle, in space (m/s).
+    heading
+        (n,) of the skis from the fall line, positive left (rad).
+    turn_radius
+        (n,) of the middle's path, positive left (m); infinite where it is straight.
+    skis
+        The skis over time.
+    groove
+        What they left.
+    energies
+        (n,) each (J): STORED, and what is LOST since the start.
+    run_length
+        Of the middle's path (m).
+    steps, rejected_steps
+        Of the integrator.
+    wall_s
+        Time it took, without compiling (s).
+    numbers
+        What the solver chose: elements, line_spacing_m, cell_mm.
+    """
+
+    scenario: Scenario
+    outcome: Outcome
+    remedy: str
+    time: FloatArray
+    place: FloatArray
+    attitude: FloatArray
+    velocity: FloatArray
+    heading: FloatArray
+    turn_radius: FloatArray
+    skis: SkiHistory
+    groove: Groove
+    energies: dict[str, FloatArray]
+    run_length: float
+    steps: int
+    rejected_steps: int
+    wall_s: float
+    numbers: dict[str, float]
+
+    @property
+    def speed(self) -> FloatArray:
+        """(n,) of the middle between the boots (m/s)."""
+        return np.asarray(np.linalg.norm(self.velocity, axis=1))
+
+    @property
+    def simulated_s(self) -> float:
+        """Simulated time (s)."""
+        return float(self.time[-1])
+
+    @property
+    def energy_turned_over(self) -> float:
+        """Kinetic energy at the start, all losses, and the largest fall in potential energy (J)."""
+        potential = self.energies["potential"]
+        lost = sum(float(self.energies[name][-1]) for name in LOST)
+        return float(self.energies["kinetic"][0]) + lost + float(potential[0] - potential.min())
+
+    @property
+    def energy_balance_error(self) -> float | None:
+        """|energy at the end + losses - energy at the start| as a share of what was turned over; None if that is 0."""
+        over = self.energy_turned_over
+        change = sum(float(self.energies[name][-1] - self.energies[name][0]) for name in STORED)
+        lost = sum(float(self.energies[name][-1]) for name in LOST)
+        return abs(change + lost) / over if over > 0.0 else None

@@ -1,0 +1,273 @@
+"""A scenario made ready for the compiled loops: numbers of the solver chosen, sledge set down, snow laid out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..ski.beam.clamped import clamped
+from .motion.advance import (
+    NOT_FINITE,
+    STEP_TOO_SMALL,
+    Memory,
+    advance_controlled,
+    advance_fixed,
+    new_memory,
+    observe,
+)
+from .motion.archive import Archive, grown, new_archive
+from .motion.lines import KEPT, TOUCHED, WINDOW, Lines, new_lines
+from .motion.model import Model, Snow, World, sledge_model
+from .motion.path import AHEAD, follow
+from .motion.settle import settle
+from .run import Outcome
+from .scenario import Plane, Scenario
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+HOLDING: Final = 0.2e-3
+"""Displacement across (m) at which an edge's grip is used up (Choice: well below the depth of an edge that carves)."""
+FRICTION_SPEED: Final = 0.01
+"""Speed (m/s) below which glide friction fades to zero (Choice)."""
+ONE_SIDED: Final = math.sin(math.radians(2.0))
+"""Sine of the edge angle above which the shear acts at the edge alone; below, it moves to the ski's middle (Choice)."""
+ELEMENTS: Final = 40
+"""Finite elements over a ski at least: 4.5 cm each (Choice, see the convergence of the docs)."""
+LINE_SPACING: Final = 0.024
+"""Largest spacing (m) of the snow's lines (Choice)."""
+CELLS_ACROSS: Final = 4
+"""Cells over the width of the contact (Choice)."""
+SMALLEST_CELL, LARGEST_CELL = 10e-6, 8e-3
+"""Sizes (m) of cells."""
+PROFILE_STEP: Final = 0.02
+"""Spacing (m) of a profile's table."""
+
+
+@dataclass(slots=True)
+class Setup:
+    """A run under way."""
+
+    scenario: Scenario
+    model: Model
+    snow: Snow
+    world: World
+    lines: Lines
+    archive: Archive
+    memory: Memory
+    numbers: dict[str, float]
+    unrest: float
+    end: float
+
+    @property
+    def time(self) -> float:
+        """Simulated so far (s)."""
+        return float(self.memory.clock.time[0])
+
+    @property
+    def speed(self) -> float:
+        """Of the boots' middle (m/s)."""
+        return float(np.linalg.norm(self.memory.state.velocity[:3]))
+
+    @property
+    def touches(self) -> bool:
+        """Whether any ski is in contact with the snow."""
+        return bool(self.lines.flag[:, TOUCHED].any())
+
+    @property
+    def leaning(self) -> float:
+        """Angle between the sledge's axis upwards and the snow's normal (rad)."""
+        return math.acos(min(1.0, max(-1.0, float(self.memory.state.turn[:, 2] @ self._slope_at_boots()[1]))))
+
+    @property
+    def height(self) -> float:
+        """Of the boots' middle above the slope (m)."""
+        return float(self.memory.state.place[2] - self._slope_at_boots()[0])
+
+    @property
+    def past_end(self) -> bool:
+        """Whether a tip is past the end of the slope."""
+        state = self.memory.state
+        return bool(state.place[0] + max(0.0, state.turn[0, 0]) * self.model.tip > self.end)
+
+    def surface_height(self, x: float) -> float:
+        """Height of the slope at x (m)."""
+        slope = self.scenario.slope
+        return 0.0 if isinstance(slope, Plane) else float(slope.heights(x))
+
+    def _slope_at_boots(self) -> tuple[float, FloatArray]:
+        x = float(self.memory.state.place[0])
+        return self.surface_height(x), _normal(self.scenario, x)
+
+    def compile(self) -> None:
+        """Make sure that the loops are compiled; nothing moves."""
+        self.advance(self.time)
+
+    def advance(self, until: float) -> Outcome | None:
+        """Go on to the time `until` (s); the outcome if the steps cannot."""
+        self._keep_room()
+        solver = self.scenario.solver
+        arguments = (self.model, self.snow, self.world, self.lines, self.archive, self.memory)
+        if solver.fixed or solver.method == "fast":
+            trouble = advance_fixed(*arguments, solver.method == "fast", solver.step, until)
+        else:
+            trouble = advance_controlled(*arguments, solver.tolerance, until)
+        return _TROUBLES.get(int(trouble))
+
+    def _keep_room(self) -> None:
+        """Let the archive grow before it is full."""
+        rows, cells = self.lines.cells.shape[:2]
+        pieces, places = (int(n) for n in self.archive.used)
+        most_pieces, most_places = len(self.archive.cell), len(self.archive.pool)
+        if most_pieces - pieces < 2 * rows or most_places - places < rows * cells:
+            self.archive = grown(self.archive, 2 * most_pieces + 4 * rows, 2 * most_places + 2 * rows * cells)
+
+    def left_behind(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Pieces of lines with a groove: frames (k, 12), middle across, width and greatest depth (m)."""
+        pieces = [*_archived(self.archive), *_under_skis(self.lines)]
+        if not pieces:
+            return np.zeros((0, 12)), np.zeros(0), np.zeros(0), np.zeros(0)
+        frame = np.array([piece[0] for piece in pieces])
+        low, high, depth = (np.array([piece[i] for piece in pieces]) for i in (1, 2, 3))
+        return frame, 0.5 * (low + high), high - low, depth
+
+
+_TROUBLES: Final[dict[int, Outcome]] = {
+    STEP_TOO_SMALL: "step_too_small",
+    NOT_FINITE: "not_finite",
+}
+_Piece: TypeAlias = tuple[FloatArray, float, float, float]
+
+
+def _archived(archive: Archive) -> list[_Piece]:
+    found = []
+    for m in range(int(archive.used[0])):
+        first, count, place = archive.start[m]
+        pool = archive.pool[place : place + count]
+        middle = (first + 0.5 + np.arange(count)) * archive.cell[m]
+        low, high = float((middle + pool[:, 1]).min()), float((middle + pool[:, 2]).max())
+        depth = pool[:, 0] + np.abs(archive.slope[m]) * np.maximum(-pool[:, 1], pool[:, 2])
+        found.append((archive.frame[m], low, high, float(depth.max())))
+    return found
+
+
+def _under_skis(lines: Lines) -> list[_Piece]:
+    found = []
+    rows, cells = lines.cells.shape[:2]
+    ring = rows // 2
+    for k in range(2):
+        for c in range(int(lines.count[k])):
+            row = k * ring + (int(lines.first[k]) + c) % ring
+            about = lines.cells[row]
+            covered = about[:, 2] > about[:, 1]
+            if lines.flag[row, KEPT] == 0 or not covered.any():
+                continue
+            number = lines.flag[row, WINDOW] + (np.arange(cells) - lines.flag[row, WINDOW]) % cells
+            middle = (number[covered] + 0.5) * lines.value[row, 0]
+            reach = np.maximum(about[covered, 2] - middle, middle - about[covered, 1])
+            depth = about[covered, 0] + abs(lines.value[row, 1]) * reach
+            found.append((lines.frame[row], about[covered, 1].min(), about[covered, 2].max(), float(depth.max())))
+    return found
+
+
+def set_up(scenario: Scenario) -> Setup:
+    """Choose the solver's numbers, lay the snow out and set the sledge down on it."""
+    load, depth, wavelength = _contact(scenario)
+    solver = scenario.solver
+    length = float(scenario.ski.station[0] - scenario.ski.station[-1])
+    elements = solver.elements or max(ELEMENTS, math.ceil(2.0 * length / wavelength))
+    spacing = solver.line_spacing or min(LINE_SPACING, wavelength / 4.0)
+    tangent = math.tan(max(abs(scenario.sledge.edge_angle), 1e-3))
+    across = min(depth / tangent, float(scenario.ski.width.max()))
+    cell = solver.cell or min(max(across / CELLS_ACROSS, SMALLEST_CELL), LARGEST_CELL)
+    ski = clamped(scenario.ski, scenario.clamp_length, elements)
+    model = sledge_model(scenario.sledge, ski, damping_ratio=scenario.damping_ratio)
+    cells = 64 if cell > 4e-3 else 128 if cell > 2e-3 else 256
+    ring = math.ceil((model.tip - model.tail + 2.0 * AHEAD) / spacing) + 12
+    lines = new_lines(ring, cells, spacing=spacing, cell=cell)
+    memory = new_memory(ski.size, ring)
+    memory.clock.time[1] = solver.step
+    archive = new_archive(8 * ring, 2 * ring * cells)
+    snow, world = _snow(scenario), _world(scenario)
+    _place(scenario, memory, depth)
+    follow(model, snow, world, lines, archive, memory.state)
+    unrest = settle(
+        model, snow, world, lines, memory.state, memory.start, memory.system, memory.room, memory.next
+    )  # fmt: skip
+    memory.state.velocity[0] = scenario.start.speed
+    observe(model, snow, world, lines, archive, memory, True)
+    memory.clock.work[:] = 0.0
+    numbers = {"elements": float(elements), "line_spacing_m": spacing, "cell_mm": cell * 1e3, "load_N": load}
+    slope = scenario.slope
+    end = math.inf if isinstance(slope, Plane) else slope.ends[1]
+    return Setup(scenario, model, snow, world, lines, archive, memory, numbers, float(unrest), end)
+
+
+def _contact(scenario: Scenario) -> tuple[float, float, float]:
+    """Load on a ski along the snow normal (N), depth of its edge (m) as if rigid, and 1/λ of its contact (m)."""
+    ski, sledge = scenario.ski, scenario.sledge
+    station = np.asarray(ski.station)
+    at = ski.at(np.linspace(float(station[-1]), float(station[0]), 101))
+    length = float(station[0] - station[-1])
+    mass = sledge.mass / 2.0 + float(np.mean(at.mass_per_length)) * length
+    load = mass * scenario.gravity * abs(_normal(scenario, scenario.start.x)[2])
+    hardness = scenario.contact.snow.snow_hardness
+    tangent = math.tan(abs(sledge.edge_angle))
+    width = float(np.mean(at.width))
+    flat = load / (hardness * 0.8 * length * width)
+    depth = max(flat, math.sqrt(2.0 * load * tangent / (hardness * 0.8 * length)))
+    stiffness = hardness * min(depth / max(tangent, 1e-9), width)
+    wavelength = (4.0 * float(np.mean(at.bending_stiffness)) / stiffness) ** 0.25
+    return load, depth, wavelength
+
+
+def _snow(scenario: Scenario) -> Snow:
+    contact = scenario.contact
+    hardness, stress = contact.snow.snow_hardness, contact.snow.failure_shear_stress
+    return Snow(
+        hardness=hardness,
+        excess=hardness * (contact.unloading_ratio - 1.0),
+        shear_stress=stress or 0.0,
+        holding=HOLDING,
+        compaction=float(contact.compaction_resistance),
+        friction=contact.friction,
+        friction_by_speed=contact.friction_by_speed,
+        friction_speed=FRICTION_SPEED,
+        one_sided=ONE_SIDED,
+    )
+
+
+def _world(scenario: Scenario) -> World:
+    slope, g = scenario.slope, scenario.gravity
+    air = scenario.air
+    drag = 0.5 * air.density * air.drag_area
+    if isinstance(slope, Plane):
+        gravity = np.array([g * math.sin(slope.angle), 0.0, -g * math.cos(slope.angle)])
+        return World(gravity, drag, air.centre_of_pressure_height, 0.0, 1.0, np.zeros((1, 2)))
+    start, end = slope.ends
+    x = np.linspace(start, end, math.ceil((end - start) / PROFILE_STEP) + 1)
+    heights = np.column_stack([slope.heights(x), slope.gradients(x)])
+    return World(np.array([0.0, 0.0, -g]), drag, air.centre_of_pressure_height, start, float(x[1] - x[0]), heights)
+
+
+def _normal(scenario: Scenario, x: float) -> FloatArray:
+    if isinstance(scenario.slope, Plane):
+        return np.array([0.0, 0.0, 1.0])
+    gradient = float(scenario.slope.gradients(x))
+    return np.array([-gradient, 0.0, 1.0]) / math.hypot(1.0, gradient)
+
+
+def _place(scenario: Scenario, memory: Memory, depth: float) -> None:
+    """Put the sledge on the slope at its start, as deep as rigid skis would be."""
+    start, state = scenario.start, memory.state
+    normal = _normal(scenario, start.x)
+    down = np.array([normal[2], 0.0, -normal[0]])
+    ahead = math.cos(start.heading) * down + math.sin(start.heading) * np.array([0.0, 1.0, 0.0])
+    state.turn[:] = np.column_stack([ahead, np.cross(normal, ahead), normal])
+    height = 0.0 if isinstance(scenario.slope, Plane) else float(scenario.slope.heights(start.x))
+    half = float(scenario.ski.at(0.0).width) / 2.0
+    above = half * math.sin(abs(scenario.sledge.edge_angle)) - depth
+    state.place[:] = np.array([start.x, start.y, height]) + above * normal

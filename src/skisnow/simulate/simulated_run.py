@@ -1,0 +1,155 @@
+"""A scenario computed: the loop over output times, how a run ends, what is kept of it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import SolverError
+from .run import Groove, Outcome, Run
+from .run_record import Record
+from .run_setup import Setup, set_up
+from .scenario import Scenario
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Progress: TypeAlias = Callable[[float, float], None]
+"""Takes the simulated time (s), and the share of the run that is done, 0 to 1."""
+
+TIPPED: Final = math.radians(60.0)
+"""Angle between the sledge and the snow's normal at which it has tipped over (Choice)."""
+LONGEST_FLIGHT: Final = 0.3
+"""Time (s) with both skis off the snow after which it is airborne (Choice)."""
+SINKING_DEPTH: Final = 0.5
+"""Depth (m) of the boots below the surface at which the sledge has sunk (Choice)."""
+_REACHED: Final = 1e-6
+"""Run length (m) that counts as none left."""
+
+REMEDIES: Final[dict[Outcome, str]] = {
+    "finished": "The duration was simulated to its end.",
+    "distance_reached": "The run length was reached.",
+    "end_of_slope": "The tips reached the end of the profile. Give a longer profile, or a shorter run.",
+    "tipped_over": "The sledge leant more than 60° from the snow's normal: it has tipped over. Lower its centre of mass, "
+    "widen the stance, or take less edge or speed.",
+    "airborne": "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a "
+    "smoother slope.",
+    "sunk": "The boots went more than half a metre below the surface: this snow does not carry the sledge. Take harder "
+    "snow, less mass or a wider ski.",
+    "step_too_small": "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen the "
+    "tolerance, or take a smaller k_u/H_V.",
+    "not_finite": "The numbers ran away. Take a smaller step, or leave the error control on.",
+    "interrupted": "The run was stopped; what had been computed is kept.",
+}
+
+
+def simulated_run(scenario: Scenario, *, progress: Progress | None = None) -> Run:
+    """Simulate a scenario from static equilibrium.
+
+    Parameters
+    ----------
+    scenario
+        What to simulate.
+    progress
+        Is told the simulated time and the share that is done, after each output interval.
+
+    Returns
+    -------
+    Run
+        Whatever the outcome, with what was computed so far. Ctrl-C ends a run with the outcome "interrupted".
+
+    Raises
+    ------
+    SolverError
+        The sledge finds no equilibrium to start from.
+
+    Notes
+    -----
+    One thread; the same scenario gives the same bits on the same machine.
+    """
+    setup = set_up(scenario)
+    record = Record(setup)
+    if setup.height < -SINKING_DEPTH:
+        record.add()
+        return _run(setup, record, "sunk", 0.0)
+    if setup.unrest > 1e-6:
+        raise SolverError(
+            f"the sledge finds no equilibrium to start from (Newton's last step was {setup.unrest:.1e} m): does its "
+            "centre of mass lie between the skis, on this slope at this heading?"
+        )
+    setup.compile()
+    record.add()
+    begin = time.perf_counter()
+    try:
+        outcome = _loop(setup, record, progress)
+    except KeyboardInterrupt:
+        outcome = "interrupted"
+    return _run(setup, record, outcome, time.perf_counter() - begin)
+
+
+def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
+    """Go from output to output until something ends the run."""
+    stop, interval = setup.scenario.stop, setup.scenario.solver.output_interval
+    duration = math.inf if stop.duration is None else stop.duration
+    length = math.inf if stop.length is None else stop.length
+    flying, number, nearing = 0.0, 0, False
+    while True:
+        now = setup.time
+        if now >= duration:
+            return "finished"
+        next_output = (number + 1) * interval
+        until = min(next_output, duration)
+        left = length - record.run_length
+        speed = setup.speed
+        if left <= _REACHED:
+            return "distance_reached"
+        was_near, nearing = nearing, speed * (until - now) > left
+        if nearing:
+            until = now + max(left / speed, 1e-9)
+        trouble = setup.advance(until)
+        number += until == next_output
+        record.add(replace=was_near)
+        if progress is not None:
+            progress(until, min(1.0, max(until / duration, record.run_length / length)))
+        if trouble is not None:
+            return trouble
+        flying = 0.0 if setup.touches else flying + until - now
+        ended = _ended(setup, flying)
+        if ended is not None:
+            return ended
+
+
+def _ended(setup: Setup, flying: float) -> Outcome | None:
+    if setup.leaning > TIPPED:
+        return "tipped_over"
+    if flying >= LONGEST_FLIGHT:
+        return "airborne"
+    if setup.height < -SINKING_DEPTH:
+        return "sunk"
+    return "end_of_slope" if setup.past_end else None
+
+
+def _run(setup: Setup, record: Record, outcome: Outcome, wall: float) -> Run:
+    counts = setup.memory.clock.counts
+    return Run(
+        scenario=setup.scenario,
+        outcome=outcome,
+        remedy=REMEDIES[outcome],
+        **record.histories(),
+        groove=_groove(setup),
+        run_length=record.run_length,
+        steps=int(counts[0]),
+        rejected_steps=int(counts[1]),
+        wall_s=wall,
+        numbers=setup.numbers,
+    )
+
+
+def _groove(setup: Setup) -> Groove:
+    frame, place, width, depth = setup.left_behind()
+    left = frame[:, 6:9]
+    ratio = 1.0 - 1.0 / setup.scenario.contact.unloading_ratio
+    return Groove(frame[:, :3] + place[:, None] * left, left, width, depth, depth * ratio)

@@ -1,0 +1,121 @@
+"""Mass matrix of a rigid sledge with two flexible skis.
+
+Kinetic energy ½∫|v + ω × ρ + n ẇ|² dm over sledge and skis, and ½∫ρI (ω_x - φ̇)² ds for the skis' sections, with ρ the unbent place
+in the sledge's frame: the deflection counts as velocity, not as change of place (Choice: w ≪ the distances of the sledge). The
+matrix is then constant, and the equations of motion that follow keep momentum, angular momentum and energy exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ...errors import ParameterError
+from ...ski.beam.clamped import ClampedSki
+from ...ski.beam.elements import GAUSS_POINTS, GAUSS_WEIGHTS, deflection_shape, twist_shape
+from .frames import base_normal, cross_matrix
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class RigidSledge:
+    """The sledge without its skis, SI.
+
+    Attributes
+    ----------
+    mass
+        (kg), > 0.
+    inertia
+        Roll, pitch and yaw moments of inertia at its centre of mass (kg m²), each > 0 and none above the sum of the others.
+    centre_of_mass
+        Forward of the boots, and above the bases (m).
+    stance_width
+        Between the middles of the skis (m), > 0.
+    edge_angle
+        Of both skis' bases, positive: left edges down (rad).
+    """
+
+    mass: float
+    inertia: tuple[float, float, float]
+    centre_of_mass: tuple[float, float]
+    stance_width: float
+    edge_angle: float
+
+    def __post_init__(self) -> None:
+        for name, value in (("mass", self.mass), ("stance_width", self.stance_width)):
+            if not (np.isfinite(value) and value > 0.0):
+                raise ParameterError(f"{name} is {value}; it must be a finite number above 0")
+        roll, pitch, yaw = self.inertia
+        if not (min(self.inertia) > 0.0 and 2.0 * max(self.inertia) <= roll + pitch + yaw):
+            raise ParameterError(
+                f"inertia is {self.inertia} kg m²; each moment must be above 0 and none more than the sum of the others"
+            )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SledgeInertia:
+    """Mass matrix in blocks: rigid body, coupling, skis.
+
+    Attributes
+    ----------
+    rigid
+        (6, 6): velocity of the origin and angular velocity, in the sledge's frame.
+    coupling
+        (2, size, 6): what the unknowns of the left and the right ski add.
+    mass
+        Of sledge and skis (kg).
+    first_moment
+        (3,) mass times the place of the common centre of mass (kg m).
+    """
+
+    rigid: FloatArray
+    coupling: FloatArray
+    mass: float
+    first_moment: FloatArray
+
+
+def sledge_inertia(sledge: RigidSledge, ski: ClampedSki) -> SledgeInertia:
+    """Add up the inertia of a sledge and of one and the same ski on both sides."""
+    centre = np.array([sledge.centre_of_mass[0], 0.0, sledge.centre_of_mass[1]])
+    rigid = _of_points(np.array([sledge.mass]), centre[None, :])
+    rigid[3:, 3:] += np.diag(sledge.inertia)
+    coupling = np.zeros((2, ski.size, 6))
+    for k, side in enumerate((1.0, -1.0)):
+        middle = np.array([0.0, side * sledge.stance_width / 2.0, 0.0])
+        of_ski, coupling[k] = _of_ski(ski, middle, sledge.edge_angle)
+        rigid += of_ski
+    first = np.array([rigid[5, 1], rigid[3, 2], rigid[4, 0]])
+    return SledgeInertia(rigid, coupling, float(rigid[0, 0]), first)
+
+
+def _of_points(mass: FloatArray, place: FloatArray) -> FloatArray:
+    """Rigid mass matrix (6, 6) of points: masses (n,) at places (n, 3)."""
+    arm = np.zeros((len(mass), 3, 6))
+    arm[:, :, :3] = np.eye(3)
+    arm[:, :, 3:] = -cross_matrix(place)
+    return np.asarray(np.einsum("n,nai,naj->ij", mass, arm, arm))
+
+
+def _of_ski(ski: ClampedSki, middle: FloatArray, edge_angle: float) -> tuple[FloatArray, FloatArray]:
+    """Rigid mass matrix of a ski, and its coupling to the ski's unknowns: (6, 6) and (size, 6)."""
+    length = ski.node[:-1] - ski.node[1:]
+    station = ski.node[:-1, None] - length[:, None] * GAUSS_POINTS
+    at = ski.ski.at(station)
+    normal = base_normal(edge_angle)
+    place = middle + at.base_height[..., None] * normal
+    place[..., 0] += station
+    mass = at.mass_per_length * GAUSS_WEIGHTS * length[:, None]
+    inertia = mass * at.width**2 / 12.0
+    rigid = _of_points(mass.ravel(), place.reshape(-1, 3))
+    rigid[3, 3] += inertia.sum()
+    moving = np.concatenate([np.broadcast_to(normal, place.shape), np.cross(place, normal)], axis=-1)
+    element = np.einsum("eg,egi,egk->eik", mass, deflection_shape(GAUSS_POINTS[None, :], length[:, None]), moving)
+    element[:, :, 3] -= np.einsum("eg,gi->ei", inertia, twist_shape(GAUSS_POINTS))
+    coupling = np.zeros((ski.size, 6))
+    held = ski.dof >= 0
+    np.add.at(coupling, ski.dof[held], element[held])
+    return rigid, coupling
