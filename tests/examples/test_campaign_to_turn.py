@@ -47,7 +47,7 @@ def test_chain_from_results_to_report(results: Path, tmp_path: Path) -> None:
     turned = [float(re.findall(r'<td class="n">([^<]*)</td>', row)[2]) for row in numbers]
     assert len(turned) == 2
     assert turned[1] < turned[0] < 120.0  # the carved turn of the scenario: 161°
-    assert "run 4 of 4" in done.stderr
+    assert "run 5 of 5" in done.stderr
     assert {path.name for path in (tmp_path / "figures").glob("*.png")} == {
         "contacts.png", "along_ski.png", "grip.png", "band.png",
     }  # fmt: skip

@@ -58,7 +58,14 @@ def ensemble() -> list[EnsembleRun]:
 def chain() -> TurnChain:
     runs = {"hypoplastic, k_u / H_V = 10": circle_run(), "elastic": circle_run(radius=1.2 * RADIUS)}
     return TurnChain(
-        campaign="A <b> campaign", site="site C", synthetic=True, snow=SNOW, runs=runs, ensemble=ensemble(), seed=1
+        campaign="A <b> campaign",
+        site="site C",
+        synthetic=True,
+        snow=SNOW,
+        runs=runs,
+        ensemble=ensemble(),
+        seed=1,
+        ensemble_error=0.0431,
     )
 
 
@@ -75,6 +82,7 @@ def test_page_stands_alone_with_all_its_figures(folder: Path) -> None:
     assert {path.stem for path in (folder / "figures").iterdir()} == set(FIGURES)
     assert "Synthetic data." in html
     assert "A &lt;b&gt; campaign" in html
+    assert "the nominal run ends 0.043 m from" in html
     assert "8 of 9 runs ended like the nominal one (finished)" in html
     assert "H<sub>V</sub> 0.200 N/mm³ [0.180, 0.230]" in html.replace("<i>", "").replace("</i>", "")
     assert "S<sub>f</sub> 0.500 N/mm² [0.400, 0.600]" in html.replace("<i>", "").replace("</i>", "")

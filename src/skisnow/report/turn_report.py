@@ -24,7 +24,7 @@ from .symbols import html, prose
 from .tables.run import scenario_table
 from .tables.turn import contacts_table, ensemble_table, parameters_table
 from .turn_numbers import middle_track
-from .turn_sentences import ensemble_sentence, key_sentences, meaning
+from .turn_sentences import ensemble_accuracy, ensemble_sentence, key_sentences, meaning
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -76,6 +76,9 @@ class TurnChain:
         Runs over the intervals, three or more.
     seed
         Of the ensemble's draws.
+    ensemble_error
+        Distance between the ends of the nominal run and of the same run computed like the ensemble (m); None where
+        both are computed alike.
     """
 
     campaign: str
@@ -85,6 +88,7 @@ class TurnChain:
     runs: Mapping[str, Run]
     ensemble: Sequence[EnsembleRun]
     seed: int
+    ensemble_error: float | None = None
 
 
 def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:
@@ -205,7 +209,7 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
         Section(
             "ensemble",
             "Over the uncertainty of the snow",
-            words=[drawn],
+            words=[drawn, *ensemble_accuracy(chain)],
             pictures=[by_name["band"]],
             tables=[ensemble_table(chain.ensemble)],
             after=[ensemble_sentence(chain)],
