@@ -17,8 +17,8 @@ from .motion.advance import (
     OF_SIDEWAYS,
     mechanical_energy,
 )
+from .motion.along import along_skis
 from .motion.forces import HELD, SPRINGY
-from .motion.model import PADDING
 from .motion.path import energy_in_snow
 from .run import LOST, STORED, SkiHistory
 from .run_setup import Setup
@@ -136,32 +136,13 @@ def turn_radius(time: FloatArray, velocity: FloatArray, normal: FloatArray) -> F
 
 
 def _skis(setup: Setup) -> dict[str, FloatArray]:
-    model, state, start = setup.model, setup.memory.state, setup.memory.start
-    node = model.node
-    share = _shares(node)
-    found: dict[str, list[FloatArray]] = {name: [] for name in _NAMES}
-    for k in range(2):
-        section = start.section[k, : int(start.sections[k])]
-        order = np.argsort(section[:, 0])
-        station, force, shear, depth = section[order].T
-        edge_depth = np.interp(node, station, depth)
-        track, boot_depth = _boot_edge(setup, k, float(np.interp(0.0, station, depth)))
-        values = (
-            track,
-            boot_depth,
-            edge_depth,
-            _spread(node, share, station, force),
-            _spread(node, share, station, shear),
-        )
-        bend = state.bend[k]
-        first, last = model.dof[:, 0], model.dof[:, 1]
-        number = np.append(first, last[-1])
-        held = number < 0
-        bending = np.where(held, 0.0, bend[np.where(held, 0, number + PADDING)])
-        twist = np.where(held, 0.0, bend[np.where(held, 2, number + PADDING + 2)])
-        for name, value in zip(_NAMES, (*values, bending, twist), strict=True):
-            found[name].append(np.asarray(value))
-    return {name: np.array(pair) for name, pair in found.items()}
+    """Histories along the skis, at the nodes."""
+    nodes = len(setup.model.node)
+    along = np.zeros((5, 2, nodes))
+    along_skis(setup.model, setup.memory.state, setup.memory.start, setup.shares, along)
+    edge = np.array([_boot_edge(setup, k) for k in range(2)])
+    boot = [float(np.interp(0.0, setup.model.node[::-1], along[0, k, ::-1])) for k in range(2)]
+    return dict(zip(_NAMES, (edge, np.array(boot), *along), strict=True))
 
 
 _NAMES = ("track", "depth", "edge_depth", "force_per_length", "shear_per_length", "bending", "twist")
@@ -172,27 +153,13 @@ def _no_skis(stations: int) -> dict[str, FloatArray]:
     return empty | {"track": np.zeros((0, 2, 3)), "depth": np.zeros((0, 2))}
 
 
-def _shares(node: FloatArray) -> FloatArray:
-    """Length of ski (m) that each node stands for."""
-    half = -np.diff(node) / 2.0
-    return np.append(half, 0.0) + np.append(0.0, half)
-
-
-def _spread(node: FloatArray, share: FloatArray, station: FloatArray, force: FloatArray) -> FloatArray:
-    """Forces at stations as force per length at the nodes; their sum is kept."""
-    upper = np.clip(np.searchsorted(-node, -station, side="right") - 1, 0, len(node) - 2)
-    local = np.clip((node[upper] - station) / (node[upper] - node[upper + 1]), 0.0, 1.0)
-    total = np.bincount(upper, force * (1.0 - local), len(node)) + np.bincount(upper + 1, force * local, len(node))
-    return total / share
-
-
-def _boot_edge(setup: Setup, k: int, depth: float) -> tuple[FloatArray, float]:
-    """The edge that is down at the boot, brought to the slope's surface (m), and its depth (m)."""
+def _boot_edge(setup: Setup, k: int) -> FloatArray:
+    """The edge that is down at the boot, brought to the slope's surface (m)."""
     model, state = setup.model, setup.memory.state
-    place = int(round(-model.tail / (model.tip - model.tail) * (len(model.table) - 1)))
+    place = round(-model.tail / (model.tip - model.tail) * (len(model.table) - 1))
     half, height = model.table[place, 0], model.table[place, 2]
     lateral = state.turn @ model.lateral
     side = -np.sign(lateral[2]) if abs(lateral[2]) > 1e-9 else 0.0
     edge = state.place + state.turn @ (model.middle[k] + height * model.normal) + side * half * lateral
     edge[2] = setup.surface_height(float(edge[0]))
-    return edge, depth
+    return np.asarray(edge)

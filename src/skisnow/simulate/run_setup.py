@@ -19,6 +19,7 @@ from .motion.advance import (
     new_memory,
     observe,
 )
+from .motion.along import shares
 from .motion.archive import Archive, grown, new_archive
 from .motion.lines import KEPT, TOUCHED, WINDOW, Lines, new_lines
 from .motion.model import Model, Snow, World, sledge_model
@@ -41,6 +42,8 @@ LINE_SPACING: Final = 0.024
 """Largest spacing (m) of the snow's lines (Choice)."""
 CELLS_ACROSS: Final = 4
 """Cells over the width of the contact (Choice)."""
+CELLS: Final = 64
+"""Cells that a line keeps at a time: many more than a contact needs, few enough for the processor's cache."""
 SMALLEST_CELL, LARGEST_CELL = 10e-6, 8e-3
 """Sizes (m) of cells."""
 PROFILE_STEP: Final = 0.02
@@ -61,6 +64,7 @@ class Setup:
     numbers: dict[str, float]
     unrest: float
     end: float
+    shares: FloatArray
 
     @property
     def time(self) -> float:
@@ -185,12 +189,11 @@ def set_up(scenario: Scenario) -> Setup:
     cell = solver.cell or min(max(across / CELLS_ACROSS, SMALLEST_CELL), LARGEST_CELL)
     ski = clamped(scenario.ski, scenario.clamp_length, elements)
     model = sledge_model(scenario.sledge, ski, damping_ratio=scenario.damping_ratio)
-    cells = 64 if cell > 4e-3 else 128 if cell > 2e-3 else 256
     ring = math.ceil((model.tip - model.tail + 2.0 * AHEAD) / spacing) + 12
-    lines = new_lines(ring, cells, spacing=spacing, cell=cell)
+    lines = new_lines(ring, CELLS, spacing=spacing, cell=cell)
     memory = new_memory(ski.size, ring)
     memory.clock.time[1] = solver.step
-    archive = new_archive(8 * ring, 2 * ring * cells)
+    archive = new_archive(8 * ring, 4 * ring * CELLS)
     snow, world = _snow(scenario), _world(scenario)
     _place(scenario, memory, depth)
     follow(model, snow, world, lines, archive, memory.state)
@@ -203,7 +206,7 @@ def set_up(scenario: Scenario) -> Setup:
     numbers = {"elements": float(elements), "line_spacing_m": spacing, "cell_mm": cell * 1e3, "load_N": load}
     slope = scenario.slope
     end = math.inf if isinstance(slope, Plane) else slope.ends[1]
-    return Setup(scenario, model, snow, world, lines, archive, memory, numbers, float(unrest), end)
+    return Setup(scenario, model, snow, world, lines, archive, memory, numbers, float(unrest), end, shares(model.node))
 
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
@@ -236,6 +239,7 @@ def _snow(scenario: Scenario) -> Snow:
         friction=contact.friction,
         friction_by_speed=contact.friction_by_speed,
         friction_speed=FRICTION_SPEED,
+        secant=1.0,
         one_sided=ONE_SIDED,
     )
 

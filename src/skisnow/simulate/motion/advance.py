@@ -177,7 +177,7 @@ def advance_controlled(
         clock.time[0] = until if h == left else clock.time[0] + h
         clock.time[2] = h
         clock.counts[0] += 2
-        observe(model, snow, world, lines, archive, memory, True)
+        observe(model, snow, world, lines, archive, memory, h > 0.0)
     return GOES_ON
 
 

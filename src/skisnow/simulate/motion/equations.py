@@ -85,6 +85,10 @@ def channel_rows(model: Model, lines: Lines, state: State, rows: FloatArray) -> 
         rows[k, 1, 4], rows[k, 1, 5] = n[2], -n[1]
         rows[k, 2, 3] = -1.0
         rows[k, 4, 4], rows[k, 4, 5] = -t[2], t[1]
+        # forwards: t × n
+        d0, d1, d2 = t[1] * n[2] - t[2] * n[1], t[2] * n[0], -t[1] * n[0]
+        rows[k, 5, 0], rows[k, 5, 1], rows[k, 5, 2] = d0, d1, d2
+        rows[k, 5, 3], rows[k, 5, 4], rows[k, 5, 5] = y * d2 - z * d1, z * d0, -y * d0
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -115,10 +119,23 @@ def move(state: State, rigid: FloatArray, bend: FloatArray, scale: float, out: S
 
 
 @numba.njit(cache=True, error_model="numpy")
+def copy_pose(source: State, target: State) -> None:
+    """Copy place, turn and bend. Loops: Numba compiles the assignment of arrays together with words for its errors."""
+    for a in range(3):
+        target.place[a] = source.place[a]
+        for b in range(3):
+            target.turn[a, b] = source.turn[a, b]
+    for k in range(2):
+        for i in range(source.bend.shape[1]):
+            target.bend[k, i] = source.bend[k, i]
+
+
+@numba.njit(cache=True, error_model="numpy")
 def copy_state(source: State, target: State) -> None:
     """Copy a state."""
-    target.place[:] = source.place
-    target.turn[:] = source.turn
-    target.velocity[:] = source.velocity
-    target.bend[:] = source.bend
-    target.bend_rate[:] = source.bend_rate
+    copy_pose(source, target)
+    for a in range(6):
+        target.velocity[a] = source.velocity[a]
+    for k in range(2):
+        for i in range(source.bend_rate.shape[1]):
+            target.bend_rate[k, i] = source.bend_rate[k, i]

@@ -16,14 +16,28 @@ import numpy as np
 import numpy.typing as npt
 
 from .lines import (
-    ANCHOR, ANCHORED, CELL, DEPTH, EDGE, FALL, HIGH, KEPT, LOW, SLOPE, TOUCHED, WINDOW, Lines, energy_at_edge, pressure,
+    ANCHOR,
+    ANCHORED,
+    CELL,
+    DEPTH,
+    EDGE,
+    FALL,
+    HIGH,
+    KEPT,
+    LOW,
+    SLOPE,
+    TOUCHED,
+    WINDOW,
+    Lines,
+    energy_at_edge,
+    pressure,
 )  # fmt: skip
 from .model import PADDING, Model, Snow, State
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-CHANNELS = 5
-"""Columns between beam and rigid body: depth, depth × s, roll, across, across × s."""
+CHANNELS = 6
+"""Columns between beam and rigid body: depth, depth × s, roll, across, across × s, forwards."""
 
 FAR = 1 << 40
 ZERO, ONE, TWO = np.uint64(0), np.uint64(1), np.uint64(2)
@@ -211,7 +225,7 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
             # the edge holds where it first took hold, with up to its strength
             hold = snow.shear_stress * deep * weight
             used = (value[row, ANCHOR] - edge) / snow.holding if flag[row, ANCHORED] == 1 else 0.0
-            sticks = abs(used) < 1.0
+            sticks = abs(used) < 1.0 or snow.secant > 0.0
             used = min(max(used, -1.0), 1.0)
             shear = hold * used
             # centre of pressure: on the base, from the boot
@@ -227,7 +241,8 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
             c5 = v2 + o0 * h1 - o1 * h0 + m2 * bend_rate - r2 * turning
             sliding = c3 * s0 + c4 * s1 + c5 * s2
             cosine2 = 1.0 - sine * sine
-            resist = F * (N0 * s0 + N1 * s1 + N2 * s2) * steep + twist_slope * M / cosine2 * size
+            rise = (N0 * s0 + N1 * s1 + N2 * s2) * steep  # of the depth, along the edge
+            resist = F * rise + twist_slope * M / cosine2 * size
             resist *= snow.compaction
             rub = -(snow.friction + snow.friction_by_speed * abs(sliding)) * F * sliding
             rub /= np.sqrt(sliding * sliding + friction2)
@@ -267,9 +282,7 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
                 power[NORMAL] += F * (c3 * n0 + c4 * n1 + c5 * n2) + resist * sliding
                 power[SIDEWAYS] -= F * (N0 * u0 + N1 * u1 + N2 * u2) * steep * (c3 * u0 + c4 * u1 + c5 * u2)
                 if snow.compaction == 0.0:
-                    power[SIDEWAYS] -= (
-                        F * (N0 * s0 + N1 * s1 + N2 * s2) * steep + twist_slope * M / cosine2 * size
-                    ) * sliding
+                    power[SIDEWAYS] -= (F * rise + twist_slope * M / cosine2 * size) * sliding
                 # ground that the base's edges cover or leave
                 for at_left in range(2):
                     if (at_left == 0 and not low_wet) or (at_left == 1 and not high_wet):
@@ -305,9 +318,12 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
             if tangent:
                 _add_tangent(
                     out, k, model.dof[e, 0], model.dof[e, 1], s, w0, w1, w2, w3, z,
-                    n0 * m0 + n1 * m1 + n2 * m2, u0 * m0 + u1 * m1 + u2 * m2,
+                    n0 * m0 + n1 * m1 + n2 * m2 + rise * (s0 * m0 + s1 * m1 + s2 * m2), u0 * m0 + u1 * m1 + u2 * m2,
                     weight * sums[2], weight * sums[3], weight * sums[4], reach * lateral, 1.0 / np.sqrt(cosine2),
                     hold / snow.holding if sticks else 0.0,
+                    rise,
+                    (E0 * (n1 * x2 - n2 * x1) + E1 * (n2 * x0 - n0 * x2) + E2 * (n0 * x1 - n1 * x0))
+                    / (E0 * x0 + E1 * x1 + E2 * x2),
                 )  # fmt: skip
         out.sections[k] = filled
     out.rigid[0] = R[0, 0] * f0 + R[1, 0] * f1 + R[2, 0] * f2
@@ -321,9 +337,14 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
 def _add_tangent(
     out: Forces, k: int, A: int, B: int, s: float, w0: float, w1: float, w2: float, w3: float, z: float,
-    cn: float, cu: float, k0: float, k1: float, k2: float, reach: float, secant: float, ky: float,
+    cn: float, cu: float, k0: float, k1: float, k2: float, reach: float, secant: float, ky: float, rise: float,
+    aside: float,
 ) -> None:  # fmt: skip
-    """Add minus the tangent of one section: depth and roll (k0, k1, k2, about the edge), and across (ky)."""
+    """Add minus the tangent of one section: depth and roll (k0, k1, k2, about the edge), and across (ky).
+
+    A line feels the ski move along its base and along its edge: forwards, the depth grows by `rise`, and the edge comes to lie
+    `aside` of the ski's axis. Without it a steadily carving ski would seem to be pushed across where it only follows its edge.
+    """
     k2 = (k2 + 2.0 * reach * k1 + reach * reach * k0) * secant * secant
     k1 = (k1 + reach * k0) * secant
     corner = out.corner
@@ -337,10 +358,17 @@ def _add_tangent(
     corner[k, 3, 3] += ky
     corner[k, 3, 4] += ys
     corner[k, 4, 4] += ys * s
+    corner[k, 0, 5] -= k0 * rise
+    corner[k, 1, 5] -= ks * rise
+    corner[k, 2, 5] -= k1 * rise
+    corner[k, 3, 5] -= ky * aside
+    corner[k, 4, 5] -= ys * aside
+    corner[k, 5, 5] += k0 * rise * rise + ky * aside * aside
     # of the deflection: depth falls by cn, place across grows by cu
     y = 1.0 - z
     ww, wp = k0 * cn * cn + ky * cu * cu, -k1 * cn
     c0, c2, cy = -cn * k0, -cn * k1, cu * ky
+    c5, t5 = -c0 * rise - cy * aside, -k1 * rise
     band, channels = out.band, out.channels
     if A >= 0:
         v0, v1 = w0 * ww, w1 * ww
@@ -355,14 +383,17 @@ def _add_tangent(
         channels[k, A, 2] += w0 * c2
         channels[k, A, 3] += w0 * cy
         channels[k, A, 4] += w0 * cy * s
+        channels[k, A, 5] += w0 * c5
         channels[k, A + 1, 0] += w1 * c0
         channels[k, A + 1, 1] += w1 * c0 * s
         channels[k, A + 1, 2] += w1 * c2
         channels[k, A + 1, 3] += w1 * cy
         channels[k, A + 1, 4] += w1 * cy * s
+        channels[k, A + 1, 5] += w1 * c5
         channels[k, A + 2, 0] += y * k1
         channels[k, A + 2, 1] += y * k1 * s
         channels[k, A + 2, 2] += y * k2
+        channels[k, A + 2, 5] += y * t5
         if B >= 0:
             band[k, B, 3] += v0 * w2
             band[k, B, 2] += v1 * w2
@@ -386,11 +417,14 @@ def _add_tangent(
         channels[k, B, 2] += w2 * c2
         channels[k, B, 3] += w2 * cy
         channels[k, B, 4] += w2 * cy * s
+        channels[k, B, 5] += w2 * c5
         channels[k, B + 1, 0] += w3 * c0
         channels[k, B + 1, 1] += w3 * c0 * s
         channels[k, B + 1, 2] += w3 * c2
         channels[k, B + 1, 3] += w3 * cy
         channels[k, B + 1, 4] += w3 * cy * s
+        channels[k, B + 1, 5] += w3 * c5
         channels[k, B + 2, 0] += z * k1
         channels[k, B + 2, 1] += z * k1 * s
         channels[k, B + 2, 2] += z * k2
+        channels[k, B + 2, 5] += z * t5

@@ -56,9 +56,9 @@ def surface(world: World, x: float) -> tuple[float, float]:
 
 @numba.njit(cache=True, error_model="numpy")
 def _lay(
-    model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, state: State, k: int, s: float, front: bool
+    model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, state: State, k: int, s: float, way: float
 ) -> None:  # fmt: skip
-    """Lay a line of ski k at station s of its straight axis, before the others or behind them."""
+    """Lay a line of ski k at station s of its straight axis, before the others (way > 0) or behind them."""
     ring = len(lines.flag) // 2
     R = state.turn
     y = model.middle[k, 1]
@@ -80,7 +80,7 @@ def _lay(
     frame[3], frame[4], frame[5] = d0, d1, d2
     frame[6], frame[7], frame[8] = -n2 * d1, n2 * d0 - n0 * d2, n0 * d1
     frame[9], frame[10], frame[11] = n0, 0.0, n2
-    if front:
+    if way > 0.0:
         row = k * ring + (lines.first[k] + lines.count[k]) % ring
     else:
         lines.first[k] = (lines.first[k] - 1) % ring
@@ -121,15 +121,15 @@ def follow(model: Model, snow: Snow, world: World, lines: Lines, archive: Archiv
             leave_line(archive, lines, k * ring + last, snow.hardness, snow.excess)
             lines.count[k] -= 1
         if lines.count[k] == 0:
-            _lay(model, snow, world, lines, archive, state, k, 0.0, True)
+            _lay(model, snow, world, lines, archive, state, k, 0.0, spacing)
         s = _station(model, lines, state, k, lines.count[k] - 1)
         while s < model.tip + AHEAD and lines.count[k] < ring:
             s += spacing
-            _lay(model, snow, world, lines, archive, state, k, s, True)
+            _lay(model, snow, world, lines, archive, state, k, s, spacing)
         s = _station(model, lines, state, k, 0)
         while s > model.tail - AHEAD and lines.count[k] < ring:
             s -= spacing
-            _lay(model, snow, world, lines, archive, state, k, s, False)
+            _lay(model, snow, world, lines, archive, state, k, s, -spacing)
 
 
 @numba.njit(cache=True, error_model="numpy")

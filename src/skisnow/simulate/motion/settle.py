@@ -8,12 +8,12 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from .equations import add_forces, channel_rows, move
+from .equations import add_forces, channel_rows, copy_pose, move
 from .forces import CHANNELS, Forces, feel
 from .lines import Lines
 from .model import Model, Snow, State, World
 from .ros2 import Room
-from .system import Factored, add_band, backwards, factor, forwards
+from .system import Factored, add_band, backwards, cholesky, factor, forwards, solve_corner
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def settle(
     size = 1e9
     scale = 1.0
     for _ in range(MOST_STEPS):
-        feel(model, snow, lines, state, True, False, start)
+        feel(model, snow, lines, state, size > 0.0, True, start)
         vector.rigid[:] = 0.0
         vector.bend[:] = 0.0
         add_forces(model, world, state, start, 1.0, vector)
@@ -61,9 +61,7 @@ def settle(
                     size = max(size, abs(vector.bend[k, i]))
         scale = min(1.0, LONGEST_STEP / size)
         move(state, vector.rigid, vector.bend, scale, calm)
-        state.place[:] = calm.place
-        state.turn[:] = calm.turn
-        state.bend[:] = calm.bend
+        copy_pose(calm, state)
         if size < SETTLED:
             break
     return size
@@ -84,6 +82,7 @@ def _solve_free(corner: FloatArray, right: FloatArray) -> None:
         free[a] = right[a + 2]
         for b in range(3):
             inner[a, b] = whole[a + 2, b + 2]
-    found = np.linalg.solve(inner, free)
-    right[:] = 0.0
-    right[2:5] = found
+    cholesky(inner)
+    solve_corner(inner, free)
+    for a in range(6):
+        right[a] = free[a - 2] if 2 <= a < 5 else 0.0

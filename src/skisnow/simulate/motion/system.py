@@ -86,7 +86,7 @@ def factor(
                 scaled = Y[p, a] * scale
                 for b in range(a + 1):
                     out.corner[a, b] -= scaled * Y[p, b]
-    return _cholesky(out.corner) and sound
+    return cholesky(out.corner) and sound
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -109,7 +109,7 @@ def _rigid_tangent(forces: Forces, rows: FloatArray, k: int, contact: float, cor
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _cholesky(corner: FloatArray) -> bool:
+def cholesky(corner: FloatArray) -> bool:
     """Cholesky factor of a symmetric matrix, lower half, in place."""
     n = len(corner)
     for a in range(n):
@@ -128,7 +128,7 @@ def _cholesky(corner: FloatArray) -> bool:
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def solve_corner(corner: FloatArray, right: FloatArray) -> None:
-    """Solve with the factor of `_cholesky`, in place."""
+    """Solve with the factor of `cholesky`, in place."""
     n = len(corner)
     for a in range(n):
         for c in range(a):
