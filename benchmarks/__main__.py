@@ -1,22 +1,56 @@
-"""Run every benchmark, print one table: what, seconds, goal, and the ratio to a peer measured in the same run."""
+"""Run every benchmark, print one table: what, seconds, goal, and the ratio to a peer measured in the same run.
+
+``python -m benchmarks turns`` runs those of simulated turns alone and prints them as Markdown.
+"""
 
 from __future__ import annotations
 
 import argparse
 import os
 import platform
+import subprocess
+import sys
+import tempfile
 
-from . import campaign_size, command_line, equilibrium, model_table
-from .timing import Measurement
+TURNS = "turns"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
+    parser.add_argument("part", nargs="?", choices=[TURNS], help="the simulated turns alone; left out: everything")
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
+    parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds of a turn")
+    parser.add_argument("--repeats", type=int, default=5, help="of each turn; the shortest time counts")
+    parser.add_argument("--runs", type=int, default=64, help="turns at a time on all cores")
     options = parser.parse_args()
+    if options.part == TURNS:
+        _turns(options)
+    else:
+        _everything_else(options.rows)
+        print(flush=True)
+        subprocess.run([sys.executable, "-m", "benchmarks", TURNS, *_said(options)], check=True)
+
+
+def _turns(options: argparse.Namespace) -> None:
+    """In a cache of their own: Numba does not see that a function which a cached one calls has changed."""
+    with tempfile.TemporaryDirectory() as cache:
+        os.environ["NUMBA_CACHE_DIR"] = cache  # before anything compiled is imported
+        from .turns.table import Effort, print_tables
+
+        print_tables(Effort(options.duration, options.repeats, options.runs))
+
+
+def _said(options: argparse.Namespace) -> list[str]:
+    return ["--duration", str(options.duration), "--repeats", str(options.repeats), "--runs", str(options.runs)]
+
+
+def _everything_else(rows: int) -> None:
+    from . import campaign_size, command_line, equilibrium, model_table
+    from .timing import Measurement
+
     print(f"Python {platform.python_version()}, {os.cpu_count()} cores, {platform.machine()}\n")
     print(Measurement.header())
-    parts = (model_table.measure(), command_line.measure(), equilibrium.measure(), campaign_size.measure(options.rows))
+    parts = (model_table.measure(), command_line.measure(), equilibrium.measure(), campaign_size.measure(rows))
     for measurements in parts:
         for measurement in measurements:
             print(measurement, flush=True)

@@ -1,0 +1,1 @@
+"""Simulated turns: how fast, and how far off: ``python -m benchmarks turns``."""

@@ -1,0 +1,147 @@
+"""The tables of the simulated turns, as Markdown."""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from skisnow.errors import SkisnowError
+from skisnow.simulate.batch import available_cores
+
+from . import peers, processes, speed
+from .cases import CASES, DEFAULT_STEP, HARD_SNOW, SCENARIO, Runs, fixed
+from .speed import Speed, told
+
+CACHE_VARIABLE = "NUMBA_CACHE_DIR"
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How much is run: simulated seconds of a turn, repeats of each, runs of the batch."""
+
+    duration_s: float = 5.0
+    repeats: int = 5
+    batch: int = 64
+
+
+def tables(effort: Effort, cache: Path) -> Iterator[str]:
+    """Lines of Markdown, as they are found; the folder `cache` is to hold compiled code, and is empty."""
+    yield (
+        f"{SCENARIO}, {effort.duration_s:g} s; {datetime.now(UTC):%Y-%m-%d}, Python {platform.python_version()}, "
+        f"{available_cores()} cores, {platform.machine()}; shortest of {effort.repeats} runs"
+    )
+    told("a process that compiles everything")
+    cold = processes.in_one_process(effort.duration_s, cache)
+    runs = Runs(effort.duration_s)
+    found = speed.speeds(runs, repeats=effort.repeats)
+    yield from speed_table(found)
+    yield from finer_tables(runs)
+    told(f"{effort.batch} runs")
+    yield from batch_table(processes.many(effort.duration_s, count=effort.batch))
+    told("starts")
+    yield from start_table(cold, cache, effort)
+    told("peers")
+    base = next(each for each in found if each.case is DEFAULT_STEP)
+    yield from peer_table(list(peers.peers(duration_s=effort.duration_s / 5.0, repeats=effort.repeats)), base)
+
+
+def speed_table(found: Sequence[Speed]) -> Iterator[str]:
+    """Speed, steps, and the error beside it."""
+    base = next((each for each in found if each.case is DEFAULT_STEP), found[0])
+    yield from _head(
+        "run",
+        "times real time",
+        "to reach",
+        "µs per step",
+        "steps",
+        "rejected",
+        "end off (mm)",
+        "time, ROS2 0.5 ms = 1",
+    )
+    for each in found:
+        if math.isnan(each.seconds):
+            yield _row(each.case.name, each.trouble, each.case.goal, "", "", "", "", "")
+            continue
+        name = f"{each.case.name} ({each.trouble})" if each.trouble else each.case.name
+        counts = (f"{each.steps:,}", f"{each.rejected_steps:,}")
+        speed_words = (f"{each.times_real_time:.1f}", each.case.goal, f"{each.us_per_step:.1f}")
+        yield _row(name, *speed_words, *counts, f"{1e3 * each.end_off_m:.2f}", f"{each.seconds / base.seconds:.2f}")
+
+
+def finer_tables(runs: Runs) -> Iterator[str]:
+    """What finer choices in space cost, and what they move."""
+    yield from _head("made finer by two", "snow", "time over before", "end moves (mm)")
+    snows = (("H_V = 0.2 N/mm³, 0.5 ms", DEFAULT_STEP.changes), ("H_V = 90 N/mm³, 0.1 ms", HARD_SNOW | fixed(0.1)))
+    for name, changes in snows:
+        try:
+            for each in speed.finer(runs, changes):
+                key = each.key.removeprefix("solver.")
+                yield _row(key, name, f"{each.times_as_long:.2f}", f"{1e3 * each.end_moves_m:.2f}")
+        except SkisnowError as error:
+            yield _row("", name, f"not run: {error}", "")
+
+
+def batch_table(batch: processes.Batch) -> Iterator[str]:
+    """Many runs on all cores."""
+    yield from _head(f"{batch.runs} runs, ROS2 0.5 ms, {batch.workers} processes", "measured", "to reach")
+    yield _row("simulated seconds per second, once they run", f"{batch.per_s_running:.1f}", "28 on 2 cores")
+    yield _row("simulated seconds per second, start of the processes included", f"{batch.per_s:.1f}", "")
+    yield _row("the same over one run alone", f"{batch.per_s_running / batch.alone_per_s:.2f}", "")
+    yield _row("end off, the worse of first and last run (mm)", f"{1e3 * batch.end_off_m:.2f}", "")
+    yield _row("last digit as in one process", "the same" if batch.same_bits else "**another**", "the same")
+    yield _row("largest process (MB)", f"{batch.worker_MB:.0f}", "")
+
+
+def start_table(cold: dict[str, float], cache: Path, effort: Effort) -> Iterator[str]:
+    """Starts and memory."""
+    warm = processes.in_one_process(effort.duration_s, cache)
+    start, bare = (of(cache, repeats=effort.repeats) for of in (processes.cached_start_s, processes.bare_start_s))
+    yield from _head("start and memory", "measured", "to reach")
+    yield _row("first run of all until it moves: compiling (s)", f"{cold['ready_s']:.1f}", "")
+    yield _row("the same with the compiled code kept (s)", f"{warm['ready_s']:.2f}", "1")
+    yield _row("`skisnow simulate` of 0.01 s, compiled code kept (s)", f"{start:.2f}", "1")
+    yield _row("of that: Python with NumPy and Numba (s)", f"{bare:.2f}", "")
+    yield _row("memory of one run that compiles first (MB)", f"{cold['one_run_MB']:.0f}", "400")
+    yield _row("memory of one run, compiled code kept (MB)", f"{warm['one_run_MB']:.0f}", "400")
+    yield _row("arrays of one run at their most (MB)", f"{warm['arrays_of_a_run_MB']:.1f}", "5")
+    yield _row("growth of the process with each further run (MB)", f"{warm['growth_per_run_MB']:.2f}", "5")
+
+
+def peer_table(found: Sequence[peers.Peer], base: Speed) -> Iterator[str]:
+    """Peers beside our default step, which has snow."""
+    yield from _head(
+        "peers, no snow", "times real time", "µs per step", "tip off (mm)", "frequencies over ours", "ours"
+    )
+    for each in found:
+        if each.absent:
+            yield _row(each.what, each.absent, "", "", "", "")
+            continue
+        ratios = ", ".join(f"{ratio:.3f}" for ratio in each.frequencies)
+        ours = f"{base.times_real_time / each.times_real_time:.1f} x as fast"
+        numbers = (f"{each.times_real_time:.2f}", f"{each.us_per_step:.1f}", f"{1e3 * each.tip_off_m:.3f}")
+        yield _row(each.what, *numbers, ratios, ours)
+
+
+def print_tables(effort: Effort) -> None:
+    """Measure with compiled code of this very source: Numba's cache does not see that a function called has changed.
+
+    Call it before anything that Numba compiles is imported.
+    """
+    print(f"{len(CASES)} ways to run, {os.cpu_count()} cores\n")
+    for line in tables(effort, Path(os.environ[CACHE_VARIABLE])):
+        print(line, flush=True)
+
+
+def _head(first: str, *others: str) -> Iterator[str]:
+    yield ""
+    yield _row(first, *others)
+    yield _row("---", *("---:" for _ in others))
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(cells)} |"
