@@ -39,12 +39,12 @@ class SwingingSki:
     def tip(self, seconds: float, *, step: float) -> FloatArray:
         """Deflection of the tip across, over time (n, 2) (s, m), with that step (s); each call starts afresh."""
         settings: Any = exudyn.SimulationSettings()
-        settings.solutionSettings.writeSolutionToFile = False
-        settings.solutionSettings.sensorsWritePeriod = step
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = step
         settings.timeIntegration.endTime = seconds
         settings.timeIntegration.numberOfSteps = round(seconds / step)
         settings.timeIntegration.newton.useModifiedNewton = True
-        settings.linearSolverType = exudyn.LinearSolverType.EigenSparse
+        settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         assert self.system.SolveDynamic(settings)
         return np.asarray(self.system.GetSensorStoredData(self.sensor))[:, [0, 2]]
 
@@ -68,8 +68,8 @@ def swinging(ski: Ski, *, frequency: float) -> SwingingSki:
     for i, at in enumerate((place[:-1] + place[1:]) / 2.0):
         section = ski.at(at)
         damping = 2.0 * DAMPING_RATIO / (2.0 * np.pi * frequency) * float(section.bending_stiffness)
-        beam.system.SetObjectParameter(i, "physicsMassPerLength", float(section.mass_per_length))
-        beam.system.SetObjectParameter(i, "physicsBendingDamping", damping)
+        beam.system.SetObjectParameter(i, "massPerLength", float(section.mass_per_length))
+        beam.system.SetObjectParameter(i, "bendingDamping", damping)
     for node in range(rear, rear + len(middle)):
         beam.hold(node, ALONG, ACROSS, SLOPE_ALONG, SLOPE_ACROSS)
     for node, x in zip(beam.nodes, place, strict=True):

@@ -75,7 +75,7 @@ def mujoco_flight(ski: Ski, *, duration_s: float, repeats: int) -> Iterator[Peer
         for step_ms in MUJOCO_STEPS_MS:
             step = 1e-3 * step_ms
             model, reference = theirs.flight(ski, step=step), theirs.flight(ski, step=step / FINER)
-            frequencies = _agreeing("MuJoCo", theirs.clamped_frequencies(model), first_frequencies(ski))
+            frequencies = agreeing("MuJoCo", theirs.clamped_frequencies(model), first_frequencies(ski))
             ends = []
             for each in (model, reference):
                 data = theirs.released(each)
@@ -96,14 +96,15 @@ def exudyn_swing(ski: Ski, *, duration_s: float, repeats: int) -> Iterator[Peer]
     step = 1e-3 * EXUDYN_STEP_MS
     ours = first_frequencies(ski)[:1]
     model = theirs.swinging(ski, frequency=ours[0])
-    frequencies = _agreeing("Exudyn", (model.frequency(),), ours)
+    frequencies = agreeing("Exudyn", (model.frequency(),), ours)
     off = abs(model.tip(SWING_S, step=step)[-1, 1] - model.tip(SWING_S, step=step / FINER)[-1, 1])
     seconds = min(timed(lambda: model.tip(duration_s, step=step)) for _ in range(repeats))
     what = f"Exudyn, one clamped ski of 40 geometrically exact cables in its plane, {EXUDYN_STEP_MS:g} ms"
     yield Peer(what, 1e6 * seconds * step / duration_s, duration_s / seconds, off, frequencies)
 
 
-def _agreeing(program: str, theirs: tuple[float, ...], ours: tuple[float, ...]) -> tuple[float, ...]:
+def agreeing(program: str, theirs: tuple[float, ...], ours: tuple[float, ...]) -> tuple[float, ...]:
+    """Their frequencies over ours, refused where they are of another ski."""
     ratios = tuple(a / b for a, b in zip(theirs, ours, strict=True))
     if max(abs(ratio - 1.0) for ratio in ratios) > FREQUENCY_AGREES:
         raise AssertionError(f"{program}'s clamped ski is another ski: its first frequencies over ours are {ratios}")
