@@ -1,7 +1,8 @@
 """The sledge's equations of motion again: plain NumPy, dense matrices, vectors, no compiled loop.
 
-Derived apart: Hamel's equations for velocities in the sledge's frame, forces by virtual work. A base point at station s, b
-across, is at s x + h m + b t from the boot, h its height with the bend w, t = cos φ l - sin φ m; it moves by m δw - b r δφ.
+Derived apart: Hamel's equations for velocities in the sledge's frame, forces by virtual work. A base point at station
+s, b across, is at s x + h m + b t from the boot, h its height with the bend w, t = cos φ l - sin φ m; it moves by
+m δw - b r δφ.
 """
 
 from __future__ import annotations
@@ -195,7 +196,7 @@ def _section(
 ) -> None:
     line.touch = None
     R = motion.turn
-    x, l, m = R[:, 0], R @ body.lateral, R @ body.normal
+    x, across, m = R[:, 0], R @ body.lateral, R @ body.normal
     boot = motion.place + R @ body.middle[k]
     to_line = line.origin - boot
     ahead, n, y = line.ahead, line.out, line.left
@@ -203,11 +204,11 @@ def _section(
     gap = to_line @ ahead / (x @ ahead)
     if not body.tail - spacing <= gap <= body.tip + spacing:
         return
-    down = np.clip(-(l @ n) / snow.one_sided, -1.0, 1.0)
+    down = np.clip(-(across @ n) / snow.one_sided, -1.0, 1.0)
     s = float(gap)
     for _ in range(2):
         half, height, _, _ = body.along(s)
-        s = float(gap - (down * half * (l @ ahead) + height * (m @ ahead)) / (x @ ahead))
+        s = float(gap - (down * half * (across @ ahead) + height * (m @ ahead)) / (x @ ahead))
     share = np.clip((s - body.tail) / spacing + 0.5, 0.0, 1.0) * np.clip((body.tip - s) / spacing + 0.5, 0.0, 1.0)
     if share <= 0.0:
         return
@@ -217,7 +218,7 @@ def _section(
     unknowns = np.concatenate([np.zeros(6), motion.bend.ravel()])
     height, slope = height + float(deflection @ unknowns), slope + float(deflection_slope @ unknowns)
     phi, phi_slope = float(twist @ unknowns), float(twist_slope @ unknowns)
-    t, r = math.cos(phi) * l - math.sin(phi) * m, math.cos(phi) * m + math.sin(phi) * l
+    t, r = math.cos(phi) * across - math.sin(phi) * m, math.cos(phi) * m + math.sin(phi) * across
     axis = s * x + height * m
     depth = float((to_line - axis) @ n)
     sine = float(-t @ n)
@@ -316,7 +317,7 @@ def ros2_step(
     start: Felt,
     h: float,
 ) -> Motion:
-    """One step of Verwer and others (1999) for y = (x, v), with the whole of I - γhJ as one dense matrix; `start`: felt there.
+    """One step of Verwer and others (1999) for y = (x, v), the whole of I - γhJ one dense matrix; `start`: felt there.
 
     J = ((0, 1), (-M⁻¹(K + C), -M⁻¹D)); k₁ and k₂ follow from f(y) and f(y + h k₁) - 2 k₁; y ← y + h (3 k₁ + k₂)/2.
     """

@@ -1,4 +1,4 @@
-"""A run of the reference: lines laid ahead and taken up behind, steps of one size, what is accepted pressed into the snow."""
+"""A run of the reference: lines laid ahead, taken up behind, steps of one size, the accepted pressed into the snow."""
 
 from __future__ import annotations
 

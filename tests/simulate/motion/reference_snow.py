@@ -5,6 +5,7 @@ Nothing here comes from the compiled loops but the names of their arrays, from w
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, field
 
@@ -68,7 +69,8 @@ def lines_of(arrays: Lines) -> tuple[list[Line], list[Line]]:
 
     def line(row: int) -> Line:
         frame, value, flag = arrays.frame[row], arrays.value[row], arrays.flag[row]
-        made = Line(*(frame[i : i + 3].copy() for i in (0, 3, 6, 9)), float(value[CELL]), slope=float(value[SLOPE]))
+        origin, ahead, left, out = (frame[i : i + 3].copy() for i in (0, 3, 6, 9))
+        made = Line(origin, ahead, left, out, float(value[CELL]), slope=float(value[SLOPE]))
         made.anchor = float(value[ANCHOR]) if flag[ANCHORED] else None
         if flag[KEPT]:
             size = arrays.cells.shape[1]
@@ -95,7 +97,7 @@ def pressure_sums(line: Line, touch: Touch, snow: Snow) -> Sums:
             inside.update((line.cells[j].start, line.cells[j].end))
     ends = sorted(y for y in inside if touch.low <= y <= touch.high)
     sums = Sums()
-    for a, b in zip(ends[:-1], ends[1:], strict=True):
+    for a, b in itertools.pairwise(ends):
         middle = 0.5 * (a + b)
         cell = line.cells.get(math.floor(middle / line.cell))
         lift = 0.0

@@ -15,7 +15,6 @@ from skisnow.simulate.motion.system import (
     cholesky,
     factor,
     new_factored,
-    new_vector,
     solve,
     solve_corner,
 )

@@ -1,0 +1,115 @@
+"""A second pass meets the groove of the first, whatever the angle between them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow.simulate.motion.archive import Archive, grown, leave_line, look_ahead, new_archive
+from skisnow.simulate.motion.lines import (
+    DEEPEST,
+    DEPTH,
+    EDGE,
+    FALL,
+    FROM,
+    HIGH,
+    KEPT,
+    LOST,
+    LOW,
+    TO,
+    WINDOW,
+    Lines,
+    begin_line,
+    energy_left,
+    mark_cells,
+    new_lines,
+    open_window,
+)
+
+FloatArray = npt.NDArray[np.float64]
+H, EXCESS = 2e8, 8e8
+SPACING, CELL = 0.02, 2e-3
+DEPTH_AT_MIDDLE, SLOPE, HALF = 5e-3, 0.1, 0.021
+"""Of the older groove: it deepens to the left."""
+ORIGIN = np.array([7.3, -4.1, 0.0])
+
+
+def frame_at(place: FloatArray, heading: float) -> FloatArray:
+    ahead = np.array([math.cos(heading), math.sin(heading), 0.0])
+    return np.concatenate([place, ahead, np.cross([0.0, 0.0, 1.0], ahead), [0.0, 0.0, 1.0]])
+
+
+def first_pass(heading: float) -> tuple[Archive, Lines]:
+    """A straight groove, archived line by line."""
+    archive, lines = new_archive(200, 20000), new_lines(1, 64, spacing=SPACING, cell=CELL)
+    for number in range(-40, 41):
+        place = ORIGIN + number * SPACING * np.array([math.cos(heading), math.sin(heading), 0.0])
+        begin_line(lines, 0, frame_at(place, heading))
+        open_window(lines, 0, -32)
+        given = ((LOW, -HALF), (HIGH, HALF), (EDGE, 0.0), (DEPTH, DEPTH_AT_MIDDLE), (FALL, SLOPE))
+        for column, value in given:
+            lines.value[0, column] = value
+        mark_cells(lines.cells, lines.value, 0)
+        leave_line(archive, lines, 0, H, EXCESS)
+    return archive, lines
+
+
+@pytest.mark.parametrize("heading", [0.0, -0.5, 2.5])
+@pytest.mark.parametrize("angle", [0.0, 0.3, -0.7, 1.2, math.pi])
+def test_older_groove_is_recalled(heading: float, angle: float) -> None:
+    archive, lines = first_pass(heading)
+    lost = float(archive.lost[0])
+    begin_line(lines, 0, frame_at(ORIGIN + np.array([0.004, -0.003, 0.0]), heading + angle))
+    look_ahead(archive, lines, 0, H, EXCESS)
+    assert lines.flag[0, KEPT] == 1
+    left = np.array([-math.sin(heading), math.cos(heading)])
+    frame, met = lines.frame[0], 0
+    for j in range(lines.flag[0, WINDOW], lines.flag[0, WINDOW] + 64):
+        place = frame[:2] + (j + 0.5) * CELL * frame[6:8]
+        across = float((place - ORIGIN[:2]) @ left)
+        deepest, low, high = lines.cells[0, j % 64, [DEEPEST, FROM, TO]]
+        if abs(across) < HALF - 1e-6:
+            met += 1
+            assert deepest == pytest.approx(DEPTH_AT_MIDDLE + SLOPE * across, abs=1e-9)  # single precision of 5 mm
+            assert (low, high) == (j * CELL, (j + 1) * CELL)
+        elif abs(across) > HALF + 1e-6:
+            assert high < low
+    assert met >= 2.0 * HALF / CELL - 2.0
+    # its energy was counted when the first pass left it
+    assert lines.value[0, LOST] == pytest.approx(energy_left(lines, 0, -32, 32, H, EXCESS), rel=1e-12)
+    leave_line(archive, lines, 0, H, EXCESS)
+    assert archive.lost[0] == pytest.approx(lost, rel=1e-9)
+
+
+def test_energy_of_the_first_pass() -> None:
+    """½ H ε² (1 - H/k_u) per area of 81 lines."""
+    archive, _ = first_pass(0.3)
+    square = DEPTH_AT_MIDDLE**2 + SLOPE**2 * HALF**2 / 3.0
+    known = 0.5 * H * EXCESS / (H + EXCESS) * square * 2.0 * HALF * 81 * SPACING
+    assert archive.lost[0] == pytest.approx(known, rel=1e-9)
+
+
+def test_beside_and_beyond_there_is_nothing() -> None:
+    archive, lines = first_pass(0.3)
+    left = np.array([-math.sin(0.3), math.cos(0.3), 0.0])
+    for place in (ORIGIN + 0.3 * left, ORIGIN + np.array([1.2, 0.4, 0.0]), ORIGIN + np.array([50.0, 0.0, 0.0])):
+        begin_line(lines, 0, frame_at(place, 0.3))
+        look_ahead(archive, lines, 0, H, EXCESS)
+        assert lines.flag[0, KEPT] == 0
+
+
+def test_growing_keeps_everything() -> None:
+    archive, lines = first_pass(0.3)
+    larger = grown(archive, 400, 50000)
+    assert len(larger.cell) == 400
+    for of in (archive, larger):
+        begin_line(lines, 0, frame_at(ORIGIN, 0.9))
+        look_ahead(of, lines, 0, H, EXCESS)
+        if of is archive:
+            kept = lines.cells[0].copy()
+    assert np.array_equal(lines.cells[0], kept)
+    assert larger.lost[0] == archive.lost[0]
+    assert np.array_equal(larger.used, archive.used)
