@@ -14,7 +14,7 @@ from skisnow.errors import SkisnowError
 from skisnow.simulate.batch import available_cores
 
 from . import peers, processes, speed
-from .cases import CASES, DEFAULT_STEP, HARD_SNOW, SCENARIO, Runs, fixed
+from .cases import DEFAULT_STEP, HARD_SNOW, SCENARIO, Runs, fixed
 from .speed import Speed, told
 
 CACHE_VARIABLE = "NUMBA_CACHE_DIR"
@@ -132,7 +132,6 @@ def print_tables(effort: Effort) -> None:
 
     Call it before anything that Numba compiles is imported.
     """
-    print(f"{len(CASES)} ways to run, {os.cpu_count()} cores\n")
     for line in tables(effort, Path(os.environ[CACHE_VARIABLE])):
         print(line, flush=True)
 
