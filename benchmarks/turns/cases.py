@@ -51,8 +51,9 @@ CASES: Final = (
     DEFAULT_STEP,
     Case("ROS2, error control (as it comes)", {}, NORMAL_REFERENCE),
     Case("H_V = 90 N/mm³, ROS2, 0.1 ms", HARD_SNOW | fixed(0.1), HARD_REFERENCE, "5"),
+    Case("H_V = 90 N/mm³, ROS2, 0.25 ms", HARD_SNOW | fixed(0.25), HARD_REFERENCE),
     Case("H_V = 90 N/mm³, error control", HARD_SNOW, HARD_REFERENCE),
-    Case("H_V = 90 N/mm³, ROS2, 1 ms: too long a step", HARD_SNOW | fixed(1.0), HARD_REFERENCE),
+    Case("H_V = 90 N/mm³, ROS2, 0.5 ms: the step of soft snow", HARD_SNOW | fixed(0.5), HARD_REFERENCE),
 )
 
 
