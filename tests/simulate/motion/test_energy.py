@@ -12,6 +12,7 @@ import pytest
 from skisnow.simulate.motion.advance import observe
 from skisnow.simulate.motion.equations import add_forces, move
 from skisnow.simulate.motion.forces import HELD, NORMAL, RELEASED, SHEAR, SIDEWAYS, SPRINGY, feel, new_forces
+from skisnow.simulate.motion.lines import ANCHOR, DEPTH, EDGE, TOUCHED
 from skisnow.simulate.motion.model import PADDING, new_state
 from skisnow.simulate.motion.path import energy_in_snow, press
 from skisnow.simulate.motion.system import new_vector
@@ -141,6 +142,23 @@ def test_an_edge_that_holds_stores_what_it_is_given(way: float) -> None:
     assert -power[SHEAR] == pytest.approx((held[1] - held[0]) / 2e-5, rel=0.01)
     assert power[SHEAR] < -10.0
     assert power[HELD] == pytest.approx(0.5 * -power[SHEAR] * 1e-4, rel=0.01)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_an_edge_that_yields_takes_its_hold_along(way: float) -> None:
+    """Three times its grip across, and its hold is one grip behind; one grip back, and the shear has gone."""
+    setup = copy.deepcopy(set_up(read_scenario("carved-46m", changes=STILL)))
+    lines, holding, out = setup.lines, setup.snow.holding, new_forces(len(setup.model.mass), len(setup.lines.flag) // 2)
+    left = setup.memory.state.turn[:, 1]
+    for steps, behind in ((3.0, 1.0), (-1.0, 0.0), (-1.0, -1.0), (-5.0, -1.0)):
+        setup.memory.state.place[:] += way * steps * holding * left
+        feel(setup.model, setup.snow, lines, setup.memory.state, False, True, out)
+        press(setup.snow, lines, setup.archive)
+        deep = np.flatnonzero((lines.flag[:, TOUCHED] == 1) & (lines.value[:, DEPTH] > 5e-4))
+        assert len(deep) > 10
+        used = (lines.value[deep, ANCHOR] - lines.value[deep, EDGE]) / holding
+        # lines lie along the skis as they were laid, 1 % aside of straight across at the most
+        assert used == pytest.approx(np.full(len(deep), -way * behind), abs=0.02)
 
 
 def test_drag_takes_its_power() -> None:

@@ -109,3 +109,13 @@ def test_bouncing_on_elastic_snow(method: str, order: float) -> None:
     # the edge of the contact moves along the skis: a kink of the second derivative keeps the order off by a little
     assert orders(error, (100, 200, 400)) == pytest.approx([order, order], abs=0.35)
     assert error(400) < (1e-6 if method == "ros2" else 5e-5)
+
+
+def test_stiff_modes_are_damped_away() -> None:
+    """γ = 1 - 1/√2 makes ROS2 L-stable: next to nothing is left of hω = 10⁴ after a step, of 1/√2 it were 83 %."""
+    heavy = RigidSledge(1e7, (1e7, 1e7, 1e7), (0.0, 0.2), 0.5, 0.5)
+    omega, shape = first_mode(light_ski())
+    flight = Flight(sledge_model(heavy, light_ski(), damping_ratio=0.0))
+    flight.state.bend[:, INNER] = shape
+    flight.fly(1e4 / omega, 1)
+    assert np.abs(flight.state.bend[:, INNER])[:, ::3].max() < 1e-3 * np.abs(shape[::3]).max()

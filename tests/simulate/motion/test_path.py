@@ -1,0 +1,95 @@
+"""The slope under the lines, and where lines are laid."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from skisnow.simulate.motion.archive import new_archive
+from skisnow.simulate.motion.lines import Lines, new_lines
+from skisnow.simulate.motion.model import Snow, State, World, new_state
+from skisnow.simulate.motion.path import AHEAD, follow, surface
+from skisnow.simulate.scenario import Profile
+
+from .flight import NO_SNOW, free_model
+
+SNOW: Snow = NO_SNOW
+STEP = 0.02
+
+
+@pytest.fixture(scope="module")
+def profile() -> Profile:
+    x = np.arange(0.0, 20.0, 0.5)
+    return Profile(x, -0.2 * x + 0.3 * np.sin(x / 2.0))
+
+
+@pytest.fixture(scope="module")
+def hill(profile: Profile) -> World:
+    x = np.arange(0.0, 19.5 + STEP / 2.0, STEP)
+    heights = np.column_stack([profile.heights(x), profile.gradients(x)])
+    return World(np.array([0.0, 0.0, -9.81]), 0.0, 0.0, 0.0, STEP, heights)
+
+
+def test_surface_is_the_profile(profile: Profile, hill: World) -> None:
+    """The profile's pieces begin at points of the table: its cubics are reproduced; beyond the ends straight on."""
+    for x in np.random.default_rng(2).uniform(-1.0, 20.5, 200):
+        height, gradient = surface(hill, float(x))
+        assert height == pytest.approx(float(profile.heights(x)), abs=1e-12)
+        assert gradient == pytest.approx(float(profile.gradients(x)), abs=1e-10)
+    assert surface(hill._replace(heights=np.zeros((1, 2))), 3.0) == (0.0, 0.0)
+
+
+def laid(world: World, state: State) -> Lines:
+    """Lines under a sledge that has just come."""
+    lines, archive = new_lines(256, 16, spacing=0.02, cell=1e-3), new_archive(10, 100)
+    follow(free_model(), SNOW, world, lines, archive, state)
+    return lines
+
+
+def test_lines_lie_on_the_slope_across_the_skis(profile: Profile, hill: World) -> None:
+    model, heading = free_model(), 0.3
+    state = new_state(len(model.mass))
+    state.place[:] = 9.0, 2.0, float(profile.heights(9.0))
+    c, s = math.cos(heading), math.sin(heading)
+    state.turn[:] = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    lines = laid(hill, state)
+    for k in range(2):
+        rows = k * 256 + (int(lines.first[k]) + np.arange(int(lines.count[k]))) % 256
+        frame = lines.frame[rows]
+        along = (frame[:, :3] - state.place - state.turn @ model.middle[k]) @ state.turn[:, 0]
+        assert along[0] < model.tail - AHEAD + 1e-9
+        assert along[-1] > model.tip + AHEAD - 1e-9
+        assert np.diff(along) == pytest.approx(np.full(len(along) - 1, 0.02), rel=1e-9)
+        assert frame[:, 2] == pytest.approx(profile.heights(frame[:, 0]), abs=1e-12)
+        for one in frame:
+            ahead, left, out = one[3:6], one[6:9], one[9:12]
+            assert np.column_stack([ahead, left, out]).T @ np.column_stack([ahead, left, out]) == pytest.approx(
+                np.eye(3)
+            )
+            assert np.cross(ahead, left) == pytest.approx(out)
+            gradient = float(profile.gradients(one[0]))
+            assert out == pytest.approx(np.array([-gradient, 0.0, 1.0]) / math.hypot(1.0, gradient))
+            # the skis' axis, pressed into the slope
+            assert abs(float(np.cross(out, state.turn[:, 0]) @ ahead)) < 1e-12
+            assert ahead @ state.turn[:, 0] > 0.9
+
+
+def test_lines_stay_while_the_ski_goes_over_them(hill: World) -> None:
+    """A metre ahead: those behind the tail are gone, those under the ski are where they were."""
+    model = free_model()
+    state = new_state(len(model.mass))
+    state.place[:] = 9.0, 2.0, 0.0
+    lines, archive = new_lines(256, 16, spacing=0.02, cell=1e-3), new_archive(10, 100)
+    follow(model, SNOW, hill, lines, archive, state)
+    before = {tuple(lines.frame[(int(lines.first[0]) + c) % 256, :3]) for c in range(int(lines.count[0]))}
+    for _ in range(20):
+        state.place[0] += 0.05
+        follow(model, SNOW, hill, lines, archive, state)
+    now = [tuple(lines.frame[(int(lines.first[0]) + c) % 256, :3]) for c in range(int(lines.count[0]))]
+    kept = [place for place in now if place in before]
+    assert len(kept) == len([place for place in before if place[0] > min(now)[0] - 1e-9])
+    assert min(now)[0] > 10.0 + model.tail - AHEAD - 0.1
+    assert max(now)[0] > 10.0 + model.tip + AHEAD - 1e-9
+    assert np.diff([place[0] for place in now]) == pytest.approx(np.full(len(now) - 1, 0.02), rel=1e-9)
