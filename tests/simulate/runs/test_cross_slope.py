@@ -1,4 +1,4 @@
-"""A sledge set down across a slope: it holds as long as S_f ∫ e ds of both edges exceeds m g sin α, and slides beyond."""
+"""A sledge set down across a slope: it holds while S_f ∫ e ds of both edges exceeds m g sin α, and slides beyond."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def sufficient_strength() -> float:
 
 @pytest.mark.parametrize("share", [0.5, 0.9, 0.97])
 def test_holds_below_the_limit(share: float) -> None:
-    """It gives way by some millimetres at most as the load comes on at once, and stands, swinging in its grip of 0.2 mm."""
+    """It gives way by some millimetres as the load comes on at once, and stands, swinging in its grip of 0.2 mm."""
     run = across(strength=sufficient_strength() / share, duration=3.0)
     assert run.outcome == "finished"
     assert np.ptp(run.place[10:, 0]) < 2.5e-4
@@ -54,7 +54,7 @@ def test_holds_below_the_limit(share: float) -> None:
 
 @pytest.mark.parametrize("share", [1.03, 1.1])
 def test_slips_above_the_limit(share: float) -> None:
-    """Downhill, ever faster, at most as fast as what is lacking allows: x < (1 - 1/share) g sin α t²/2 and what it dug."""
+    """Downhill, ever faster, about as fast as what is lacking allows: (1 - 1/share) g sin α t²/2."""
     run = across(strength=sufficient_strength() / share, duration=3.0)
     assert run.place[-1, 0] > 0.2
     assert np.all(np.diff(run.place[5:, 0]) > 0.0)

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from scipy.optimize import fsolve
 
@@ -45,8 +46,8 @@ def wedges(given: Scenario, edge_angle: float) -> tuple[float, float]:
         across = [side * stance / 2.0 + half * math.cos(edge_angle) for side in (1.0, -1.0)]
         return [-(y * math.sin(roll) - half * math.sin(edge_angle) * math.cos(roll) + lift) for y in across]
 
-    def unbalanced(unknown: tuple[float, float]) -> list[float]:
-        lift, roll = unknown
+    def unbalanced(unknown: npt.NDArray[np.float64], /) -> list[float]:
+        lift, roll = (float(each) for each in unknown)
         slant = math.tan(edge_angle - roll)
         force, moment = -total_mass(given) * GRAVITY, given.sledge.mass * GRAVITY * height * math.sin(roll)
         for side, depth in zip((1.0, -1.0), depths(lift, roll), strict=True):

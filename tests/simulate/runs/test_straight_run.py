@@ -47,7 +47,7 @@ def squared_speed(given: Scenario, path: npt.NDArray[np.float64], resistance: fl
 
 
 def test_without_compaction() -> None:
-    """The whole run. The load swings by a few tenths of a percent as the sledge settles; friction averages over that."""
+    """The whole run. The load swings by tenths of a percent as the sledge settles; friction averages over that."""
     run = straight(compaction=False)
     assert run.outcome == "finished"
     assert run.speed**2 == pytest.approx(squared_speed(run.scenario, run.place[:, 0], 0.0, SPEED**2), rel=2e-4)

@@ -1,0 +1,59 @@
+"""Energy of whole runs: stored and lost close within half a percent of what was turned over."""
+
+from __future__ import annotations
+
+import pytest
+
+from skisnow import Run, read_scenario, simulated_run
+from skisnow.simulate.run import LOST
+
+SHARE = 0.005
+
+CONTACTS = {"hypoplastic": {}, "elastic": {"snow.penetration": "elastic", "snow.unloading_ratio": 1.0}}
+
+COARSE = pytest.mark.xfail(
+    strict=True,
+    reason="0.55 and 0.58 %: with four cells across, the groove's energy is counted too high by 12 J of 33 J in two "
+    "seconds, by 8 J with eight, 5.5 J with sixteen",
+)
+
+
+def closes(run: Run, changes: object) -> None:
+    assert run.energy_balance_error is not None
+    assert run.energy_balance_error < SHARE, changes
+    # nothing is given back that was not stored; rounding and steps leave a thousandth
+    for name in LOST:
+        assert run.energies[name][-1] > -1e-3 * run.energy_turned_over, name
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_two_seconds(contact: str) -> None:
+    run = simulated_run(read_scenario("carved-46m", changes={**CONTACTS[contact], "run.duration_s": 2.0}))
+    closes(run, contact)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["carved-46m", "giant-slalom-67m", "carver-42m"])
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_built_in_scenarios(name: str, contact: str) -> None:
+    run = simulated_run(read_scenario(name, changes=CONTACTS[contact]))
+    assert run.outcome in {"finished", "distance_reached"}
+    closes(run, (name, contact))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("hardness", "strength"),
+    [
+        (0.04, 0.02),
+        (0.2, 0.5),
+        (1.0, 1.0),
+        (1.0, 0.3),
+        (90.0, 10.0),
+        *(pytest.param(*each, marks=COARSE) for each in ((0.04, 0.2), (0.2, 0.1))),
+    ],
+)
+def test_every_snow(hardness: float, strength: float) -> None:
+    """From powder to ice, with an S_f that carves and one that skids."""
+    changes = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength}
+    closes(simulated_run(read_scenario("carved-46m", changes=changes)), changes)

@@ -1,0 +1,64 @@
+"""A straight profile is a plane: the same run in other coordinates."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow import Run, Scenario, read_scenario, simulated_run
+from skisnow.simulate.scenario import Plane, Profile
+from skisnow.simulate.scenario.scenario import Solver
+
+from ..equilibrium.synthetic import shovel
+from .sledges import rigid_ski, scenario
+
+
+def both(given: Scenario) -> tuple[Run, Run, npt.NDArray[np.float64]]:
+    """The run on the plane, that on the profile, and the first one's places as x horizontal, y left, z up."""
+    assert isinstance(given.slope, Plane)
+    angle = given.slope.angle
+    x = np.linspace(-20.0, 60.0, 81)
+    plane = simulated_run(given)
+    profile = simulated_run(replace(given, slope=Profile(x, -math.tan(angle) * x)))
+    c, s = math.cos(angle), math.sin(angle)
+    turned = plane.place @ np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])
+    return plane, profile, turned
+
+
+def test_straight_down() -> None:
+    """Without the resistance of the shovel, which swings as it meets line after line, and these begin elsewhere."""
+    ski = rigid_ski(base_height=shovel(1.2, 0.03, 1.6), running_length=1.2)
+    given = scenario(ski=ski, angle_deg=12.0, hardness=0.01, friction=0.03, drag_area=0.5, speed=6.0, duration=1.5)
+    given = replace(given, contact=replace(given.contact, compaction_resistance=False))
+    plane, profile, turned = both(given)
+    assert profile.place == pytest.approx(turned, abs=2e-6)
+    assert profile.run_length == pytest.approx(plane.run_length, abs=2e-6)
+    assert profile.skis.depth == pytest.approx(plane.skis.depth, abs=1e-6)
+
+
+def test_turn() -> None:
+    """The snow's lines begin elsewhere by the sledge's height times tan α: the runs differ as for any other grid."""
+    fixed = Solver(fixed=True, step=0.5e-3)
+    given = replace(read_scenario("carved-46m", changes={"run.duration_s": 1.0}), solver=fixed)
+    plane, profile, turned = both(given)
+    assert profile.place[0] == pytest.approx(turned[0], abs=1e-6)
+    assert profile.place == pytest.approx(turned, abs=2e-4)
+    assert profile.speed == pytest.approx(plane.speed, rel=1e-4)
+    for name in ("kinetic", "potential", "friction", "drag"):
+        change = profile.energies[name] - profile.energies[name][0]
+        assert change == pytest.approx(plane.energies[name] - plane.energies[name][0], abs=0.3), name
+
+
+@pytest.mark.xfail(
+    strict=True,
+    reason="on a profile the heading is taken in the horizontal plane: -30.37° for a start at -30° on a slope of 10°",
+)
+def test_heading_is_told_in_the_slope() -> None:
+    """As the start's heading is given: from the fall line, in the snow's surface."""
+    plane, profile, _ = both(read_scenario("carved-46m", changes={"run.duration_s": 0.05}))
+    assert math.degrees(plane.heading[0]) == pytest.approx(-30.0, abs=1e-6)
+    assert math.degrees(profile.heading[0]) == pytest.approx(-30.0, abs=1e-6)
