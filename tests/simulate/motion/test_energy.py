@@ -20,7 +20,12 @@ from skisnow.simulate.run_setup import Setup, set_up
 from skisnow.simulate.scenario import read_scenario
 
 FloatArray = npt.NDArray[np.float64]
-STILL: Mapping[str, object] = {"solver.fixed": True, "solver.elements": 12, "slope.angle_deg": 5.0}
+STILL: Mapping[str, object] = {
+    "solver.fixed": True,
+    "solver.elements": 12,
+    "solver.line_spacing_mm": 24.0,
+    "slope.angle_deg": 5.0,
+}
 UNIT = np.eye(6)
 MOTIONS = {
     "down": -UNIT[2],

@@ -118,7 +118,8 @@ def test_forces(name: str) -> None:
 def test_system(name: str, lift: float) -> None:
     """W = M + a K + b C: the compiled factors multiplied out are the dense matrix; going deeper, or on the way up."""
     setup = SITUATIONS[name](np.random.default_rng(4))
-    setup.memory.state.place[2] += lift  # where just pressed, rounding would choose between the two branches
+    # just pressed, or just yielding, rounding would choose the branch
+    setup.memory.state.place[1:] += lift
     body, motion, lines = body_of(setup), motion_of(setup.memory.state), lines_of(setup.lines)
     out = setup.memory.start
     feel(setup.model, setup.snow, setup.lines, setup.memory.state, True, True, out)
