@@ -20,14 +20,17 @@ from skisnow.simulate.motion.lines import (
     LOST,
     LOW,
     TO,
+    TOUCHED,
     WINDOW,
     Lines,
     begin_line,
     energy_left,
-    mark_cells,
     new_lines,
     open_window,
 )
+from skisnow.simulate.motion.path import press
+
+from .flight import NO_SNOW
 
 FloatArray = npt.NDArray[np.float64]
 H, EXCESS = 2e8, 8e8
@@ -52,7 +55,8 @@ def first_pass(heading: float) -> tuple[Archive, Lines]:
         given = ((LOW, -HALF), (HIGH, HALF), (EDGE, 0.0), (DEPTH, DEPTH_AT_MIDDLE), (FALL, SLOPE))
         for column, value in given:
             lines.value[0, column] = value
-        mark_cells(lines.cells, lines.value, 0)
+        lines.flag[0, TOUCHED], lines.count[0] = 1, 1
+        press(NO_SNOW, lines, archive)
         leave_line(archive, lines, 0, H, EXCESS)
     return archive, lines
 

@@ -21,16 +21,19 @@ from skisnow.simulate.motion.lines import (
     LOW,
     SLOPE,
     TO,
+    TOUCHED,
     WINDOW,
     Lines,
     begin_line,
     energy_at_edge,
     energy_left,
-    mark_cells,
     new_lines,
     open_window,
     pressure,
 )
+from skisnow.simulate.motion.path import press as press_lines
+
+from .flight import NO_SNOW
 
 FloatArray = npt.NDArray[np.float64]
 H, K = 2e8, 1e9
@@ -50,7 +53,8 @@ def press(lines: Lines, low: float, high: float, edge: float, depth: float, fall
     """A base comes down on the line and stays in its memory."""
     for column, value in ((LOW, low), (HIGH, high), (EDGE, edge), (DEPTH, depth), (FALL, fall)):
         lines.value[0, column] = value
-    mark_cells(lines.cells, lines.value, 0)
+    lines.flag[0, TOUCHED], lines.count[0] = 1, 1
+    press_lines(NO_SNOW, lines, new_archive(4, 400))
 
 
 def sums_of(lines: Lines, low: float, high: float, depth: float, fall: float, edge: float) -> FloatArray:
