@@ -62,7 +62,8 @@ class Record:
         length = self.run_length
         if self._moments:
             length += _arc(self._moments[-1], moment)
-        if replace and len(self._moments) > 1:
+        same = bool(self._moments) and moment.time <= self._moments[-1].time
+        if (replace or same) and len(self._moments) > 1:
             self._moments[-1:] = [moment]
         else:
             self._moments.append(moment)
@@ -125,7 +126,10 @@ def _arc(one: _Moment, other: _Moment) -> float:
 
 
 def turn_radius(time: FloatArray, velocity: FloatArray, normal: FloatArray) -> FloatArray:
-    """Radius of the path (n,) in the snow's surface, positive left, infinite where straight (m), by central differences."""
+    """Radius of the path (n,) in the snow's surface, positive left, infinite where straight (m).
+
+    By central differences.
+    """
     if len(time) < 2:
         return np.full(len(time), np.inf)
     speed = np.linalg.norm(velocity, axis=1)

@@ -21,7 +21,7 @@ from .motion.advance import (
 )
 from .motion.along import shares
 from .motion.archive import Archive, grown, new_archive
-from .motion.lines import KEPT, TOUCHED, WINDOW, Lines, new_lines
+from .motion.lines import ABOVE, KEPT, TOUCHED, WINDOW, Lines, new_lines
 from .motion.model import Model, Snow, World, sledge_model
 from .motion.path import AHEAD, follow
 from .motion.settle import settle
@@ -30,7 +30,7 @@ from .scenario import Plane, Scenario
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-HOLDING: Final = 0.2e-3
+HOLDING: Final = 0.5e-3
 """Displacement across (m) at which an edge's grip is used up (Choice: well below the depth of an edge that carves)."""
 FRICTION_SPEED: Final = 0.01
 """Speed (m/s) below which glide friction fades to zero (Choice)."""
@@ -40,12 +40,16 @@ ELEMENTS: Final = 40
 """Finite elements over a ski at least: 4.5 cm each (Choice, see the convergence of the docs)."""
 LINE_SPACING: Final = 0.024
 """Largest spacing (m) of the snow's lines (Choice)."""
-CELLS_ACROSS: Final = 4
+CELLS_ACROSS: Final = 6
 """Cells over the width of the contact (Choice)."""
 CELLS: Final = 64
 """Cells that a line keeps at a time: many more than a contact needs, few enough for the processor's cache."""
 SMALLEST_CELL, LARGEST_CELL = 10e-6, 8e-3
 """Sizes (m) of cells."""
+FLOATING_DEPTH: Final = 0.1
+"""Depth (m) by which a flat base must carry the sledge, or it has sunk from the start (Choice)."""
+SOFT_START: Final = 10e9
+"""Hardness (N/m³) from which on the start is found in stages: Newton's method does not reach it from afar."""
 PROFILE_STEP: Final = 0.02
 """Spacing (m) of a profile's table."""
 
@@ -90,6 +94,14 @@ class Setup:
     def height(self) -> float:
         """Of the boots' middle above the slope (m)."""
         return float(self.memory.state.place[2] - self._slope_at_boots()[0])
+
+    @property
+    def sinks(self) -> bool:
+        """Whether the snow does not even bear the sledge with its bases flat and ten centimetres deep."""
+        ski = self.scenario.ski
+        length = float(ski.station[0] - ski.station[-1])
+        area = length * float(np.mean(ski.at(np.linspace(float(ski.station[-1]), float(ski.station[0]), 101)).width))
+        return self.numbers["load_N"] > self.snow.hardness * area * FLOATING_DEPTH
 
     @property
     def past_end(self) -> bool:
@@ -197,16 +209,27 @@ def set_up(scenario: Scenario) -> Setup:
     snow, world = _snow(scenario), _world(scenario)
     _place(scenario, memory, depth)
     follow(model, snow, world, lines, archive, memory.state)
-    unrest = settle(
-        model, snow, world, lines, memory.state, memory.start, memory.system, memory.room, memory.next
-    )  # fmt: skip
+    unrest = _settled(model, snow, world, lines, memory)
+    lines.flag[:, ABOVE] = 0  # Newton's steps are no motion: edges hold where they came to rest
     memory.state.velocity[0] = scenario.start.speed
     observe(model, snow, world, lines, archive, memory, True)
     memory.clock.work[:] = 0.0
     numbers = {"elements": float(elements), "line_spacing_m": spacing, "cell_mm": cell * 1e3, "load_N": load}
     slope = scenario.slope
     end = math.inf if isinstance(slope, Plane) else slope.ends[1]
-    return Setup(scenario, model, snow, world, lines, archive, memory, numbers, float(unrest), end, shares(model.node))
+    return Setup(scenario, model, snow, world, lines, archive, memory, numbers, unrest, end, shares(model.node))
+
+
+def _settled(model: Model, snow: Snow, world: World, lines: Lines, memory: Memory) -> float:
+    """Set the sledge down, on hard snow by way of softer ones, and return Newton's last step (m)."""
+    unrest = math.inf
+    stages = np.geomspace(min(snow.hardness, SOFT_START), snow.hardness, 8 if snow.hardness > SOFT_START else 1)
+    for hardness in stages:
+        softer = snow._replace(hardness=float(hardness), excess=float(snow.excess * hardness / snow.hardness))
+        unrest = float(
+            settle(model, softer, world, lines, memory.state, memory.start, memory.system, memory.room, memory.next)
+        )
+    return unrest
 
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
@@ -239,7 +262,7 @@ def _snow(scenario: Scenario) -> Snow:
         friction=contact.friction,
         friction_by_speed=contact.friction_by_speed,
         friction_speed=FRICTION_SPEED,
-        secant=1.0,
+        secant=float(scenario.solver.method == "fast"),
         one_sided=ONE_SIDED,
     )
 

@@ -24,8 +24,12 @@ TIPPED: Final = math.radians(60.0)
 """Angle between the sledge and the snow's normal at which it has tipped over (Choice)."""
 LONGEST_FLIGHT: Final = 0.3
 """Time (s) with both skis off the snow after which it is airborne (Choice)."""
+FASTEST: Final = 100.0
+"""Speed (m/s) at which the numbers have run away: no sledge goes so fast (Choice)."""
 SINKING_DEPTH: Final = 0.5
 """Depth (m) of the boots below the surface at which the sledge has sunk (Choice)."""
+SETTLED: Final = 1e-6
+"""Last step (m) of Newton's method that counts as equilibrium."""
 _REACHED: Final = 1e-6
 """Run length (m) that counts as none left."""
 
@@ -33,14 +37,14 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "finished": "The duration was simulated to its end.",
     "distance_reached": "The run length was reached.",
     "end_of_slope": "The tips reached the end of the profile. Give a longer profile, or a shorter run.",
-    "tipped_over": "The sledge leant more than 60° from the snow's normal: it has tipped over. Lower its centre of mass, "
-    "widen the stance, or take less edge or speed.",
+    "tipped_over": "The sledge leant more than 60° from the snow's normal: it has tipped over. Lower its centre of "
+    "mass, widen the stance, or take less edge or speed.",
     "airborne": "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a "
     "smoother slope.",
-    "sunk": "The boots went more than half a metre below the surface: this snow does not carry the sledge. Take harder "
-    "snow, less mass or a wider ski.",
-    "step_too_small": "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen the "
-    "tolerance, or take a smaller k_u/H_V.",
+    "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
+    "Take harder snow, less mass or a wider ski.",
+    "step_too_small": "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen "
+    "the tolerance, or take a smaller k_u/H_V.",
     "not_finite": "The numbers ran away. Take a smaller step, or leave the error control on.",
     "interrupted": "The run was stopped; what had been computed is kept.",
 }
@@ -72,10 +76,10 @@ def simulated_run(scenario: Scenario, *, progress: Progress | None = None) -> Ru
     """
     setup = set_up(scenario)
     record = Record(setup)
-    if setup.height < -SINKING_DEPTH:
+    if setup.height < -SINKING_DEPTH or (setup.unrest > SETTLED and setup.sinks):
         record.add()
         return _run(setup, record, "sunk", 0.0)
-    if setup.unrest > 1e-6:
+    if setup.unrest > SETTLED:
         raise SolverError(
             f"the sledge finds no equilibrium to start from (Newton's last step was {setup.unrest:.1e} m): does its "
             "centre of mass lie between the skis, on this slope at this heading?"
@@ -123,6 +127,8 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
 
 
 def _ended(setup: Setup, flying: float) -> Outcome | None:
+    if setup.speed > FASTEST:
+        return "not_finite"
     if setup.leaning > TIPPED:
         return "tipped_over"
     if flying >= LONGEST_FLIGHT:

@@ -146,7 +146,12 @@ def free_forces(body: Body, world: World, motion: Motion) -> FloatArray:
     force = np.zeros(body.size)
     force[:3] = body.total * gravity + drag - np.cross(omega, p)
     force[3:6] = np.cross(body.first, gravity) + np.cross(high, drag) - np.cross(omega, turning) - np.cross(v, p)
-    force[6:] = body.mass[6:, :3] @ gravity
+    # a bent ski is carried round with the sledge: what the kinetic energy has linear in the bend u
+    coupling = body.mass[6:, :3]
+    bending = coupling.T @ speeds[6:]
+    force[:3] -= np.cross(omega, bending)
+    force[3:6] += np.cross(v, bending)
+    force[6:] = coupling @ (gravity + np.cross(v, omega))
     return force
 
 
@@ -223,17 +228,19 @@ def _section(
     depth = float((to_line - axis) @ n)
     sine = float(-t @ n)
     deep = depth + half * abs(sine)
-    if deep <= 0.0:
-        line.anchor = None
-        return
     side = float(np.clip(sine / snow.one_sided, -1.0, 1.0))
     reach = side * half
     along_edge = x + slope * m + side * flare * t - reach * phi_slope * r
+    # before the tip and behind the tail, the edge goes on straight to the line
+    missing = float((to_line - axis - reach * t) @ ahead)
+    edge = float((axis + reach * t + missing / float(along_edge @ ahead) * along_edge - to_line) @ y)
+    if deep <= 0.0:
+        line.anchor, line.above = None, (edge, deep)
+        return
     base = np.cross(along_edge, t)
     base = base / (base @ n)
     fall = float(base @ y)
-    edge = float((axis + reach * t - to_line) @ y)
-    touch = _touch(edge, depth + reach * sine, fall, (reach + half), (half - reach), float(t @ y) + fall * sine)
+    touch = _touch(deep, edge, depth + reach * sine, fall, (reach + half), (half - reach), float(t @ y) + fall * sine)
     sums = pressure_sums(line, touch, snow)
     weight = float(share) * spacing
     force, moment = weight * sums.force, weight * sums.moment
@@ -286,14 +293,14 @@ def _moves(
     return matrix
 
 
-def _touch(edge: float, depth: float, fall: float, before: float, behind: float, wide: float) -> Touch:
+def _touch(deep: float, edge: float, depth: float, fall: float, before: float, behind: float, wide: float) -> Touch:
     """From the right edge or the waterline to the left edge or the waterline."""
     low, high = edge - before / wide, edge + behind / wide
     if fall > 1e-12:
         low = max(low, edge - depth / fall)
     elif fall < -1e-12:
         high = min(high, edge - depth / fall)
-    return Touch(low, high, edge, depth, fall)
+    return Touch(low, high, edge, depth, fall, deep)
 
 
 def moved(motion: Motion, change: FloatArray, speeds: FloatArray) -> Motion:
@@ -341,10 +348,10 @@ def ros2_step(
     speeds = motion.speeds()
     k1 = lu_solve(matrix, slope(motion, start.force, np.zeros(3)))
     middle = moved(motion, h * k1[:n], speeds + h * k1[n:])
-    touches = [(line, line.touch, line.anchor) for side in lines for line in side]
+    touches = [(line, line.touch, line.anchor, line.above) for side in lines for line in side]
     stage = felt(body, snow, spacing, lines, middle)
-    for line, touch, anchor in touches:  # the snow remembers accepted states alone
-        line.touch, line.anchor = touch, anchor
+    for line, touch, anchor, above in touches:  # the snow remembers accepted states alone
+        line.touch, line.anchor, line.above = touch, anchor, above
     k2 = lu_solve(matrix, slope(middle, stage.force, h * k1[3:6]) - 2.0 * k1)
     total = 0.5 * h * (3.0 * k1 + k2)
     return moved(motion, total[:n], speeds + total[n:])

@@ -12,7 +12,21 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from skisnow.simulate.motion.lines import ANCHOR, ANCHORED, CELL, DEEPEST, FROM, KEPT, SLOPE, TO, WINDOW, Lines
+from skisnow.simulate.motion.lines import (
+    ABOVE,
+    ANCHOR,
+    ANCHORED,
+    CELL,
+    DEEP_ABOVE,
+    DEEPEST,
+    EDGE_ABOVE,
+    FROM,
+    KEPT,
+    SLOPE,
+    TO,
+    WINDOW,
+    Lines,
+)
 from skisnow.simulate.motion.model import Snow
 
 FloatArray = npt.NDArray[np.float64]
@@ -29,18 +43,22 @@ class Cell:
 
 @dataclass
 class Touch:
-    """Where a base meets a line: from, to, edge across, depth at the edge (m), fall of the depth across."""
+    """Where a base meets a line: from, to, edge across, depth there (m), fall of the depth across, deepest edge (m)."""
 
     low: float
     high: float
     edge: float
     depth: float
     fall: float
+    deep: float
 
 
 @dataclass
 class Line:
-    """A line across the path: frame, size of its cells (m), cells by number, where the edge holds, the touch of now."""
+    """A line across the path: frame, size of its cells (m), cells by number, where the edge holds, the touch of now.
+
+    `above`: where the edge was, and how deep (< 0), when it was last looked at from above.
+    """
 
     origin: FloatArray
     ahead: FloatArray
@@ -51,6 +69,7 @@ class Line:
     slope: float = 0.0
     anchor: float | None = None
     touch: Touch | None = None
+    above: tuple[float, float] | None = None
 
 
 @dataclass
@@ -72,6 +91,7 @@ def lines_of(arrays: Lines) -> tuple[list[Line], list[Line]]:
         origin, ahead, left, out = (frame[i : i + 3].copy() for i in (0, 3, 6, 9))
         made = Line(origin, ahead, left, out, float(value[CELL]), slope=float(value[SLOPE]))
         made.anchor = float(value[ANCHOR]) if flag[ANCHORED] else None
+        made.above = (float(value[EDGE_ABOVE]), float(value[DEEP_ABOVE])) if flag[ABOVE] else None
         if flag[KEPT]:
             size = arrays.cells.shape[1]
             for j in range(flag[WINDOW], flag[WINDOW] + size):
@@ -152,4 +172,8 @@ def remember(line: Line, snow: Snow, most_cells: int) -> None:
         start = end
     if line.anchor is None:
         line.anchor = touch.edge
+        if line.above is not None:  # where the edge came through the surface, within the step
+            edge, height = line.above
+            line.anchor = edge + (touch.edge - edge) * height / (height - touch.deep)
+            line.above = None
     line.anchor = min(max(line.anchor, touch.edge - snow.holding), touch.edge + snow.holding)

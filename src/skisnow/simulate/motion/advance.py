@@ -23,7 +23,8 @@ IntArray: TypeAlias = npt.NDArray[np.int64]
 
 # what `advance` ends with
 GOES_ON, STEP_TOO_SMALL, NOT_FINITE = 0, 1, 2
-# entries of `work`: energy (J) that shear, friction, drag and damping took, was given sideways, released, done by the normal force
+# entries of `work`: energy (J) that shear, friction, drag and damping took, was given sideways, released, done by the
+# normal force
 OF_SHEAR, OF_FRICTION, OF_SIDEWAYS, OF_RELEASED, OF_NORMAL, OF_DRAG, OF_DAMPING = 0, 1, 2, 3, 4, 5, 6
 WORKS: Final = 7
 
@@ -61,8 +62,13 @@ class Memory(NamedTuple):
 def new_memory(size: int, ring: int) -> Memory:
     """Room for skis with that many unknowns and a ring of that many lines."""
     return Memory(
-        *(new_state(size) for _ in range(4)),
-        *(new_forces(size, ring) for _ in range(3)),
+        new_state(size),
+        new_state(size),
+        new_state(size),
+        new_state(size),
+        new_forces(size, ring),
+        new_forces(size, ring),
+        new_forces(size, ring),
         new_factored(size),
         new_room(size),
         Clock(np.zeros(3), np.zeros(3, np.int64), np.zeros(WORKS), np.zeros(WORKS)),
@@ -113,7 +119,7 @@ def advance_fixed(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, fast: bool, step: float,
     until: float,
 ) -> int:  # fmt: skip
-    """Take equal steps of about `step` (s) until the time `until`; the forces at the start are known, and at the end."""
+    """Take equal steps of about `step` (s) until `until` (s); the forces are known at the start, and at the end."""
     clock = memory.clock
     left = until - clock.time[0]
     if left <= 0.0:
@@ -154,7 +160,7 @@ def advance_controlled(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tolerance: float,
     until: float,
 ) -> int:  # fmt: skip
-    """Take pairs of steps whose error of place, estimated against one step of twice the length, stays below `tolerance` (m)."""
+    """Take pairs of steps; their error of place, against one step of twice the length, stays below `tolerance` (m)."""
     clock = memory.clock
     while clock.time[0] < until:
         left = until - clock.time[0]
@@ -162,20 +168,24 @@ def advance_controlled(
         if h > 0.5 * left and h < left:
             h = 0.5 * left  # no crumbs at the end
         error = _try_pair(model, snow, world, lines, memory, h)
-        larger = 0.9 * (tolerance / max(error, 1e-30)) ** (1.0 / 3.0) if error == error else 0.1
+        larger = 0.9 * (tolerance / max(error, 1e-30)) ** (1.0 / 3.0) if not np.isnan(error) else 0.1
         if not error <= tolerance:
             clock.counts[1] += 1
             clock.time[1] = h * min(max(larger, 0.1), 0.7)
             if clock.time[1] < SHORTEST_STEP:
                 return STEP_TOO_SMALL
             continue
-        copy_state(memory.next, memory.state)
+        now, end = clock.time[0], until if h == left else clock.time[0] + h
         if h < left or larger < 1.0:  # a step cut short by the output tells little
             clock.time[1] = min(h * min(max(larger, 0.3), 2.0), LONGEST_STEP)
         elif clock.time[1] < h * larger:
             clock.time[1] = min(max(clock.time[1], h * min(larger, 2.0)), LONGEST_STEP)
-        clock.time[0] = until if h == left else clock.time[0] + h
-        clock.time[2] = h
+        # the snow meets both states; for a constant in place of a value Numba would compile a function anew
+        copy_state(memory.half, memory.state)
+        clock.time[0], clock.time[2] = now + 0.5 * h, 0.5 * h
+        observe(model, snow, world, lines, archive, memory, h < 0.0)
+        copy_state(memory.next, memory.state)
+        clock.time[0] = end
         clock.counts[0] += 2
         observe(model, snow, world, lines, archive, memory, h > 0.0)
     return GOES_ON

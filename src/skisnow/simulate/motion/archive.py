@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .lines import (
     CELL,
+    CENTRE,
     DEEPEST,
     FROM,
     HIGH,
@@ -69,10 +70,10 @@ def new_archive(pieces: int, places: int) -> Archive:
 def grown(archive: Archive, pieces: int, places: int) -> Archive:
     """The same archive with room for more."""
     larger = new_archive(pieces, places)
-    m, l = (int(n) for n in archive.used)
+    m, places_used = (int(n) for n in archive.used)
     larger.frame[:m], larger.cell[:m], larger.slope[:m] = archive.frame[:m], archive.cell[:m], archive.slope[:m]
     larger.start[:m], larger.before[:m] = archive.start[:m], archive.before[:m]
-    larger.pool[:l] = archive.pool[:l]
+    larger.pool[:places_used] = archive.pool[:places_used]
     larger.head[:], larger.used[:], larger.lost[:] = archive.head, archive.used, archive.lost
     return larger
 
@@ -139,7 +140,7 @@ def meets_older(archive: Archive, x: float, y: float) -> bool:
 
 @numba.njit(cache=True, error_model="numpy")
 def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> bool:
-    """Bring older tracks into the cells first ≤ j < last of a line; their energy is counted already. Whether there was any."""
+    """Bring older tracks into the cells first ≤ j < last of a line, and tell whether there were any."""
     cell = lines.value[row, CELL]
     mask = lines.cells.shape[1] - 1
     frame = lines.frame[row]
@@ -192,7 +193,7 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
         here = archive.pool[p, 0] + archive.slope[piece] * offset
         i = j & mask
         if here > max(lines.cells[row, i, DEEPEST], 0.0):
-            lines.cells[row, i, DEEPEST] = here
+            lines.cells[row, i, DEEPEST] = lines.cells[row, i, CENTRE] = here
             lines.cells[row, i, FROM], lines.cells[row, i, TO] = j * cell, (j + 1) * cell
             found = True
     return found
@@ -245,6 +246,7 @@ def make_room(archive: Archive, lines: Lines, row: int, hardness: float, excess:
     for j in range(gone_from, gone_to):
         lines.cells[row, j & mask, DEEPEST] = -NOTHING
         lines.cells[row, j & mask, FROM], lines.cells[row, j & mask, TO] = NOTHING, -NOTHING
+        lines.cells[row, j & mask, CENTRE] = 0.0
     lines.flag[row, WINDOW] = new
     if new > start:
         recall(archive, lines, row, start + cells, new + cells, hardness, excess)
@@ -259,6 +261,7 @@ def _coarsen(lines: Lines, row: int) -> None:
     mask = cells - 1
     start, cell, slope = lines.flag[row, WINDOW], lines.value[row, CELL], lines.value[row, SLOPE]
     deepest, low, high = np.full(cells, -NOTHING), np.full(cells, NOTHING), np.full(cells, -NOTHING)
+    square = np.zeros(cells)
     new = int(np.floor(start / 2)) - cells // 4
     for j in range(start, start + cells):
         i, target = j & mask, int(np.floor(j / 2))
@@ -266,10 +269,12 @@ def _coarsen(lines: Lines, row: int) -> None:
             t = target & mask
             shift = slope * ((target + 0.5) * 2.0 * cell - (j + 0.5) * cell)
             deepest[t] = max(deepest[t], lines.cells[row, i, DEEPEST] + shift)
+            square[t] += 0.5 * lines.cells[row, i, CENTRE] ** 2
             low[t], high[t] = min(low[t], lines.cells[row, i, FROM]), max(high[t], lines.cells[row, i, TO])
     lines.value[row, CELL], lines.flag[row, WINDOW] = 2.0 * cell, new
     for i in range(cells):
         lines.cells[row, i, DEEPEST], lines.cells[row, i, FROM], lines.cells[row, i, TO] = deepest[i], low[i], high[i]
+        lines.cells[row, i, CENTRE] = np.sqrt(square[i])
 
 
 @numba.njit(cache=True, error_model="numpy")

@@ -1,7 +1,9 @@
 """Equations of motion of sledge and skis: everything that accelerates them, but for the skis' stiffness and damping.
 
-Velocities are those of the sledge's frame (Hamel's equations): with the momentum p and the angular momentum L about the moving
-origin, p' = f - ω × p and L' = τ - ω × L - v × p. The mass matrix is constant.
+Velocities are those of the sledge's frame (Hamel's equations): with the momentum p and the angular momentum L about
+the moving origin, p' = f - ω × p and L' = τ - ω × L - v × p. The mass matrix is constant; of the kinetic energy's
+dependence on the bend its largest part is kept, the momentum of a bent ski that turns: the skis feel v × ω, whatever
+the frame they are seen from.
 """
 
 from __future__ import annotations
@@ -32,13 +34,26 @@ def add_forces(model: Model, world: World, state: State, snow: Forces, scale: fl
     for a in range(6):
         for b in range(6):
             p[a] += model.rigid[a, b] * v[b]
+    # gravity, and what the skis feel of the turning of the velocity: v × ω
+    w0, w1, w2 = g0 + v[1] * v[5] - v[2] * v[4], g1 + v[2] * v[3] - v[0] * v[5], g2 + v[0] * v[4] - v[1] * v[3]
+    b0, b1, b2 = 0.0, 0.0, 0.0
     for k in range(2):
         B, bend, rate = model.coupling[k], out.bend[k], state.bend_rate[k]
         for i in range(len(B)):
             u = rate[i + PADDING]
             for a in range(6):
                 p[a] += B[i, a] * u
-            bend[i + PADDING] += scale * (snow.bend[k, i + PADDING] + B[i, 0] * g0 + B[i, 1] * g1 + B[i, 2] * g2)
+            b0 += B[i, 0] * u
+            b1 += B[i, 1] * u
+            b2 += B[i, 2] * u
+            bend[i + PADDING] += scale * (snow.bend[k, i + PADDING] + B[i, 0] * w0 + B[i, 1] * w1 + B[i, 2] * w2)
+    # its counterpart on the sledge: -ω × b on the velocity, v × b on the turning, with b the momentum of bending
+    out.rigid[0] -= scale * (v[4] * b2 - v[5] * b1)
+    out.rigid[1] -= scale * (v[5] * b0 - v[3] * b2)
+    out.rigid[2] -= scale * (v[3] * b1 - v[4] * b0)
+    out.rigid[3] += scale * (v[1] * b2 - v[2] * b1)
+    out.rigid[4] += scale * (v[2] * b0 - v[0] * b2)
+    out.rigid[5] += scale * (v[0] * b1 - v[1] * b0)
     m, c = model.total_mass, model.first_moment
     # air drag at the centre of pressure
     high = world.drag_height

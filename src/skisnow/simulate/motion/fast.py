@@ -1,7 +1,8 @@
-"""Fast mode: linearly implicit Euler, order 1; one look at the snow and one solution a step, the matrix kept over several steps.
+"""Fast mode: linearly implicit Euler, order 1; one look at the snow and one solution a step.
 
-(M - h ∂F/∂v - h² ∂F/∂x) (v₁ - v₀) = h F + h² ∂F/∂x v₀, x₁ = x₀ + h v₁. Brought to v₁, damping and
-tangent drop out of the right side: W v₁ = M v₀ + h (F - K u₀), with F all forces but stiffness and damping of the skis.
+The matrix is kept over several steps. (M - h ∂F/∂v - h² ∂F/∂x) (v₁ - v₀) = h F + h² ∂F/∂x v₀ and x₁ = x₀ + h v₁. Brought
+to v₁, damping and tangent drop out of the right side: W v₁ = M v₀ + h (F - K u₀), with F all forces but stiffness and
+damping of the skis.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ STEPS_PER_TANGENT: Final = 4
 def fast_step(
     model: Model, world: World, state: State, start: Forces, system: Factored, h: float, room: Room, out: State
 ) -> None:
-    """Fill `out` with the state after a step h (s); `start` holds the forces at its start, `system` the factors of W."""
+    """Fill `out` with the state after a step h (s) from the forces in `start`, with the factors of W in `system`."""
     vector = room.first
     vector.rigid[:] = 0.0
     vector.bend[:] = 0.0

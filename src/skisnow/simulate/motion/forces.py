@@ -1,10 +1,10 @@
 """Forces of snow on the skis of a sledge, and their tangent, line by line.
 
-The edge's own line in the snow surface gives the two directions along the snow: the shear acts across it, glide friction and the
-resistance of compaction along it. An edge that runs in its own track does no work against the shear.
+The edge's own line in the snow surface gives the two directions along the snow: the shear acts across it, glide
+friction and the resistance of compaction along it. An edge that runs in its own track does no work against the shear.
 
-Each line meets the base in a plane section: from the edge that is down, the depth falls linearly across to the waterline or to
-the other edge, whatever the angle between line and ski.
+Each line meets the base in a plane section: from the edge that is down, the depth falls linearly across to the
+waterline or to the other edge, whatever the angle between line and ski.
 """
 
 from __future__ import annotations
@@ -16,11 +16,15 @@ import numpy as np
 import numpy.typing as npt
 
 from .lines import (
+    ABOVE,
     ANCHOR,
     ANCHORED,
     CELL,
+    DEEP_ABOVE,
+    DEEP_NOW,
     DEPTH,
     EDGE,
+    EDGE_ABOVE,
     FALL,
     HIGH,
     KEPT,
@@ -42,6 +46,14 @@ CHANNELS = 6
 FAR = 1 << 40
 ZERO, ONE, TWO = np.uint64(0), np.uint64(1), np.uint64(2)
 
+# columns of `work`, vectors in the ski's frame: the section's station, share of the spacing (m), half width, height of
+# its middle, place in its element, sine and cosine of the twist, depth of the deepest edge, half width's slope,
+# height's slope, twist's slope, the line's place from the boot, its direction ahead, its normal
+S, SHARE, HALF, HEIGHT, Z, SINE, COSINE, DEEP, FLARE, RISE, TWISTING = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10
+E0, E1, E2, D0, D1, D2, N0, N1, N2, MIDDLE = 11, 12, 13, 14, 15, 16, 17, 18, 19, 20
+COLUMNS = 21
+ROW, ELEMENT, FRONT, REAR = 0, 1, 2, 3  # columns of `numbers`
+
 # entries of `power`
 SHEAR, FRICTION, SIDEWAYS, RELEASED, SPRINGY, HELD, NORMAL = 0, 1, 2, 3, 4, 5, 6
 
@@ -59,6 +71,8 @@ class Forces(NamedTuple):
         FloatArray  # (2, ring, 4) of each line from the tail: station, force, shear (N), edge depth; see `sections`
     )
     sections: npt.NDArray[np.int64]  # (2,) how many
+    work: FloatArray  # (ring, COLUMNS) sections in contact, of the ski that is looked at
+    numbers: npt.NDArray[np.uint64]  # (ring, 4) their line, element, and places of its unknowns
 
 
 def new_forces(size: int, ring: int) -> Forces:
@@ -72,12 +86,14 @@ def new_forces(size: int, ring: int) -> Forces:
         np.zeros(7),
         np.zeros((2, ring, 4)),
         np.zeros(2, np.int64),
+        np.zeros((ring, COLUMNS)),
+        np.zeros((ring, 4), np.uint64),
     )
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, look: bool, out: Forces) -> None:
-    """Fill `out` with the forces at a state; with `tangent` also the tangent; with `look` also powers, and where lines are touched."""
+    """Fill `out` with the forces at a state, with `tangent` also their tangent, with `look` powers and touches."""
     out.rigid[:] = 0.0
     out.bend[:] = 0.0
     if look:
@@ -86,264 +102,327 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
         out.band[:] = 0.0
         out.channels[:] = 0.0
         out.corner[:] = 0.0
-    R, V = state.turn, state.velocity
-    x0, x1, x2 = R[0, 0], R[1, 0], R[2, 0]
-    a1, a2, b1, b2 = model.lateral[1], model.lateral[2], model.normal[1], model.normal[2]
-    l0, l1, l2 = R[0, 1] * a1 + R[0, 2] * a2, R[1, 1] * a1 + R[1, 2] * a2, R[2, 1] * a1 + R[2, 2] * a2
-    m0, m1, m2 = R[0, 1] * b1 + R[0, 2] * b2, R[1, 1] * b1 + R[1, 2] * b2, R[2, 1] * b1 + R[2, 2] * b2
-    v0 = R[0, 0] * V[0] + R[0, 1] * V[1] + R[0, 2] * V[2]
-    v1 = R[1, 0] * V[0] + R[1, 1] * V[1] + R[1, 2] * V[2]
-    v2 = R[2, 0] * V[0] + R[2, 1] * V[1] + R[2, 2] * V[2]
-    o0 = R[0, 0] * V[3] + R[0, 1] * V[4] + R[0, 2] * V[5]
-    o1 = R[1, 0] * V[3] + R[1, 1] * V[4] + R[1, 2] * V[5]
-    o2 = R[2, 0] * V[3] + R[2, 1] * V[4] + R[2, 2] * V[5]
-    sums = np.empty(6)
-    f0, f1, f2, g0, g1, g2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    spacing = lines.spacing[0]
-    ring = len(lines.flag) // 2
-    places = len(model.table)
-    step = (places - 1) / (model.tip - model.tail)
-    table, node, at_row, frame = model.table, model.node, model.at, lines.frame
-    cells, value, flag = lines.cells, lines.value, lines.flag
-    hardness, excess = snow.hardness, snow.excess
-    stiff = hardness + excess
-    friction2 = snow.friction_speed * snow.friction_speed
+    frame = np.empty((3, 3))  # of both skis in space: ahead, across the base to the left, away from the snow
+    R, lateral, normal = state.turn, model.lateral, model.normal
+    for a in range(3):
+        frame[0, a] = R[a, 0]
+        frame[1, a] = R[a, 1] * lateral[1] + R[a, 2] * lateral[2]
+        frame[2, a] = R[a, 1] * normal[1] + R[a, 2] * normal[2]
     for k in range(2):
-        # the boot, from the sledge's origin, and in space
-        side = model.middle[k, 1]
-        q0, q1, q2 = R[0, 1] * side, R[1, 1] * side, R[2, 1] * side
-        c0, c1, c2 = state.place[0] + q0, state.place[1] + q1, state.place[2] + q2
-        bend, rate, force = state.bend[k], state.bend_rate[k], out.bend[k]
-        filled = 0
-        for c in range(lines.count[k]):
-            at_ring = lines.first[k] + c
-            row = np.uint64(k * ring + (at_ring if at_ring < ring else at_ring - ring))
-            e0, e1, e2 = frame[row, 0] - c0, frame[row, 1] - c1, frame[row, 2] - c2
-            d0, d1, d2 = frame[row, 3], frame[row, 4], frame[row, 5]
-            n0, n1, n2 = frame[row, 9], frame[row, 10], frame[row, 11]
-            if look:
-                flag[row, TOUCHED] = 0
-            # where along the ski the edge that is down crosses the line
-            forwards = 1.0 / (x0 * d0 + x1 * d1 + x2 * d2)
-            gap = (e0 * d0 + e1 * d1 + e2 * d2) * forwards
-            if gap > model.tip + spacing or gap < model.tail - spacing:
-                continue
-            across = (l0 * d0 + l1 * d1 + l2 * d2) * forwards
-            upwards = (m0 * d0 + m1 * d1 + m2 * d2) * forwards
-            toward = min(max(-(l0 * n0 + l1 * n1 + l2 * n2) / snow.one_sided, -1.0), 1.0) * across
-            s = gap
-            for _ in range(2):
-                at = min(max((s - model.tail) * step, 0.0), places - 1.000001)
-                i = np.uint64(at)
-                j = i + ONE
-                f = at - i
-                s = (
-                    gap
-                    - toward * (table[i, 0] + f * (table[j, 0] - table[i, 0]))
-                    - upwards * (table[i, 2] + f * (table[j, 2] - table[i, 2]))
-                )
-            from_tail, from_tip = (s - model.tail) / spacing + 0.5, (model.tip - s) / spacing + 0.5
-            share = min(max(from_tail, 0.0), 1.0) * min(max(from_tip, 0.0), 1.0)
-            if share <= 0.0:
-                continue
-            s = min(max(s, model.tail), model.tip)
-            at = min(max((s - model.tail) * step, 0.0), places - 1.000001)
+        met = _sections(model, snow.one_sided, lines, state, frame, k, look, out)
+        _forces(model, snow, lines, state, k, met, tangent, look, out)
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _sections(  # noqa: PLR0915 - one loop over lines: every call in it would cost as much as it does
+    model: Model, one_sided: float, lines: Lines, state: State, skis: FloatArray, k: int, look: bool, out: Forces
+) -> int:  # fmt: skip
+    """Find the sections of ski k that lie over a line and below the surface; fill `work` and return how many."""
+    side = model.middle[k, 1]
+    R, place = state.turn, state.place
+    c0, c1, c2 = place[0] + R[0, 1] * side, place[1] + R[1, 1] * side, place[2] + R[2, 1] * side
+    x0, x1, x2 = skis[0, 0], skis[0, 1], skis[0, 2]
+    l0, l1, l2 = skis[1, 0], skis[1, 1], skis[1, 2]
+    m0, m1, m2 = skis[2, 0], skis[2, 1], skis[2, 2]
+    table, node, frame, bend = model.table, model.node, lines.frame, state.bend[k]
+    spacing, ring = lines.spacing[0], len(lines.flag) // 2
+    per_spacing, sided = 1.0 / spacing, 1.0 / one_sided
+    tail, tip = model.tail, model.tip
+    most = len(table) - 1.000001
+    step = (len(table) - 1) / (tip - tail)
+    work, numbers, flag, value = out.work, out.numbers, lines.flag, lines.value
+    met, filled = np.uint64(0), 0
+    first, count = lines.first[k], lines.count[k]
+    for c in range(count):
+        at_ring = first + c
+        row = np.uint64(k * ring + (at_ring if at_ring < ring else at_ring - ring))
+        if look:
+            flag[row, TOUCHED] = 0
+        # the line in the ski's frame: place from the boot, direction ahead, normal
+        a0, a1, a2 = frame[row, 0] - c0, frame[row, 1] - c1, frame[row, 2] - c2
+        b0, b1, b2 = frame[row, 3], frame[row, 4], frame[row, 5]
+        e0 = x0 * a0 + x1 * a1 + x2 * a2
+        e1 = l0 * a0 + l1 * a1 + l2 * a2
+        e2 = m0 * a0 + m1 * a1 + m2 * a2
+        d0 = x0 * b0 + x1 * b1 + x2 * b2
+        d1 = l0 * b0 + l1 * b1 + l2 * b2
+        d2 = m0 * b0 + m1 * b1 + m2 * b2
+        b0, b1, b2 = frame[row, 9], frame[row, 10], frame[row, 11]
+        n0 = x0 * b0 + x1 * b1 + x2 * b2
+        n1 = l0 * b0 + l1 * b1 + l2 * b2
+        n2 = m0 * b0 + m1 * b1 + m2 * b2
+        # where along the ski the edge that is down crosses the line
+        forwards = 1.0 / d0
+        gap = e0 + (e1 * d1 + e2 * d2) * forwards
+        if gap > tip + spacing or gap < tail - spacing:
+            continue
+        toward, upwards = min(max(-n1 * sided, -1.0), 1.0) * d1 * forwards, d2 * forwards
+        s = gap
+        for _ in range(2):
+            at = min(max((s - tail) * step, 0.0), most)
             i = np.uint64(at)
             j = i + ONE
             f = at - i
-            half = table[i, 0] + f * (table[j, 0] - table[i, 0])
-            height = table[i, 2] + f * (table[j, 2] - table[i, 2])
-            e = model.element[i]
-            if s > node[e] and e > ZERO:
-                e -= ONE
-            inverse = 1.0 / (node[e] - node[e + ONE])
-            h = node[e] - node[e + ONE]
-            z = (node[e] - s) * inverse
-            y = 1.0 - z
-            w0, w1, w2, w3 = y * y * (1.0 + 2.0 * z), h * z * y * y, z * z * (3.0 - 2.0 * z), -h * z * z * y
-            A, B = at_row[e, 0], at_row[e, 1]
-            bw, bs, bt, cw, cs, ct = bend[A], bend[A + ONE], bend[A + TWO], bend[B], bend[B + ONE], bend[B + TWO]
-            height += w0 * bw + w1 * bs + w2 * cw + w3 * cs
-            phi = y * bt + z * ct
-            # sine and cosine of the twist: the next terms are below 1e-9 at 0.3 rad
-            q = phi * phi
-            cp = 1.0 - q * (0.5 - q * (1.0 / 24.0 - q * (1.0 / 720.0 - q / 40320.0)))
-            sp = phi * (1.0 - q * (1.0 / 6.0 - q * (1.0 / 120.0 - q * (1.0 / 5040.0 - q / 362880.0))))
-            t0, t1, t2 = l0 * cp - m0 * sp, l1 * cp - m1 * sp, l2 * cp - m2 * sp  # across the base
-            depth = (
-                (e0 - s * x0 - height * m0) * n0 + (e1 - s * x1 - height * m1) * n1 + (e2 - s * x2 - height * m2) * n2
+            s = (
+                gap
+                - toward * (table[i, 0] + f * (table[j, 0] - table[i, 0]))
+                - upwards * (table[i, 2] + f * (table[j, 2] - table[i, 2]))
             )
-            sine = -(t0 * n0 + t1 * n1 + t2 * n2)
-            deep = depth + half * abs(sine)
+        from_tail, from_tip = (s - tail) * per_spacing + 0.5, (tip - s) * per_spacing + 0.5
+        share = min(max(from_tail, 0.0), 1.0) * min(max(from_tip, 0.0), 1.0)
+        if share <= 0.0:
+            continue
+        s = min(max(s, tail), tip)
+        at = min(max((s - tail) * step, 0.0), most)
+        i = np.uint64(at)
+        j = i + ONE
+        f = at - i
+        half = table[i, 0] + f * (table[j, 0] - table[i, 0])
+        height = table[i, 2] + f * (table[j, 2] - table[i, 2])
+        e = model.element[i]
+        if s > node[e] and e > ZERO:
+            e -= ONE
+        h = node[e] - node[e + ONE]
+        inverse = 1.0 / h
+        z = (node[e] - s) * inverse
+        y = 1.0 - z
+        A, B = model.at[e, 0], model.at[e, 1]
+        bw, bs, bt, cw, cs, ct = bend[A], bend[A + ONE], bend[A + TWO], bend[B], bend[B + ONE], bend[B + TWO]
+        height += y * y * ((1.0 + 2.0 * z) * bw + h * z * bs) + z * z * ((3.0 - 2.0 * z) * cw - h * y * cs)
+        phi = y * bt + z * ct
+        # sine and cosine of the twist: the next terms are below 1e-9 at 0.3 rad
+        q = phi * phi
+        cp = 1.0 - q * (0.5 - q * (1.0 / 24.0 - q * (1.0 / 720.0)))
+        sp = phi * (1.0 - q * (1.0 / 6.0 - q * (1.0 / 120.0 - q * (1.0 / 5040.0))))
+        middle = (e0 - s) * n0 + e1 * n1 + (e2 - height) * n2
+        deep = middle + half * abs(sp * n2 - cp * n1)
+        if look:
+            section = out.section
+            section[k, filled, 0], section[k, filled, 1], section[k, filled, 2] = s, 0.0, 0.0
+            section[k, filled, 3] = deep
+            filled += 1
+        if deep <= 0.0:
             if look:
-                out.section[k, filled, 0], out.section[k, filled, 3] = s, deep
-                out.section[k, filled, 1], out.section[k, filled, 2] = 0.0, 0.0
-                filled += 1
-            if deep <= 0.0:
-                if look:
-                    flag[row, ANCHORED] = 0
-                continue
-            weight = share * spacing
-            flare = table[i, 1] + f * (table[j, 1] - table[i, 1])
-            slope = table[i, 3] + f * (table[j, 3] - table[i, 3])
-            slope += 6.0 * z * y * inverse * (bw - cw) - y * (1.0 - 3.0 * z) * bs - z * (3.0 * z - 2.0) * cs
-            twist_slope = (bt - ct) * inverse
-            # the edge: where it is, its direction, and the plane of the base there
-            edge_side = min(max(sine / snow.one_sided, -1.0), 1.0)
-            reach = edge_side * half
-            r0, r1, r2 = m0 * cp + l0 * sp, m1 * cp + l1 * sp, m2 * cp + l2 * sp  # normal to the base
-            fl, tw = flare * edge_side, reach * twist_slope
-            E0 = x0 + slope * m0 + fl * t0 - tw * r0
-            E1 = x1 + slope * m1 + fl * t1 - tw * r1
-            E2 = x2 + slope * m2 + fl * t2 - tw * r2
-            N0, N1, N2 = E1 * t2 - E2 * t1, E2 * t0 - E0 * t2, E0 * t1 - E1 * t0
-            y0, y1, y2 = frame[row, 6], frame[row, 7], frame[row, 8]
-            steep = 1.0 / (N0 * n0 + N1 * n1 + N2 * n2)
-            fall = (N0 * y0 + N1 * y1 + N2 * y2) * steep  # of the depth, across to the left
-            p0, p1, p2 = s * x0 + height * m0, s * x1 + height * m1, s * x2 + height * m2  # from the boot
-            edge = (p0 - e0) * y0 + (p1 - e1) * y1 + (p2 - e2) * y2
-            lateral = t0 * y0 + t1 * y1 + t2 * y2
-            edge += reach * lateral
-            edge_depth = depth + reach * sine
-            wide = lateral + fall * sine
-            low, high = edge - (half + reach) / wide, edge + (half - reach) / wide
-            low_wet, high_wet = True, True
-            if fall > 1e-12 and edge - edge_depth / fall > low:
-                low, low_wet = edge - edge_depth / fall, False
-            elif fall < -1e-12 and edge - edge_depth / fall < high:
-                high, high_wet = edge - edge_depth / fall, False
-            # a line that nothing has touched has no cells: its window lies far off
-            window = flag[row, WINDOW] if flag[row, KEPT] == 1 else FAR
-            cell = value[row, CELL]
-            pressure(sums, cells, row, window, cell, low - edge, high - edge, edge_depth, fall, edge, hardness, excess)
-            F, M = weight * sums[0], weight * sums[1]
-            # directions in the surface: across the edge, and along it
-            u0, u1, u2 = n1 * E2 - n2 * E1, n2 * E0 - n0 * E2, n0 * E1 - n1 * E0
-            size = 1.0 / np.sqrt(u0 * u0 + u1 * u1 + u2 * u2)
-            u0, u1, u2 = u0 * size, u1 * size, u2 * size
-            s0, s1, s2 = u1 * n2 - u2 * n1, u2 * n0 - u0 * n2, u0 * n1 - u1 * n0
-            # the edge holds where it first took hold, with up to its strength
-            hold = snow.shear_stress * deep * weight
-            used = (value[row, ANCHOR] - edge) / snow.holding if flag[row, ANCHORED] == 1 else 0.0
-            sticks = abs(used) < 1.0 or snow.secant > 0.0
-            used = min(max(used, -1.0), 1.0)
-            shear = hold * used
-            # centre of pressure: on the base, from the boot
-            off = M / F if F > 0.0 else 0.0
-            k0, k1, k2 = q0 + p0 + reach * t0, q1 + p1 + reach * t1, q2 + p2 + reach * t2  # edge, from the origin
-            h0, h1, h2 = k0 + off * (y0 - fall * n0), k1 + off * (y1 - fall * n1), k2 + off * (y2 - fall * n2)
-            bend_rate = w0 * rate[A] + w1 * rate[A + ONE] + w2 * rate[B] + w3 * rate[B + ONE]
-            twist_rate = y * rate[A + TWO] + z * rate[B + TWO]
-            arm = reach + off * wide
-            turning = twist_rate * arm
-            c3 = v0 + o1 * h2 - o2 * h1 + m0 * bend_rate - r0 * turning
-            c4 = v1 + o2 * h0 - o0 * h2 + m1 * bend_rate - r1 * turning
-            c5 = v2 + o0 * h1 - o1 * h0 + m2 * bend_rate - r2 * turning
-            sliding = c3 * s0 + c4 * s1 + c5 * s2
-            cosine2 = 1.0 - sine * sine
-            rise = (N0 * s0 + N1 * s1 + N2 * s2) * steep  # of the depth, along the edge
-            resist = F * rise + twist_slope * M / cosine2 * size
-            resist *= snow.compaction
-            rub = -(snow.friction + snow.friction_by_speed * abs(sliding)) * F * sliding
-            rub /= np.sqrt(sliding * sliding + friction2)
-            push = resist + rub
-            # sum up: normal force and what acts along the edge at the centre of pressure, shear at the edge
-            a0, aa1, aa2 = F * n0 + push * s0, F * n1 + push * s1, F * n2 + push * s2
-            z0, z1, z2 = shear * u0, shear * u1, shear * u2
-            f0 += a0 + z0
-            f1 += aa1 + z1
-            f2 += aa2 + z2
-            g0 += h1 * aa2 - h2 * aa1 + k1 * z2 - k2 * z1
-            g1 += h2 * a0 - h0 * aa2 + k2 * z0 - k0 * z2
-            g2 += h0 * aa1 - h1 * a0 + k0 * z1 - k1 * z0
-            up = m0 * (a0 + z0) + m1 * (aa1 + z1) + m2 * (aa2 + z2)
-            turn = -arm * (r0 * a0 + r1 * aa1 + r2 * aa2) - reach * (r0 * z0 + r1 * z1 + r2 * z2)
-            force[A] += w0 * up
-            force[A + ONE] += w1 * up
-            force[A + TWO] += y * turn
-            force[B] += w2 * up
-            force[B + ONE] += w3 * up
-            force[B + TWO] += z * turn
-            if look:
-                out.section[k, filled - 1, 1], out.section[k, filled - 1, 2] = F, shear
-                flag[row, TOUCHED] = 1
-                value[row, LOW], value[row, HIGH], value[row, EDGE] = low, high, edge
-                value[row, DEPTH], value[row, FALL] = edge_depth, fall
-                j0, j1, j2 = k0 - h0, k1 - h1, k2 - h2
-                rolling = twist_rate * (reach - arm)
-                at_edge = (
-                    (c3 + o1 * j2 - o2 * j1 - r0 * rolling) * u0
-                    + (c4 + o2 * j0 - o0 * j2 - r1 * rolling) * u1
-                    + (c5 + o0 * j1 - o1 * j0 - r2 * rolling) * u2
-                )
-                power = out.power
-                power[SHEAR] += shear * at_edge
-                power[FRICTION] += rub * sliding
-                power[NORMAL] += F * (c3 * n0 + c4 * n1 + c5 * n2) + resist * sliding
-                power[SIDEWAYS] -= F * (N0 * u0 + N1 * u1 + N2 * u2) * steep * (c3 * u0 + c4 * u1 + c5 * u2)
-                if snow.compaction == 0.0:
-                    power[SIDEWAYS] -= (F * rise + twist_slope * M / cosine2 * size) * sliding
-                # ground that the base's edges cover or leave
-                for at_left in range(2):
-                    if (at_left == 0 and not low_wet) or (at_left == 1 and not high_wet):
-                        continue
-                    way = 1.0 if at_left == 1 else -1.0
-                    beyond = way * half - reach
-                    d_fl, d_tw = flare * way - fl, (way * half) * twist_slope - tw
-                    D0, D1, D2 = E0 + d_fl * t0 - d_tw * r0, E1 + d_fl * t1 - d_tw * r1, E2 + d_fl * t2 - d_tw * r2
-                    b0, bb1, bb2 = n1 * D2 - n2 * D1, n2 * D0 - n0 * D2, n0 * D1 - n1 * D0
-                    i0, i1, i2 = j0 + beyond * t0, j1 + beyond * t1, j2 + beyond * t2
-                    rolling = twist_rate * (way * half - arm)
-                    moves = (
-                        (c3 + o1 * i2 - o2 * i1 - r0 * rolling) * b0
-                        + (c4 + o2 * i0 - o0 * i2 - r1 * rolling) * bb1
-                        + (c5 + o0 * i1 - o1 * i0 - r2 * rolling) * bb2
-                    ) / (b0 * y0 + bb1 * y1 + bb2 * y2)
-                    there = edge_depth + fall * (beyond / wide)
-                    place = high if at_left == 1 else low
-                    gain = energy_at_edge(
-                        cells, row, window, cell, value[row, SLOPE], place, there, way * moves > 0.0, hardness, excess
-                    )
-                    power[SIDEWAYS] += weight * way * moves * gain
-                if share < 1.0:
-                    leaves = from_tail < 1.0
-                    gain = sums[5] * 0.5
-                    if (
-                        sliding > 0.0
-                    ) != leaves:  # taking new ground costs the whole work, on virgin snow k_u/H_V times
-                        gain *= stiff / hardness
-                    power[RELEASED] += (gain if leaves else -gain) * sliding
-                power[SPRINGY] += weight * 0.5 * sums[5]
-                power[HELD] += 0.5 * hold * snow.holding * used * used
-            if tangent:
-                _add_tangent(
-                    out, k, model.dof[e, 0], model.dof[e, 1], s, w0, w1, w2, w3, z,
-                    n0 * m0 + n1 * m1 + n2 * m2 + rise * (s0 * m0 + s1 * m1 + s2 * m2), u0 * m0 + u1 * m1 + u2 * m2,
-                    weight * sums[2], weight * sums[3], weight * sums[4], reach * lateral, 1.0 / np.sqrt(cosine2),
-                    hold / snow.holding if sticks else 0.0,
-                    rise,
-                    (E0 * (n1 * x2 - n2 * x1) + E1 * (n2 * x0 - n0 * x2) + E2 * (n0 * x1 - n1 * x0))
-                    / (E0 * x0 + E1 * x1 + E2 * x2),
-                )  # fmt: skip
+                # where its edge is: the anchor of a line is where the edge meets the surface, within a step
+                edge_side = min(max((sp * n2 - cp * n1) * sided, -1.0), 1.0)
+                reach = edge_side * half
+                y0, y1, y2 = n1 * d2 - n2 * d1, n2 * d0 - n0 * d2, n0 * d1 - n1 * d0
+                fl, tw = (table[i, 1] + f * (table[j, 1] - table[i, 1])) * edge_side, reach * (bt - ct) * inverse
+                rise = table[i, 3] + f * (table[j, 3] - table[i, 3])
+                rise += 6.0 * z * y * inverse * (bw - cw) - y * (1.0 - 3.0 * z) * bs - z * (3.0 * z - 2.0) * cs
+                t1, t2 = fl * cp - tw * sp, rise - fl * sp - tw * cp
+                k1, k2 = reach * cp - e1, height - reach * sp - e2
+                beyond = (e0 - s) * d0 - k1 * d1 - k2 * d2
+                value[row, EDGE_ABOVE] = (s - e0) * y0 + k1 * y1 + k2 * y2
+                value[row, EDGE_ABOVE] += beyond * (y0 + t1 * y1 + t2 * y2) / (d0 + t1 * d1 + t2 * d2)
+                value[row, DEEP_ABOVE] = deep
+                flag[row, ANCHORED], flag[row, ABOVE] = 0, 1
+            continue
+        numbers[met, ROW], numbers[met, ELEMENT], numbers[met, FRONT], numbers[met, REAR] = row, e, A, B
+        work[met, S], work[met, SHARE], work[met, HALF], work[met, HEIGHT] = s, share * spacing, half, height
+        work[met, Z], work[met, SINE], work[met, COSINE], work[met, DEEP] = z, sp, cp, deep
+        work[met, MIDDLE] = middle
+        work[met, FLARE] = table[i, 1] + f * (table[j, 1] - table[i, 1])
+        work[met, RISE] = (
+            table[i, 3] + f * (table[j, 3] - table[i, 3])
+            + 6.0 * z * y * inverse * (bw - cw) - y * (1.0 - 3.0 * z) * bs - z * (3.0 * z - 2.0) * cs
+        )  # fmt: skip
+        work[met, TWISTING] = (bt - ct) * inverse
+        work[met, E0], work[met, E1], work[met, E2] = e0, e1, e2
+        work[met, D0], work[met, D1], work[met, D2] = d0, d1, d2
+        work[met, N0], work[met, N1], work[met, N2] = n0, n1, n2
+        met += ONE
+    if look:
         out.sections[k] = filled
-    out.rigid[0] = R[0, 0] * f0 + R[1, 0] * f1 + R[2, 0] * f2
-    out.rigid[1] = R[0, 1] * f0 + R[1, 1] * f1 + R[2, 1] * f2
-    out.rigid[2] = R[0, 2] * f0 + R[1, 2] * f1 + R[2, 2] * f2
-    out.rigid[3] = R[0, 0] * g0 + R[1, 0] * g1 + R[2, 0] * g2
-    out.rigid[4] = R[0, 1] * g0 + R[1, 1] * g1 + R[2, 1] * g2
-    out.rigid[5] = R[0, 2] * g0 + R[1, 2] * g1 + R[2, 2] * g2
+    return int(met)
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _forces(  # noqa: PLR0912, PLR0915 - as above
+    model: Model, snow: Snow, lines: Lines, state: State, k: int, met: int, tangent: bool, look: bool, out: Forces
+) -> None:  # fmt: skip
+    """Add the forces on ski k from the sections in `work`."""
+    V = state.velocity
+    side = model.middle[k, 1]
+    left1, left2, up1, up2 = model.lateral[1], model.lateral[2], model.normal[1], model.normal[2]
+    # velocity of the boot, and turning, in the ski's frame
+    v0, va, vb = V[0] - V[5] * side, V[1], V[2] + V[3] * side
+    v1, v2 = left1 * va + left2 * vb, up1 * va + up2 * vb
+    o0, o1, o2 = V[3], left1 * V[4] + left2 * V[5], up1 * V[4] + up2 * V[5]
+    work, numbers, rate, force, power = out.work, out.numbers, state.bend_rate[k], out.bend[k], out.power
+    cells, value, flag, node = lines.cells, lines.value, lines.flag, model.node
+    hardness, excess = snow.hardness, snow.excess
+    stiff = hardness + excess
+    per_holding, sided = 1.0 / snow.holding, 1.0 / snow.one_sided
+    friction2 = snow.friction_speed * snow.friction_speed
+    spacing = lines.spacing[0]
+    sums = np.empty(6)
+    f0, f1, f2, g0, g1, g2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    filled = 0
+    for m in range(met):
+        row, A, B = numbers[m, ROW], numbers[m, FRONT], numbers[m, REAR]
+        s, weight, half, height, z = work[m, S], work[m, SHARE], work[m, HALF], work[m, HEIGHT], work[m, Z]
+        sp, cp, deep, middle = work[m, SINE], work[m, COSINE], work[m, DEEP], work[m, MIDDLE]
+        flare, slope, twisting = work[m, FLARE], work[m, RISE], work[m, TWISTING]
+        n0, n1, n2 = work[m, N0], work[m, N1], work[m, N2]
+        d0, d1, d2 = work[m, D0], work[m, D1], work[m, D2]
+        y0, y1, y2 = n1 * d2 - n2 * d1, n2 * d0 - n0 * d2, n0 * d1 - n1 * d0  # along the line, to the left
+        # the edge that is down: where it is, its direction T, and the base's normal N there; (0, cp, -sp) points across
+        # the base
+        sine = sp * n2 - cp * n1
+        edge_side = min(max(sine * sided, -1.0), 1.0)
+        reach = edge_side * half
+        fl, tw = flare * edge_side, reach * twisting
+        t1, t2 = fl * cp - tw * sp, slope - fl * sp - tw * cp  # and 1 ahead
+        aside = n2 * t1 - n1 * t2
+        N = tw - slope * cp
+        steep = 1.0 / (N * n0 + sp * n1 + cp * n2)
+        fall = (N * y0 + sp * y1 + cp * y2) * steep  # of the depth, across to the left
+        k1, k2 = reach * cp, height - reach * sp  # the edge from the boot, s ahead
+        edge = (s - work[m, E0]) * y0 + (k1 - work[m, E1]) * y1 + (k2 - work[m, E2]) * y2
+        # before the tip and behind the tail, the edge goes on along its own direction
+        beyond = (work[m, E0] - s) * d0 + (work[m, E1] - k1) * d1 + (work[m, E2] - k2) * d2
+        edge += beyond * (y0 + t1 * y1 + t2 * y2) / (d0 + t1 * d1 + t2 * d2)
+        edge_depth = middle + reach * sine
+        lateral = cp * y1 - sp * y2
+        wide = lateral + fall * sine
+        per_wide = 1.0 / wide
+        low, high = -(half + reach) * per_wide, (half - reach) * per_wide
+        low_wet, high_wet = True, True
+        if abs(fall) > 1e-12:
+            water = -edge_depth / fall
+            if fall > 0.0 and water > low:
+                low, low_wet = water, False
+            elif fall < 0.0 and water < high:
+                high, high_wet = water, False
+        # a line that nothing has touched has no cells: its window lies far off
+        window = flag[row, WINDOW] if flag[row, KEPT] == 1 else FAR
+        cell = value[row, CELL]
+        pressure(sums, cells, row, window, cell, low, high, edge_depth, fall, edge, hardness, excess)
+        F, M = weight * sums[0], weight * sums[1]
+        # directions in the surface: across the edge (u), and along it (s)
+        u0, u1, u2 = n1 * t2 - n2 * t1, n2 - n0 * t2, n0 * t1 - n1
+        size = 1.0 / np.sqrt(u0 * u0 + u1 * u1 + u2 * u2)
+        u0, u1, u2 = u0 * size, u1 * size, u2 * size
+        s0, s1, s2 = u1 * n2 - u2 * n1, u2 * n0 - u0 * n2, u0 * n1 - u1 * n0
+        # the edge holds where it first took hold, with up to its strength
+        hold = snow.shear_stress * deep * weight
+        used = (value[row, ANCHOR] - edge) * per_holding if flag[row, ANCHORED] == 1 else 0.0
+        sticks = abs(used) < 1.0 or snow.secant > 0.0
+        used = min(max(used, -1.0), 1.0)
+        shear = hold * used
+        # centre of pressure, on the base
+        off = M / F if F > 0.0 else 0.0
+        h0, h1, h2 = s + off * (y0 - fall * n0), k1 + off * (y1 - fall * n1), k2 + off * (y2 - fall * n2)
+        h, y = node[numbers[m, ELEMENT]] - node[numbers[m, ELEMENT] + ONE], 1.0 - z
+        w0, w1, w2, w3 = y * y * (1.0 + 2.0 * z), h * z * y * y, z * z * (3.0 - 2.0 * z), -h * z * z * y
+        bend_rate = w0 * rate[A] + w1 * rate[A + ONE] + w2 * rate[B] + w3 * rate[B + ONE]
+        twist_rate = y * rate[A + TWO] + z * rate[B + TWO]
+        arm = reach + off * wide
+        turning = twist_rate * arm
+        c0 = v0 + o1 * h2 - o2 * h1
+        c1 = v1 + o2 * h0 - o0 * h2 - sp * turning
+        c2 = v2 + o0 * h1 - o1 * h0 + bend_rate - cp * turning
+        sliding = c0 * s0 + c1 * s1 + c2 * s2
+        rise = (N * s0 + sp * s1 + cp * s2) * steep  # of the depth, along the edge
+        by_twist = twisting * M / (1.0 - sine * sine) * size
+        resist = (F * rise + by_twist) * snow.compaction
+        rub = -(snow.friction + snow.friction_by_speed * abs(sliding)) * F * sliding
+        rub /= np.sqrt(sliding * sliding + friction2)
+        push = resist + rub
+        # normal force and what acts along the edge at the centre of pressure, shear at the edge
+        a0, a1, a2 = F * n0 + push * s0, F * n1 + push * s1, F * n2 + push * s2
+        z0, z1, z2 = shear * u0, shear * u1, shear * u2
+        f0 += a0 + z0
+        f1 += a1 + z1
+        f2 += a2 + z2
+        g0 += h1 * a2 - h2 * a1 + k1 * z2 - k2 * z1
+        g1 += h2 * a0 - h0 * a2 + k2 * z0 - s * z2
+        g2 += h0 * a1 - h1 * a0 + s * z1 - k1 * z0
+        up = a2 + z2
+        turn = -arm * (sp * a1 + cp * a2) - reach * (sp * z1 + cp * z2)
+        force[A] += w0 * up
+        force[A + ONE] += w1 * up
+        force[A + TWO] += y * turn
+        force[B] += w2 * up
+        force[B + ONE] += w3 * up
+        force[B + TWO] += z * turn
+        if look:
+            while out.section[k, filled, 0] != s:
+                filled += 1
+            out.section[k, filled, 1], out.section[k, filled, 2] = F, shear
+            flag[row, TOUCHED] = 1
+            value[row, LOW], value[row, HIGH], value[row, EDGE] = edge + low, edge + high, edge
+            value[row, DEPTH], value[row, FALL], value[row, DEEP_NOW] = edge_depth, fall, deep
+            power[FRICTION] += rub * sliding
+            power[NORMAL] += F * (c0 * n0 + c1 * n1 + c2 * n2) + resist * sliding
+            sideways = -F * (N * u0 + sp * u1 + cp * u2) * steep * (c0 * u0 + c1 * u1 + c2 * u2)
+            if snow.compaction == 0.0:
+                sideways -= (F * rise + by_twist) * sliding
+            # the edge that is down (0), and ground that the base's edges cover or leave (right, left)
+            for which in range(3):
+                if (which == 1 and not low_wet) or (which == 2 and not high_wet):
+                    continue
+                way = edge_side if which == 0 else -1.0 if which == 1 else 1.0
+                at = way * half
+                i1, i2 = at * cp - h1, height - at * sp - h2
+                i0 = s - h0
+                rolling = twist_rate * (at - arm)
+                m0 = c0 + o1 * i2 - o2 * i1
+                m1 = c1 + o2 * i0 - o0 * i2 - sp * rolling
+                m2 = c2 + o0 * i1 - o1 * i0 - cp * rolling
+                if which == 0:
+                    power[SHEAR] += shear * (m0 * u0 + m1 * u1 + m2 * u2)
+                    continue
+                fl, tw = flare * way, at * twisting
+                t1, t2 = fl * cp - tw * sp, slope - fl * sp - tw * cp
+                b0, b1, b2 = n1 * t2 - n2 * t1, n2 - n0 * t2, n0 * t1 - n1
+                moves = (m0 * b0 + m1 * b1 + m2 * b2) / (b0 * y0 + b1 * y1 + b2 * y2)
+                water = high if which == 2 else low
+                gain = energy_at_edge(
+                    cells, row, window, cell, value[row, SLOPE], edge + water, edge_depth + fall * water, way * moves >
+                    0.0, hardness, excess,
+                )  # fmt: skip
+                sideways += weight * way * moves * gain
+            power[SIDEWAYS] += sideways
+            if weight < spacing:
+                leaves = s < 0.0
+                gain = sums[5] * 0.5
+                passing = (c0 * d0 + c1 * d1 + c2 * d2) / d0
+                if (passing > 0.0) != leaves:  # new ground costs the whole work: on virgin snow k_u/H_V times as much
+                    gain *= stiff / hardness
+                power[RELEASED] += (gain if leaves else -gain) * passing
+            power[SPRINGY] += weight * 0.5 * sums[5]
+            power[HELD] += 0.5 * hold * snow.holding * used * used
+        if tangent:
+            e = numbers[m, ELEMENT]
+            cosine = 1.0 / np.sqrt(1.0 - sine * sine)
+            _add_tangent(
+                out, k, model.dof[e, 0], model.dof[e, 1], s, w0, w1, w2, w3, z, n2 + rise * s2, u2, weight * sums[2],
+                weight * sums[3], weight * sums[4], reach * lateral, cosine, hold * per_holding if sticks else 0.0,
+                rise, aside,
+            )  # fmt: skip
+    # into the sledge's frame, about its origin
+    p1, p2 = left1 * f1 + up1 * f2, left2 * f1 + up2 * f2
+    out.rigid[0] += f0
+    out.rigid[1] += p1
+    out.rigid[2] += p2
+    out.rigid[3] += g0 + side * p2
+    out.rigid[4] += left1 * g1 + up1 * g2
+    out.rigid[5] += left2 * g1 + up2 * g2 - side * f0
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
-def _add_tangent(
+def _add_tangent(  # noqa: PLR0915 - entries written out: loops over so few cost more than they
     out: Forces, k: int, A: int, B: int, s: float, w0: float, w1: float, w2: float, w3: float, z: float,
     cn: float, cu: float, k0: float, k1: float, k2: float, reach: float, secant: float, ky: float, rise: float,
     aside: float,
 ) -> None:  # fmt: skip
     """Add minus the tangent of one section: depth and roll (k0, k1, k2, about the edge), and across (ky).
 
-    A line feels the ski move along its base and along its edge: forwards, the depth grows by `rise`, and the edge comes to lie
-    `aside` of the ski's axis. Without it a steadily carving ski would seem to be pushed across where it only follows its edge.
+    A line feels the ski move along its base and along its edge: forwards, the depth grows by `rise`, and the edge
+    comes to lie `aside` of the ski's axis. Without it a steadily carving ski would seem to be pushed across where it
+    only follows its edge.
     """
     k2 = (k2 + 2.0 * reach * k1 + reach * reach * k0) * secant * secant
     k1 = (k1 + reach * k0) * secant

@@ -1,8 +1,9 @@
 """The snow's memory under the skis: lines across the path, fixed in the snow, on which the contact is integrated.
 
-A line is laid ahead of the tip and stays where it is until the tail has passed. Across it, cells remember the deepest base that
-they met. The contact is evaluated on the lines themselves, so the memory is never transported or interpolated: nothing
-smears, and no rounding decides which cell is hit. Across a cell the groove is taken parallel to the base that meets it.
+A line is laid ahead of the tip and stays where it is until the tail has passed. Across it, cells remember the deepest
+base that they met. The contact is evaluated on the lines themselves, so the memory is never transported or
+interpolated: nothing smears, and no rounding decides which cell is hit. Across a cell the groove is taken parallel to
+the base that meets it.
 
 What lines and cells leave behind goes to the archive, and comes back where a ski crosses an older track.
 """
@@ -23,24 +24,43 @@ NOTHING = 1e9
 MARGIN = 6
 """Cells kept free on both sides of a contact."""
 
-# columns of `value`: size of the line's cells (m), slope of the deepest base across, energy that an older track had taken (J), where
-# across the edge holds (m); where the base meets the line now: from, to, edge (m), depth at the edge (m), fall of the depth across
-CELL, SLOPE, LOST, ANCHOR, LOW, HIGH, EDGE, DEPTH, FALL = 0, 1, 2, 3, 4, 5, 6, 7, 8
-# columns of `flag`: number of the first cell, whether the cells hold anything, whether the edge holds, whether the base is there
-WINDOW, KEPT, ANCHORED, TOUCHED = 0, 1, 2, 3
-# columns of `cells`: deepest base extended to the cell's middle, part that a base has covered, across (m)
-DEEPEST, FROM, TO = 0, 1, 2
+# columns of `value`: size of the line's cells (m), slope of the deepest base across, energy that an older track had
+# taken (J), where across the edge holds (m); where the base meets the line now: from, to, edge (m), depth at the edge
+# (m), fall of the depth across, depth of the deepest edge (m); edge and depth when it was last looked at and the base
+# was above it (m)
+CELL, SLOPE, LOST, ANCHOR, LOW, HIGH, EDGE, DEPTH, FALL, DEEP_NOW, EDGE_ABOVE, DEEP_ABOVE = (
+    0,
+    1,
+    2,
+    3,
+    4,
+    5,
+    6,
+    7,
+    8,
+    9,
+    10,
+    11,
+)
+# where its edge was marked last (m)
+EDGE_MARKED = 12
+# columns of `flag`: number of the first cell, whether the cells hold anything, whether the edge holds, whether the base
+# is there, whether at the last look it was just above, whether its base was marked at the last look
+WINDOW, KEPT, ANCHORED, TOUCHED, ABOVE, MARKED = 0, 1, 2, 3, 4, 5
+# columns of `cells`: deepest base extended to the cell's middle, part that a base has covered, across; deepest base at
+# the middle itself, which counts for the energy: some bases cover less of their cell than that, some more (m)
+DEEPEST, FROM, TO, CENTRE = 0, 1, 2, 3
 
 
 class Lines(NamedTuple):
     """Lines of both skis, in one ring for each: row k × ring + i. Places in space (m)."""
 
     frame: FloatArray  # (2 ring, 12) origin, unit vectors ahead, to the left, out of the snow
-    cells: FloatArray  # (2 ring, cells, 3)
-    value: FloatArray  # (2 ring, 9)
-    flag: IntArray  # (2 ring, 4)
+    cells: FloatArray  # (2 ring, cells, 4)
+    value: FloatArray  # (2 ring, 13)
+    flag: IntArray  # (2 ring, 6)
     first: IntArray  # (2,) of the ring, the line nearest the tail
-    count: IntArray  # (2,)
+    count: IntArray  # type: ignore[assignment]  # (2,) hides the tuple's own, which nothing asks for
     spacing: FloatArray  # (2,) of the lines along the path, and of fresh cells across (m)
 
 
@@ -49,9 +69,9 @@ def new_lines(ring: int, cells: int, *, spacing: float, cell: float) -> Lines:
     rows = 2 * ring
     return Lines(
         np.zeros((rows, 12)),
-        np.zeros((rows, cells, 3)),
-        np.zeros((rows, 9)),
-        np.zeros((rows, 4), np.int64),
+        np.zeros((rows, cells, 4)),
+        np.zeros((rows, 13)),
+        np.zeros((rows, 6), np.int64),
         np.zeros(2, np.int64),
         np.zeros(2, np.int64),
         np.array([spacing, cell]),
@@ -69,6 +89,8 @@ def begin_line(lines: Lines, row: int, frame: FloatArray) -> None:
     lines.value[row, LOST] = 0.0
     lines.flag[row, ANCHORED] = 0
     lines.flag[row, TOUCHED] = 0
+    lines.flag[row, ABOVE] = 0
+    lines.flag[row, MARKED] = 0
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -80,6 +102,7 @@ def open_window(lines: Lines, row: int, start: int) -> None:
         lines.cells[row, j, DEEPEST] = -NOTHING
         lines.cells[row, j, FROM] = NOTHING
         lines.cells[row, j, TO] = -NOTHING
+        lines.cells[row, j, CENTRE] = 0.0
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
@@ -87,9 +110,9 @@ def pressure(
     sums: FloatArray, cells: FloatArray, row: int, start: int, cell: float, low: float, high: float, depth: float,
     slope: float, edge: float, hardness: float, excess: float,
 ) -> None:  # fmt: skip
-    """Fill the sums of the snow's pressure over low ≤ x ≤ high, where the base is depth + slope x > 0 deep; x counts from the edge.
+    """Fill the sums of the snow's pressure over low ≤ x ≤ high, where the base is depth + slope x > 0 deep.
 
-    `sums` (6,): ∫p dx, ∫p x dx, ∫∂p/∂ε xⁿ dx for n = 0, 1, 2, and ∫p²/k_u dx (twice the springy energy).
+    x counts from the edge. `sums` (6,): ∫p dx, ∫p x dx, ∫∂p/∂ε xⁿ dx for n = 0, 1, 2, and ∫p²/k_u dx (twice the springy energy).
     """
     size = cells.shape[1]
     mask = size - 1
@@ -155,7 +178,10 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: int) -> None:
     while j <= last:
         end = high if j == last else (j + 1) * cell
         i = j & mask
-        here = depth + slope * ((j + 0.5) * cell - edge)
+        middle = (j + 0.5) * cell
+        here = depth + slope * (middle - edge)
+        if low <= middle <= high:
+            cells[row, i, CENTRE] = max(cells[row, i, CENTRE], here)
         if here > cells[row, i, DEEPEST]:
             cells[row, i, DEEPEST] = here
             value[row, SLOPE] = slope
@@ -172,12 +198,9 @@ def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, 
     cell, slope = lines.value[row, CELL], lines.value[row, SLOPE]
     total = 0.0
     for j in range(first, last):
-        i = j & mask
-        width = lines.cells[row, i, TO] - lines.cells[row, i, FROM]
-        if width > 0.0:
-            middle = 0.5 * (lines.cells[row, i, TO] + lines.cells[row, i, FROM])
-            depth = lines.cells[row, i, DEEPEST] + slope * (middle - (j + 0.5) * cell)
-            total += width * (depth * depth + slope * slope * width * width / 12.0)
+        depth = lines.cells[row, j & mask, CENTRE]
+        if depth > 0.0:
+            total += cell * (depth * depth + slope * slope * cell * cell / 12.0)
     return 0.5 * hardness * excess / (hardness + excess) * total * lines.spacing[0]
 
 
@@ -186,7 +209,7 @@ def energy_at_edge(
     cells: FloatArray, row: int, start: int, cell: float, slope: float, y: float, depth: float, covers: bool,
     hardness: float, excess: float,
 ) -> float:  # fmt: skip
-    """Energy per area (J/m²) that the snow gains where a base's edge covers new ground, or gives back where it leaves."""
+    """Energy per area (J/m²) that the snow gains where an edge covers new ground, or gives back where it leaves."""
     j = int(np.floor(y / cell))
     i = j & (cells.shape[1] - 1)
     stiff = hardness + excess

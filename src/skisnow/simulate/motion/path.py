@@ -10,15 +10,23 @@ import numpy.typing as npt
 
 from .archive import Archive, leave_line, look_ahead, make_room
 from .lines import (
+    ABOVE,
     ANCHOR,
     ANCHORED,
     CELL,
+    DEEP_ABOVE,
+    DEEP_NOW,
+    DEPTH,
     EDGE,
+    EDGE_ABOVE,
+    EDGE_MARKED,
+    FALL,
     HIGH,
     KEPT,
     LOST,
     LOW,
     MARGIN,
+    MARKED,
     TOUCHED,
     WINDOW,
     Lines,
@@ -29,6 +37,7 @@ from .lines import (
 from .model import Model, Snow, State, World
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
+IntArray: TypeAlias = npt.NDArray[np.int64]
 
 AHEAD: Final = 0.12
 """Distance (m) before tip and behind tail in which lines are laid: more than a ski moves in a step."""
@@ -150,16 +159,34 @@ def _leave_all(snow: Snow, lines: Lines, archive: Archive, k: int) -> None:
     lines.count[k] = 0
 
 
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _swept(value: FloatArray, flag: IntArray, row: int, edge: float, depth: float, fall: float) -> float:
+    """How much more ∫ε² (m³) the ground has that the edge left since the last look, than what was marked there then.
+
+    Each place was as deep as the edge when the edge passed; at the last look it was d off the edge and fall × d less
+    deep.
+    """
+    moved = edge - value[row, EDGE_MARKED]
+    more = 0.0
+    if flag[row, MARKED] == 1 and moved * fall < 0.0:
+        d, f = abs(moved), min(abs(fall), depth / max(abs(moved), 1e-12))
+        more = max(0.0, d * d * f * (depth - f * d / 3.0))
+    value[row, EDGE_MARKED], flag[row, MARKED] = edge, 1
+    return more
+
+
 @numba.njit(cache=True, error_model="numpy")
 def press(snow: Snow, lines: Lines, archive: Archive) -> None:
     """Let the snow remember the bases that touch its lines now, and where the edges hold."""
     ring = len(lines.flag) // 2
     value, flag, cells = lines.value, lines.flag, lines.cells
     size = cells.shape[1]
+    loss = 0.5 * snow.hardness * snow.excess / (snow.hardness + snow.excess) * lines.spacing[0]
     for k in range(2):
         for c in range(lines.count[k]):
             row = k * ring + (lines.first[k] + c) % ring
             if flag[row, TOUCHED] == 0:
+                flag[row, MARKED] = 0
                 continue
             cell, start = value[row, CELL], flag[row, WINDOW]
             reach = MARGIN * cell
@@ -169,11 +196,16 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
                 or value[row, HIGH] + reach >= (start + size) * cell
             ):
                 make_room(archive, lines, row, snow.hardness, snow.excess)
+            edge, depth, fall = value[row, EDGE], value[row, DEPTH], value[row, FALL]
             mark_cells(cells, value, row)
-            edge = value[row, EDGE]
+            archive.lost[0] += loss * _swept(value, flag, row, edge, depth, fall)
             if flag[row, ANCHORED] == 0:
                 flag[row, ANCHORED] = 1
                 value[row, ANCHOR] = edge
+                if flag[row, ABOVE] == 1:  # where the edge was when it met the surface, within the step
+                    rise = value[row, DEEP_ABOVE] / (value[row, DEEP_ABOVE] - value[row, DEEP_NOW])
+                    value[row, ANCHOR] = value[row, EDGE_ABOVE] + rise * (edge - value[row, EDGE_ABOVE])
+                    flag[row, ABOVE] = 0
             else:
                 value[row, ANCHOR] = max(min(value[row, ANCHOR], edge + snow.holding), edge - snow.holding)
 

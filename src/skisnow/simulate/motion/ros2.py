@@ -3,9 +3,9 @@
 Source: Verwer, Spee, Blom and Hundsdorfer (1999), SIAM J. Sci. Comput. 20: γ = 1 - 1/√2,
 (I - γhJ) k₁ = f(y), (I - γhJ) k₂ = f(y + h k₁) - 2 k₁, y ← y + h (3 k₁ + k₂)/2.
 
-Here M v' = F(x, v), x' = v, the matrix is W = M - γh ∂F/∂v - γ²h² ∂F/∂x. With k₁ + v/(γh) and k₂ + a/(γh), a = x'₁ - 2 k₁ₓ, as the
-unknowns, the products with ∂F/∂x become products with the constant M. The turn of the sledge is a rotation vector from the
-start of the step.
+Here M v' = F(x, v), x' = v, the matrix is W = M - γh ∂F/∂v - γ²h² ∂F/∂x. With k₁ + v/(γh) and k₂ + a/(γh),
+a = x'₁ - 2 k₁ₓ, as the unknowns, the products with ∂F/∂x become products with the constant M. The turn of the sledge is
+a rotation vector from the start of the step.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def ros2_step(
     model: Model, snow: Snow, world: World, lines: Lines, state: State, start: Forces, stage: Forces,
     system: Factored, h: float, room: Room, out: State,
 ) -> None:  # fmt: skip
-    """Fill `out` with the state after a step h (s); `start` holds the forces at its start, `system` the factors of W."""
+    """Fill `out` with the state after a step h (s) from the forces in `start`, with the factors of W in `system`."""
     gh = GAMMA * h
     padded = state.bend.shape[1]
     first, second, places, weights, middle = room.first, room.second, room.places, room.weights, room.middle
@@ -72,14 +72,14 @@ def ros2_step(
     move(state, places.rigid, places.bend, h, middle)
     feel(model, snow, lines, middle, False, False, stage)
     # a = x'₁ - 2 k₁ₓ; x'₁ to second order in the rotation vector
-    a, p = room.weights, places
+    sought, p = room.weights, places
     v, q0, q1, q2 = middle.velocity, h * p.rigid[3], h * p.rigid[4], h * p.rigid[5]
-    a.rigid[0] = v[0] + q1 * v[2] - q2 * v[1] - 2.0 * p.rigid[0]
-    a.rigid[1] = v[1] + q2 * v[0] - q0 * v[2] - 2.0 * p.rigid[1]
-    a.rigid[2] = v[2] + q0 * v[1] - q1 * v[0] - 2.0 * p.rigid[2]
-    a.rigid[3] = v[3] + 0.5 * (q1 * v[5] - q2 * v[4]) - 2.0 * p.rigid[3]
-    a.rigid[4] = v[4] + 0.5 * (q2 * v[3] - q0 * v[5]) - 2.0 * p.rigid[4]
-    a.rigid[5] = v[5] + 0.5 * (q0 * v[4] - q1 * v[3]) - 2.0 * p.rigid[5]
+    sought.rigid[0] = v[0] + q1 * v[2] - q2 * v[1] - 2.0 * p.rigid[0]
+    sought.rigid[1] = v[1] + q2 * v[0] - q0 * v[2] - 2.0 * p.rigid[1]
+    sought.rigid[2] = v[2] + q0 * v[1] - q1 * v[0] - 2.0 * p.rigid[2]
+    sought.rigid[3] = v[3] + 0.5 * (q1 * v[5] - q2 * v[4]) - 2.0 * p.rigid[3]
+    sought.rigid[4] = v[4] + 0.5 * (q2 * v[3] - q0 * v[5]) - 2.0 * p.rigid[4]
+    sought.rigid[5] = v[5] + 0.5 * (q0 * v[4] - q1 * v[3]) - 2.0 * p.rigid[5]
     second.rigid[:] = 0.0
     second.bend[:] = 0.0
     add_forces(model, world, middle, stage, 1.0, second)
@@ -91,7 +91,7 @@ def ros2_step(
         for i in range(PADDING, padded - PADDING):
             middle.bend[k, i] = (middle.bend_rate[k, i] - 2.0 * p.bend[k, i]) / gh - 2.0 * first.bend[k, i]
     for b in range(6):
-        middle.velocity[b] = a.rigid[b] / gh - 2.0 * first.rigid[b]
+        middle.velocity[b] = sought.rigid[b] / gh - 2.0 * first.rigid[b]
     add_mass(model, middle.velocity, middle.bend, 1.0, second)
     solve(system, second)
     # second = k₂ + a/(γh); the places' part of k₂ is γh times it

@@ -47,7 +47,10 @@ def new_factored(size: int) -> Factored:
 def factor(
     model: Model, forces: Forces, rows: FloatArray, structure: float, contact: float, out: Factored
 ) -> bool:  # fmt: skip
-    """Factor M + structure × K + contact × C, with K the skis' stiffness and C minus the snow's tangent; False if it fails."""
+    """Factor M + structure × K + contact × C, with K the skis' stiffness and C minus the snow's tangent.
+
+    False if it fails.
+    """
     n = len(model.mass)
     for a in range(6):
         for b in range(6):

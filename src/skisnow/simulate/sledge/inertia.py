@@ -1,8 +1,9 @@
 """Mass matrix of a rigid sledge with two flexible skis.
 
-Kinetic energy ½∫|v + ω × ρ + n ẇ|² dm over sledge and skis, and ½∫ρI (ω_x - φ̇)² ds for the skis' sections, with ρ the unbent place
-in the sledge's frame: the deflection counts as velocity, not as change of place (Choice: w ≪ the distances of the sledge). The
-matrix is then constant, and the equations of motion that follow keep momentum, angular momentum and energy exactly.
+Kinetic energy ½∫|v + ω × ρ + n ẇ|² dm over sledge and skis, and ½∫ρI (ω_x - φ̇)² ds for the skis' sections, with ρ the
+unbent place in the sledge's frame: in the matrix the deflection counts as velocity, not as change of place (Choice: w is
+far below the distances of the sledge), so that the matrix is constant. The equations of motion keep what of the bend's own
+place does not vanish with w: the skis feel v × ω. Energy and momenta then drift by no more than mass × w × v × ω.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ class RigidSledge:
     mass
         (kg), > 0.
     inertia
-        Roll, pitch and yaw moments of inertia at its centre of mass (kg m²), each > 0 and none above the sum of the others.
+        Roll, pitch and yaw moments of inertia at its centre of mass (kg m²), each > 0, none above the sum of the
+        others.
     centre_of_mass
         Forward of the boots, and above the bases (m).
     stance_width
