@@ -25,6 +25,10 @@ from .run_setup import Setup
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
+GAINED_SHARE, GAINED = 0.05, 10.0
+"""Share of the energy turned over, and energy (J), that may seem to be gained before numbers have run away (Choice)."""
+_MECHANICAL = 3  # kinetic, potential, elastic in the skis
+
 
 @dataclass(frozen=True, slots=True)
 class _Moment:
@@ -68,6 +72,20 @@ class Record:
         else:
             self._moments.append(moment)
         self.run_length = length
+
+    @property
+    def gains_energy(self) -> bool:
+        """Whether motion, height and bend hold more energy than at the start: numbers have run away."""
+        first, last = self._moments[0].energies, self._moments[-1].energies
+        gained = float(last[:_MECHANICAL].sum() - first[:_MECHANICAL].sum())
+        turned_over = float(first[0] + max(0.0, first[1] - last[1]))
+        return not gained <= GAINED_SHARE * turned_over + GAINED
+
+    def drop(self) -> None:
+        """Forget the last moment."""
+        if len(self._moments) > 1:
+            gone = self._moments.pop()
+            self.run_length -= _arc(self._moments[-1], gone)
 
     def _energies(self) -> FloatArray:
         setup = self.setup

@@ -91,7 +91,7 @@ def test_pressure_over_random_grooves(seed: int) -> None:
             ends = (
                 np.sort(rng.uniform(j * 1e-3, (j + 1) * 1e-3, 2)) if rng.uniform() < 0.5 else (j * 1e-3, (j + 1) * 1e-3)
             )
-            lines.cells[0, j % 64] = rng.uniform(0.0, 8e-3), *ends
+            lines.cells[0, j % 64] = rng.uniform(0.0, 8e-3), *ends, 0.0
     edge, fall = rng.uniform(-5e-3, 5e-3), float(rng.choice([-0.6, -0.02, 0.0, 0.02, 0.6]))
     # the base ends at the waterline or before it
     low, high = (-12e-3, 0.0) if fall > 0.0 else (0.0, 12e-3)

@@ -49,7 +49,9 @@ def test_holds_below_the_limit(share: float) -> None:
     run = across(strength=sufficient_strength() / share, duration=3.0)
     assert run.outcome == "finished"
     assert np.ptp(run.place[10:, 0]) < 1.25 * HOLDING
-    assert run.place[-1, 0] < 5e-3
+    # the load comes on at once: it stops where the work of the weight is that of the grip, elastic, then full
+    given_way = HOLDING * ((share - 0.5) / (1.0 - share) + 1.0) if share > 0.5 else 2.0 * share * HOLDING
+    assert run.place[-1, 0] < 1.1 * given_way
     assert np.abs(run.place[:, 1]).max() < 1e-6
 
 

@@ -119,10 +119,6 @@ def test_step_too_small() -> None:
     assert is_sound(run)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="steps of 5 ms: tipped_over at 768 m/s, or the same moment kept twice, which divides by zero in turn_radius",
-)
 @pytest.mark.parametrize(
     "changes",
     [

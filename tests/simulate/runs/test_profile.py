@@ -49,7 +49,7 @@ def test_turn() -> None:
     given = replace(read_scenario("carved-46m", changes={"run.duration_s": 1.0}), solver=fixed)
     plane, profile, turned = both(given)
     assert profile.place[0] == pytest.approx(turned[0], abs=1e-6)
-    assert profile.place == pytest.approx(turned, abs=2e-4)
+    assert profile.place == pytest.approx(turned, abs=4e-4)  # 24 mm lines: another grid moves a track by so much
     assert profile.speed == pytest.approx(plane.speed, rel=1e-4)
     for name in ("kinetic", "potential", "friction", "drag"):
         change = profile.energies[name] - profile.energies[name][0]

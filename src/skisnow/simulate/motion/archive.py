@@ -261,7 +261,7 @@ def _coarsen(lines: Lines, row: int) -> None:
     mask = cells - 1
     start, cell, slope = lines.flag[row, WINDOW], lines.value[row, CELL], lines.value[row, SLOPE]
     deepest, low, high = np.full(cells, -NOTHING), np.full(cells, NOTHING), np.full(cells, -NOTHING)
-    square = np.zeros(cells)
+    centre, both = np.zeros(cells), np.zeros(cells, np.int64)
     new = int(np.floor(start / 2)) - cells // 4
     for j in range(start, start + cells):
         i, target = j & mask, int(np.floor(j / 2))
@@ -269,12 +269,13 @@ def _coarsen(lines: Lines, row: int) -> None:
             t = target & mask
             shift = slope * ((target + 0.5) * 2.0 * cell - (j + 0.5) * cell)
             deepest[t] = max(deepest[t], lines.cells[row, i, DEEPEST] + shift)
-            square[t] += 0.5 * lines.cells[row, i, CENTRE] ** 2
+            centre[t] += 0.5 * lines.cells[row, i, CENTRE]
+            both[t] += 1 if lines.cells[row, i, CENTRE] > 0.0 else 0
             low[t], high[t] = min(low[t], lines.cells[row, i, FROM]), max(high[t], lines.cells[row, i, TO])
     lines.value[row, CELL], lines.flag[row, WINDOW] = 2.0 * cell, new
     for i in range(cells):
         lines.cells[row, i, DEEPEST], lines.cells[row, i, FROM], lines.cells[row, i, TO] = deepest[i], low[i], high[i]
-        lines.cells[row, i, CENTRE] = np.sqrt(square[i])
+        lines.cells[row, i, CENTRE] = centre[i] if both[i] == 2 else 0.0
 
 
 @numba.njit(cache=True, error_model="numpy")

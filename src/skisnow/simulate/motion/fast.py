@@ -1,8 +1,8 @@
 """Fast mode: linearly implicit Euler, order 1; one look at the snow and one solution a step.
 
-The matrix is kept over several steps. (M - h ∂F/∂v - h² ∂F/∂x) (v₁ - v₀) = h F + h² ∂F/∂x v₀ and x₁ = x₀ + h v₁. Brought
-to v₁, damping and tangent drop out of the right side: W v₁ = M v₀ + h (F - K u₀), with F all forces but stiffness and
-damping of the skis.
+The matrix is kept over several steps. (M - h ∂F/∂v - h² ∂F/∂x) (v₁ - v₀) = h F + h² ∂F/∂x v₀ and x₁ = x₀ + h v₁.
+Brought to v₁, damping and tangent drop out of the right side: W v₁ = M v₀ + h (F - K u₀), with F all forces
+but stiffness and damping of the skis.
 """
 
 from __future__ import annotations

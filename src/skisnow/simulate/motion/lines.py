@@ -48,7 +48,7 @@ EDGE_MARKED = 12
 # is there, whether at the last look it was just above, whether its base was marked at the last look
 WINDOW, KEPT, ANCHORED, TOUCHED, ABOVE, MARKED = 0, 1, 2, 3, 4, 5
 # columns of `cells`: deepest base extended to the cell's middle, part that a base has covered, across; deepest base at
-# the middle itself, which counts for the energy: some bases cover less of their cell than that, some more (m)
+# the middle itself, which counts for the energy: an edge that leaves a cell is deeper, extended to the middle (m)
 DEEPEST, FROM, TO, CENTRE = 0, 1, 2, 3
 
 
@@ -112,7 +112,8 @@ def pressure(
 ) -> None:  # fmt: skip
     """Fill the sums of the snow's pressure over low ≤ x ≤ high, where the base is depth + slope x > 0 deep.
 
-    x counts from the edge. `sums` (6,): ∫p dx, ∫p x dx, ∫∂p/∂ε xⁿ dx for n = 0, 1, 2, and ∫p²/k_u dx (twice the springy energy).
+    x counts from the edge. `sums` (6,): ∫p dx, ∫p x dx, ∫∂p/∂ε xⁿ dx for n = 0, 1, 2, and ∫p²/k_u dx, twice the springy
+    energy.
     """
     size = cells.shape[1]
     mask = size - 1
@@ -198,9 +199,13 @@ def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, 
     cell, slope = lines.value[row, CELL], lines.value[row, SLOPE]
     total = 0.0
     for j in range(first, last):
-        depth = lines.cells[row, j & mask, CENTRE]
-        if depth > 0.0:
-            total += cell * (depth * depth + slope * slope * cell * cell / 12.0)
+        i = j & mask
+        width = lines.cells[row, i, TO] - lines.cells[row, i, FROM]
+        if width > 0.0:
+            middle = 0.5 * (lines.cells[row, i, TO] + lines.cells[row, i, FROM])
+            depth = lines.cells[row, i, CENTRE] if lines.cells[row, i, CENTRE] > 0.0 else lines.cells[row, i, DEEPEST]
+            depth += slope * (middle - (j + 0.5) * cell)
+            total += width * (depth * depth + slope * slope * width * width / 12.0)
     return 0.5 * hardness * excess / (hardness + excess) * total * lines.spacing[0]
 
 
