@@ -168,18 +168,18 @@ def advance_controlled(
         if h > 0.5 * left and h < left:
             h = 0.5 * left  # no crumbs at the end
         error = _try_pair(model, snow, world, lines, memory, h)
-        larger = 0.9 * (tolerance / max(error, 1e-30)) ** (1.0 / 3.0) if not np.isnan(error) else 0.1
+        larger = 0.8 * (tolerance / max(error, 1e-30)) ** (1.0 / 3.0) if not np.isnan(error) else 0.1
         if not error <= tolerance:
             clock.counts[1] += 1
-            clock.time[1] = h * min(max(larger, 0.1), 0.7)
+            clock.time[1] = _on_ladder(h * min(max(larger, 0.1), 0.7))
             if clock.time[1] < SHORTEST_STEP:
                 return STEP_TOO_SMALL
             continue
         now, end = clock.time[0], until if h == left else clock.time[0] + h
         if h < left or larger < 1.0:  # a step cut short by the output tells little
-            clock.time[1] = min(h * min(max(larger, 0.3), 2.0), LONGEST_STEP)
+            clock.time[1] = _on_ladder(min(h * min(max(larger, 0.3), 1.5), LONGEST_STEP))
         elif clock.time[1] < h * larger:
-            clock.time[1] = min(max(clock.time[1], h * min(larger, 2.0)), LONGEST_STEP)
+            clock.time[1] = _on_ladder(min(max(clock.time[1], h * min(larger, 2.0)), LONGEST_STEP))
         # the snow meets both states; for a constant in place of a value Numba would compile a function anew
         copy_state(memory.half, memory.state)
         clock.time[0], clock.time[2] = now + 0.5 * h, 0.5 * h
@@ -189,6 +189,15 @@ def advance_controlled(
         clock.counts[0] += 2
         observe(model, snow, world, lines, archive, memory, h > 0.0)
     return GOES_ON
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _on_ladder(h: float) -> float:
+    """The longest step of a ladder of steps, four to an octave, that is not above h (s).
+
+    A free choice would carry each rounding of the error estimate into all later steps.
+    """
+    return LONGEST_STEP * 2.0 ** (0.25 * np.floor(4.0 * np.log2(h / LONGEST_STEP) + 1e-6))
 
 
 @numba.njit(cache=True, error_model="numpy")
