@@ -125,11 +125,18 @@ class Record:
             "place": np.array([m.place for m in moments]).reshape(-1, 3),
             "attitude": attitude,
             "velocity": velocity,
-            "heading": np.unwrap(np.arctan2(attitude[:, 1, 0], attitude[:, 0, 0])),
+            "heading": _heading(attitude, np.array([self.setup.slope_normal(float(m.place[0])) for m in moments])),
             "turn_radius": turn_radius(time, velocity, attitude[:, :, 2]),
             "skis": SkiHistory(station=station, **(skis or _no_skis(len(station)))),
             "energies": {name: energies[:, i] for i, name in enumerate((*STORED, *LOST))},
         }
+
+
+def _heading(attitude: FloatArray, normal: FloatArray) -> FloatArray:
+    """Angle of the skis to the fall line in the slope's plane, positive left (rad): (n, 3, 3) and (n, 3) to (n,)."""
+    ahead, normal = attitude[:, :, 0], normal.reshape(-1, 3)
+    down = ahead[:, 0] * normal[:, 2] - ahead[:, 2] * normal[:, 0]
+    return np.asarray(np.unwrap(np.arctan2(ahead[:, 1], down)))
 
 
 def _arc(one: _Moment, other: _Moment) -> float:

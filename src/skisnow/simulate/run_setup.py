@@ -109,6 +109,10 @@ class Setup:
         state = self.memory.state
         return bool(state.place[0] + max(0.0, state.turn[0, 0]) * self.model.tip > self.end)
 
+    def slope_normal(self, x: float) -> FloatArray:
+        """Unit normal (3,) of the slope at x."""
+        return _normal(self.scenario, x)
+
     def surface_height(self, x: float) -> float:
         """Height of the slope at x (m)."""
         slope = self.scenario.slope
@@ -116,7 +120,7 @@ class Setup:
 
     def _slope_at_boots(self) -> tuple[float, FloatArray]:
         x = float(self.memory.state.place[0])
-        return self.surface_height(x), _normal(self.scenario, x)
+        return self.surface_height(x), self.slope_normal(x)
 
     def compile(self) -> None:
         """Make sure that the loops are compiled; nothing moves."""

@@ -8,11 +8,12 @@ from scipy.linalg import eigh
 
 from skisnow.simulate.motion.equations import copy_state
 from skisnow.simulate.motion.fast import fast_step
-from skisnow.simulate.motion.forces import CHANNELS, new_forces
+from skisnow.simulate.motion.forces import new_forces
 from skisnow.simulate.motion.lines import new_lines
 from skisnow.simulate.motion.model import Model, Snow, World, new_state, sledge_model
 from skisnow.simulate.motion.ros2 import GAMMA, new_room, ros2_step
 from skisnow.simulate.motion.system import factor, new_factored
+from skisnow.simulate.motion.tangent import CHANNELS
 from skisnow.simulate.sledge import RigidSledge
 from skisnow.ski.beam.banded import dense
 from skisnow.ski.beam.clamped import ClampedSki, clamped

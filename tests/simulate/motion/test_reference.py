@@ -10,10 +10,11 @@ import numpy.typing as npt
 import pytest
 
 from skisnow.simulate.motion.equations import add_forces, channel_rows
-from skisnow.simulate.motion.forces import CHANNELS, FRICTION, NORMAL, SHEAR, feel
+from skisnow.simulate.motion.forces import FRICTION, NORMAL, SHEAR, feel
 from skisnow.simulate.motion.lines import ANCHORED, DEEPEST, FROM, KEPT, TO, TOUCHED, WINDOW
 from skisnow.simulate.motion.model import PADDING
 from skisnow.simulate.motion.system import factor, new_vector
+from skisnow.simulate.motion.tangent import CHANNELS
 from skisnow.simulate.run_setup import Setup, set_up
 from skisnow.simulate.scenario import read_scenario
 

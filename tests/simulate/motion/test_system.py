@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.simulate.motion.forces import CHANNELS, Forces, new_forces
+from skisnow.simulate.motion.forces import Forces, new_forces
 from skisnow.simulate.motion.model import PADDING, Model, sledge_model
 from skisnow.simulate.motion.system import (
     Factored,
@@ -18,6 +18,7 @@ from skisnow.simulate.motion.system import (
     solve,
     solve_corner,
 )
+from skisnow.simulate.motion.tangent import CHANNELS
 from skisnow.simulate.sledge import RigidSledge
 from skisnow.ski.beam.banded import dense
 from skisnow.ski.beam.clamped import ClampedSki, clamped

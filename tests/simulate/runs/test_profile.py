@@ -56,12 +56,9 @@ def test_turn() -> None:
         assert change == pytest.approx(plane.energies[name] - plane.energies[name][0], abs=0.3), name
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="on a profile the heading is taken in the horizontal plane: -30.37° for a start at -30° on a slope of 10°",
-)
 def test_heading_is_told_in_the_slope() -> None:
     """As the start's heading is given: from the fall line, in the snow's surface."""
     plane, profile, _ = both(read_scenario("carved-46m", changes={"run.duration_s": 0.05}))
-    assert math.degrees(plane.heading[0]) == pytest.approx(-30.0, abs=1e-6)
-    assert math.degrees(profile.heading[0]) == pytest.approx(-30.0, abs=1e-6)
+    tilt = 1e-3  # settled into its grooves the sledge pitches and rolls by milliradians, whose product turns it: degrees
+    assert math.degrees(plane.heading[0]) == pytest.approx(-30.0, abs=tilt)
+    assert math.degrees(profile.heading[0]) == pytest.approx(-30.0, abs=tilt)

@@ -11,12 +11,13 @@ import numpy.typing as npt
 from .archive import Archive
 from .equations import add_forces, channel_rows, copy_state
 from .fast import STEPS_PER_TANGENT, fast_step
-from .forces import CHANNELS, FRICTION, NORMAL, RELEASED, SHEAR, SIDEWAYS, Forces, feel, new_forces
+from .forces import FRICTION, NORMAL, RELEASED, SHEAR, SIDEWAYS, Forces, feel, new_forces
 from .lines import Lines
 from .model import PADDING, Model, Snow, State, World, new_state
 from .path import follow, press
 from .ros2 import GAMMA, Room, new_room, ros2_step
 from .system import Factored, Vector, add_band, factor, new_factored, new_vector
+from .tangent import CHANNELS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]

@@ -14,10 +14,11 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from .forces import CHANNELS, Forces
+from .forces import Forces
 from .lines import Lines
 from .model import PADDING, Model, State, World
 from .system import Vector
+from .tangent import CHANNELS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -37,11 +37,10 @@ from .lines import (
     pressure,
 )  # fmt: skip
 from .model import PADDING, Model, Snow, State
+from .tangent import CHANNELS, add_tangent
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-CHANNELS = 6
-"""Columns between beam and rigid body: depth, depth × s, roll, across, across × s, forwards."""
 
 FAR = 1 << 40
 ZERO, ONE, TWO = np.uint64(0), np.uint64(1), np.uint64(2)
@@ -397,10 +396,10 @@ def _forces(  # noqa: PLR0912, PLR0915 - as above
         if tangent:
             e = numbers[m, ELEMENT]
             cosine = 1.0 / np.sqrt(1.0 - sine * sine)
-            _add_tangent(
-                out, k, model.dof[e, 0], model.dof[e, 1], s, w0, w1, w2, w3, z, n2 + rise * s2, u2, weight * sums[2],
-                weight * sums[3], weight * sums[4], reach * lateral, cosine, hold * per_holding if sticks else 0.0,
-                rise, aside,
+            add_tangent(
+                out.band, out.channels, out.corner, k, model.dof[e, 0], model.dof[e, 1], s, w0, w1, w2, w3, z,
+                n2 + rise * s2, u2, weight * sums[2], weight * sums[3], weight * sums[4], reach * lateral, cosine,
+                hold * per_holding if sticks else 0.0, rise, aside,
             )  # fmt: skip
     # into the sledge's frame, about its origin
     p1, p2 = left1 * f1 + up1 * f2, left2 * f1 + up2 * f2
@@ -410,100 +409,3 @@ def _forces(  # noqa: PLR0912, PLR0915 - as above
     out.rigid[3] += g0 + side * p2
     out.rigid[4] += left1 * g1 + up1 * g2
     out.rigid[5] += left2 * g1 + up2 * g2 - side * f0
-
-
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
-def _add_tangent(  # noqa: PLR0915 - entries written out: loops over so few cost more than they
-    out: Forces, k: int, A: int, B: int, s: float, w0: float, w1: float, w2: float, w3: float, z: float,
-    cn: float, cu: float, k0: float, k1: float, k2: float, reach: float, secant: float, ky: float, rise: float,
-    aside: float,
-) -> None:  # fmt: skip
-    """Add minus the tangent of one section: depth and roll (k0, k1, k2, about the edge), and across (ky).
-
-    A line feels the ski move along its base and along its edge: forwards, the depth grows by `rise`, and the edge
-    comes to lie `aside` of the ski's axis. Without it a steadily carving ski would seem to be pushed across where it
-    only follows its edge.
-    """
-    k2 = (k2 + 2.0 * reach * k1 + reach * reach * k0) * secant * secant
-    k1 = (k1 + reach * k0) * secant
-    corner = out.corner
-    ks, ys = k0 * s, ky * s
-    corner[k, 0, 0] += k0
-    corner[k, 0, 1] += ks
-    corner[k, 1, 1] += ks * s
-    corner[k, 0, 2] += k1
-    corner[k, 1, 2] += k1 * s
-    corner[k, 2, 2] += k2
-    corner[k, 3, 3] += ky
-    corner[k, 3, 4] += ys
-    corner[k, 4, 4] += ys * s
-    corner[k, 0, 5] -= k0 * rise
-    corner[k, 1, 5] -= ks * rise
-    corner[k, 2, 5] -= k1 * rise
-    corner[k, 3, 5] -= ky * aside
-    corner[k, 4, 5] -= ys * aside
-    corner[k, 5, 5] += k0 * rise * rise + ky * aside * aside
-    # of the deflection: depth falls by cn, place across grows by cu
-    y = 1.0 - z
-    ww, wp = k0 * cn * cn + ky * cu * cu, -k1 * cn
-    c0, c2, cy = -cn * k0, -cn * k1, cu * ky
-    c5, t5 = -c0 * rise - cy * aside, -k1 * rise
-    band, channels = out.band, out.channels
-    if A >= 0:
-        v0, v1 = w0 * ww, w1 * ww
-        band[k, A, 0] += v0 * w0
-        band[k, A + 1, 1] += v0 * w1
-        band[k, A + 1, 0] += v1 * w1
-        band[k, A + 2, 2] += y * w0 * wp
-        band[k, A + 2, 1] += y * w1 * wp
-        band[k, A + 2, 0] += y * y * k2
-        channels[k, A, 0] += w0 * c0
-        channels[k, A, 1] += w0 * c0 * s
-        channels[k, A, 2] += w0 * c2
-        channels[k, A, 3] += w0 * cy
-        channels[k, A, 4] += w0 * cy * s
-        channels[k, A, 5] += w0 * c5
-        channels[k, A + 1, 0] += w1 * c0
-        channels[k, A + 1, 1] += w1 * c0 * s
-        channels[k, A + 1, 2] += w1 * c2
-        channels[k, A + 1, 3] += w1 * cy
-        channels[k, A + 1, 4] += w1 * cy * s
-        channels[k, A + 1, 5] += w1 * c5
-        channels[k, A + 2, 0] += y * k1
-        channels[k, A + 2, 1] += y * k1 * s
-        channels[k, A + 2, 2] += y * k2
-        channels[k, A + 2, 5] += y * t5
-        if B >= 0:
-            band[k, B, 3] += v0 * w2
-            band[k, B, 2] += v1 * w2
-            band[k, B, 1] += y * w2 * wp
-            band[k, B + 1, 4] += v0 * w3
-            band[k, B + 1, 3] += v1 * w3
-            band[k, B + 1, 2] += y * w3 * wp
-            band[k, B + 2, 5] += z * w0 * wp
-            band[k, B + 2, 4] += z * w1 * wp
-            band[k, B + 2, 3] += y * z * k2
-    if B >= 0:
-        v2, v3 = w2 * ww, w3 * ww
-        band[k, B, 0] += v2 * w2
-        band[k, B + 1, 1] += v2 * w3
-        band[k, B + 1, 0] += v3 * w3
-        band[k, B + 2, 2] += z * w2 * wp
-        band[k, B + 2, 1] += z * w3 * wp
-        band[k, B + 2, 0] += z * z * k2
-        channels[k, B, 0] += w2 * c0
-        channels[k, B, 1] += w2 * c0 * s
-        channels[k, B, 2] += w2 * c2
-        channels[k, B, 3] += w2 * cy
-        channels[k, B, 4] += w2 * cy * s
-        channels[k, B, 5] += w2 * c5
-        channels[k, B + 1, 0] += w3 * c0
-        channels[k, B + 1, 1] += w3 * c0 * s
-        channels[k, B + 1, 2] += w3 * c2
-        channels[k, B + 1, 3] += w3 * cy
-        channels[k, B + 1, 4] += w3 * cy * s
-        channels[k, B + 1, 5] += w3 * c5
-        channels[k, B + 2, 0] += z * k1
-        channels[k, B + 2, 1] += z * k1 * s
-        channels[k, B + 2, 2] += z * k2
-        channels[k, B + 2, 5] += z * t5

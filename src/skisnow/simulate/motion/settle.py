@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from .equations import add_forces, channel_rows, copy_pose, move
-from .forces import CHANNELS, Forces, feel
+from .forces import Forces, feel
 from .lines import Lines
 from .model import Model, Snow, State, World
 from .ros2 import Room
 from .system import Factored, add_band, backwards, cholesky, factor, forwards, solve_corner
+from .tangent import CHANNELS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -11,8 +11,9 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from .forces import CHANNELS, Forces
+from .forces import Forces
 from .model import PADDING, Model
+from .tangent import CHANNELS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from ...constants import STANDARD_GRAVITY
-from ...units import DEGREE, N_PER_MM2, N_PER_MM3
+from ...units import DEGREE
+from ..carve_keys import CARVE_KEYS
 from ..input_keys import InputKey
 from .slope import STEEPEST
 
@@ -52,27 +54,9 @@ SLOPE_KEYS: Final = (
     ),
 )
 SNOW_KEYS: Final = (
-    InputKey(
-        name="snow.H_V_N_per_mm3",
-        meaning="snow hardness H_V",
-        unit="N/mm³",
-        factor=N_PER_MM3,
-        lowest=0.0,
-        above=True,
-        origin="measured 0.022 to 90; a warning beyond",
-    ),
-    InputKey(
-        name="snow.S_f_N_per_mm2",
-        meaning="failure shear stress S_f",
-        unit="N/mm²",
-        factor=N_PER_MM2,
-        lowest=0.0,
-        above=True,
-        origin="measured 0.04 to 0.52; a warning beyond",
-    ),
-    InputKey(name="snow.results", kind="text", meaning="results.json of an analysed campaign, in place of H_V and S_f"),
-    InputKey(name="snow.site", kind="text", meaning="one site of those results; left out: all of them"),
-    InputKey(name="snow.published", kind="text", meaning="name of a published snow, in place of H_V and S_f"),
+    replace(CARVE_KEYS["H_V_N_per_mm3"], name="snow.H_V_N_per_mm3"),
+    replace(CARVE_KEYS["S_f_N_per_mm2"], name="snow.S_f_N_per_mm2", meaning="failure shear stress S_f"),
+    *(replace(CARVE_KEYS[name], name=f"snow.{name}") for name in ("results", "site", "published")),
     InputKey(
         name="snow.unloading_ratio",
         meaning='k_u/H_V: 1 is elastic snow, 1000 all but rigid-plastic; left out or 1 with penetration = "elastic"',
