@@ -59,6 +59,6 @@ def test_turn() -> None:
 def test_heading_is_told_in_the_slope() -> None:
     """As the start's heading is given: from the fall line, in the snow's surface."""
     plane, profile, _ = both(read_scenario("carved-46m", changes={"run.duration_s": 0.05}))
-    tilt = 1e-3  # degrees: settled into its grooves the sledge pitches and rolls by milliradians, whose product turns it
+    tilt = 1e-3  # °: settled into its grooves the sledge pitches and rolls by milliradians, whose product turns it
     assert math.degrees(plane.heading[0]) == pytest.approx(-30.0, abs=tilt)
     assert math.degrees(profile.heading[0]) == pytest.approx(-30.0, abs=tilt)
