@@ -1,0 +1,206 @@
+"""An offset between two tracks that nobody knows: start and heading from the nearest distances, start time from equal time.
+
+The simulated track is moved as it is: no scaling, no reflection, no bending.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias, get_args
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import minimize_scalar
+
+from ..errors import FitError, ParameterError
+from .nearest_place import NearestPlaces, Path
+from .polyline import Polyline, polyline
+
+FloatArray = npt.NDArray[np.float64]
+
+Offset: TypeAlias = Literal["start", "heading", "time"]
+OFFSETS: Final[tuple[Offset, ...]] = get_args(Offset)
+"""What may be unknown: the place of the first point, the direction (turned about the vertical there), the time."""
+PLACES: Final = 2048
+"""Equal steps of the measured track over which squares are summed: the sum stands for an integral over its length."""
+LEAST_SHARE: Final = 0.5
+"""Of the places, or of the shorter time, that must stay in the comparison: a fit may not slide a track out of sight."""
+DETERMINED: Final = 1e-3
+"""Directions whose singular value is below this part of the largest are left as they are, and said."""
+_ROUNDS: Final = 100
+_SETTLED: Final = 1e-10
+_GOOD_ENOUGH: Final = 1e-5
+"""Steps (in parts of the length) that go on below this only pass single places over the ends to and fro."""
+_TIMES: Final = 401
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """How the simulated track is moved onto the measured one.
+
+    Attributes
+    ----------
+    moved : (d,) m
+        Of its first point.
+    turned
+        About the vertical through its first point (rad), positive to the left.
+    undetermined
+        How many directions the tracks do not tell, such as along two straight lines; nothing was moved along them.
+    """
+
+    moved: FloatArray
+    turned: float
+    undetermined: int = 0
+
+    def applied(self, line: Polyline) -> Polyline:
+        """The whole track, moved."""
+        start = line.place[0]
+        return polyline((line.place - start) @ _turn(self.turned, len(start)).T + start + self.moved, line.time)
+
+
+def _turn(angle: float, dimensions: int) -> FloatArray:
+    matrix = np.eye(dimensions)
+    matrix[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
+    return matrix
+
+
+def require_offsets(fit: Collection[str]) -> None:
+    """Refuse what is none of `OFFSETS`.
+
+    Raises
+    ------
+    ParameterError
+        Names them.
+    """
+    wrong = [word for word in fit if word not in OFFSETS]
+    if wrong:
+        raise ParameterError(f"{wrong[0]!r} is no offset that can be fitted; {', '.join(OFFSETS)} are")
+
+
+def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
+    """Least squares of the nearest distance over the measured track's length.
+
+    Gauss–Newton steps with the nearest places found anew each time. Places beyond the ends of the simulated track take
+    no part. Begun with the tracks as they lie, and with the best overlay at equal arc length; of the two answers the
+    one with the smaller mean square over all places counts, those beyond the ends included.
+
+    Raises
+    ------
+    FitError
+        Neither start leads to an answer in which half of the measured track has something beside it.
+    """
+    path = Path(simulated.place)
+    places = measured.at_way(np.linspace(0.0, measured.length, PLACES + 1))
+    begins = [Motion(np.zeros(places.shape[1]), 0.0)]
+    begins.append(_overlay(simulated, measured, start=start, heading=heading))
+    found = [_settled(path, places, begin, start=start, heading=heading) for begin in begins]
+    answers = [(cost, motion) for cost, motion in found if math.isfinite(cost)]
+    if not answers:
+        raise FitError(
+            f"start and heading cannot be fitted: less than {100 * LEAST_SHARE:g} % of the measured track then has the "
+            "simulated one beside it, or the steps do not settle. Look at both tracks without a fit"
+        )
+    return min(answers, key=lambda answer: answer[0])[1]
+
+
+def _overlay(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
+    """Turned and moved so that places at equal arc length are as near as they can be (Kabsch, about the vertical)."""
+    way = np.linspace(0.0, min(simulated.length, measured.length), PLACES + 1)
+    origin = simulated.place[0]
+    own, other = simulated.at_way(way) - origin, measured.at_way(way) - origin
+    centre = (own.mean(axis=0), other.mean(axis=0)) if start else (np.zeros_like(origin), np.zeros_like(origin))
+    a, b = (own - centre[0])[:, :2], (other - centre[1])[:, :2]
+    turned = math.atan2(float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()), float((a * b).sum())) if heading else 0.0
+    return Motion(centre[1] - _turn(turned, len(origin)) @ centre[0], turned)
+
+
+def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, heading: bool) -> tuple[float, Motion]:
+    """The answer from one beginning with its mean square (m²); infinite where there is none."""
+    size = math.inf
+    for _ in range(_ROUNDS):
+        local, found = _seen(path, places, motion)
+        inside = ~found.beyond
+        if inside.mean() < LEAST_SHARE:
+            return math.inf, motion
+        matrix, rest = _equations(path, local, found, inside, motion, start=start, heading=heading)
+        step, undetermined = _least_norm(matrix, rest)
+        moved = step[: places.shape[1]] if start else np.zeros(places.shape[1])
+        turned = float(step[-1]) / path.length if heading else 0.0
+        motion = Motion(motion.moved + moved, motion.turned + turned, undetermined)
+        size = float(np.linalg.norm(step)) / path.length
+        if size < _SETTLED:
+            break
+    if size > _GOOD_ENOUGH:
+        return math.inf, motion
+    return float(np.mean(_seen(path, places, motion)[1].distance ** 2)), motion
+
+
+def _seen(path: Path, places: FloatArray, motion: Motion) -> tuple[FloatArray, NearestPlaces]:
+    """The measured places as the unmoved simulated track sees them, with its nearest places."""
+    local = (places - path.first - motion.moved) @ _turn(motion.turned, places.shape[1]) + path.first
+    return local, path.nearest(local)
+
+
+def _equations(
+    path: Path, local: FloatArray, found: NearestPlaces, inside: npt.NDArray[np.bool_], motion: Motion,
+    *, start: bool, heading: bool,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """Linear equations for a step, across the simulated track: along it the nearest place gives way."""
+    turn = _turn(motion.turned, local.shape[1])
+    along, arm, apart = (
+        values[inside] @ turn.T for values in (found.direction, found.foot - path.first, found.foot - local)
+    )
+    dimensions = local.shape[1]
+    columns = [np.broadcast_to(axis, along.shape) for axis in np.eye(dimensions)] if start else []
+    if heading:
+        swing = np.zeros_like(arm)
+        swing[:, 0], swing[:, 1] = -arm[:, 1] / path.length, arm[:, 0] / path.length
+        columns.append(swing)
+    across = np.stack([_across(column, along).ravel() for column in columns], axis=1)
+    return across, -_across(apart, along).ravel()
+
+
+def _across(vectors: FloatArray, along: FloatArray) -> FloatArray:
+    return vectors - (vectors * along).sum(axis=1, keepdims=True) * along
+
+
+def _least_norm(matrix: FloatArray, rest: FloatArray) -> tuple[FloatArray, int]:
+    """The shortest step of least squares, and how many directions it leaves alone."""
+    left, values, right = np.linalg.svd(matrix, full_matrices=False)
+    kept = values > DETERMINED * math.sqrt(matrix.shape[0])
+    return right[kept].T @ ((left.T @ rest)[kept] / values[kept]), int((~kept).sum())
+
+
+def fitted_time(simulated: Polyline, measured: Polyline) -> float:
+    """By how much the simulated track's time is ahead of the measured one's (s): least squares at equal time.
+
+    The mean square distance over the measured track's length is looked at over all times at which at least half of the
+    shorter track has a moment in common with the other, then minimised from the best of them.
+
+    Raises
+    ------
+    FitError
+        One of the tracks has no duration.
+    """
+    shorter = min(simulated.time[-1] - simulated.time[0], measured.time[-1] - measured.time[0])
+    if not shorter > 0.0:
+        raise FitError("the start time cannot be fitted: one of the tracks has no duration")
+    least = simulated.time[0] - measured.time[-1] + LEAST_SHARE * shorter
+    most = simulated.time[-1] - measured.time[0] - LEAST_SHARE * shorter
+    way = np.linspace(0.0, measured.length, PLACES + 1)
+    time, places = np.interp(way, measured.way, measured.time), measured.at_way(way)
+
+    def mean_square(later: float) -> float:
+        at = time + later
+        common = (at >= simulated.time[0]) & (at <= simulated.time[-1])
+        apart = simulated.at_time(at[common]) - places[common]
+        return float((apart**2).sum(axis=1).mean()) if common.any() else math.inf
+
+    tried = np.linspace(least, most, _TIMES)
+    best = float(tried[int(np.argmin([mean_square(float(later)) for later in tried]))])
+    step = (most - least) / (_TIMES - 1)
+    bounds = (max(least, best - step), min(most, best + step))
+    found = minimize_scalar(mean_square, bounds=bounds, method="bounded", options={"xatol": 1e-9 * max(1.0, shorter)})
+    return float(found.x)

@@ -1,0 +1,79 @@
+"""A track as places joined by straight pieces, with the way along them and the times at them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from .track import Track
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Polyline:
+    """Straight pieces in the order of time.
+
+    Attributes
+    ----------
+    place : (n, d) m
+        d = 2 from above, or 3.
+    time : (n,) s
+        At the places.
+    way : (n,) m
+        Length of the pieces up to each place.
+    """
+
+    place: FloatArray
+    time: FloatArray
+    way: FloatArray
+
+    @property
+    def length(self) -> float:
+        """Of all pieces (m)."""
+        return float(self.way[-1])
+
+    def at_way(self, way: FloatArray) -> FloatArray:
+        """Places (k, d) at ways (k,) (m)."""
+        return interpolated(way, self.way, self.place)
+
+    def at_time(self, time: FloatArray) -> FloatArray:
+        """Places (k, d) at times (k,) (s)."""
+        return interpolated(time, self.time, self.place)
+
+
+def polyline(place: FloatArray, time: FloatArray) -> Polyline:
+    """Join places (n, d) by straight pieces."""
+    steps = np.linalg.norm(np.diff(place, axis=0), axis=1)
+    return Polyline(place, time, np.concatenate([[0.0], np.cumsum(steps)]))
+
+
+def interpolated(at: FloatArray, known: FloatArray, values: FloatArray) -> FloatArray:
+    """Each column of values (n, d) over known (n,), which does not fall, linearly at (k,); (k, d)."""
+    return np.stack([np.interp(at, known, column) for column in values.T], axis=1)
+
+
+def known_points(track: Track, *, dimensions: int) -> npt.NDArray[np.bool_]:
+    """Which points have all their coordinates, (n,)."""
+    return np.isfinite(track.place[:, :dimensions]).all(axis=1)
+
+
+def polyline_of(track: Track, *, dimensions: int) -> Polyline:
+    """The points of a track that have all their coordinates, joined.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than two such points, or all in one place.
+    """
+    known = known_points(track, dimensions=dimensions)
+    line = polyline(track.place[known][:, :dimensions], track.time[known])
+    if known.sum() < 2 or not line.length > 0.0:
+        raise ParameterError(
+            f"{track.name}: {int(known.sum())} of its {len(track)} points have a place, and they span "
+            f"{line.length if known.any() else 0.0:g} m. A comparison needs two points in different places; give a longer track"
+        )
+    return line
