@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from typing import Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from .marks import MARKS
+from .projection import GeodeticPoint
+
 FloatArray = npt.NDArray[np.float64]
+Axes: TypeAlias = Literal["file", "east_north_up", "slope"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,11 +28,11 @@ class Track:
     time : (n,) s
         From the first point, on the file's own time scale.
     place : (n, 3) m
-        In the track's frame; the height is NaN where it was not recorded.
+        In the track's frame; the height is NaN where it was not recorded, all three where no place was.
     speed : (n,) m/s
         As recorded; NaN where it was not.
     velocity : (n, 3) m/s or None
-        As recorded, in the track's frame; rows of NaN where it was not.
+        As recorded, in the track's frame; NaN where it was not (a course over ground has no vertical part).
     place_sd : (n, 3) m or None
         Standard deviation of each coordinate as the receiver states it, NaN where it does not.
     speed_sd : (n,) m/s or None
@@ -35,13 +40,25 @@ class Track:
     odometer : (n,) m or None
         The device's own distance.
     start : datetime or None
-        Of the first point, where the file has a date.
+        Of the first point, where the file has a date; with a zone where the file has one.
     time_scale
-        ``"UTC"``, ``"GPS"``, ``"local"`` (of the file, without a date or zone).
+        ``"UTC"``, ``"GPS"``, ``"JST"``, ``"local"`` (of the file, without a date or zone).
     frame
         In words: the slope's axes, or the local projection with its origin.
     marks
         CODE to (n,) bool: which points carry the mark. Marked points stay.
+    axes
+        What x, y and z are: ``"file"`` (the file's own local metres), ``"east_north_up"``, or ``"slope"``.
+    origin
+        Where the axes begin on the ellipsoid; None where the file says only local metres.
+    first_time : s
+        What the file itself calls the time of the first point where its times are seconds, else 0.
+    speed_kind
+        In words: whether the speed is along the path, over the ground, or unknown.
+    further_columns
+        Columns of the file that were not read, by name.
+    left_out
+        In words to a count: records of the file that hold no point, such as those with a wrong checksum.
     """
 
     name: str
@@ -56,6 +73,12 @@ class Track:
     odometer: FloatArray | None = None
     start: datetime | None = None
     marks: Mapping[str, npt.NDArray[np.bool_]] = field(default_factory=dict)
+    axes: Axes = "file"
+    origin: GeodeticPoint | None = None
+    first_time: float = 0.0
+    speed_kind: str = "as recorded"
+    further_columns: tuple[str, ...] = ()
+    left_out: Mapping[str, int] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.time)
@@ -64,3 +87,12 @@ class Track:
     def marked(self) -> dict[str, int]:
         """How many points carry each mark, marks without any left out."""
         return {code: int(np.sum(where)) for code, where in self.marks.items() if np.any(where)}
+
+    @property
+    def usable(self) -> npt.NDArray[np.bool_]:
+        """(n,) bool: points with a horizontal place and without a mark that excludes."""
+        usable = np.asarray(np.isfinite(self.place[:, :2]).all(axis=1))
+        for code, where in self.marks.items():
+            if code in MARKS and MARKS[code].excludes:
+                usable &= ~where
+        return usable

@@ -1,0 +1,102 @@
+"""Tracks in FIT, the files of sports watches, read with fitdecode: the messages ``record``.
+
+Heights of FIT are above mean sea level as the watch has it, often barometric.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any, Final
+
+import numpy as np
+
+from .recording import Recording
+from .trouble import refusal
+
+SEMICIRCLE: Final = 180.0 / 2**31
+"""Degrees in a semicircle, the unit of FIT's latitude and longitude."""
+
+
+@dataclass(eq=False)
+class _Records:
+    """What the messages ``record`` say, one entry each."""
+
+    times: list[datetime] = field(default_factory=list)
+    numbers: list[tuple[float, ...]] = field(default_factory=list)
+    without_time: int = 0
+
+    def add(self, message: Any) -> None:
+        time = message.get_value("timestamp", fallback=None)
+        if not isinstance(time, datetime):
+            self.without_time += 1
+            return
+        self.times.append(time.astimezone(UTC))
+        self.numbers.append(
+            (
+                _number(message, "position_lat") * SEMICIRCLE,
+                _number(message, "position_long") * SEMICIRCLE,
+                _number(message, "enhanced_altitude", "altitude"),
+                _number(message, "enhanced_speed", "speed"),
+                _number(message, "distance"),
+            )
+        )
+
+
+def read_fit(data: bytes, name: str) -> Recording:
+    """The recording in a FIT file.
+
+    Raises
+    ------
+    FieldDataError
+        The file is no FIT, ends too early, or its checksum is wrong.
+    """
+    records = _Records()
+    _decode(data, name, records)
+    table = np.array(records.numbers, dtype=float).reshape(-1, 5)
+    start = records.times[0] if records.times else None
+    return Recording(
+        name=name,
+        places_in_file=[f"record {place + 1}" for place in range(len(table))],
+        time=np.array([(time - records.times[0]).total_seconds() for time in records.times]),
+        place=table[:, :3],
+        is_geodetic=True,
+        time_scale="UTC",
+        start=start,
+        speed=table[:, 3],
+        speed_kind="as the device gives it",
+        odometer=None if np.isnan(table[:, 4]).all() else table[:, 4],
+        heights="above mean sea level, as the watch has them",
+        left_out={"records without a date": records.without_time},
+    )
+
+
+def _decode(data: bytes, name: str, records: _Records) -> None:
+    import fitdecode
+
+    try:
+        with fitdecode.FitReader(
+            data, check_crc=fitdecode.CrcCheck.RAISE, error_handling=fitdecode.ErrorHandling.IGNORE
+        ) as reader:
+            for frame in reader:
+                if frame.frame_type == fitdecode.FIT_FRAME_DATA and frame.name == "record":
+                    records.add(frame)
+    except Exception as error:  # damaged bytes make fitdecode fail in many ways
+        read = len(records.times)
+        raise refusal(
+            "unreadable_file",
+            name,
+            value=f"{type(error).__name__}: {error}",
+            allowed="a whole FIT file with right checksums",
+            action=f"It is damaged or ends too early, after {read} records; copy it from the device again.",
+        ) from error
+
+
+def _number(message: Any, *names: str) -> float:
+    """The first of these fields that holds a finite number, else NaN."""
+    for name in names:
+        value = message.get_value(name, fallback=None)
+        if isinstance(value, int | float) and math.isfinite(value):
+            return float(value)
+    return math.nan

@@ -1,0 +1,124 @@
+"""The marks that points of a track may carry: codes, sentences, and how they are found.
+
+A mark changes nothing: the point stays where the file has it. `Track.usable` leaves out the marks that exclude.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import numpy.typing as npt
+
+    BoolArray = npt.NDArray[np.bool_]
+    FloatArray = npt.NDArray[np.float64]
+
+FASTEST: Final = 75.0
+"""Speed (m/s) above which a step is impossible: the fastest run ever skied had 71 m/s (Choice)."""
+GAP_FACTOR: Final = 5.0
+"""A pause of more than so many usual intervals is a gap (Choice)."""
+
+
+@dataclass(frozen=True, slots=True)
+class PointMark:
+    """A mark: its code, the sentence that explains it, and whether `Track.usable` leaves the point out."""
+
+    code: str
+    sentence: str
+    excludes: bool
+
+
+_ALL: Final = (
+    PointMark("no_fix", "The receiver had no fix, or the file has no place for this point.", True),
+    PointMark("missing_height", "The point has a place but no height.", False),
+    PointMark("repeated_time", "The point has the same time stamp as the one before it.", True),
+    PointMark("gap", "The time since the point before is much longer than the usual interval.", False),
+    PointMark("jump", "A single point far off: the speed to it and back again is impossible.", True),
+    PointMark("impossible_step", "The speed to this point is impossible, and the track does not come back.", False),
+    PointMark("negative_speed", "The speed is below zero, as devices write that have none; it counts as none.", False),
+)
+MARKS: Final[Mapping[str, PointMark]] = MappingProxyType({mark.code: mark for mark in _ALL})
+"""Every mark by its code, in the order in which they are listed."""
+
+
+def point_marks(
+    time: FloatArray,
+    place: FloatArray,
+    fix: BoolArray,
+    negative_speed: BoolArray,
+    *,
+    fastest: float = FASTEST,
+    gap_factor: float = GAP_FACTOR,
+) -> dict[str, BoolArray]:
+    """Marks of every code, each (n,) bool.
+
+    Parameters
+    ----------
+    time : (n,) s
+        Never falling.
+    place : (n, 3) m
+        NaN where there is none.
+    fix : (n,) bool
+        Whether the receiver had a fix.
+    negative_speed : (n,) bool
+        Whether the recorded speed was below zero.
+    fastest : m/s
+        Horizontal speed above which a step is impossible.
+    gap_factor
+        A time step longer than this many medians of the steps above zero is a gap; the point after it is marked.
+    """
+    placed = fix & np.isfinite(place[:, :2]).all(axis=1)
+    repeated = np.zeros(len(time), bool)
+    repeated[1:] = np.diff(time) == 0.0
+    sure = np.flatnonzero(placed & ~repeated)
+    jump, impossible = np.zeros(len(time), bool), np.zeros(len(time), bool)
+    jumped, stepped = _impossible(time[sure], place[sure, :2], fastest)
+    jump[sure[jumped]] = True
+    impossible[sure[stepped]] = True
+    return {
+        "no_fix": ~placed,
+        "missing_height": placed & np.isnan(place[:, 2]),
+        "repeated_time": repeated,
+        "gap": _after_gap(time, gap_factor),
+        "jump": jump,
+        "impossible_step": impossible,
+        "negative_speed": negative_speed,
+    }
+
+
+def _after_gap(time: FloatArray, factor: float) -> BoolArray:
+    steps = np.diff(time)
+    after = np.zeros(len(time), bool)
+    if np.any(steps > 0.0):
+        after[1:] = steps > factor * np.median(steps[steps > 0.0])
+    return after
+
+
+def _impossible(time: FloatArray, place: FloatArray, fastest: float) -> tuple[list[int], list[int]]:
+    """Numbers of the points that jump out and back, and of those reached at an impossible speed for good."""
+    fast = np.hypot(*np.diff(place, axis=0).T) > fastest * np.diff(time)
+    last = len(time) - 1
+    jumps: list[int] = []
+    steps: list[int] = []
+    if last > 1 and fast[0] and not fast[1]:
+        jumps.append(0)  # the first point alone is far from all that follow
+    for point in (np.flatnonzero(fast) + 1).tolist():
+        if jumps and jumps[-1] == point - 1:
+            continue  # the way back
+        if last > 1 and (point == last or (fast[point] and _is_possible(time, place, point, fastest))):
+            jumps.append(point)
+        else:
+            steps.append(point)
+    return jumps, steps
+
+
+def _is_possible(time: FloatArray, place: FloatArray, point: int, fastest: float) -> bool:
+    """Whether the step over a point is possible."""
+    step = place[point + 1] - place[point - 1]
+    return bool(np.hypot(*step) <= fastest * (time[point + 1] - time[point - 1]))

@@ -1,0 +1,146 @@
+"""A track from a file of any format that is known; which one is told by what is in it."""
+
+from __future__ import annotations
+
+import re
+import stat
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
+
+from ..errors import ParameterError
+from .fit import read_fit
+from .gpx import read_gpx
+from .marks import FASTEST, GAP_FACTOR
+from .nmea import SENTENCE, read_nmea
+from .recording import Recording, track_of
+from .rtklib import HEADER, read_rtklib
+from .table import read_table
+from .text import text_of
+from .trouble import refusal
+from .ubx import SYNC, read_ubx
+
+if TYPE_CHECKING:
+    from .projection import GeodeticPoint
+    from .track import Track
+
+TrackFormat: TypeAlias = Literal["csv", "gpx", "fit", "nmea", "ubx", "rtklib"]
+SUFFIXES: Final[dict[str, TrackFormat]] = {
+    ".gpx": "gpx",
+    ".fit": "fit",
+    ".ubx": "ubx",
+    ".nmea": "nmea",
+    ".nma": "nmea",
+    ".pos": "rtklib",
+    ".csv": "csv",
+}
+_HEAD: Final = 1 << 16
+_UBX_NAVIGATION: Final = SYNC + b"\x01\x07"
+
+
+def read_track(
+    path: str | Path,
+    *,
+    origin: GeodeticPoint | None = None,
+    kind: TrackFormat | None = None,
+    fastest: float = FASTEST,
+    gap_factor: float = GAP_FACTOR,
+) -> Track:
+    """Read a track: CSV, GPX, FIT, NMEA, UBX or RTKLIB's ``.pos``.
+
+    Parameters
+    ----------
+    path
+        The file.
+    origin
+        Where the plane of projection touches the earth and x, y, z are zero; left out, the first point with a fix, or
+        the origin that the file itself names.
+    kind
+        The format; left out, it is told from the content, and by the file's ending where the content does not say.
+    fastest : m/s
+        Horizontal speed above which a step between points is marked as impossible.
+    gap_factor
+        A time step longer than this many usual ones is marked as a gap.
+
+    Returns
+    -------
+    Track
+        Every point of the file, in its order; doubtful ones are marked, none is dropped, moved or filled in.
+
+    Raises
+    ------
+    FieldDataError
+        The file cannot be read, is empty or damaged, has a value that cannot be, no place at all, or times that run
+        backwards: with file, row, column, value, what is allowed and what to do.
+    ParameterError
+        ``fastest`` or ``gap_factor`` is not above zero, or ``kind`` is no format.
+    """
+    for name, value in (("fastest", fastest), ("gap_factor", gap_factor)):
+        if not value > 0.0:
+            raise ParameterError(f"{name} is {value:g}; it must be above 0")
+    if kind is not None and kind not in get_args(TrackFormat):
+        raise ParameterError(f"there is no track format {kind!r}; there are {', '.join(get_args(TrackFormat))}")
+    path = Path(path)
+    data = _bytes(path)
+    recording = _recording(data, path.name, kind or format_of(data, path.suffix))
+    return track_of(recording, origin=origin, fastest=fastest, gap_factor=gap_factor)
+
+
+def format_of(data: bytes, suffix: str) -> TrackFormat:
+    """The format of a file by its content; by its ending where the content is of none; else CSV.
+
+    >>> format_of(b"time_s,x_m,y_m", ".txt"), format_of(b"$GPGGA,120000.00,", ".log"), format_of(b"", ".FIT")
+    ('csv', 'nmea', 'fit')
+    """
+    head = data[:_HEAD]
+    if data[8:12] == b".FIT":
+        return "fit"
+    if _UBX_NAVIGATION in data or head.startswith(SYNC):
+        return "ubx"
+    if re.search(rb"<gpx[\s>]", head) or "<gpx".encode("utf-16-le") in head:
+        return "gpx"
+    if SENTENCE.search(head):
+        return "nmea"
+    if HEADER.search(head.decode("latin-1").replace("\r", "\n")):
+        return "rtklib"
+    return SUFFIXES.get(suffix.lower(), "csv")
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        # a pipe would be waited for, a folder cannot be read
+        data = path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None
+    except OSError as error:
+        raise _unreadable(path, error.strerror or str(error)) from error
+    if data is None:
+        raise _unreadable(path, "it is no plain file")
+    if not data.strip():
+        raise refusal(
+            "empty_file",
+            path.name,
+            allowed="a track",
+            action="The file is empty; was anything recorded?",
+        )
+    return data
+
+
+def _unreadable(path: Path, reason: str) -> Exception:
+    return refusal(
+        "unreadable_file",
+        str(path),
+        value=reason,
+        allowed="a plain file that may be read",
+        action="Check the path.",
+    )
+
+
+def _recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
+    if kind == "fit":
+        return read_fit(data, name)
+    if kind == "ubx":
+        return read_ubx(data, name)
+    if kind == "nmea":
+        return read_nmea(data, name)
+    text = text_of(data, name)
+    if kind == "gpx":
+        return read_gpx(text, name)
+    return read_rtklib(text, name) if kind == "rtklib" else read_table(text, name)

@@ -1,0 +1,147 @@
+"""Bytes of a file to text, and cells of text to numbers and times."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Final
+
+from .trouble import refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+SEPARATORS: Final = (",", ";", "\t")
+_NUMBER: Final = {
+    ".": re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"),
+    ",": re.compile(r"[+-]?(?:[0-9]+,?[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"),
+}
+
+
+def text_of(data: bytes, name: str) -> str:
+    """Text in UTF-8, in UTF-16 with byte order mark, or else in Windows-1252.
+
+    Raises
+    ------
+    FieldDataError
+        The bytes are no text.
+    """
+    marked = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    try:
+        for codec in ("utf-16",) if marked else ("utf-8-sig", "cp1252"):
+            try:
+                text = data.decode(codec)
+                break
+            except UnicodeDecodeError as error:
+                trouble = error
+        else:
+            raise trouble
+    except UnicodeDecodeError as error:
+        raise _no_text(name, f"byte {error.start + 1}") from error
+    if "\0" in text:
+        raise _no_text(name, "a NUL character")
+    return text
+
+
+def _no_text(name: str, found: str) -> Exception:
+    return refusal(
+        "unreadable_file",
+        name,
+        value=found,
+        allowed="text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX",
+        action="The file is no text and no known format of receivers; export it as CSV, GPX or FIT.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """A table cut into cells: the header, and rows with the line of the file in which each begins."""
+
+    header: tuple[str, ...]
+    header_line: int
+    lines: tuple[int, ...]
+    rows: tuple[tuple[str, ...], ...]
+    separator: str
+
+
+def cells_of(text: str, name: str) -> Cells:
+    """Cut a CSV file: comma, semicolon or tab, whichever the header has most; a first line ``sep=;`` may name it.
+
+    Raises
+    ------
+    FieldDataError
+        There is no header, or a quote is never closed.
+    """
+    lines = re.split(r"\r\n|\r|\n", text)
+    named = re.fullmatch(r'"?sep=([,;\t])"?', lines[0].strip(" "), re.IGNORECASE)
+    first = 1 if named else 0
+    header_line = next((line for line in lines[first:] if line.strip(" ,;\t")), None)
+    if header_line is None:
+        raise refusal("empty_file", name, allowed="a header and rows", action="The file is empty.")
+    separator = named[1] if named else max(SEPARATORS, key=header_line.count)
+    reader = csv.reader(lines[first:], delimiter=separator, skipinitialspace=True, strict=True)
+    numbers: list[int] = []
+    rows: list[tuple[str, ...]] = []
+    begun = first + 1
+    try:
+        for row in reader:
+            stripped = tuple(cell.strip() for cell in row)
+            if any(stripped):
+                numbers.append(begun)
+                rows.append(stripped)
+            begun = first + reader.line_num + 1
+    except csv.Error as error:
+        raise refusal(
+            "unreadable_file",
+            name,
+            place=f"row {begun}",
+            value=str(error),
+            allowed="cells with quotes in pairs",
+            action="Close the quote, or take it away.",
+        ) from error
+    return Cells(rows[0], numbers[0], tuple(numbers[1:]), tuple(rows[1:]), separator)
+
+
+def decimal_mark(cells: Iterable[str], separator: str) -> str:
+    """The decimal mark of a file: a comma where more numbers have a comma than a point, and it does not separate.
+
+    >>> decimal_mark(["1", "2,5", "3,5", "1.5"], ";")
+    ','
+    """
+    if separator == ",":
+        return "."
+    commas = points = 0
+    for cell in cells:
+        commas += "," in cell and _NUMBER[","].fullmatch(cell) is not None
+        points += "." in cell and _NUMBER["."].fullmatch(cell) is not None
+    return "," if commas > points else "."
+
+
+def number(cell: str, mark: str = ".") -> float:
+    """The number in a cell; NaN where it is none: no ``nan``, no ``1_000``, no digits of other scripts.
+
+    >>> number("2,5", ","), number("1_000")
+    (2.5, nan)
+    """
+    if _NUMBER[mark].fullmatch(cell) is None:
+        return math.nan
+    value = float(cell.replace(",", "."))
+    return value if math.isfinite(value) else math.nan
+
+
+def moment(cell: str) -> datetime | None:
+    """The date and time in a cell after ISO 8601, in UTC where it has a zone; None where it is none.
+
+    >>> moment("2022-12-27T16:51:14.5+01:00").isoformat()
+    '2022-12-27T15:51:14.500000+00:00'
+    """
+    if len(cell) < len("2022-12-27T15:51") or not cell.isascii():
+        return None
+    try:
+        found = datetime.fromisoformat(cell)
+        return found if found.tzinfo is None else found.astimezone(UTC)
+    except (ValueError, OverflowError):
+        return None
