@@ -1,6 +1,7 @@
-"""An offset between two tracks that nobody knows: start and heading from the nearest distances, start time from equal time.
+"""An offset between two tracks that nobody knows, fitted by least squares: start, heading, start time.
 
-The simulated track is moved as it is: no scaling, no reflection, no bending.
+Start and heading come from the nearest distances, the time from those at equal time. The simulated track is moved as
+it is: no scaling, no reflection, no bending.
 """
 
 from __future__ import annotations

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from typing import Final, Literal, TypeAlias
+from typing import Final, get_args
 
 import numpy as np
 
 from ..errors import ParameterError
-from .alignment import fitted_motion, fitted_time, require_offsets
+from .alignment import OFFSETS, fitted_motion, fitted_time, require_offsets
 from .apart import Apart, Numbers, numbers_of
+from .common_clock import FIRST_POINTS, Clock, TimeFrom, common_clock, lacking_time
 from .nearest_place import Path
-from .polyline import Polyline, known_points, polyline_of
+from .polyline import Polyline, compared_points, polyline_of
 from .three_distances import arc_length_apart, nearest_apart, time_apart
-from .track import Track
+from .track import Axes, Track
 
-TimeFrom: TypeAlias = Literal["first_point", "clock"]
 FARTHEST: Final = 1000.0
 """Tracks that are nowhere nearer to each other (m) are not of one slope."""
 MOSTLY: Final = 0.9
@@ -33,7 +33,6 @@ MEANS: Final = (
     "The mean and the root mean square are integrals over the measured track's length, shares are of the whole "
     "measured track's length"
 )
-_ORIGIN: Final = {"first_point": "each track's first point", "clock": "one clock"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,6 +102,8 @@ class Comparison:
     largest_from_simulated : m or None
         Largest distance the other way round, from places of the simulated track to the nearest of the measured one;
         much larger than the other where the simulated track makes a detour.
+    axes
+        What the measured track's x and y are.
     fitted
         None without a fit.
     warnings
@@ -117,6 +118,7 @@ class Comparison:
     arc_length: Distances
     time: Distances
     largest_from_simulated: float | None
+    axes: Axes = "file"
     fitted: Fitted | None = None
     warnings: tuple[str, ...] = ()
 
@@ -139,11 +141,12 @@ def compared(
     Parameters
     ----------
     simulated, measured
-        In one frame. Points without a place are left out and counted in a warning; marked points take part.
+        In one frame. Points that `Track.usable` leaves out are left out, and counted in a warning.
     fit
         Of "start", "heading" and "time": unknown offsets of the simulated track that are fitted. Empty: none.
     time_from
-        Where equal time is counted from; None: the clock where both tracks have a date, else each one's first point.
+        Where equal time is counted from. "clock": the dates of the files, or their seconds where neither has a date;
+        "first_point": each track's own. None: the clock, but the first points where only one of them has a date.
     from_above
         Without the heights, even where both tracks have them. Where one lacks heights it is so anyway.
 
@@ -160,50 +163,31 @@ def compared(
         The offsets cannot be fitted.
     """
     require_offsets(fit)
-    if time_from not in (None, "first_point", "clock"):
+    if time_from not in (None, *get_args(TimeFrom)):
         raise ParameterError(f"time is counted from first_point or clock, not from {time_from!r}")
     dimensions, seen = _dimensions(simulated, measured, from_above=from_above)
     lines = polyline_of(simulated, dimensions=dimensions), polyline_of(measured, dimensions=dimensions)
-    ahead, origin, reason = _clock(simulated, measured, time_from)
+    clock = common_clock(simulated, measured, time_from)
     names = (simulated.name, measured.name)
     told = _warnings(simulated, measured, dimensions)
-    plain = _held(lines, ahead, origin, reason, names, seen)
+    plain = _held(lines, clock, names, seen)
     if fit:
-        plain = _with_fit(plain, set(fit), ahead, origin, reason)
+        plain = _with_fit(plain, set(fit), clock)
     _require_near(plain.simulated, plain.measured, names)
-    return replace(plain, warnings=(*told, *_short(plain)))
+    return replace(plain, axes=measured.axes, warnings=(*told, *_short(plain)))
 
 
 def _dimensions(simulated: Track, measured: Track, *, from_above: bool) -> tuple[int, str]:
     if from_above:
         return 2, "from above, as asked"
     for track in (simulated, measured):
-        lacking = int((known_points(track, dimensions=2) & ~known_points(track, dimensions=3)).sum())
-        if lacking:
-            return 2, f"from above: {lacking} of the {len(track)} points of {track.name} have no height"
+        usable, flat = int(track.usable.sum()), int((track.usable & ~np.isfinite(track.place[:, 2])).sum())
+        if flat:
+            return 2, f"from above: {flat} of the {usable} points of {track.name} have no height"
     return 3, "in space, heights included"
 
 
-def _clock(
-    simulated: Track, measured: Track, time_from: TimeFrom | None
-) -> tuple[float, TimeFrom, str | None]:  # fmt: skip
-    """The simulated track's time less the measured one's at one moment (s), what that counts from, or why not."""
-    dated = simulated.start is not None and measured.start is not None
-    if time_from == "first_point" or (time_from is None and not dated):
-        return 0.0, "first_point", None
-    if simulated.start is None or measured.start is None:
-        return 0.0, "clock", "not both tracks have a date; let time be counted from each one's first point"
-    aware = [track.start is not None and track.start.tzinfo is not None for track in (simulated, measured)]
-    if simulated.time_scale != measured.time_scale or aware[0] != aware[1]:
-        scales = f"{simulated.time_scale} and {measured.time_scale}"
-        return 0.0, "clock", f"their clocks are not of one kind ({scales}); let time be counted from the first points"
-    return (measured.start - simulated.start).total_seconds(), "clock", None
-
-
-def _held(
-    lines: tuple[Polyline, Polyline], ahead: float, origin: TimeFrom, reason: str | None, names: tuple[str, str],
-    seen: str,
-) -> Comparison:  # fmt: skip
+def _held(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[str, str], seen: str) -> Comparison:
     simulated, measured = lines
     apart = nearest_apart(Path(simulated.place), measured)
     back = numbers_of(nearest_apart(Path(measured.place), simulated))
@@ -216,52 +200,47 @@ def _held(
             "nearest", apart, "all of the measured track lies ahead of the simulated one's ends: nothing is beside it"
         ),
         arc_length=_distances("arc_length", arc_length_apart(simulated, measured), "neither has a length"),
-        time=_at_equal_time(simulated, measured, ahead, origin, reason),
+        time=_at_equal_time(simulated, measured, clock),
         largest_from_simulated=None if back is None else back.max,
     )
 
 
-def _distances(name: str, apart: Apart | None, otherwise: str, *, origin: TimeFrom = "first_point") -> Distances:
+def _distances(name: str, apart: Apart | None, otherwise: str, *, origin: str = "") -> Distances:
     numbers = None if apart is None else numbers_of(apart)
-    definition = DEFINITIONS[name].format(origin=_ORIGIN[origin])
+    definition = DEFINITIONS[name].format(origin=origin)
     return Distances(definition, apart, numbers, None if numbers else otherwise)
 
 
-def _at_equal_time(
-    simulated: Polyline, measured: Polyline, ahead: float, origin: TimeFrom, reason: str | None
-) -> Distances:
-    for line, name in ((simulated, "simulated"), (measured, "measured")):
-        if not np.isfinite(line.time).all():
-            reason = reason or f"not every point of the {name} track has a time"
-        elif (np.diff(line.time) < 0.0).any():
-            reason = reason or f"the {name} track's time runs backwards"
+def _at_equal_time(simulated: Polyline, measured: Polyline, clock: Clock) -> Distances:
+    reason = clock.reason or lacking_time(simulated, "simulated") or lacking_time(measured, "measured")
     if reason:
-        return _distances("time", None, reason, origin=origin)
-    apart = time_apart(simulated, measured, later=ahead)
-    idle = "the tracks are not on their way at one time" if apart is None else "the measured track stands still then"
-    return _distances("time", apart, idle, origin=origin)
+        return _distances("time", None, reason, origin=clock.origin)
+    apart = time_apart(simulated, measured, later=clock.ahead)
+    if apart is None:
+        begins = measured.time[0] + clock.ahead - simulated.time[0]
+        reason = f"they are not on their way at one time (the measured one begins {begins:.6g} s later); {FIRST_POINTS}"
+    return _distances("time", apart, reason or "the measured track stands still while both are on their way",
+                      origin=clock.origin)  # fmt: skip
 
 
-def _with_fit(plain: Comparison, fit: set[str], ahead: float, origin: TimeFrom, reason: str | None) -> Comparison:
+def _with_fit(plain: Comparison, fit: set[str], clock: Clock) -> Comparison:
     simulated, moved, turned, left = plain.simulated, np.zeros(plain.dimensions), 0.0, 0
     if fit & {"start", "heading"}:
         motion = fitted_motion(simulated, plain.measured, start="start" in fit, heading="heading" in fit)
         simulated, moved, turned, left = motion.applied(simulated), motion.moved, motion.turned, motion.undetermined
-    later = 0.0
-    if "time" in fit:
-        later = _fitted_time(simulated, plain, ahead)
-        reason = None
-    found = _held((simulated, plain.measured), ahead + later, origin, reason, plain.names, plain.seen)
-    what = tuple(sorted(fit, key=("start", "heading", "time").index))
-    moved_m = tuple(float(value) for value in moved)
-    return replace(found, fitted=Fitted(what, moved_m, turned, later, left, plain))
+    later = _fitted_time(simulated, plain) - clock.ahead if "time" in fit else 0.0
+    origin = f"{clock.origin}, with the fitted offset" if "time" in fit else clock.origin
+    fitted_clock = Clock(clock.ahead + later, origin, None if "time" in fit else clock.reason)
+    found = _held((simulated, plain.measured), fitted_clock, plain.names, plain.seen)
+    what = tuple(word for word in OFFSETS if word in fit)
+    return replace(found, fitted=Fitted(what, tuple(float(value) for value in moved), turned, later, left, plain))
 
 
-def _fitted_time(simulated: Polyline, plain: Comparison, ahead: float) -> float:
-    for line, name in zip((simulated, plain.measured), plain.names, strict=True):
-        if not np.isfinite(line.time).all() or (np.diff(line.time) < 0.0).any():
-            raise ParameterError(f"{name}: its times are missing or run backwards; leave time out of the fit")
-    return fitted_time(simulated, plain.measured) - ahead
+def _fitted_time(simulated: Polyline, plain: Comparison) -> float:
+    reason = lacking_time(simulated, plain.names[0]) or lacking_time(plain.measured, plain.names[1])
+    if reason:
+        raise ParameterError(f"{reason}; leave time out of the fit")
+    return fitted_time(simulated, plain.measured)
 
 
 def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str]) -> None:
@@ -269,24 +248,24 @@ def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str
     nearest = float(Path(simulated.place).nearest(places).distance.min())
     if nearest > FARTHEST:
         raise ParameterError(
-            f"{names[0]} and {names[1]} have nothing in common: they are nowhere nearer than {nearest / 1000.0:.4g} km, "
-            f"{FARTHEST / 1000.0:g} km is allowed. Bring both into one frame, or fit start and heading"
+            f"{names[0]} and {names[1]} have nothing in common: they are nowhere nearer than {nearest / 1000.0:.4g} km "
+            f"({FARTHEST / 1000.0:g} km is allowed). Bring both into one frame, or fit start and heading"
         )
 
 
 def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
     told = []
     for track in (simulated, measured):
-        without = int((~known_points(track, dimensions=dimensions)).sum())
+        without = int((~compared_points(track, dimensions=dimensions)).sum())
         if without:
-            told.append(f"{track.name}: {without} of {len(track)} points have no place and are left out")
-        if track.marked:
-            marks = ", ".join(f"{count} {code}" for code, count in track.marked.items())
-            told.append(f"{track.name}: marked points take part as they are ({marks})")
-    if simulated.frame != measured.frame:
+            marks = ", ".join(f"{count} {code}" for code, count in track.marked.items()) or "without a place"
+            told.append(f"{track.name}: {without} of {len(track)} points are left out; marked are {marks}")
+    compass = [track.axes == "east_north_up" for track in (simulated, measured)]
+    origins = {track.origin for track in (simulated, measured)} - {None}
+    if compass[0] != compass[1] or len(origins) > 1:
         told.append(
-            f"the frames are told apart: {simulated.name} in {simulated.frame}, {measured.name} in {measured.frame}; "
-            "the coordinates are compared as they stand"
+            f"the tracks are not in one frame ({simulated.name}: {simulated.frame}; "
+            f"{measured.name}: {measured.frame}); their coordinates are compared as they stand"
         )
     return told
 

@@ -56,24 +56,24 @@ def interpolated(at: FloatArray, known: FloatArray, values: FloatArray) -> Float
     return np.stack([np.interp(at, known, column) for column in values.T], axis=1)
 
 
-def known_points(track: Track, *, dimensions: int) -> npt.NDArray[np.bool_]:
-    """Which points have all their coordinates, (n,)."""
-    return np.isfinite(track.place[:, :dimensions]).all(axis=1)
+def compared_points(track: Track, *, dimensions: int) -> npt.NDArray[np.bool_]:
+    """Which points are usable and have all their coordinates, (n,)."""
+    return track.usable & np.isfinite(track.place[:, :dimensions]).all(axis=1)
 
 
 def polyline_of(track: Track, *, dimensions: int) -> Polyline:
-    """The points of a track that have all their coordinates, joined.
+    """The usable points of a track, joined.
 
     Raises
     ------
     ParameterError
         Fewer than two such points, or all in one place.
     """
-    known = known_points(track, dimensions=dimensions)
+    known = compared_points(track, dimensions=dimensions)
     line = polyline(track.place[known][:, :dimensions], track.time[known])
-    if known.sum() < 2 or not line.length > 0.0:
+    if not line.length > 0.0:
         raise ParameterError(
-            f"{track.name}: {int(known.sum())} of its {len(track)} points have a place, and they span "
-            f"{line.length if known.any() else 0.0:g} m. A comparison needs two points in different places; give a longer track"
+            f"{track.name}: {int(known.sum())} of its {len(track)} points can be used, all in one place. A comparison "
+            "needs two points in different places; give a longer track"
         )
     return line

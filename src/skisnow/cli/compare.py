@@ -1,0 +1,134 @@
+"""``skisnow compare``: how far a simulated track is from a measured one."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .announced import announced
+from .words import number
+
+if TYPE_CHECKING:
+    from ..track.comparison import Comparison
+    from ..track.projection import GeodeticPoint
+    from ..track.track import Track
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "compare",
+        help="distances between a simulated and a measured track",
+        description="Hold a simulated track against a measured one: largest, mean and rms distance by nearest place, "
+        "at equal arc length and at equal time.",
+    )
+    track = "a track file, or the folder of a run with its track.csv"
+    parser.add_argument("simulated", type=Path, metavar="SIMULATED", help=track)
+    parser.add_argument("measured", type=Path, metavar="MEASURED", help=track)
+    parser.add_argument(
+        "--fit-offset",
+        metavar="start,heading,time",
+        help="fit what is unknown: one or several of start (place of the first point), heading, time; left out: none",
+    )
+    parser.add_argument(
+        "--time-from",
+        choices=("clock", "first-point"),
+        help="what equal time counts from: the files' dates or seconds, or each track's first point; left out: the "
+        "clock, but the first points where only one file has a date",
+    )
+    parser.add_argument(
+        "--fall-line-azimuth-deg",
+        type=number("degrees"),
+        metavar="DEG",
+        help="compass direction of the fall line: puts a track in latitude and longitude into the frame of a simulated run",
+    )
+    parser.add_argument(
+        "--slope-angle-deg",
+        type=number("degrees"),
+        metavar="DEG",
+        help="inclination of the plane slope, with --fall-line-azimuth-deg; left out: x stays horizontal",
+    )
+    parser.add_argument("--from-above", action="store_true", help="leave the heights out")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write compare.json and the figure")
+    parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
+    parser.set_defaults(run=run, parser=parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compare, print, write."""
+    from ..files import require_writable
+
+    if options.slope_angle_deg is not None and options.fall_line_azimuth_deg is None:
+        options.parser.error("--slope-angle-deg needs --fall-line-azimuth-deg: say which way the slope falls")
+    if options.out is not None:
+        require_writable(options.out)
+    found = _compared(options)
+    from ..track.comparison_dict import comparison_dict
+
+    answer = comparison_dict(found)
+    for text in found.warnings:
+        print(f"warning: {text}", file=sys.stderr)
+    told = json.dumps(answer, ensure_ascii=False, allow_nan=False, indent=1)
+    if options.json:
+        print(told, flush=True)
+    else:
+        from ..report.compare_summary import compare_summary
+
+        print(compare_summary(answer), flush=True)
+    if options.out is not None:
+        _write(options.out, found, told)
+    return 0
+
+
+def _compared(options: argparse.Namespace) -> Comparison:
+    from ..track.alignment import require_offsets
+
+    fit = [word.strip() for word in options.fit_offset.split(",")] if options.fit_offset is not None else []
+    require_offsets(fit)
+    with announced("reading the tracks and finding nearest places"):
+        from ..track.comparison import compared
+
+        measured = _read(options.measured)
+        simulated = _read(options.simulated, origin=measured.origin)
+        tracks = [_in_slope(track, options) for track in (simulated, measured)]
+        time_from = options.time_from and options.time_from.replace("-", "_")
+        return compared(*tracks, fit=fit, time_from=time_from, from_above=options.from_above)
+
+
+def _read(path: Path, *, origin: GeodeticPoint | None = None) -> Track:
+    """A track under the name by which the user called it."""
+    from ..track.read import read_track
+
+    track = read_track(path / "track.csv" if path.is_dir() else path, origin=origin)
+    return replace(track, name=str(path))
+
+
+def _in_slope(track: Track, options: argparse.Namespace) -> Track:
+    """A track in east, north and up as a simulated run sees it; another one as it is."""
+    from ..track.slope_frame import in_slope_frame
+    from ..units import DEGREE
+
+    azimuth, angle = options.fall_line_azimuth_deg, options.slope_angle_deg
+    if azimuth is None or track.axes != "east_north_up":
+        return track
+    return in_slope_frame(
+        track,
+        fall_line_azimuth=azimuth * DEGREE,
+        slope_angle=None if angle is None else angle * DEGREE,
+        missing_height="on_slope",
+    )
+
+
+def _write(folder: Path, found: Comparison, told: str) -> None:
+    from ..files import write_file
+    from ..report.figures.figure_file import write_figure
+    from ..report.figures.track_comparison import track_comparison
+
+    write_file(folder / "compare.json", f"{told}\n")
+    for ending in ("png", "svg"):
+        write_figure(folder / f"track_comparison.{ending}", lambda: track_comparison(found))
+    print(f"Figure: {folder / 'track_comparison.png'}", file=sys.stderr)
