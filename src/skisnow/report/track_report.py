@@ -1,0 +1,94 @@
+"""The figures of a measured track as files, and summary.json beside them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from ..files import require_writable, write_file
+from ..track.summary import summary_dict
+from .figures.drawing import Drawing, pictured
+from .figures.style import journal_style
+from .figures.track_along import track_along
+from .figures.track_map import track_map
+from .run_report import write_pictures
+from .symbols import prose
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from ..track.summary import TrackSummary
+
+FIGURES: Final = ("map", "along")
+"""Names of a track's figures, in figures/ as .png and .svg."""
+
+
+def write_track_report(
+    summary: TrackSummary,
+    folder: str | Path,
+    *,
+    values: Mapping[str, Any] | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write figures/map, figures/along (each .png and .svg) and track.json.
+
+    Parameters
+    ----------
+    summary
+        What `skisnow.track.summary.track_summary` gave.
+    folder
+        Made where it is missing. Other files in it stay.
+    values
+        What goes into track.json; left out, what `summary_dict` gives.
+    progress
+        Called with a line of text now and then.
+
+    Returns
+    -------
+    Path
+        Of track.json, which is written last.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    """
+    folder = Path(folder)
+    require_writable(folder)
+    pictures = []
+    with journal_style():
+        for drawing in track_drawings(summary):
+            if progress:
+                progress(f"figure {drawing.name}")
+            pictures.append(pictured(drawing))
+    write_pictures(pictures, folder / "figures", every=FIGURES)
+    text = json.dumps(
+        summary_dict(summary) if values is None else values, ensure_ascii=False, allow_nan=False, indent=1
+    )
+    write_file(folder / "track.json", f"{text}\n")
+    return folder / "track.json"
+
+
+def track_drawings(summary: TrackSummary) -> Iterator[Drawing]:
+    """Draw one after the other, inside the house style."""
+    name = summary.track.name
+    yield Drawing(
+        "map",
+        prose("{name} from above, the same scale along both axes.", name=name),
+        f"{name} from above.",
+        track_map(summary),
+        wide=True,
+    )
+    yield Drawing(
+        "along",
+        prose(
+            "Speed, height and turn radius along {name}. The axis of the radius is even in 1/radius: straight lies in "
+            "the middle. The smoothing leaves half of a swing of the curvature that takes {half} s.",
+            name=name,
+            half=f"{summary.motion.smoothed.resolution.half_period:.2g}",
+        ),
+        f"Speed, height and turn radius along {name}.",
+        track_along(summary),
+        wide=True,
+    )

@@ -1,0 +1,123 @@
+"""What a track says, as lines for a terminal, with the definitions in words."""
+
+from __future__ import annotations
+
+from textwrap import fill
+from typing import TYPE_CHECKING, Any, Final
+
+from .numerals import counted, significant
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+Json = dict[str, Any]
+MOST_ROWS: Final = 40
+"""Rows of a table on a terminal; the JSON has them all."""
+WIDTH: Final = 110
+"""Letters in a line of prose."""
+
+_RUNS_WORDS: Final = {
+    "height": "A run is what descends between two lifts, from the last stand at its top to the first at its bottom; "
+    "descent is height at the start less height at the end.",
+    "motion": "A run is a stretch in motion, faster than 1 m/s but for stops up to 30 s.",
+}
+_TURNS_WORDS: Final = (
+    "A turn is a stretch of one sense of curvature in a run, 10 degrees at least; two that follow each other meet "
+    "in the switch point. The least radius is 1 / the largest curvature of the smoothed track, with its 95 % "
+    "interval from the noise alone. `passed` is the share of the curvature that the smoothing leaves of half a "
+    "sine as long as the turn."
+)
+
+
+def track_text(values: Mapping[str, Any], *, mark_sentences: Mapping[str, str] | None = None) -> str:
+    """What a track says.
+
+    Parameters
+    ----------
+    values
+        What `skisnow.track.summary.summary_dict` gives.
+    mark_sentences
+        What each mark means.
+    """
+    rows = list(_rows(values))
+    width = max(len(name) for name, _ in rows)
+    lines = [values["file"], "", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
+    for code, count in values["marked"].items():
+        lines.append(f"{'marked ' + code.replace('_', ' ')}: {count}. {(mark_sentences or {}).get(code, '')}".rstrip())
+    for remark in values["remarks"]:
+        lines.append(f"Note: {remark}")
+    lines += _table("runs", values["runs"], _RUN_COLUMNS, _RUNS_WORDS[values["runs_by"]])
+    if values["lifts"]:
+        lines += _table("lifts", values["lifts"], _LIFT_COLUMNS, "")
+    lines += _table("turns", values["turns"], _TURN_COLUMNS, _TURNS_WORDS)
+    return "\n".join(lines)
+
+
+def _plain(value: float | None, digits: int = 3) -> str:
+    return significant(value, digits, style="plain")
+
+
+def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    smoothing = values["smoothing"]
+    yield "points", f"{values['points']} in {_plain(values['duration_s'], 4)} s, time scale {values['time_scale']}"
+    if values["start"]:
+        yield "start", values["start"]
+    yield "frame", values["frame"]
+    yield "distance", f"{_plain(values['distance_m'], 5)} m, {_DISTANCE_WORDS[values['distance_source']]}"
+    yield "highest speed", f"{_plain(values['max_speed_m_per_s'], 4)} m/s, {_SPEED_WORDS[values['speed_source']]}"
+    yield "noise of the places", f"{_plain(smoothing['place_noise_m'], 2)} m a coordinate, about the smoothed track"
+    yield "smoothing", f"cubics by least squares in windows of {_plain(smoothing['window_s'])} s"
+    yield "resolution", _resolution(smoothing)
+
+
+_DISTANCE_WORDS: Final = {
+    "odometer": "the device's own",
+    "recorded_speed": "the integral of the recorded speed",
+    "places": "the length of the smoothed track",
+}
+_SPEED_WORDS: Final = {"recorded": "as recorded", "fitted": "of the smoothed track: no speeds are recorded"}
+
+
+def _resolution(smoothing: Json) -> str:
+    length = smoothing["half_amplitude_wavelength_m"]
+    metres = "" if length is None else f" ({_plain(length)} m at the median speed of the runs)"
+    return (
+        f"a curvature that swings in {_plain(smoothing['half_amplitude_period_s'])} s{metres} is halved, "
+        f"in {_plain(smoothing['ninety_percent_period_s'])} s it keeps 90 %"
+    )
+
+
+_RUN_COLUMNS: Final = (
+    ("start_s", "start (s)", -1), ("end_s", "end (s)", -1), ("distance_m", "distance (m)", 4),
+    ("descent_m", "descent (m)", 3), ("max_speed_m_per_s", "highest speed (m/s)", 3),
+)  # fmt: skip
+_LIFT_COLUMNS: Final = (
+    ("start_s", "start (s)", -1), ("end_s", "end (s)", -1), ("distance_m", "distance (m)", 4),
+    ("ascent_m", "ascent (m)", 3),
+)  # fmt: skip
+_TURN_COLUMNS: Final = (
+    ("start_s", "start (s)", -1), ("end_s", "end (s)", -1), ("direction", "to the", 0),
+    ("turned_angle_deg", "turned (deg)", 3), ("length_m", "length (m)", 3), ("least_radius_m", "least radius (m)", 3),
+    ("least_radius_interval_m", "95 % interval (m)", 3), ("share_passed", "passed", 2),
+)  # fmt: skip
+
+
+def _table(title: str, rows: Sequence[Json], columns: Sequence[tuple[str, str, int]], words: str) -> list[str]:
+    """A heading with the count, the definition, and the rows in columns; negative digits: so many decimals."""
+    if not rows:
+        return ["", f"0 {title}", *fill(words, WIDTH).splitlines()]
+    cells = [[label for _, label, _ in columns]]
+    cells += [[_cell(row[key], digits) for key, _, digits in columns] for row in rows[:MOST_ROWS]]
+    widths = [max(len(line[place]) for line in cells) for place in range(len(columns))]
+    lines = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)) for line in cells]
+    more = [f"… and {len(rows) - MOST_ROWS} more; --json gives all"] if len(rows) > MOST_ROWS else []
+    heading = counted(len(rows), title.removesuffix("s"))
+    return ["", heading, *fill(words, WIDTH).splitlines(), *lines, *more]
+
+
+def _cell(value: Any, digits: int) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, list):
+        return " to ".join("straight" if end is None else _plain(end, digits) for end in value)
+    return f"{value:.{-digits}f}" if digits < 0 else _plain(value, digits)

@@ -1,0 +1,217 @@
+"""Way, speed, heading, curvature and turn radius along a track, with standard errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from scipy.stats import norm
+
+from ..constants import CONFIDENCE
+from .smoothing import SmoothedTrack, filled, smoothed_track
+from .track import Track
+
+FloatArray = npt.NDArray[np.float64]
+
+SpeedSource: TypeAlias = Literal["recorded", "fitted"]
+WaySource: TypeAlias = Literal["odometer", "recorded speed", "places"]
+
+LEAST_SPEED: Final = 1.0
+"""Speed (m/s) below which a heading is not asked for. Choice: slower than walking; places wander at rest."""
+CERTAIN: Final = 3.0
+"""A heading needs a speed of so many of its standard errors."""
+INTERVAL_FACTOR: Final = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
+"""Standard errors on each side of a 95 % interval."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackMotion:
+    """A track's motion at each of its points, seen along the third axis of its frame.
+
+    Attributes
+    ----------
+    time : (n,) s
+        Of the track.
+    way : (n,) m
+        Along the track from its first point.
+    speed : (n,) m/s
+        As recorded, and where it was not, of the smoothed track.
+    heading, heading_sd : (n,) rad
+        From the frame's first axis, positive towards its second, without jumps; NaN at rest.
+    curvature, curvature_sd : (n,) 1/m
+        Positive to the left.
+    turn_radius, turn_radius_sd : (n,) m
+        1 / curvature with its sign; the standard error is that of small errors, infinite where the curvature is 0.
+    smoothed
+        Places, velocities and accelerations behind them, with noise and resolution.
+    speed_source, way_source
+        Where most of the speed, and where the way comes from.
+    """
+
+    time: FloatArray
+    way: FloatArray
+    speed: FloatArray
+    heading: FloatArray
+    heading_sd: FloatArray
+    curvature: FloatArray
+    curvature_sd: FloatArray
+    turn_radius: FloatArray
+    turn_radius_sd: FloatArray
+    smoothed: SmoothedTrack
+    speed_source: SpeedSource
+    way_source: WaySource
+
+    def curvature_interval(self) -> tuple[FloatArray, FloatArray]:
+        """Ends (n,), (n,) of the 95 % intervals of the curvature (1/m), from the noise alone."""
+        half = INTERVAL_FACTOR * self.curvature_sd
+        return self.curvature - half, self.curvature + half
+
+    def turn_radius_interval(self) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest |turn radius| (n,), (n,) (m) of the 95 % interval; infinite where it may be straight."""
+        low, high = self.curvature_interval()
+        most = np.maximum(np.abs(low), np.abs(high))
+        least = np.where(low * high <= 0.0, 0.0, np.minimum(np.abs(low), np.abs(high)))
+        with np.errstate(divide="ignore"):
+            return 1.0 / most, np.where(np.isnan(most), np.nan, 1.0 / least)
+
+
+def track_motion(track: Track, *, window: float | None = None, place_noise: float | None = None) -> TrackMotion:
+    """Smooth a track and look along it.
+
+    Parameters
+    ----------
+    track, window, place_noise
+        As in `skisnow.track.smoothing.smoothed_track`.
+
+    Raises
+    ------
+    ParameterError
+        Too few points, or a window or a noise that is not above 0.
+
+    Notes
+    -----
+    With x', y' and x'', y'' of the local cubics:  φ = atan2(y', x'),  κ = (x' y'' − y' x'') / (x'² + y'²)^(3/2).
+    Errors are propagated to first order. Smoothing makes curvature less, never more, in turns of constant direction:
+    by how much stands in ``smoothed.resolution``; the standard errors do not contain it.
+    """
+    smoothed = smoothed_track(track, window=window, place_noise=place_noise)
+    fitted = np.linalg.norm(smoothed.velocity, axis=1)
+    speed, speed_source = _speed(track, fitted)
+    way, way_source = _way(track, smoothed, speed)
+    heading, heading_sd = _heading(smoothed, fitted)
+    curvature, curvature_sd = _curvature(smoothed, fitted)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        radius = 1.0 / curvature
+        radius_sd = np.where(curvature == 0.0, np.inf, curvature_sd / curvature**2)
+    return TrackMotion(
+        track.time, way, speed, heading, heading_sd, curvature, curvature_sd, radius, radius_sd, smoothed,
+        speed_source, way_source,
+    )  # fmt: skip
+
+
+def _speed(track: Track, fitted: FloatArray) -> tuple[FloatArray, SpeedSource]:
+    """The recorded speed, else that of the recorded velocity, else the fitted one."""
+    speed = track.speed.astype(float)
+    if track.velocity is not None:
+        whole = np.linalg.norm(np.nan_to_num(track.velocity), axis=1)
+        known = np.isfinite(track.velocity[:, :2]).all(axis=1)
+        speed = np.where(np.isnan(speed) & known, whole, speed)
+    recorded = np.isfinite(speed)
+    source: SpeedSource = "recorded" if 2 * np.count_nonzero(recorded) >= len(track) else "fitted"
+    return np.where(recorded, speed, fitted), source
+
+
+def _way(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> tuple[FloatArray, WaySource]:
+    """The device's own distance, else the integral of a recorded speed, else the length of the smoothed track."""
+    if track.odometer is not None and np.count_nonzero(np.isfinite(track.odometer)) >= 2:
+        return odometer_way(track), "odometer"
+    if 2 * np.count_nonzero(np.isfinite(track.speed)) >= len(track) or track.velocity is not None:
+        return integrated_way(track, smoothed, speed), "recorded speed"
+    return places_way(track, smoothed), "places"
+
+
+def odometer_way(track: Track) -> FloatArray:
+    """The device's own distance (n,) (m), its gaps filled evenly in time; it may begin above 0."""
+    assert track.odometer is not None
+    known = np.isfinite(track.odometer)
+    time = np.maximum.accumulate(track.time)
+    return np.interp(time, time[known], np.maximum.accumulate(track.odometer[known]))
+
+
+def integrated_way(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> FloatArray:
+    """Integral (n,) (m) of the speed by the trapezoidal rule; over a gap the straight way between its ends."""
+    rising = np.maximum.accumulate(track.time)
+    known = np.isfinite(speed) & track.usable
+    if not known.any():
+        return np.zeros_like(rising)
+    whole = np.interp(rising, rising[known], speed[known])
+    steps = np.diff(rising) * (whole[1:] + whole[:-1]) / 2.0
+    gap = np.diff(smoothed.part) > 0
+    steps[gap] = np.linalg.norm(np.diff(filled(track.place[:, :2], track.usable), axis=0)[gap], axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def places_way(track: Track, smoothed: SmoothedTrack) -> FloatArray:
+    """Length (n,) (m) of the smoothed track, with the recorded heights where there are any; straight over gaps."""
+    chosen = smoothed.usable
+    place = np.where(np.isfinite(smoothed.place), smoothed.place, track.place[:, :2])[chosen]
+    steps = np.sum(np.diff(place, axis=0) ** 2, axis=1)
+    height = smooth_height(track, smoothed)[chosen]
+    rises = np.nan_to_num(np.diff(height))
+    way = np.concatenate([[0.0], np.cumsum(np.sqrt(steps + rises**2))])
+    rising = np.maximum.accumulate(track.time)
+    return np.interp(rising, rising[chosen], way)
+
+
+def smooth_height(track: Track, smoothed: SmoothedTrack) -> FloatArray:
+    """Running mean of the height (n,) (m) over the window; NaN where it was not recorded."""
+    height = np.where(smoothed.usable, track.place[:, 2], np.nan)
+    return running_mean(track.time, height, smoothed.resolution.window)
+
+
+def running_mean(time: FloatArray, values: FloatArray, window: float) -> FloatArray:
+    """Mean (n,) of the known values within half a window (s) before and after each point, NaN where none is known."""
+    known = np.isfinite(values)
+    rising = np.maximum.accumulate(time)
+    first = np.searchsorted(rising, rising - window / 2.0, side="left")
+    last = np.searchsorted(rising, rising + window / 2.0, side="right")
+    base = float(np.mean(values[known])) if known.any() else 0.0
+    sums = np.concatenate([[0.0], np.cumsum(np.where(known, values - base, 0.0))])
+    counts = np.concatenate([[0], np.cumsum(known)])
+    count = counts[last] - counts[first]
+    mean = base + (sums[last] - sums[first]) / np.maximum(count, 1)
+    return np.where(known & (count > 0), mean, np.nan)
+
+
+def _moving(smoothed: SmoothedTrack, fitted: FloatArray) -> npt.NDArray[np.bool_]:
+    """Where the track moves fast enough to have a heading."""
+    error = np.sqrt(smoothed.covariance[:, 1, 1])
+    with np.errstate(invalid="ignore"):
+        return (fitted >= LEAST_SPEED) & (fitted >= CERTAIN * error)
+
+
+def _heading(smoothed: SmoothedTrack, fitted: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Direction of the velocity, continued without jumps over places where it is unknown; its standard error."""
+    moving = _moving(smoothed, fitted)
+    heading, error = np.full(len(fitted), np.nan), np.full(len(fitted), np.nan)
+    heading[moving] = np.unwrap(np.arctan2(smoothed.velocity[moving, 1], smoothed.velocity[moving, 0]))
+    error[moving] = np.sqrt(smoothed.covariance[moving, 1, 1]) / fitted[moving]
+    return heading, error
+
+
+def _curvature(smoothed: SmoothedTrack, fitted: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """κ and its standard error to first order in the errors of velocity and acceleration."""
+    speed = np.where(_moving(smoothed, fitted), fitted, np.nan)
+    (vx, vy), (ax, ay) = smoothed.velocity.T, smoothed.acceleration.T
+    curvature = (vx * ay - vy * ax) / speed**3
+    by_velocity = np.stack([ay, -ax]) / speed**3 - 3.0 * curvature * np.stack([vx, vy]) / speed**2
+    by_acceleration = np.stack([-vy, vx]) / speed**3
+    of = smoothed.covariance
+    variance = (
+        of[:, 1, 1] * np.sum(by_velocity**2, axis=0)
+        + 2.0 * of[:, 1, 2] * np.sum(by_velocity * by_acceleration, axis=0)
+        + of[:, 2, 2] * np.sum(by_acceleration**2, axis=0)
+    )
+    return curvature, np.sqrt(np.maximum(variance, 0.0))

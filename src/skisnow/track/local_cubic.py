@@ -1,0 +1,171 @@
+"""Local cubic least squares: place, velocity and acceleration at each point from the points in a window of time.
+
+The filter of Savitzky and Golay (1964, doi 10.1021/ac60214a047) without its even spacing: every window is fitted by
+weighted least squares at its own times, to places and, where they were recorded, to velocities.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+TERMS: Final = 4
+"""Coefficients of a cubic."""
+FEWEST_POINTS: Final = 6
+"""In a window; four determine the cubic, two say how well it fits."""
+_RIDGE: Final = 1e-13
+"""Added to a matrix of normal equations, as a share of its trace; the least eigenvalue of a good one is above 10⁻³."""
+_CHUNK: Final = 8192
+"""Points at a time: their moments stay in the processor's cache."""
+
+
+@dataclass(frozen=True, slots=True)
+class Observed:
+    """What is fitted: values (n, d) with weights (n,); a weight of 0 leaves the point out, whatever its value."""
+
+    values: FloatArray
+    weight: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class LocalCubic:
+    """Fits in all windows, in the variable τ = (t − t_i)/h about each point.
+
+    Attributes
+    ----------
+    coefficients : (n, 4, d)
+        Of τ⁰ to τ³, that of τ⁰ counted from the point's own value; NaN where a window has too few points.
+    covariance : (n, 4, 4)
+        Of the coefficients of one coordinate for a variance of 1 / weight.
+    place_misfit, rate_misfit : (n,)
+        Weighted sums of squared residuals over all coordinates, of places and of velocities.
+    place_count, rate_count : (n,)
+        Points with a weight in the window.
+    """
+
+    coefficients: FloatArray
+    covariance: FloatArray
+    place_misfit: FloatArray
+    rate_misfit: FloatArray
+    place_count: IntArray
+    rate_count: IntArray
+
+
+def local_cubic(
+    time: FloatArray, windows: tuple[IntArray, IntArray], half: float, place: Observed, rate: Observed | None
+) -> LocalCubic:
+    """Fit every window.
+
+    Parameters
+    ----------
+    time : (n,) s
+        Never falling.
+    windows : (n,), (n,)
+        First point of each window, and the one after its last.
+    half : s
+        Scale of τ, half of a window.
+    place, rate
+        Places (m), and velocities (m/s) or None.
+    """
+    first, last = windows
+    pieces = []
+    for start in range(0, len(time), _CHUNK):
+        chunk = np.arange(start, min(start + _CHUNK, len(time)))
+        sums = _Moments(len(chunk), place.values.shape[1])
+        for offset in range(int((first[chunk] - chunk).min()), int((last[chunk] - chunk).max())):
+            sums.add(time, (chunk, first[chunk], last[chunk], offset), half, place, rate)
+        pieces.append(_solved(sums, half))
+    return LocalCubic(*(np.concatenate(parts) for parts in zip(*pieces, strict=True)))
+
+
+class _Moments:
+    """Sums over windows: weights times powers of τ, and these times values and rates, relative to the point's own."""
+
+    def __init__(self, count: int, coordinates: int) -> None:
+        self.place = np.zeros((2 * TERMS - 1, count))
+        self.place_values = np.zeros((TERMS, count, coordinates))
+        self.place_squares = np.zeros(count)
+        self.rate = np.zeros((2 * TERMS - 3, count))
+        self.rate_values = np.zeros((TERMS - 1, count, coordinates))
+        self.rate_squares = np.zeros(count)
+        self.place_count = np.zeros(count, dtype=np.int64)
+        self.rate_count = np.zeros(count, dtype=np.int64)
+
+    def add(
+        self,
+        time: FloatArray,
+        where: tuple[IntArray, IntArray, IntArray, int],
+        half: float,
+        place: Observed,
+        rate: Observed | None,
+    ) -> None:
+        """Add the point that lies ``offset`` after each point, where that is in its window."""
+        point, first, last, offset = where
+        other = np.clip(point + offset, 0, len(time) - 1)
+        inside = (point + offset >= first) & (point + offset < last)
+        tau = (time[other] - time[point]) / half
+        weight = np.where(inside, place.weight[other], 0.0)
+        apart = place.values[other] - place.values[point]
+        self.place_count += weight > 0.0
+        self.place_squares += weight * np.einsum("nd,nd->n", apart, apart)
+        _add_powers(self.place, self.place_values, tau, weight, apart)
+        if rate is not None:
+            weight = np.where(inside, rate.weight[other], 0.0)
+            faster = rate.values[other]
+            self.rate_count += weight > 0.0
+            self.rate_squares += weight * np.einsum("nd,nd->n", faster, faster)
+            _add_powers(self.rate, self.rate_values, tau, weight, faster)
+
+
+def _add_powers(
+    moments: FloatArray, products: FloatArray, tau: FloatArray, weight: FloatArray, values: FloatArray
+) -> None:
+    power = weight.copy()
+    for exponent in range(len(moments)):
+        moments[exponent] += power
+        if exponent < len(products):
+            products[exponent] += power[:, None] * values
+        power *= tau
+
+
+def _solved(sums: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
+    """Solve the normal equations; the parts of a LocalCubic."""
+    order = np.arange(TERMS)
+    of_place = np.moveaxis(sums.place[order[:, None] + order], -1, 0)
+    of_rate = np.zeros_like(of_place)
+    below = np.arange(1, TERMS)
+    slopes = np.multiply.outer(below, below) / half**2  # derivatives of τ^p and τ^q by time: p q τ^(p+q-2) / h²
+    of_rate[:, 1:, 1:] = slopes * np.moveaxis(sums.rate[below[:, None] + below - 2], -1, 0)
+    right_place = np.moveaxis(sums.place_values, 0, 1)
+    right_rate = np.zeros_like(right_place)
+    right_rate[:, 1:] = below[:, None] / half * np.moveaxis(sums.rate_values, 0, 1)
+    enough = sums.place_count >= FEWEST_POINTS
+    covariance = np.full_like(of_place, np.nan)
+    covariance[enough] = _inverse((of_place + of_rate)[enough])
+    found = covariance @ (right_place + right_rate)
+    return (
+        found,
+        covariance,
+        _misfit(sums.place_squares, found, of_place, right_place),
+        _misfit(sums.rate_squares, found, of_rate, right_rate),
+        sums.place_count,
+        sums.rate_count,
+    )
+
+
+def _inverse(normal: FloatArray) -> FloatArray:
+    """Of each matrix; one that is singular gets huge variances in place of an error."""
+    ridge = _RIDGE * np.trace(normal, axis1=1, axis2=2)
+    return np.linalg.inv(normal + ridge[:, None, None] * np.eye(TERMS))
+
+
+def _misfit(squares: FloatArray, found: FloatArray, normal: FloatArray, right: FloatArray) -> FloatArray:
+    """Σ w (y − Xβ)² = Σ w y² − 2 β·b + βᵀ N β, for the observations of one kind."""
+    explained = np.einsum("nkd,nkd->n", found, 2.0 * right - normal @ found)
+    return np.maximum(squares - explained, 0.0)

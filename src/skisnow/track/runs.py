@@ -1,0 +1,212 @@
+"""A day on a slope split into runs and lifts, from height and speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from ..constants import STANDARD_GRAVITY
+from .curvature import TrackMotion, running_mean
+from .phases import turning_points
+from .track import Track
+
+FloatArray = npt.NDArray[np.float64]
+
+LEAST_HEIGHT: Final = 15.0
+"""Height (m) that makes a descent a run and an ascent a lift. Choice: above the wander of a receiver's height."""
+HEIGHT_WINDOW: Final = 15.0
+"""Length (s) of the running mean over the height that finds tops and bottoms (Choice)."""
+STANDING: Final = 1.0
+"""Speed (m/s) below which someone stands or shuffles (Choice)."""
+LONGEST_STOP: Final = 30.0
+"""Without heights, a stop (s) after which another run begins (Choice)."""
+LEAST_DISTANCE: Final = 10.0
+"""A run's length (m) at least (Choice)."""
+_ZONE: Final = 0.02
+"""Share of a descent that counts as its top and as its bottom, at least 1 m of height."""
+_LEVEL_SHARE: Final = 0.01
+"""Heights that differ by less than this share of the way are none: the slope's own third axis."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A run or a lift: from the point number ``first`` to ``last``, both in it.
+
+    Attributes
+    ----------
+    first, last
+        Numbers of points.
+    start, end
+        Times (s).
+    distance
+        m, along the track.
+    descent
+        Height at the start less that at the end (m), negative for a lift; None without heights.
+    max_speed
+        Highest speed (m/s); None where none is known.
+    gaps
+        How many gaps lie inside.
+    """
+
+    first: int
+    last: int
+    start: float
+    end: float
+    distance: float
+    descent: float | None
+    max_speed: float | None
+    gaps: int
+
+
+@dataclass(frozen=True, slots=True)
+class Day:
+    """Runs and lifts in the order of time; what they were told by; in words what could not be told."""
+
+    runs: tuple[Stretch, ...]
+    lifts: tuple[Stretch, ...]
+    told_by: Literal["height", "motion"]
+    remarks: tuple[str, ...]
+
+
+def split_day(track: Track, motion: TrackMotion) -> Day:
+    """Find runs and lifts.
+
+    Parameters
+    ----------
+    track
+        The track; its third axis is the height unless its axes are those of a slope.
+    motion
+        Of the track.
+
+    Notes
+    -----
+    The height's running mean has tops and bottoms that differ by 15 m at least. An ascent between them is a lift,
+    unless the speed at its foot would carry anyone up there, v²/(2g). Between two lifts, what descends is a run: from
+    the last moment at the top at which the speed was below 1 m/s to the first such moment at the bottom; a stop in
+    between does not end it. Top and bottom are the first and last 2 % of the descent's height, at least 1 m. Where the
+    heights differ by less than 15 m, or there are none, every stretch in motion is a run; stops up to 30 s do not end
+    it.
+    """
+    height, remarks = known_height(track, motion)
+    if height is None:
+        return Day(tuple(_moving_stretches(track, motion, None)), (), "motion", remarks)
+    smooth = running_mean(track.time, height, HEIGHT_WINDOW)
+    corners = turning_points(smooth, LEAST_HEIGHT)
+    changes = np.diff(smooth[corners])
+    if not np.any(np.abs(changes) >= LEAST_HEIGHT):
+        words = f"The height changes by less than {LEAST_HEIGHT:g} m: every stretch in motion is taken as a run."
+        return Day(tuple(_moving_stretches(track, motion, height)), (), "motion", (*remarks, words))
+    ascents = [
+        (low, high)
+        for low, high, rise in zip(corners[:-1], corners[1:], changes, strict=True)
+        if rise >= max(LEAST_HEIGHT, _carried(motion, low))
+    ]
+    lifts = [_stretch(track, motion, height, *_climb(smooth, *ascent)) for ascent in ascents]
+    found = (_descent(motion, smooth, corners, area) for area in _between(ascents, len(track)))
+    runs = [_stretch(track, motion, height, *ends) for ends in found if ends is not None]
+    return Day(tuple(run for run in runs if _is_run(run)), tuple(lifts), "height", remarks)
+
+
+def known_height(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, tuple[str, ...]]:
+    """Height (n,) (m) with its holes filled evenly, or None; and in words why there is none."""
+    recorded = np.isfinite(track.place[:, 2])
+    if track.axes == "slope":
+        return None, ("The track's third axis is that of the slope, not the height: descents are unknown.",)
+    if np.count_nonzero(recorded) < max(2, len(track) // 2):
+        return None, ("No heights in the track: lifts cannot be told from runs, descents are unknown.",)
+    height = np.interp(np.arange(len(track)), np.flatnonzero(recorded), track.place[recorded, 2])
+    way = float(motion.way[-1] - motion.way[0])
+    if track.axes == "file" and np.ptp(height) < _LEVEL_SHARE * way:
+        return None, ("The third axis hardly changes: it is taken as the slope's own, and descents are unknown.",)
+    return height, ()
+
+
+def _carried(motion: TrackMotion, foot: int) -> float:
+    """Height (m) to which the speed at the foot of an ascent carries."""
+    speed = motion.speed[foot]
+    return float(speed**2 / (2.0 * STANDARD_GRAVITY)) if np.isfinite(speed) else 0.0
+
+
+def _between(ascents: list[tuple[int, int]], count: int) -> Iterator[tuple[int, int]]:
+    """First and last point of what lies before, between and after the ascents."""
+    begin = 0
+    for low, high in ascents:
+        yield begin, low
+        begin = high
+    yield begin, count - 1
+
+
+def _climb(smooth: FloatArray, low: int, high: int) -> tuple[int, int]:
+    """A lift without the waiting below and above: from the last point at the bottom to the first at the top."""
+    margin = _margin(float(smooth[high] - smooth[low]))
+    inside = smooth[low : high + 1]
+    bottom = np.flatnonzero(inside <= smooth[low] + margin)
+    top = np.flatnonzero(inside >= smooth[high] - margin)
+    return low + int(bottom[-1]), low + int(top[0])
+
+
+def _descent(
+    motion: TrackMotion, smooth: FloatArray, corners: list[int], area: tuple[int, int]
+) -> tuple[int, int] | None:
+    """First and last point of the run in an area between lifts; None where nothing descends."""
+    inside = [corner for corner in corners if area[0] <= corner <= area[1]]
+    falls = [(high, low) for high, low in pairwise(inside) if smooth[high] - smooth[low] >= LEAST_HEIGHT]
+    if not falls:
+        return None
+    top, bottom = falls[0][0], falls[-1][1]
+    margin = _margin(float(smooth[top] - smooth[bottom]))
+    heights = smooth[top : bottom + 1]
+    leaves = top + int(np.flatnonzero(heights >= smooth[top] - margin)[-1])
+    arrives = top + int(np.flatnonzero(heights <= smooth[bottom] + margin)[0])
+    slow = np.flatnonzero(motion.speed < STANDING)
+    before = slow[(slow >= area[0]) & (slow <= leaves)]
+    after = slow[(slow >= max(arrives, leaves)) & (slow <= area[1])]
+    return int(before[-1]) if len(before) else area[0], int(after[0]) if len(after) else area[1]
+
+
+def _margin(drop: float) -> float:
+    return max(1.0, _ZONE * drop)
+
+
+def _moving_stretches(track: Track, motion: TrackMotion, height: FloatArray | None) -> Iterator[Stretch]:
+    """Stretches in motion, short stops included."""
+    moving = np.flatnonzero((motion.speed >= STANDING) & track.usable)
+    if not len(moving):
+        return
+    breaks = np.flatnonzero(np.diff(track.time[moving]) > LONGEST_STOP)
+    firsts, lasts = moving[np.r_[0, breaks + 1]], moving[np.r_[breaks, len(moving) - 1]]
+    for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True):
+        stretch = _stretch(track, motion, height, first, last)
+        if stretch.distance >= LEAST_DISTANCE:
+            yield stretch
+
+
+def _stretch(track: Track, motion: TrackMotion, height: FloatArray | None, first: int, last: int) -> Stretch:
+    inside = slice(first, last + 1)
+    return Stretch(
+        first,
+        last,
+        float(track.time[first]),
+        float(track.time[last]),
+        float(motion.way[last] - motion.way[first]),
+        None if height is None else float(height[first] - height[last]),
+        max_speed(track, motion, inside),
+        int(np.count_nonzero(np.diff(motion.smoothed.part[inside]))),
+    )
+
+
+def max_speed(track: Track, motion: TrackMotion, inside: slice) -> float | None:
+    """Highest speed (m/s) in a stretch: of the recorded ones, or without any of the smoothed track's."""
+    speeds = motion.speed[inside][track.usable[inside]]
+    speeds = speeds[np.isfinite(speeds)]
+    return float(speeds.max()) if len(speeds) else None
+
+
+def _is_run(found: Stretch) -> bool:
+    """A height that wanders while someone stands is none: the way is longer than it is deep."""
+    return found.distance >= max(LEAST_DISTANCE, found.descent or 0.0)

@@ -1,0 +1,232 @@
+"""A smoothed track: place, velocity and acceleration with their standard errors, and what the smoothing resolves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+from scipy.stats import chi2
+
+from ..errors import ParameterError
+from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, Observed, local_cubic
+from .marks import GAP_FACTOR
+from .resolution import Resolution
+from .track import Track
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
+
+SHORTEST_WINDOW: Final = 0.8
+"""Default length (s) of the window where points are dense. Choice: a slalom turn takes 0.8 to 1 s."""
+POINTS_IN_WINDOW: Final = 8.0
+"""Default length of the window in intervals between points, where that is longer. Choice: five points to spare."""
+_SURPRISING: Final = 0.999
+"""A window that scatters more than noise does in all but this share of cases is taken at its own scatter."""
+_LOWEST_PLACE_NOISE: Final = 1e-9
+"""Noise (m) of a track without any: rounding must not be taken for a signal."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SmoothedTrack:
+    """The track in the plane of its frame as locally fitted cubics, one about each point.
+
+    Attributes
+    ----------
+    place, velocity, acceleration : (n, 2)
+        m, m/s, m/s²; NaN where a window has fewer than six usable points.
+    covariance : (n, 3, 3)
+        Of place, velocity and acceleration of one coordinate; both have the same and do not depend on each other.
+    part : (n,)
+        Number of the stretch without a gap that a point belongs to.
+    usable : (n,)
+        Points that took part in the fits.
+    place_noise, speed_noise
+        Standard deviation of a coordinate (m) and of a recorded velocity's component (m/s) about the fits: what is not
+        smooth. A drift slower than the window is not in it. ``speed_noise`` is None without recorded velocities.
+    resolution
+        Length of the window, and what it lets pass.
+    """
+
+    place: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    covariance: FloatArray
+    part: IntArray
+    usable: BoolArray
+    place_noise: float
+    speed_noise: float | None
+    resolution: Resolution
+
+
+def smoothed_track(track: Track, *, window: float | None = None, place_noise: float | None = None) -> SmoothedTrack:
+    """Fit cubics to the track's places and recorded velocities.
+
+    Parameters
+    ----------
+    track
+        At least six usable points.
+    window
+        Length of the window (s). None: eight intervals between points, at least 0.8 s.
+    place_noise
+        Standard deviation of a coordinate (m). None: from the scatter about the fits.
+
+    Raises
+    ------
+    ParameterError
+        Too few points, or a window or a noise that is not above 0.
+
+    Notes
+    -----
+    Where the track states a standard deviation for each point, points are weighted by it; the size of the noise still
+    comes from the scatter, because a receiver's statement holds for the whole error, of which most drifts slowly and
+    bends nothing. Windows are moved inwards at the ends of a part, so that they keep their length.
+    """
+    _require_positive("window", "s", window)
+    _require_positive("place_noise", "m", place_noise)
+    usable = usable_points(track)
+    if np.count_nonzero(usable) < FEWEST_POINTS:
+        raise ParameterError(
+            f"{track.name}: {np.count_nonzero(usable)} usable points; a smoothed track needs {FEWEST_POINTS}. "
+            "Give a longer track"
+        )
+    step = _interval(track.time[usable])
+    length = max(SHORTEST_WINDOW, POINTS_IN_WINDOW * step) if window is None else window
+    part = parts(track, usable)
+    windows = window_bounds(track.time, part, length)
+    place, rate = _places(track, usable), _rates(track, usable)
+    noises = _noises(track.time, windows, length / 2.0, place, rate)
+    noises = (noises[0] if place_noise is None else place_noise, noises[1])
+    place = Observed(place.values, place.weight / noises[0] ** 2)
+    rate = None if rate is None or noises[1] is None else Observed(rate.values, rate.weight / noises[1] ** 2)
+    fits = local_cubic(track.time, windows, length / 2.0, place, rate)
+    fits.coefficients[:, 0] += place.values  # the fits count from each point's own place
+    typical = (noises[0], None if rate is None else noises[1])
+    return _smoothed(fits, length, part, usable, typical, Resolution.of_window(length, step, *typical))
+
+
+def usable_points(track: Track) -> BoolArray:
+    """Points that can be smoothed: usable ones with a time of their own."""
+    usable = track.usable & np.isfinite(track.time)
+    latest = np.maximum.accumulate(np.where(usable, track.time, -np.inf))
+    usable[1:] &= track.time[1:] > latest[:-1]
+    return usable
+
+
+def parts(track: Track, usable: BoolArray) -> IntArray:
+    """Number of the part of each point: a new one begins after a gap and after an impossible step.
+
+    Parameters
+    ----------
+    track
+        The track.
+    usable
+        Points that count; the others take the number of the point before. Where they leave out more than a gap's time,
+        that is a gap too.
+    """
+    begins = np.zeros(len(track), dtype=bool)
+    for code in ("gap", "impossible_step"):
+        begins |= track.marks.get(code, False)
+    chosen = np.flatnonzero(usable)
+    late = np.diff(track.time[chosen]) > GAP_FACTOR * _interval(track.time[chosen])
+    begins[chosen[1:][late]] = True
+    return np.cumsum(begins).astype(np.int64)
+
+
+def window_bounds(time: FloatArray, part: IntArray, length: float) -> tuple[IntArray, IntArray]:
+    """First point of the window about each point and the one after its last, within the point's part."""
+    rising = np.maximum.accumulate(time)
+    begin = np.searchsorted(part, part, side="left")
+    end = np.searchsorted(part, part, side="right")
+    latest = np.maximum(rising[end - 1] - length, rising[begin])
+    left = np.clip(rising - length / 2.0, rising[begin], latest)
+    edge = 1e-9 * length  # points on the window's rim belong to it whatever their rounding
+    first = np.maximum(np.searchsorted(rising, left - edge, side="left"), begin)
+    last = np.minimum(np.searchsorted(rising, left + length + edge, side="right"), end)
+    return first.astype(np.int64), last.astype(np.int64)
+
+
+def _interval(time: FloatArray) -> float:
+    return float(np.median(np.diff(time)))
+
+
+def _require_positive(name: str, unit: str, value: float | None) -> None:
+    if value is not None and not (np.isfinite(value) and value > 0.0):
+        raise ParameterError(f"{name} = {value:g} {unit} is no smoothing; give a number above 0, or leave it out")
+
+
+def _places(track: Track, usable: BoolArray) -> Observed:
+    """Places with weights relative to the median one, as far as the track states standard deviations."""
+    weight = usable.astype(float)
+    if track.place_sd is not None:
+        stated = np.sqrt(np.mean(track.place_sd[:, :2] ** 2, axis=1))
+        known = usable & np.isfinite(stated) & (stated > 0.0)
+        if known.any():
+            weight[known] *= (np.median(stated[known]) / stated[known]) ** 2
+    return Observed(filled(track.place[:, :2], usable), weight)
+
+
+def _rates(track: Track, usable: BoolArray) -> Observed | None:
+    if track.velocity is None:
+        return None
+    known = usable & np.isfinite(track.velocity[:, :2]).all(axis=1)
+    if np.count_nonzero(known) < FEWEST_POINTS:
+        return None
+    weight = known.astype(float)
+    if track.speed_sd is not None:
+        stated = known & np.isfinite(track.speed_sd) & (track.speed_sd > 0.0)
+        if stated.any():
+            weight[stated] *= (np.median(track.speed_sd[stated]) / track.speed_sd[stated]) ** 2
+    return Observed(np.where(known[:, None], track.velocity[:, :2], 0.0), weight)
+
+
+def filled(values: FloatArray, known: BoolArray) -> FloatArray:
+    """Each unknown row (of n, d) as the last known one; those before the first known one as that one."""
+    last = np.maximum.accumulate(np.where(known, np.arange(len(values)), -1))
+    return values[np.where(last < 0, int(np.argmax(known)), last)]
+
+
+def _noises(
+    time: FloatArray, windows: tuple[IntArray, IntArray], half: float, place: Observed, rate: Observed | None
+) -> tuple[float, float | None]:
+    """Noise of places about cubics through them alone, and of velocities about cubics through them alone."""
+    fits = local_cubic(time, windows, half, place, None)
+    place_noise = max(_noise(fits.place_misfit, fits.place_count - TERMS), _LOWEST_PLACE_NOISE)
+    if rate is None:
+        return place_noise, None
+    fits = local_cubic(time, windows, half, rate, None)
+    return place_noise, max(_noise(fits.place_misfit, fits.place_count - TERMS), _LOWEST_PLACE_NOISE / half)
+
+
+def _noise(misfit: FloatArray, freedom: IntArray) -> float:
+    """Standard deviation from the windows' scatter: their median, so that single windows do not decide."""
+    known = np.isfinite(misfit) & (freedom > 0)
+    if not known.any():
+        return 0.0
+    degrees = 2.0 * freedom[known]  # two coordinates
+    return float(np.sqrt(np.median(misfit[known] / chi2.ppf(0.5, degrees))))
+
+
+def _smoothed(
+    fits: LocalCubic,
+    length: float,
+    part: IntArray,
+    usable: BoolArray,
+    noises: tuple[float, float | None],
+    resolution: Resolution,
+) -> SmoothedTrack:
+    half = length / 2.0
+    to_si = np.array([1.0, 1.0 / half, 2.0 / half**2])
+    found = fits.coefficients[:, :3] * to_si[:, None]
+    covariance = fits.covariance[:, :3, :3] * np.outer(to_si, to_si) * _excess(fits)[:, None, None]
+    return SmoothedTrack(found[:, 0], found[:, 1], found[:, 2], covariance, part, usable, *noises, resolution)
+
+
+def _excess(fits: LocalCubic) -> FloatArray:
+    """By how much the scatter of a window exceeds the noise, where chance does not explain it; 1 elsewhere."""
+    degrees = 2.0 * (fits.place_count + fits.rate_count - TERMS)
+    scatter = (fits.place_misfit + fits.rate_misfit) / np.maximum(degrees, 1.0)
+    limit = chi2.ppf(_SURPRISING, np.maximum(degrees, 1.0)) / np.maximum(degrees, 1.0)
+    return np.where(scatter > limit, scatter, 1.0)

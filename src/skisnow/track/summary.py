@@ -1,0 +1,184 @@
+"""What a track says: points, marks, distance, speed, runs and turns, and the same as JSON values."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any, Final
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..units import DEGREE
+from .curvature import TrackMotion, integrated_way, places_way, track_motion
+from .runs import Day, Stretch, max_speed, split_day
+from .track import Track
+from .turns import Turn, turns_of
+
+SCHEMA_VERSION: Final = 1
+_APART: Final = 0.03
+"""Share by which two distances of one track may differ before it is said."""
+
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackSummary:
+    """A track with everything that was found out about it.
+
+    Attributes
+    ----------
+    track, motion, day
+        The track, its motion, its runs and lifts.
+    turns
+        Turns within runs, in the order of time.
+    distances
+        Length of the whole track (m) by each way to tell it: "odometer", "recorded speed", "places".
+    max_speed
+        Over the whole track (m/s): of the recorded speeds, or without any of the smoothed track's; None if unknown.
+    remarks
+        What could not be told, and what looks doubtful, in words.
+    """
+
+    track: Track
+    motion: TrackMotion
+    day: Day
+    turns: tuple[Turn, ...]
+    distances: dict[str, float]
+    max_speed: float | None
+    remarks: tuple[str, ...]
+
+
+def track_summary(track: Track, *, window: float | None = None, place_noise: float | None = None) -> TrackSummary:
+    """Look at a whole track.
+
+    Parameters
+    ----------
+    track
+        At least six usable points.
+    window
+        Length of the smoothing's window (s); None: eight intervals between points, at least 0.8 s.
+    place_noise
+        Standard deviation of a coordinate (m); None: from the scatter about the smoothed track.
+
+    Raises
+    ------
+    ParameterError
+        Too few points, or a window or a noise that is not above 0.
+    """
+    motion = track_motion(track, window=window, place_noise=place_noise)
+    if not np.isfinite(motion.smoothed.velocity[:, 0]).any():
+        raise ParameterError(
+            f"{track.name}: no window of {motion.smoothed.resolution.window:g} s holds six usable points. "
+            "Give a longer window"
+        )
+    day = split_day(track, motion)
+    turns = tuple(turn for run in day.runs for turn in turns_of(motion, first=run.first, last=run.last))
+    distances = _distances(track, motion)
+    return TrackSummary(
+        track, motion, day, turns, distances, max_speed(track, motion, slice(None)),
+        (*_remarks(motion, distances), *day.remarks),
+    )  # fmt: skip
+
+
+def _distances(track: Track, motion: TrackMotion) -> dict[str, float]:
+    ways = {"places": places_way(track, motion.smoothed)}
+    if motion.speed_source == "recorded":
+        ways["recorded speed"] = integrated_way(track, motion.smoothed, motion.speed)
+    if motion.way_source == "odometer":
+        ways["odometer"] = motion.way
+    return {name: float(way[-1] - way[0]) for name, way in ways.items()}
+
+
+def _remarks(motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...]:
+    found = []
+    chosen = distances[motion.way_source]
+    for name, distance in distances.items():
+        if chosen > 0.0 and abs(distance - chosen) > _APART * chosen:
+            found.append(
+                f"The distance by {name}, {distance:.0f} m, is not that by {motion.way_source}, {chosen:.0f} m; the "
+                "latter counts."
+            )
+    if motion.speed_source == "fitted":
+        found.append("No speeds in the track: they are those of the smoothed places.")
+    gaps = int(np.count_nonzero(np.diff(motion.smoothed.part)))
+    if gaps:
+        count = "1 gap" if gaps == 1 else f"{gaps} gaps"
+        found.append(f"{count}: nothing is smoothed across, and the way over it is straight.")
+    return tuple(found)
+
+
+def summary_dict(summary: TrackSummary) -> Json:
+    """The JSON of `skisnow track`: nothing rounded, null for what is unknown or infinite."""
+    smoothed = summary.motion.smoothed
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "file": summary.track.name,
+        "points": len(summary.track),
+        "marked": summary.track.marked,
+        "duration_s": _finite(float(summary.track.time[-1] - summary.track.time[0])),
+        "distance_m": _finite(summary.distances[summary.motion.way_source]),
+        "distance_source": summary.motion.way_source.replace(" ", "_"),
+        "distances_m": {name.replace(" ", "_"): _finite(value) for name, value in summary.distances.items()},
+        "max_speed_m_per_s": _finite(summary.max_speed),
+        "speed_source": summary.motion.speed_source,
+        "smoothing": {
+            "method": "local cubic least squares",
+            "window_s": smoothed.resolution.window,
+            "half_amplitude_period_s": _finite(smoothed.resolution.half_period),
+            "ninety_percent_period_s": _finite(smoothed.resolution.faithful_period),
+            "half_amplitude_wavelength_m": _finite(half_wavelength(summary)),
+            "place_noise_m": _finite(smoothed.place_noise),
+            "velocity_noise_m_per_s": _finite(smoothed.speed_noise),
+        },
+        "runs": [_stretch_dict(run, "descent_m", 1.0) for run in summary.day.runs],
+        "runs_by": summary.day.told_by,
+        "lifts": [_stretch_dict(lift, "ascent_m", -1.0) for lift in summary.day.lifts],
+        "turns": [_turn_dict(turn) for turn in summary.turns],
+        "frame": summary.track.frame,
+        "start": None if summary.track.start is None else summary.track.start.isoformat(),
+        "time_scale": summary.track.time_scale,
+        "remarks": list(summary.remarks),
+        "provenance": {"skisnow": version("skisnow")},
+    }
+
+
+def half_wavelength(summary: TrackSummary) -> float | None:
+    """Length (m) of a swing of which half passes the smoothing, at the median speed in runs; None without runs."""
+    speeds = [summary.motion.speed[run.first : run.last + 1] for run in summary.day.runs]
+    known = np.concatenate(speeds) if speeds else np.empty(0)
+    known = known[np.isfinite(known)]
+    return float(np.median(known)) * summary.motion.smoothed.resolution.half_period if len(known) else None
+
+
+def _stretch_dict(stretch: Stretch, height_key: str, sign: float) -> Json:
+    return {
+        "start_s": _finite(stretch.start),
+        "end_s": _finite(stretch.end),
+        "distance_m": _finite(stretch.distance),
+        height_key: _finite(None if stretch.descent is None else sign * stretch.descent),
+        "max_speed_m_per_s": _finite(stretch.max_speed),
+        "gaps": stretch.gaps,
+    }
+
+
+def _turn_dict(turn: Turn) -> Json:
+    return {
+        "start_s": _finite(turn.start),
+        "end_s": _finite(turn.end),
+        "direction": turn.direction,
+        "turned_angle_deg": _finite(turn.turned_angle / DEGREE),
+        "turned_angle_sd_deg": _finite(turn.turned_angle_sd / DEGREE),
+        "least_radius_m": _finite(turn.least_radius),
+        "least_radius_interval_m": [_finite(end) for end in turn.least_radius_interval],
+        "least_radius_s": _finite(turn.least_radius_time),
+        "mean_radius_m": _finite(turn.mean_radius),
+        "length_m": _finite(turn.length),
+        "share_passed": _finite(turn.share_passed),
+    }
+
+
+def _finite(value: float | None) -> float | None:
+    """None in place of what JSON has no number for."""
+    return None if value is None or not math.isfinite(value) else float(value)

@@ -1,0 +1,211 @@
+"""Turns of a track and the switch points between them: where the curvature changes its sign, beyond doubt."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from ..units import DEGREE
+from .curvature import INTERVAL_FACTOR, TrackMotion
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+SURE: Final = 3.0
+"""Standard errors by which a curvature differs from 0 where it counts as that of a turn (Choice)."""
+STRAIGHT: Final = 500.0
+"""Radius (m) beyond which a path is straight, however exact it is known (Choice)."""
+LEAST_ANGLE: Final = 10.0 * DEGREE
+"""Turned angle (rad) that makes a turn (Choice)."""
+LONGEST_STRAIGHT: Final = 2.0
+"""A straight stretch (s) after which a turn has ended, at least two lengths of the smoothing's window (Choice)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """A stretch of one sense of curvature.
+
+    Attributes
+    ----------
+    start, end
+        Times (s); of the switch points where another turn comes before or after.
+    direction
+        "left" or "right" as seen along the track.
+    turned_angle, turned_angle_sd
+        Change of heading (rad), positive left, and its standard error.
+    least_radius : m
+        1 / the largest curvature of the smoothed track; above 0.
+    least_radius_interval
+        Least and greatest value (m) of its 95 % interval, from the noise alone.
+    least_radius_time
+        When (s).
+    mean_radius
+        Length over turned angle (m).
+    length
+        m, along the track.
+    share_passed
+        Share of the curvature that the smoothing leaves of half a sine as long as the turn: the true least radius is
+        about ``share_passed`` times the given one.
+    """
+
+    start: float
+    end: float
+    direction: Literal["left", "right"]
+    turned_angle: float
+    turned_angle_sd: float
+    least_radius: float
+    least_radius_interval: tuple[float, float]
+    least_radius_time: float
+    mean_radius: float
+    length: float
+    share_passed: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """Points from ``first`` to ``last``, the outermost ones of surely one sign; ``sign`` is 1 left, −1 right."""
+
+    first: int
+    last: int
+    sign: int
+
+
+def turns_of(
+    motion: TrackMotion, *, first: int = 0, last: int | None = None, least_angle: float = LEAST_ANGLE
+) -> tuple[Turn, ...]:
+    """Find the turns between two points.
+
+    Parameters
+    ----------
+    motion
+        Of the track.
+    first, last
+        Numbers of the first and the last point; left out, the whole track.
+    least_angle
+        Turned angle (rad) that makes a turn. Pieces that turn less are left out, and two turns to one side with only
+        such a piece between them are one.
+
+    Notes
+    -----
+    A turn begins where the curvature is 3 standard errors and 1/(500 m) from 0, and goes on, whatever the curvature is
+    in between, to the last such point before one of the other sign or a straight stretch of 2 s (two windows, if
+    longer). Two turns that follow each other meet in the switch point: where the curvature, as a straight line fitted
+    to the points between them, passes 0. A gap or a rest ends a turn.
+    """
+    end = len(motion.time) - 1 if last is None else last
+    patience = max(LONGEST_STRAIGHT, 2.0 * motion.smoothed.resolution.window)
+    pieces = _merged(motion, list(_pieces(motion, first, end, patience)), least_angle, patience)
+    starts = [motion.time[piece.first] for piece in pieces]
+    ends = [motion.time[piece.last] for piece in pieces]
+    for number, (one, other) in enumerate(pairwise(pieces)):
+        if one.sign != other.sign and _joined(motion, one, other, patience):
+            ends[number] = starts[number + 1] = _switch_time(motion, one.last, other.first)
+    spans = zip(pieces, starts, ends, strict=True)
+    return tuple(_turn(motion, piece, float(start), float(end)) for piece, start, end in spans)
+
+
+def _signs(motion: TrackMotion) -> npt.NDArray[np.int8]:
+    """1 where the track surely turns left, −1 where right, 0 elsewhere."""
+    with np.errstate(invalid="ignore"):
+        sure = np.abs(motion.curvature) > np.maximum(SURE * motion.curvature_sd, 1.0 / STRAIGHT)
+    return np.where(sure & motion.smoothed.usable, np.sign(np.nan_to_num(motion.curvature)), 0).astype(np.int8)
+
+
+def _pieces(motion: TrackMotion, first: int, last: int, patience: float) -> Iterator[_Piece]:
+    """Stretches of one sure sign."""
+    signs = _signs(motion)[first : last + 1]
+    sure = np.flatnonzero(signs) + first
+    if not len(sure):
+        return
+    signs = signs[sure - first]
+    rests = np.concatenate([[0], np.cumsum(np.isnan(motion.curvature) & motion.smoothed.usable)])
+    ends = (
+        (np.diff(signs) != 0)
+        | (np.diff(motion.time[sure]) > patience)
+        | (np.diff(motion.smoothed.part[sure]) > 0)
+        | (np.diff(rests[sure]) > 0)
+    )
+    cuts = np.flatnonzero(ends)
+    for begin, end in zip(np.r_[0, cuts + 1], np.r_[cuts, len(sure) - 1], strict=True):
+        yield _Piece(int(sure[begin]), int(sure[end]), int(signs[begin]))
+
+
+def _merged(motion: TrackMotion, pieces: list[_Piece], least_angle: float, patience: float) -> list[_Piece]:
+    """Without pieces that turn too little; neighbours to one side become one where only such a piece lay between."""
+    found: list[_Piece] = []
+    for piece in pieces:
+        if found and found[-1].sign == piece.sign and _joined(motion, found[-1], piece, patience):
+            found[-1] = _Piece(found[-1].first, piece.last, piece.sign)
+        elif abs(motion.heading[piece.last] - motion.heading[piece.first]) >= least_angle:
+            found.append(piece)
+    return found
+
+
+def _joined(motion: TrackMotion, one: _Piece, other: _Piece, patience: float) -> bool:
+    """Whether nothing but a short stretch in motion lies between two pieces."""
+    between = slice(one.last, other.first + 1)
+    moving = np.isfinite(motion.curvature[between]) | ~motion.smoothed.usable[between]
+    together = motion.smoothed.part[one.last] == motion.smoothed.part[other.first]
+    return bool(together and moving.all() and motion.time[other.first] - motion.time[one.last] <= patience)
+
+
+def _switch_time(motion: TrackMotion, before: int, after: int) -> float:
+    """When the line through the curvatures from one turn's last sure point to the next one's first passes 0 (s)."""
+    time, curvature = motion.time[before : after + 1], motion.curvature[before : after + 1]
+    known = np.isfinite(curvature)
+    slope, value = np.polyfit(time[known] - time[0], curvature[known], 1)
+    passes = time[0] - value / slope if slope != 0.0 else np.nan
+    inside = np.isfinite(passes) and time[0] <= passes <= time[-1]
+    return float(passes) if inside else float((time[0] + time[-1]) / 2.0)
+
+
+def _turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> Turn:
+    sharpest = _sharpest(motion, piece)
+    headings, errors = _at_times(motion, (start, end))
+    length = float(np.diff(np.interp((start, end), motion.time, motion.way))[0])
+    angle = float(headings[1] - headings[0])
+    return Turn(
+        start=start,
+        end=end,
+        direction="left" if piece.sign > 0 else "right",
+        turned_angle=angle,
+        turned_angle_sd=float(np.hypot(*errors)),
+        least_radius=float(abs(motion.turn_radius[sharpest])),
+        least_radius_interval=_radius_interval(
+            float(abs(motion.curvature[sharpest])), float(motion.curvature_sd[sharpest])
+        ),
+        least_radius_time=float(motion.time[sharpest]),
+        mean_radius=length / abs(angle) if angle else np.inf,
+        length=length,
+        share_passed=max(motion.smoothed.resolution.share_passed(2.0 * (end - start)), 0.0),
+    )
+
+
+def _sharpest(motion: TrackMotion, piece: _Piece) -> int:
+    """Number of the point of the largest curvature, of those that are known about as well as the others."""
+    inside = np.arange(piece.first, piece.last + 1)
+    known = inside[np.isfinite(motion.curvature[inside])]
+    error = motion.curvature_sd[known]
+    known = known[error <= 2.0 * np.median(error)]
+    return int(known[int(np.argmax(piece.sign * motion.curvature[known]))])
+
+
+def _radius_interval(curvature: float, error: float) -> tuple[float, float]:
+    half = INTERVAL_FACTOR * error
+    return 1.0 / (curvature + half), 1.0 / (curvature - half) if curvature > half else np.inf
+
+
+def _at_times(motion: TrackMotion, times: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
+    """Heading and its standard error, interpolated between the points that have one."""
+    start, end = times
+    first = max(int(np.searchsorted(motion.time, start, side="left")) - 1, 0)
+    last = int(np.searchsorted(motion.time, end, side="right"))
+    around = slice(first, last + 1)
+    known = np.isfinite(motion.heading[around])
+    time, heading, error = (values[around][known] for values in (motion.time, motion.heading, motion.heading_sd))
+    return np.interp(times, time, heading), np.interp(times, time, error)
