@@ -18,8 +18,9 @@ from PIL import Image
 
 from skisnow import read_scenario, simulated_run
 from skisnow.report.figures.figure_file import write_figure
-from skisnow.report.figures.runs_compared import LINE_STYLES, distance_to_path, runs_compared
+from skisnow.report.figures.runs_compared import LINE_STYLES, runs_compared
 from skisnow.report.figures.style import COLOURS, DOUBLE_MM, GREY, legend_below, new_figure
+from skisnow.track.nearest_place import distance_beside
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -95,7 +96,7 @@ def _over(values: FloatArray, station: FloatArray, where: npt.NDArray[np.bool_])
 def apart(run: Run, other: Run) -> float:
     """Largest distance (m) of a run from the other's path, which goes on straight at its end."""
     onwards = other.place[-1] + other.velocity[-1] / np.linalg.norm(other.velocity[-1])
-    return float(distance_to_path(run.place, np.vstack([other.place, onwards])).max())
+    return float(np.nanmax(distance_beside(run.place, np.vstack([other.place, onwards]))))
 
 
 def _computed(asked: tuple[str, dict[str, Any]]) -> Run:

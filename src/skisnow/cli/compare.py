@@ -44,7 +44,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--fall-line-azimuth-deg",
         type=number("degrees"),
         metavar="DEG",
-        help="compass direction of the fall line: puts a track in latitude and longitude into the frame of a simulated run",
+        help="compass direction of the fall line: puts a track in latitude and longitude into a simulated run's frame",
     )
     parser.add_argument(
         "--slope-angle-deg",

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from ..track.nearest_place import distance_beside
 from .figures.run_grip import used_share_of_skis
-from .figures.runs_compared import distance_to_path
 from .figures.track_band import TimedTrack, band_of, offsets
 
 if TYPE_CHECKING:
@@ -52,9 +52,10 @@ def used_grip(run: Run) -> tuple[float | None, float | None]:
     return (float(np.median(known)), float(np.mean(known >= YIELDS))) if known.size else (None, None)
 
 
-def greatest_distance(run: Run, reference: Run) -> float:
-    """The farthest that a run's path goes from that of another (m)."""
-    return float(np.nanmax(distance_to_path(run.place, reference.place)))
+def greatest_distance(run: Run, reference: Run) -> float | None:
+    """The farthest that a run's path goes from that of another (m) while it lies beside it; None: nowhere."""
+    distance = distance_beside(run.place, reference.place)
+    return float(np.nanmax(distance)) if np.isfinite(distance).any() else None
 
 
 def middle_track(run: Run) -> TimedTrack:

@@ -18,6 +18,7 @@ from scipy.optimize import minimize_scalar
 from ..errors import FitError, ParameterError
 from .nearest_place import NearestPlaces, Path
 from .polyline import Polyline, polyline
+from .three_distances import EXACTNESS
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,6 +31,7 @@ LEAST_SHARE: Final = 0.5
 """Of the places, or of the shorter time, that must stay in the comparison: a fit may not slide a track out of sight."""
 DETERMINED: Final = 1e-3
 """Directions whose singular value is below this part of the largest are left as they are, and said."""
+_BETTER: Final = 0.99
 _ROUNDS: Final = 100
 _SETTLED: Final = 1e-10
 _GOOD_ENOUGH: Final = 1e-5
@@ -84,8 +86,8 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
     """Least squares of the nearest distance over the measured track's length.
 
     Gauss–Newton steps with the nearest places found anew each time. Places beyond the ends of the simulated track take
-    no part. Begun with the tracks as they lie, and with the best overlay at equal arc length; of the two answers the
-    one with the smaller mean square over all places counts, those beyond the ends included.
+    no part. Begun with the tracks as they lie, and with the best overlay at equal arc length; the second answer counts
+    only where it is better, by mean square over the share of places that take part.
 
     Raises
     ------
@@ -97,13 +99,14 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
     begins = [Motion(np.zeros(places.shape[1]), 0.0)]
     begins.append(_overlay(simulated, measured, start=start, heading=heading))
     found = [_settled(path, places, begin, start=start, heading=heading) for begin in begins]
-    answers = [(cost, motion) for cost, motion in found if math.isfinite(cost)]
-    if not answers:
+    (as_they_lie, first), (overlaid, second) = found
+    if not math.isfinite(min(as_they_lie, overlaid)):
         raise FitError(
             f"start and heading cannot be fitted: less than {100 * LEAST_SHARE:g} % of the measured track then has the "
             "simulated one beside it, or the steps do not settle. Look at both tracks without a fit"
         )
-    return min(answers, key=lambda answer: answer[0])[1]
+    exact = (EXACTNESS * measured.length) ** 2
+    return second if overlaid + exact < _BETTER * as_they_lie else first
 
 
 def _overlay(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
@@ -118,7 +121,7 @@ def _overlay(simulated: Polyline, measured: Polyline, *, start: bool, heading: b
 
 
 def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, heading: bool) -> tuple[float, Motion]:
-    """The answer from one beginning with its mean square (m²); infinite where there is none."""
+    """The answer from one beginning with its mean square over the share of places (m²), infinite without an answer."""
     size = math.inf
     for _ in range(_ROUNDS):
         local, found = _seen(path, places, motion)
@@ -135,7 +138,9 @@ def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, hea
             break
     if size > _GOOD_ENOUGH:
         return math.inf, motion
-    return float(np.mean(_seen(path, places, motion)[1].distance ** 2)), motion
+    found = _seen(path, places, motion)[1]
+    inside = ~found.beyond
+    return float(np.mean(found.distance[inside] ** 2) / inside.mean()) if inside.any() else math.inf, motion
 
 
 def _seen(path: Path, places: FloatArray, motion: Motion) -> tuple[FloatArray, NearestPlaces]:

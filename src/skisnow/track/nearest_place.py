@@ -155,11 +155,19 @@ def _split(places: FloatArray) -> FloatArray:
 
 
 def distance_beside(points: FloatArray, path: FloatArray) -> FloatArray:
-    """Distance (n,) of points (n, d) to the nearest place of a path through (m, d) (m); NaN beyond its ends.
+    """Distance (n,) of points (n, d) to the nearest place of a path through (m, d) (m).
+
+    NaN where there is none: ahead of the path's ends, at points that are not finite, and everywhere where the path is
+    all in one place.
 
     >>> path = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
     >>> distance_beside(np.array([[1.0, 2.0, 0.0], [2.0, 3.0, 0.0], [5.0, 3.0, 0.0]]), path)
     array([ 2.,  3., nan])
     """
-    found = Path(path).nearest(points)
-    return np.where(found.beyond, np.nan, found.distance)
+    distance = np.full(len(points), np.nan)
+    path = path[np.isfinite(path).all(axis=1)]
+    known = np.isfinite(points).all(axis=1)
+    if known.any() and np.any(path != path[:1]):
+        found = Path(path).nearest(points[known])
+        distance[known] = np.where(found.beyond, np.nan, found.distance)
+    return distance

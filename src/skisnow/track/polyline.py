@@ -47,8 +47,17 @@ class Polyline:
 
 def polyline(place: FloatArray, time: FloatArray) -> Polyline:
     """Join places (n, d) by straight pieces."""
+    return Polyline(place, time, way_along(place))
+
+
+def way_along(place: FloatArray) -> FloatArray:
+    """Length (n,) of the straight pieces through places (n, d) up to each of them (m).
+
+    >>> way_along(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 5.0]]))
+    array([0., 5., 6.])
+    """
     steps = np.linalg.norm(np.diff(place, axis=0), axis=1)
-    return Polyline(place, time, np.concatenate([[0.0], np.cumsum(steps)]))
+    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def interpolated(at: FloatArray, known: FloatArray, values: FloatArray) -> FloatArray:

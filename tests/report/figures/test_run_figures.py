@@ -17,10 +17,12 @@ from skisnow.report.figures.run_energies import run_energies, stacked_energies
 from skisnow.report.figures.run_grip import run_grip, used_share, used_share_of_skis
 from skisnow.report.figures.run_motion import drawn_radius, run_motion
 from skisnow.report.figures.run_track import beside_track, groove_corners, run_track
-from skisnow.report.figures.runs_compared import distance_to_path, loaded_ski, runs_compared, way
+from skisnow.report.figures.runs_compared import loaded_ski, runs_compared
 from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
 from skisnow.report.figures.track_band import TimedTrack, band_of, offsets, track_band
 from skisnow.simulate.run import Run
+from skisnow.track.nearest_place import distance_beside
+from skisnow.track.polyline import way_along
 
 from ..runs import RADIUS, SPEED, STANCE, circle_run
 
@@ -152,8 +154,8 @@ def test_distance_between_circles_of_one_centre() -> None:
     inner, outer = (
         np.stack([radius * np.cos(angle), radius * np.sin(angle), 0.0 * angle], axis=1) for radius in (12.0, 12.5)
     )
-    assert distance_to_path(outer, inner) == pytest.approx(np.full(2001, 0.5), abs=1e-6)
-    assert way(inner)[-1] == pytest.approx(12.0, rel=1e-6)
+    assert distance_beside(outer, inner) == pytest.approx(np.full(2001, 0.5), abs=1e-6)
+    assert way_along(inner)[-1] == pytest.approx(12.0, rel=1e-6)
 
 
 def test_compared_runs_are_held_against_the_first(run: Run) -> None:

@@ -10,6 +10,8 @@ import numpy.typing as npt
 from matplotlib.lines import Line2D
 
 from ...simulate.scenario import Profile
+from ...track.nearest_place import distance_beside
+from ...track.polyline import way_along
 from ...units import MM
 from ..symbols import figure_text
 from .run_track import plan_axes, plan_height_mm, track_limits
@@ -73,32 +75,11 @@ def _look(place: int) -> dict[str, Any]:
 def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
     (first, reference), *others = named
     for place, (_, run) in enumerate(others, start=1):
-        axes.plot(way(run.place), distance_to_path(run.place, reference.place), **_look(place))
+        axes.plot(way_along(run.place), distance_beside(run.place, reference.place), **_look(place))
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("way along the track (m)")
     axes.set_ylabel(f"distance from the track (m)\nof {mathtext(first)}")
-
-
-def way(place: FloatArray) -> FloatArray:
-    """Length of the path up to each of its points (n, 3), (n,) (m)."""
-    steps = np.linalg.norm(np.diff(place, axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def distance_to_path(points: FloatArray, path: FloatArray) -> FloatArray:
-    """Distance (n,) of points (n, 3) to the nearest place of a path of straight pieces through (k, 3), k ≥ 2 (m).
-
-    >>> distance_to_path(np.array([[1.0, 2.0, 0.0], [5.0, 3.0, 0.0]]), np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]]))
-    array([2.        , 4.24264069])
-    """
-    start, along = path[:-1], np.diff(path, axis=0)
-    squared = np.maximum((along**2).sum(axis=1), 1e-300)  # two points in one place: the distance to either
-    found = np.empty(len(points))
-    for place, point in enumerate(points):
-        share = np.clip(((point - start) * along).sum(axis=1) / squared, 0.0, 1.0)
-        found[place] = np.sqrt(((start + share[:, None] * along - point) ** 2).sum(axis=1).min())
-    return found
 
 
 def _depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
