@@ -93,7 +93,9 @@ def _compared(options: argparse.Namespace) -> Comparison:
         from ..track.comparison import compared
 
         measured = _read(options.measured)
-        simulated = _read(options.simulated, origin=measured.origin)
+        simulated = _read(options.simulated)
+        if simulated.origin is not None and measured.origin is not None:  # one plane for both
+            simulated = _read(options.simulated, origin=measured.origin)
         tracks = [_in_slope(track, options) for track in (simulated, measured)]
         time_from = options.time_from and options.time_from.replace("-", "_")
         return compared(*tracks, fit=fit, time_from=time_from, from_above=options.from_above)

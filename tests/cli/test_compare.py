@@ -1,0 +1,147 @@
+"""`skisnow compare` as a user meets it, on tracks whose distances are known by hand."""
+
+import json
+import math
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+
+import skisnow.track
+from skisnow.cli import main
+
+SCHEMA = json.loads((files(skisnow.track) / "schemas" / "compare.schema.json").read_text(encoding="utf-8"))
+NUMBERS = {"max_m", "mean_m", "rms_m", "max_share", "mean_share", "rms_share"}
+Printed = pytest.CaptureFixture[str]
+
+
+def answer(words: list[str], printed: Printed) -> Any:
+    assert main(["compare", *words, "--json"]) == 0
+    found = json.loads(printed.readouterr().out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
+    jsonschema.validate(found, SCHEMA)
+    assert all(set(found[kind]) >= NUMBERS for kind in ("nearest", "arc_length", "time"))
+    return found
+
+
+def write(path: Path, place: Any, *, first_time: float = 0.0, speed: float = 5.0) -> Path:
+    """Places (n, 2 or 3), passed at one speed."""
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(place, axis=0), axis=1))])
+    rows = np.column_stack([first_time + way / speed, place])
+    header = ",".join(["time_s", "x_m", "y_m", "z_m"][: rows.shape[1]])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join([header, *(",".join(map(repr, row)) for row in rows.tolist())]) + "\n", encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def straight(tmp_path: Path) -> Path:
+    return write(tmp_path / "straight.csv", np.column_stack([np.linspace(0.0, 40.0, 81), np.zeros((81, 2))]))
+
+
+def test_numbers_shares_and_places(straight: Path, capsys: Printed) -> None:
+    """A line turned by 0.01 rad: 40 m · sin at the end; the share is of the measured 40 m."""
+    line = 40.0 * np.linspace(0.0, 1.0, 7)[:, None] * [math.cos(0.01), math.sin(0.01), 0.0]
+    found = answer([str(write(straight.parent / "a" / "track.csv", line).parent), str(straight)], capsys)
+    nearest = found["nearest"]
+    assert nearest["max_m"] == pytest.approx(40.0 * math.sin(0.01), rel=1e-9)
+    assert nearest["max_share"] == pytest.approx(math.sin(0.01), rel=1e-9)
+    assert nearest["mean_share"] == pytest.approx(math.sin(0.01) / 2.0, rel=1e-9)
+    assert nearest["rms_share"] == pytest.approx(math.sin(0.01) / math.sqrt(3.0), rel=1e-9)
+    assert nearest["max_at_m"] == pytest.approx(40.0)
+    assert (found["dimensions"], found["fitted"]) == (3, None)
+    assert found["measured"] == {"name": str(straight), "length_m": pytest.approx(40.0)}
+
+
+def test_every_number_has_its_definition_beside_it(straight: Path, capsys: Printed) -> None:
+    shifted = write(straight.parent / "late.csv", [[0.0, 0.25, 0.0], [40.0, 0.25, 0.0]], first_time=0.2)
+    assert main(["compare", str(shifted), str(straight)]) == 0
+    told = capsys.readouterr().out
+    for words in (
+        "nearest place: from each place of the measured track",
+        "equal arc length: between the places that both tracks reach after the same way",
+        "equal time: between the places where both are at the same time, counted from zero of the seconds",
+        "integrals over the measured track's length",
+        "largest 0.250 m, 0.62 % of the measured track's length",
+        "largest 1.03 m",  # √(1² + 0.25²): 0.2 s at 5 m/s
+    ):
+        assert words in told
+    assert "Fitted" not in told
+
+
+def test_what_cannot_be_compared_is_null_with_a_reason(straight: Path, capsys: Printed) -> None:
+    other = write(straight.parent / "other.csv", [[0.0, 0.25, 0.0], [40.0, 0.25, 0.0]], first_time=500.0)
+    found = answer([str(straight), str(other)], capsys)
+    assert all(found["time"][key] is None for key in NUMBERS)
+    assert "begins 500 s later" in found["time"]["reason"]
+    by_first_point = answer([str(straight), str(other), "--time-from", "first-point"], capsys)
+    assert by_first_point["time"]["max_m"] == pytest.approx(0.25)
+
+
+def test_a_fit_is_told_with_what_was_before(straight: Path, capsys: Printed) -> None:
+    way = np.linspace(0.0, 40.0, 200)
+    place = np.column_stack([way, 3.0 * np.sin(way / 5.0), 0.1 * way])
+    one = write(straight.parent / "one.csv", place)
+    two = write(straight.parent / "two.csv", place + np.array([1.0, -0.5, 0.25]), first_time=3.0)
+    found = answer([str(one), str(two), "--fit-offset", "start,time"], capsys)
+    fitted = found["fitted"]
+    assert fitted["what"] == ["start", "time"]
+    moved = [fitted[f"moved_{axis}_m"] for axis in "xyz"]
+    assert moved == pytest.approx([1.0, -0.5, 0.25], abs=1e-6)
+    assert (fitted["turned_deg"], fitted["later_s"]) == pytest.approx((0.0, -3.0), abs=1e-6)
+    assert found["time"]["max_m"] < 1e-5
+    assert fitted["before"]["arc_length"]["max_m"] == pytest.approx(math.sqrt(1.0 + 0.25 + 0.0625))
+    assert main(["compare", str(one), str(two), "--fit-offset", "start"]) == 0
+    told = capsys.readouterr().out
+    assert "Fitted: start." in told
+    assert "start by x 1.00 m, y -0.500 m, z 0.250 m" in told
+    assert "before" in told
+
+
+def test_out_writes_the_json_and_the_figure(straight: Path, tmp_path: Path, capsys: Printed) -> None:
+    folder = tmp_path / "new" / "folder"
+    found = answer([str(straight), str(straight), "--out", str(folder)], capsys)
+    assert json.loads((folder / "compare.json").read_text(encoding="utf-8")) == found
+    assert (folder / "track_comparison.png").read_bytes().startswith(b"\x89PNG")
+    assert "<svg" in (folder / "track_comparison.svg").read_text(encoding="utf-8")
+
+
+def test_latitude_and_longitude_come_into_the_slopes_frame(tmp_path: Path, capsys: Printed) -> None:
+    """A run due north over y m on the map is y/cos 10° long on a slope of 10°; no heights: it lies on the slope."""
+    metres = np.linspace(0.0, 30.0, 31)
+    e_squared, sine = 0.00669437999, math.sin(math.radians(47.0))
+    degree = math.radians(6378137.0 * (1.0 - e_squared) / (1.0 - e_squared * sine**2) ** 1.5)  # meridian's radius
+    rows = [f"{t},{47.0 + y / degree!r},11.0" for t, y in enumerate(metres.tolist())]
+    (tmp_path / "north.csv").write_text("\n".join(["time,lat,lon", *rows]), encoding="utf-8")
+    run = write(tmp_path / "run.csv", np.column_stack([metres / math.cos(math.radians(10.0)), 0.0 * metres]))
+    frame = ["--fall-line-azimuth-deg", "0", "--slope-angle-deg", "10"]
+    found = answer([str(run), str(tmp_path / "north.csv"), *frame], capsys)
+    # the earth falls away from the plane by 30²/(2 · 6.4e6) m, 0.07 mm
+    assert found["nearest"]["max_m"] < 1e-4
+    assert found["arc_length"]["max_m"] < 1e-4
+    assert found["measured"]["length_m"] == pytest.approx(30.0 / math.cos(math.radians(10.0)), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "told"),
+    [
+        (["--fit-offset", "scale"], 1, "'scale' is no offset that can be fitted; start, heading, time are"),
+        (["--slope-angle-deg", "10"], 2, "needs --fall-line-azimuth-deg"),
+    ],
+)
+def test_wrong_words(words: list[str], status: int, told: str, straight: Path, capsys: Printed) -> None:
+    try:
+        assert main(["compare", str(straight), str(straight), *words]) == status
+    except SystemExit as left:
+        assert left.code == status
+    assert told in capsys.readouterr().err
+
+
+def test_another_country_and_a_missing_file(straight: Path, capsys: Printed) -> None:
+    far = write(straight.parent / "far.csv", [[0.0, 5000.0, 0.0], [40.0, 5000.0, 0.0]])
+    assert main(["compare", str(far), str(straight)]) == 1
+    assert "nowhere nearer than 5 km" in capsys.readouterr().err
+    assert main(["compare", str(straight), str(straight.parent / "none.csv")]) == 1
+    assert "none.csv" in capsys.readouterr().err
