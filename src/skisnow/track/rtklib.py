@@ -41,7 +41,7 @@ VELOCITIES: Final = {
     "earth_centred": ("vx", "vy", "vz"),
     "baseline": ("ve", "vn", "vu"),
 }
-HEADER: Final = re.compile(r"^%\s*(GPST|UTC|JST)?\s*[,;]?\s*(latitude|x-ecef|e-baseline)", re.MULTILINE)
+HEADER: Final = re.compile(r"^%[ \t]*(GPST|UTC|JST)?[ \t,;]*(latitude|x-ecef|e-baseline).*", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +68,8 @@ def read_rtklib(text: str, name: str) -> Recording:
     FieldDataError
         The header line is missing, a row is shorter than it, or a cell is no number or time.
     """
-    lines = text.splitlines()
-    header = _header(text, name)
+    lines = re.split(r"\r\n|\r|\n", text)
+    header = _header("\n".join(lines), name)
     base = _base(lines, header)
     numbered = [
         (row, line) for row, line in enumerate(lines, start=1) if line.strip() and line.lstrip()[0] not in "%+$"
@@ -115,8 +115,7 @@ def _header(text: str, name: str) -> _Header:
             allowed="a header line such as: %  GPST  latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m)",
             action="Switch the output of the header on in RTKLIB, and solve again.",
         )
-    line = text[found.start() :].splitlines()[0]
-    first = found[2]
+    line, first = found[0], found[2]
     kind = next(kind for kind, names in PLACES.items() if names[0] == first)
     after = line[line.index(first) :]
     unit = re.match(r"[\w-]+\((.*?)\)(.)?", after)

@@ -78,7 +78,7 @@ def cells_of(text: str, name: str) -> Cells:
     lines = re.split(r"\r\n|\r|\n", text)
     named = re.fullmatch(r'"?sep=([,;\t])"?', lines[0].strip(" "), re.IGNORECASE)
     first = 1 if named else 0
-    header_line = next((line for line in lines[first:] if line.strip(" ,;\t")), None)
+    header_line = next((line for line in lines[first:] if re.sub('[,;"]', "", line).strip()), None)
     if header_line is None:
         raise refusal("empty_file", name, allowed="a header and rows", action="The file is empty.")
     separator = named[1] if named else max(SEPARATORS, key=header_line.count)

@@ -1,0 +1,91 @@
+"""Tracks from GPX."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from . import metres_per_degree
+from .test_read_table import read, refused
+
+HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n<gpx version="1.1" creator="a watch" xmlns="http://www.topografix.com/GPX/1/1"'
+EXTENSIONS = ' xmlns:gpxtpx="http://www.garmin.com/xmlschemas/TrackPointExtension/v2">'
+
+
+def point(lat: float, second: str, inside: str = "<ele>1500.5</ele>") -> str:
+    return f'<trkpt lat="{lat}" lon="11.0">{inside}<time>2022-12-27T15:51:{second}</time></trkpt>'
+
+
+def gpx(*segments: str, head: str = HEAD + EXTENSIONS) -> str:
+    return f"{head}<trk>{''.join(f'<trkseg>{segment}</trkseg>' for segment in segments)}</trk></gpx>"
+
+
+def test_places_times_heights(tmp_path: Path) -> None:
+    content = gpx(point(47.0, "14Z") + point(47.0001, "14.500Z", ""), point(47.0, "30+00:00"))
+    for name in ("a.gpx", "export.txt"):
+        track = read(tmp_path, content, name)
+        assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
+        assert track.time_scale == "UTC"
+        np.testing.assert_array_equal(track.time, [0.0, 0.5, 16.0])
+        stretched = 1e-4 * metres_per_degree.north(47.0) * (1 + 1500.5 / 6.37e6)
+        np.testing.assert_allclose(track.place[1, :2], [0.0, stretched], atol=2e-5)
+        assert track.marked == {"missing_height": 1}
+        assert np.isnan(track.speed).all()
+        assert "above mean sea level" in track.frame
+
+
+@pytest.mark.parametrize(
+    "extension",
+    [
+        "<gpxtpx:TrackPointExtension><gpxtpx:hr>120</gpxtpx:hr><gpxtpx:speed>7.25</gpxtpx:speed>"
+        "</gpxtpx:TrackPointExtension>",
+        "<speed>7.25</speed>",
+    ],
+)
+def test_speed_of_extensions(tmp_path: Path, extension: str) -> None:
+    content = gpx(
+        f'<trkpt lat="47" lon="11"><time>2022-12-27T15:51:14Z</time><extensions>{extension}</extensions></trkpt>'
+    )
+    assert read(tmp_path, content, "a.gpx").speed.tolist() == [7.25]
+
+
+def test_speed_of_version_1_0(tmp_path: Path) -> None:
+    head = '<gpx version="1.0" creator="a logger" xmlns="http://www.topografix.com/GPX/1/0">'
+    content = gpx(point(47.0, "14Z", "<speed>6.5</speed>"), head=head)
+    assert read(tmp_path, content, "a.gpx").speed.tolist() == [6.5]
+
+
+def test_no_fix(tmp_path: Path) -> None:
+    track = read(tmp_path, gpx(point(47.0, "14Z") + point(47.0, "15Z", "<fix>none</fix>")), "a.gpx")
+    assert track.marked["no_fix"] == 1
+    assert track.usable.tolist() == [True, False]
+
+
+def test_other_encoding(tmp_path: Path) -> None:
+    content = gpx(point(47.0, "14Z")).replace("UTF-8", "UTF-16").replace("a watch", "eine Uhr für Schi")
+    assert len(read(tmp_path, content.encode("utf-16"), "a.gpx")) == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (gpx(point(47.0, "14Z") + '<trkpt lat="47" lon="11"/>'), ["not_a_time", "point 2, column time"]),
+        (gpx(point(47.0, "99Z")), ["not_a_time", "point 1, column time"]),
+        (gpx(point(400.0, "14Z")), ["out_of_range", "point 1, column latitude", "'400'"]),
+        (gpx(point(47.0, "14Z") + point(47.0, "13Z")), ["time_backwards", "point 2", "15:51:13"]),
+        (gpx(point(47.0, "14Z", "<ele>high</ele>")), ["unreadable_file", "high"]),
+        (gpx(""), ["empty_file"]),
+        (gpx(point(47.0, "14Z"))[:-30], ["unreadable_file", "ends too early"]),
+        (
+            gpx(point(47.0, "14Z", "<extensions><speed>7,5</speed></extensions>")),
+            ["not_a_number", "point 1, column speed", "'7,5'"],
+        ),
+    ],
+)
+def test_refused(tmp_path: Path, content: str, told: list[str]) -> None:
+    message = refused(tmp_path, content, "a.gpx")
+    for words in told:
+        assert words in message
