@@ -110,7 +110,7 @@ def _remarks(motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...
 
 
 def summary_dict(summary: TrackSummary) -> Json:
-    """The JSON of `skisnow track`: nothing rounded, null for what is unknown or infinite."""
+    """The JSON of `skisnow track`; its JSON Schema is schemas/track.schema.json. Null: unknown or infinite."""
     smoothed = summary.motion.smoothed
     return {
         "schema_version": SCHEMA_VERSION,

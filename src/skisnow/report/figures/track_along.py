@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
+WALKING: Final = 2.0
+"""Speed (m/s) from which a radius is drawn (Choice)."""
 KILOMETRE: Final = 1000.0
 """Metres in a kilometre."""
 _IN_KILOMETRES: Final = 3000.0
@@ -28,9 +30,8 @@ _IN_KILOMETRES: Final = 3000.0
 _RADII: Final = (2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 2000, 5000)
 _TICKS: Final = 3
 """Radii named on each side of the axis."""
-_SAMPLES: Final = 200
-_SHARE_SHOWN: Final = 98.0
-"""Percentage of the way in runs whose curvature is inside the axis."""
+_SHARE_SHOWN: Final = 0.98
+"""Share of the way in runs whose curvature is inside the axis."""
 _NEIGHBOURS: Final = 0.18
 """Least distance of two named radii, as a share of half the axis."""
 
@@ -82,16 +83,16 @@ def _speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], wa
 
 def _height(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], way: FloatArray) -> None:
     axes.plot(way[numbers], _parted(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
-    words = {"east_north_up": "height (m)", "slope": "out of the slope\n$z$ (m)", "file": "$z$ (m)"}
+    words = {"east_north_up": "height above\nthe origin (m)", "slope": "out of the slope\n$z$ (m)", "file": "$z$ (m)"}
     axes.set_ylabel(words[summary.track.axes])
 
 
 def _radius(axes: Axes, summary: TrackSummary, way: FloatArray) -> None:
     """The curvature with its interval, its axis named by radii: a straight path lies at 0, where no radius could."""
-    motion = summary.motion
+    motion, ridden = summary.motion, _ridden_curvature(summary)
     for run in summary.day.runs:
         numbers = drawn_points(run.first, run.last)
-        curvature, half = _parted(summary, numbers, motion.curvature), INTERVAL_FACTOR * motion.curvature_sd[numbers]
+        curvature, half = _parted(summary, numbers, ridden), INTERVAL_FACTOR * motion.curvature_sd[numbers]
         axes.fill_between(way[numbers], curvature - half, curvature + half, color=PALE, alpha=0.7, linewidth=0.0)
         axes.plot(way[numbers], curvature, color=BLUE, linewidth=0.8)
     reach = curvature_reach(summary)
@@ -103,17 +104,24 @@ def _radius(axes: Axes, summary: TrackSummary, way: FloatArray) -> None:
     axes.set_ylabel("turn radius (m),\nleft above, right below")
 
 
+def _ridden_curvature(summary: TrackSummary) -> FloatArray:
+    """The curvature where the track is faster than a walk; slower, feet make it and not skis."""
+    return np.where(summary.motion.speed >= WALKING, summary.motion.curvature, np.nan)
+
+
 def curvature_reach(summary: TrackSummary) -> float:
     """Where the axis of the curvature ends (1/m): above that of nearly all of the way, whatever happens near a rest."""
-    motion, found = summary.motion, []
+    ridden = np.abs(_ridden_curvature(summary))
+    steps = np.gradient(summary.motion.way)
+    inside = np.zeros(len(ridden), dtype=bool)
     for run in summary.day.runs:
-        inside = slice(run.first, run.last + 1)
-        even = np.linspace(motion.way[run.first], motion.way[run.last], _SAMPLES)
-        known = np.isfinite(motion.curvature[inside])
-        if known.any():
-            found.append(np.interp(even, motion.way[inside][known], np.abs(motion.curvature[inside][known])))
-    greatest = float(np.percentile(found, _SHARE_SHOWN)) if found else 0.0
-    return max(1.25 * greatest, 1.0 / _RADII[-1])
+        inside[run.first : run.last + 1] = True
+    order = np.argsort(ridden)[: int(np.count_nonzero(np.isfinite(ridden)))]  # unknown ones come last
+    order = order[inside[order]]
+    ways = np.cumsum(steps[order])
+    if not len(order) or ways[-1] <= 0.0:
+        return 1.0 / _RADII[-1]
+    return max(1.25 * float(ridden[order[np.searchsorted(ways, _SHARE_SHOWN * ways[-1])]]), 1.0 / _RADII[-1])
 
 
 def named_radii(reach: float) -> list[int]:

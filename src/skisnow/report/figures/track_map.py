@@ -82,12 +82,14 @@ def _line(axes: Axes, summary: TrackSummary, first: int, last: int, **look: obje
 
 
 def _turns(axes: Axes, summary: TrackSummary) -> None:
-    time = summary.motion.time
+    usable = summary.track.usable
+    time, place = summary.motion.time[usable], summary.track.place[usable]
     for turn in summary.turns:
-        first, last = (int(np.searchsorted(time, moment)) for moment in (turn.start, turn.end))
+        inside = (time > turn.start) & (time < turn.end)
         colour = BLUE if turn.direction == "left" else VERMILLION
-        _line(axes, summary, first, min(last, len(time) - 1), color=colour, linewidth=1.3, zorder=4)
-    x, y = (np.interp(switch_times(summary), time, summary.motion.smoothed.place[:, axis]) for axis in (0, 1))
+        x, y = (np.interp([turn.start, *time[inside], turn.end], time, place[:, axis]) for axis in (0, 1))
+        axes.plot(x, y, color=colour, linewidth=1.3, zorder=4)
+    x, y = (np.interp(switch_times(summary), time, place[:, axis]) for axis in (0, 1))
     axes.plot(x, y, linestyle="none", marker="o", markersize=3.0, color=BLACK, zorder=5)
 
 

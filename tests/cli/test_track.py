@@ -1,0 +1,77 @@
+"""`skisnow track` as a user meets it."""
+
+import json
+from importlib.resources import files
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+
+import skisnow.track
+from skisnow.cli import main
+
+from ..track.paths import NOISE, circle
+
+SCHEMA = json.loads((files(skisnow.track) / "schemas" / "track.schema.json").read_text(encoding="utf-8"))
+Printed = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def turn(tmp_path: Path) -> Path:
+    """5 s on a circle of 15 m to the left at 8 m/s, 10 Hz."""
+    place = circle(15.0, 8.0, duration=5.0) + NOISE * np.random.default_rng(3).standard_normal((51, 2))
+    rows = [f"{0.1 * number:.1f},{x:.4f},{y:.4f}" for number, (x, y) in enumerate(place)]
+    path = tmp_path / "turn.csv"
+    path.write_text("\n".join(["time_s,x_m,y_m", *rows, ""]), encoding="utf-8")
+    return path
+
+
+def test_json_is_the_contract(turn: Path, capsys: Printed) -> None:
+    assert main(["track", str(turn), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
+    jsonschema.validate(found, SCHEMA)
+    assert found["points"] == 51
+    assert found["distance_m"] == pytest.approx(40.0, rel=0.01)
+    assert len(found["runs"]) == len(found["turns"]) == 1
+    assert found["turns"][0]["turned_angle_deg"] == pytest.approx(np.degrees(40.0 / 15.0), rel=0.05)
+
+
+def test_print_defines_its_numbers(turn: Path, capsys: Printed) -> None:
+    assert main(["track", str(turn)]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("turn.csv\n")
+    for words in ("51 in 5", "length of the smoothed track", "is halved", "A run is a stretch in motion", "1 turn\n"):
+        assert words in printed
+
+
+def test_figures_and_json_are_written(turn: Path, tmp_path: Path, capsys: Printed) -> None:
+    out = tmp_path / "out"
+    assert main(["track", str(turn), "--json", "--out", str(out)]) == 0
+    assert json.loads((out / "track.json").read_text(encoding="utf-8")) == json.loads(capsys.readouterr().out)
+    written = sorted(path.name for path in (out / "figures").iterdir())
+    assert written == ["along.png", "along.svg", "map.png", "map.svg"]
+
+
+def test_window_and_noise_are_obeyed(turn: Path, capsys: Printed) -> None:
+    assert main(["track", str(turn), "--json", "--window-s", "2", "--noise-m", "0.05"]) == 0
+    smoothing = json.loads(capsys.readouterr().out)["smoothing"]
+    assert (smoothing["window_s"], smoothing["place_noise_m"]) == (2.0, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [(["--window-s", "0"], "window = 0 s"), (["--window-s", "0.2"], "no window of 0.2 s holds six usable points")],
+)
+def test_bad_numbers_are_told_in_a_sentence(turn: Path, capsys: Printed, words: list[str], told: str) -> None:
+    assert main(["track", str(turn), *words]) == 1
+    assert told in capsys.readouterr().err
+
+
+def test_few_points_and_missing_files_are_told_in_a_sentence(turn: Path, tmp_path: Path, capsys: Printed) -> None:
+    short = tmp_path / "short.csv"
+    short.write_text("\n".join(turn.read_text(encoding="utf-8").splitlines()[:5]) + "\n", encoding="utf-8")
+    assert main(["track", str(short)]) == 1
+    assert "short.csv: 4 usable points" in capsys.readouterr().err
+    assert main(["track", str(tmp_path / "absent.csv")]) == 1
+    assert "absent.csv" in capsys.readouterr().err

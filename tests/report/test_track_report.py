@@ -1,0 +1,105 @@
+"""The figures and the words of a measured track."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.report.figures.style import journal_style
+from skisnow.report.figures.track_along import named_radii, track_along
+from skisnow.report.figures.track_map import drawn_points, switch_times, track_map
+from skisnow.report.track_report import write_track_report
+from skisnow.report.track_summary import track_text
+from skisnow.track.summary import TrackSummary, summary_dict, track_summary
+
+from ..track.paths import NOISE, along, circle, track
+
+
+def slalom() -> TrackSummary:
+    way = 0.01 * np.arange(6001)
+    return track_summary(track(along(np.sin(np.pi * way / 15.0) / 12.0, 0.01)[::100], noise=NOISE))
+
+
+def test_map_has_equal_scales_and_its_turns() -> None:
+    summary = slalom()
+    with journal_style():
+        axes = track_map(summary).axes[0]
+    assert axes.get_aspect() == 1.0
+    assert switch_times(summary) == pytest.approx([1.5, 3.0, 4.5], abs=0.06)
+    dots = [line for line in axes.lines if line.get_marker() == "o"]
+    assert len(np.asarray(dots[0].get_xdata())) == 3
+
+
+def test_radius_axis_is_even_in_curvature() -> None:
+    """At its tick of 15 m the axis stands at 1/15; the drawn curve is the curvature."""
+    summary = slalom()
+    with journal_style():
+        axes = track_along(summary).axes[-1]
+    ticks = dict(zip(axes.get_yticks(), (label.get_text() for label in axes.get_yticklabels()), strict=True))
+    assert ticks[0.0] == "straight"
+    for place, text in ticks.items():
+        assert text == "straight" or abs(place) == pytest.approx(1.0 / float(text))
+    drawn = np.asarray(axes.lines[0].get_ydata(), dtype=float)
+    assert np.nanmax(drawn) == pytest.approx(1.0 / 12.0, rel=0.15)
+
+
+@pytest.mark.parametrize("reach", [0.5, 0.1, 0.03, 0.001])
+def test_named_radii_lie_inside_and_apart(reach: float) -> None:
+    radii = named_radii(reach)
+    places = np.array([1.0 / radius / reach for radius in radii])
+    assert 1 <= len(radii) <= 3
+    assert places.max() <= 1.0
+    assert np.all(np.diff(places) < -0.17)
+
+
+def test_height_has_a_panel_only_where_it_is() -> None:
+    made = track(circle(15.0, 8.0))
+    with journal_style():
+        assert len(track_along(track_summary(made)).axes) == 2
+        made.place[:, 2] = -0.2 * np.arange(len(made))
+        assert len(track_along(track_summary(made)).axes) == 3
+
+
+def test_gap_is_a_hole_in_the_line() -> None:
+    made = track(circle(15.0, 8.0))
+    made.time[40:] += 20.0
+    with journal_style():
+        axes = track_map(track_summary(made)).axes[0]
+    assert np.isnan(np.asarray(axes.lines[0].get_xdata(), dtype=float)).sum() == 1
+
+
+def test_long_lines_are_thinned_with_both_ends() -> None:
+    numbers = drawn_points(7, 1_000_006)
+    assert (numbers[0], numbers[-1], len(numbers)) == (7, 1_000_006, 20_000)
+    assert drawn_points(3, 5).tolist() == [3, 4, 5]
+
+
+def test_files_are_written_and_the_same_each_time(tmp_path: Path) -> None:
+    summary = slalom()
+    written = write_track_report(summary, tmp_path / "one")
+    write_track_report(summary, tmp_path / "two")
+    assert written == tmp_path / "one" / "track.json"
+    names = sorted(path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*.*"))
+    assert len(names) == 5
+    for name in names:
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+
+
+def test_name_with_markup_is_text(tmp_path: Path) -> None:
+    summary = slalom()
+    named = replace(summary, track=replace(summary.track, name="a $b_c <i>.csv"))
+    write_track_report(named, tmp_path)
+    assert track_text(summary_dict(named)).startswith("a $b_c <i>.csv\n")
+
+
+def test_text_counts_and_defines() -> None:
+    values = summary_dict(slalom())
+    values["marked"] = {"repeated_time": 2}
+    text = track_text(values, mark_sentences={"repeated_time": "Twice the same."})
+    assert "marked repeated time: 2. Twice the same." in text
+    assert re.search(r"\n4 turns\nA turn is", text)
+    assert len(re.findall(r"^ +\d+\.\d +\d+\.\d +(left|right)", text, flags=re.MULTILINE)) == 4
+    many = values | {"turns": values["turns"] * 20}
+    assert "and 40 more" in track_text(many)

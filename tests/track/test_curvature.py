@@ -1,0 +1,130 @@
+"""Heading, curvature and radius on a circle, a clothoid and a straight line; coverage of their intervals."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from skisnow.track.curvature import running_mean, track_motion
+
+from .paths import NOISE, FloatArray, along, circle, track
+
+RADIUS, SPEED = 15.0, 8.0
+
+
+@pytest.mark.parametrize("radius", [RADIUS, -RADIUS])
+def test_circle_without_noise(radius: float) -> None:
+    """A window of 0.8 s sees ±0.21 rad of the circle: 1/14 of its square less acceleration, 0.3 %."""
+    motion = track_motion(track(circle(radius, SPEED)), window=0.8)
+    assert motion.curvature[5:-5] == pytest.approx(np.full(71, 1.0 / radius), rel=5e-3)
+    assert motion.turn_radius[5:-5] == pytest.approx(np.full(71, radius), rel=5e-3)
+    assert motion.heading == pytest.approx(SPEED * motion.time / radius, abs=2e-3)
+    assert motion.speed == pytest.approx(np.full(81, SPEED), rel=2e-3)
+    assert motion.way[-1] == pytest.approx(SPEED * 8.0, rel=2e-3)  # chords of 0.8 m are 1/8000 short, then smoothing
+    assert np.all(np.diff(motion.heading) * radius > 0.0)  # more than a whole turn, without a jump
+
+
+def test_intervals_on_a_noisy_circle_cover_as_often_as_they_say() -> None:
+    """One point of each of 400 tracks, 0.95 ± 0.0109 by chance: three of these either way."""
+    covered = {"heading": 0, "curvature": 0, "radius": 0}
+    for seed in range(400):
+        motion = track_motion(track(circle(RADIUS, SPEED, duration=6.0), noise=NOISE, seed=seed))
+        point = 15 + seed % 30
+        low, high = (float(end[point]) for end in motion.curvature_interval())
+        least, greatest = (float(end[point]) for end in motion.turn_radius_interval())
+        apart = motion.heading[point] - SPEED * motion.time[point] / RADIUS
+        covered["heading"] += abs(apart) < 1.96 * motion.heading_sd[point]
+        covered["curvature"] += low < 1.0 / RADIUS < high
+        covered["radius"] += least < RADIUS < greatest
+    for share in (count / 400.0 for count in covered.values()):
+        assert share == pytest.approx(0.95, abs=0.033)
+
+
+def test_standard_errors_are_those_of_repeated_tracks() -> None:
+    """At the end of a track, where they are largest, and inside; 300 tracks tell a standard deviation within 4 %."""
+    found = [
+        track_motion(track(circle(RADIUS, SPEED), noise=NOISE, seed=seed), place_noise=NOISE) for seed in range(300)
+    ]
+    for point in (0, 2, 40):
+        curvature = np.array([motion.curvature[point] for motion in found])
+        heading = np.array([motion.heading[point] for motion in found])
+        assert np.std(curvature) == pytest.approx(np.median([m.curvature_sd[point] for m in found]), rel=0.15)
+        assert np.std(heading) == pytest.approx(np.median([m.heading_sd[point] for m in found]), rel=0.15)
+
+
+def test_standard_error_inside_is_that_of_the_textbook() -> None:
+    """720 σ²/(N T⁴) for many points; for nine at 0.1 s Σ over the second orthogonal polynomial gives 4/308 σ²/Δt⁴."""
+    speed = 10.0
+    straight = np.stack([speed * 0.1 * np.arange(80), np.zeros(80)], axis=1)
+    motion = track_motion(track(straight), window=0.8, place_noise=NOISE)
+    weights = np.array([28.0, 7.0, -8.0, -17.0, -20.0, -17.0, -8.0, 7.0, 28.0]) / 462.0  # Savitzky and Golay, Table
+    assert motion.curvature_sd[40] == pytest.approx(NOISE * np.linalg.norm(weights) / 0.1**2 / speed**2, rel=1e-6)
+    slopes = np.array([86.0, -142.0, -193.0, -126.0, 0.0, 126.0, 193.0, 142.0, -86.0]) / 1188.0  # their cubic ones
+    assert motion.heading_sd[40] == pytest.approx(NOISE * np.linalg.norm(slopes) / 0.1 / speed, rel=1e-6)
+
+
+def test_straight_line_may_be_straight() -> None:
+    """Its radius is infinite within the interval at 95 % of points; 5 % over some 30 independent windows may not be."""
+    straight = np.stack([10.0 * 0.1 * np.arange(300), np.zeros(300)], axis=1)
+    motion = track_motion(track(straight, noise=NOISE, seed=3))
+    least, greatest = motion.turn_radius_interval()
+    assert np.mean(np.isinf(greatest)) > 0.85
+    assert np.median(least) > 100.0
+
+
+def test_clothoid_has_a_curvature_that_grows_with_the_way() -> None:
+    step, growth = 0.005, 0.002
+    way: FloatArray = step * np.arange(12_001.0)
+    fine = along(growth * way, step)
+    made = track(fine[::200])  # 1 m each 0.1 s
+    motion = track_motion(made, window=0.8)
+    inside = slice(4, -4)
+    assert motion.curvature[inside] == pytest.approx(growth * way[::200][inside], rel=0.02, abs=1e-4)
+    assert motion.heading[inside] == pytest.approx(growth * way[::200][inside] ** 2 / 2.0, abs=3e-3)
+
+
+def test_recorded_speed_comes_before_the_places() -> None:
+    place = circle(RADIUS, SPEED)
+    motion = track_motion(track(place, speed=np.full(len(place), 9.0)))
+    assert motion.speed.tolist() == [9.0] * len(place)
+    assert (motion.speed_source, motion.way_source) == ("recorded", "recorded speed")
+    assert motion.way[-1] == pytest.approx(9.0 * 8.0)
+    assert motion.curvature[40] == pytest.approx(1.0 / RADIUS, rel=5e-3)  # a path's shape knows no clock
+
+
+def test_odometer_comes_first() -> None:
+    made = track(circle(RADIUS, SPEED), speed=np.full(81, 9.0))
+    odometer = 100.0 + np.linspace(0.0, 50.0, 81)
+    odometer[30] = np.nan
+    motion = track_motion(replace(made, odometer=odometer))
+    assert motion.way_source == "odometer"
+    assert motion.way[-1] - motion.way[0] == pytest.approx(50.0)
+    assert motion.way[30] == pytest.approx(100.0 + 50.0 * 30 / 80)
+
+
+def test_recorded_velocity_gives_speed_and_way() -> None:
+    made = track(circle(RADIUS, SPEED))
+    angle = SPEED * made.time / RADIUS
+    velocity = SPEED * np.stack([np.cos(angle), np.sin(angle), np.full_like(angle, 0.75)], axis=1)
+    motion = track_motion(replace(made, velocity=velocity))
+    assert motion.speed == pytest.approx(np.full(81, 1.25 * SPEED))
+    assert motion.way[-1] == pytest.approx(1.25 * SPEED * 8.0)
+
+
+def test_way_over_a_gap_is_straight() -> None:
+    straight = np.stack([np.arange(60.0), np.zeros(60)], axis=1)
+    straight[30:, 0] += 100.0
+    made = track(straight, speed=np.full(60, 10.0))
+    motion = track_motion(replace(made, time=made.time + np.where(np.arange(60) >= 30, 100.0, 0.0)))
+    assert motion.way[-1] == pytest.approx(159.0)  # not 10 m/s over 100 s
+
+
+def test_nobody_heads_anywhere_at_rest() -> None:
+    motion = track_motion(track(np.zeros((50, 2)), noise=NOISE))
+    assert np.isnan(motion.heading).all()
+    assert np.isnan(motion.curvature).all()
+
+
+def test_running_mean_knows_only_what_is_known() -> None:
+    time, values = np.arange(5.0), np.array([1.0, np.nan, 3.0, 5.0, 10.0])
+    assert running_mean(time, values, 2.0).tolist() == pytest.approx([1.0, np.nan, 4.0, 6.0, 7.5], nan_ok=True)

@@ -1,0 +1,128 @@
+"""Runs and lifts of made-up days whose truth is known."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from skisnow.track.curvature import track_motion
+from skisnow.track.runs import Day, split_day
+from skisnow.track.track import Axes, Track
+
+from .paths import FloatArray
+
+
+class Leg(NamedTuple):
+    """So long (s), with such a speed (m/s), climbing so fast (m/s)."""
+
+    duration: int
+    speed: float
+    climb: float
+
+
+LIFT, REST, RUN, QUEUE = Leg(300, 2.0, 0.5), Leg(60, 0.0, 0.0), Leg(100, 10.0, -1.5), Leg(80, 0.4, 0.0)
+
+
+def day(legs: list[Leg], *, height_noise: float = 0.3, recorded: bool = True, axes: Axes = "east_north_up") -> Track:
+    """A straight path at 1 Hz."""
+    speed = np.concatenate([[legs[0].speed], *(np.full(leg.duration, leg.speed) for leg in legs)])
+    climb = np.concatenate([[0.0], *(np.full(leg.duration, leg.climb) for leg in legs)])
+    random = np.random.default_rng(7)
+    x = np.cumsum(speed)
+    height = np.cumsum(climb) + height_noise * random.standard_normal(len(x))
+    place = np.stack([x + 0.05 * random.standard_normal(len(x)), np.zeros(len(x)), height], axis=1)
+    unknown: FloatArray = np.full(len(x), np.nan)
+    return Track("day", np.arange(float(len(x))), place, speed if recorded else unknown, "UTC", "made up", axes=axes)
+
+
+def split(track: Track) -> Day:
+    return split_day(track, track_motion(track))
+
+
+@pytest.mark.parametrize("recorded", [True, False])
+def test_day_of_three_runs(recorded: bool) -> None:
+    """A cycle is 540 s; a run begins when the rest at the top ends, 360 s into it, and takes 100 s."""
+    found = split(day([*([LIFT, REST, RUN, QUEUE] * 3)], recorded=recorded))
+    assert found.told_by == "height"
+    assert len(found.runs) == len(found.lifts) == 3
+    for number, (run, lift) in enumerate(zip(found.runs, found.lifts, strict=True)):
+        begin = 540.0 * number
+        assert run.start == pytest.approx(begin + 360.0, abs=1.0 if recorded else 5.0)  # 8 s of smoothing
+        assert run.end == pytest.approx(begin + 460.0, abs=2.0 if recorded else 6.0)
+        assert run.distance == pytest.approx(1000.0, abs=15.0)
+        assert run.descent == pytest.approx(150.0, abs=2.5)
+        assert run.max_speed == pytest.approx(10.0, abs=0.01 if recorded else 1.0)  # cubics overshoot a jump by 8 %
+        assert lift.start == pytest.approx(begin, abs=25.0)  # 2 % of the height and a running mean of 15 s
+        assert lift.end == pytest.approx(begin + 300.0, abs=25.0)
+        assert lift.descent == pytest.approx(-150.0, abs=12.0)
+
+
+def test_rest_on_the_slope_does_not_end_a_run() -> None:
+    found = split(day([LIFT, REST, RUN, REST, REST, RUN._replace(duration=50), QUEUE]))
+    assert len(found.runs) == 1
+    assert found.runs[0].end - found.runs[0].start == pytest.approx(270.0, abs=3.0)
+
+
+def test_hump_that_speed_carries_over_is_no_lift() -> None:
+    """At 20 m/s one rolls 20.4 m up."""
+    fast = Leg(30, 20.0, -3.0)
+    hump = Leg(10, 18.0, 1.8)
+    found = split(day([LIFT, REST, fast, hump, fast, QUEUE]))
+    assert len(found.runs) == len(found.lifts) == 1
+    slow = Leg(60, 2.0, 0.3)
+    assert len(split(day([LIFT, REST, RUN, slow, REST, RUN, QUEUE])).runs) == 2
+
+
+def test_short_run_is_one_run() -> None:
+    whole = day([Leg(50, 0.8, -0.1)], height_noise=0.01)
+    short = replace(whole, time=0.1 * whole.time, speed=10.0 * whole.speed)
+    found = split(short)
+    assert found.told_by == "motion"
+    (run,) = found.runs
+    assert (run.start, run.end) == (0.0, 5.0)
+    assert run.distance == pytest.approx(40.0, rel=0.01)
+    assert run.descent == pytest.approx(5.0, abs=0.1)
+    assert found.lifts == ()
+
+
+def test_single_steep_run_without_a_lift_is_whole() -> None:
+    found = split(day([Leg(40, 12.0, -3.0)]))
+    (run,) = found.runs
+    assert (run.start, run.end) == (0.0, 40.0)
+
+
+def test_without_heights_stretches_in_motion_are_runs_and_it_is_said() -> None:
+    made = day([RUN, REST, RUN, Leg(10, 0.0, 0.0), RUN])
+    made.place[:, 2] = np.nan
+    found = split(made)
+    assert len(found.runs) == 2
+    assert [run.descent for run in found.runs] == [None, None]
+    assert "No heights" in found.remarks[0]
+    assert found.runs[1].end - found.runs[1].start == pytest.approx(210.0, abs=2.0)
+
+
+def test_axis_out_of_the_slope_is_no_height() -> None:
+    found = split(day([RUN], axes="slope"))
+    assert found.runs[0].descent is None
+    assert "slope" in found.remarks[0]
+    level = split(day([Leg(100, 10.0, 0.0)], height_noise=0.01, axes="file"))
+    assert level.runs[0].descent is None
+    assert "third axis" in level.remarks[0]
+
+
+def test_standing_still_has_no_run() -> None:
+    assert split(day([REST, REST])).runs == ()
+
+
+def test_height_that_drifts_while_someone_stands_is_no_run() -> None:
+    assert split(day([REST, Leg(600, 0.01, -0.05), REST])).runs == ()
+
+
+def test_gap_inside_a_run_is_counted() -> None:
+    made = day([LIFT, REST, RUN, QUEUE])
+    keep = np.r_[0:400, 420 : len(made)]
+    cut = Track("cut", made.time[keep], made.place[keep], made.speed[keep], "UTC", "made up", axes="east_north_up")
+    found = split(cut)
+    assert [run.gaps for run in found.runs] == [1]
+    assert found.runs[0].distance == pytest.approx(1000.0, abs=15.0)
