@@ -14,7 +14,7 @@ from skisnow.errors import FieldDataError
 from skisnow.track.marks import MARKS
 from skisnow.track.read import read_track
 
-from .receivers import fit_file, nav_pvt
+from .receivers import fit_checksum, fit_file, nav_pvt, sentence, ubx_frame
 from .test_read_fit import RECORDS
 from .test_read_gpx import gpx, point
 from .test_read_nmea import gga, rmc
@@ -119,6 +119,48 @@ def test_anything_at_all(tmp_path: Path, kind: str, data: bytes) -> None:
 def test_any_numbers(tmp_path: Path, cells: list[tuple[float | str, ...]], header: str) -> None:
     path = tmp_path / "numbers.csv"
     path.write_text("\n".join([header, *(",".join(map(str, row)) for row in cells)]))
+    require_track_or_our_error(path)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(payload=st.binary(max_size=110), whole=st.integers(0, 3))
+@example(payload=b"", whole=1)
+def test_messages_sealed_with_a_right_checksum(tmp_path: Path, payload: bytes, whole: int) -> None:
+    path = tmp_path / "a.ubx"
+    size = {0: len(payload), 1: 92, 2: 84, 3: 10}[whole]
+    path.write_bytes(nav_pvt() + ubx_frame(b"\x01\x07", payload.ljust(size, b"\x07")[:size]))
+    require_track_or_our_error(path)
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    kind=st.sampled_from(["GGA", "GNS", "RMC", "VTG", "GST", "ZDA", "GSV", "ABC"]),
+    cells=st.lists(
+        st.one_of(
+            st.sampled_from(
+                ["", "155114.20", "4714.07", "N", "E", "A", "1", "-1", "nan", "1e999", "271222", "S", "99"]
+            ),
+            st.text(st.characters(min_codepoint=33, max_codepoint=126, exclude_characters="*,$"), max_size=8),
+        ),
+        max_size=16,
+    ),
+)
+@example(kind="GNS", cells=["155114.20"])
+@example(kind="ZDA", cells=["155114.20", "99", "99", "1"])
+def test_sentences_sealed_with_a_right_checksum(tmp_path: Path, kind: str, cells: list[str]) -> None:
+    path = tmp_path / "a.nmea"
+    path.write_bytes(gga() + sentence(",".join([f"GN{kind}", *cells])) + gga("155115.00"))
+    require_track_or_our_error(path)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(damage=damages())
+def test_fit_files_sealed_with_right_checksums(tmp_path: Path, damage: Damage) -> None:
+    path = tmp_path / "a.fit"
+    body = damage(FILES["watch.fit"][14:-2])
+    head = FILES["watch.fit"][:4] + len(body).to_bytes(4, "little") + b".FIT"
+    sealed = head + fit_checksum(head).to_bytes(2, "little") + body
+    path.write_bytes(sealed + fit_checksum(sealed).to_bytes(2, "little"))
     require_track_or_our_error(path)
 
 

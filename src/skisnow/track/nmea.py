@@ -55,8 +55,7 @@ class _Epoch:
         if kind in ("GGA", "GNS"):
             self._take_place(message)
             self.height, self.separation = _number(message, "alt"), _number(message, "sep")
-            valid = _number(message, "quality") > 0 if kind == "GGA" else bool(set(message.posMode) - {"N"})
-            self.fix = self.fix and valid
+            self.fix = self.fix and _has_fix(message)
         elif kind == "RMC":
             if not self.seen & {"GGA", "GNS"}:
                 self._take_place(message)
@@ -190,6 +189,13 @@ def _heights(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]
     if np.isfinite(height).any() and np.isfinite(separation[np.isfinite(height)]).all():
         return height + separation, "above the ellipsoid (mean sea level and the geoid's separation of the sentences)"
     return height, "above mean sea level, as recorded"
+
+
+def _has_fix(message: Any) -> bool:
+    """Whether GGA has a quality above 0, or GNS a mode other than N for any satellites."""
+    if message.msgID == "GGA":
+        return _number(message, "quality") > 0.0
+    return bool(set(getattr(message, "posMode", "")) - {"N"})
 
 
 def _number(message: Any, name: str) -> float:

@@ -20,6 +20,8 @@ from .trouble import refusal
 
 SYNC: Final = b"\xb5\x62"
 NAV_PVT: Final = b"\x01\x07"
+LENGTHS: Final = (84, 92)
+"""Of NAV-PVT in bytes: of u-blox 7, and of all later receivers; a request for the message has none."""
 _HEAD, _CHECKSUM = 6, 2
 _NO_FIX: Final = (0, 5)  # none; time only
 
@@ -75,7 +77,7 @@ def read_ubx(data: bytes, name: str) -> Recording:
 
 def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
     """Every NAV-PVT with its offset; counts frames that are damaged."""
-    from pyubx2 import UBXReader, calc_checksum
+    from pyubx2 import VALNONE, UBXReader, calc_checksum
 
     at = data.find(SYNC)
     while at >= 0:
@@ -85,8 +87,8 @@ def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
         if end > len(data) or calc_checksum(body) != data[end - _CHECKSUM : end]:
             counts["messages with a wrong checksum or cut short"] += 1
             end = at + len(SYNC)
-        elif body[:2] == NAV_PVT and length:
-            yield at, UBXReader.parse(data[at:end])
+        elif body[:2] == NAV_PVT and length in LENGTHS:
+            yield at, UBXReader.parse(data[at:end], validate=VALNONE)
         at = data.find(SYNC, end)
 
 
