@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
@@ -15,6 +15,9 @@ from .keys import SCENARIO_KEYS, SECTIONS
 
 PATH_KEYS: Final = ("slope.profile", "snow.results", "ski.file")
 """Keys that name a file."""
+
+IDENTIFY: Final = "identify"
+"""The section that says what is looked for."""
 
 _BARE: Final = {name.split(".")[1]: name for name in SCENARIO_KEYS}
 _SNOW_WAYS: Final = {
@@ -46,12 +49,15 @@ class GivenScenario:
         By full names, each in its range.
     folders
         Where relative paths start, for each key that names a file.
+    identify
+        The section ``[identify]`` as it stands in the file: what may be looked for, which a run does not heed.
     """
 
     title: str
     file: Path | None
     values: Mapping[str, InputValue]
     folders: Mapping[str, Path]
+    identify: Mapping[str, Any] = field(default_factory=dict)
 
     def path(self, name: str) -> Path:
         """The place of the file that a key names."""
@@ -78,7 +84,7 @@ class GivenScenario:
         values = {name: value for name, value in self.values.items() if name not in gone} | new
         folders = dict(self.folders)
         folders.update((name, folder or Path()) for name in PATH_KEYS if name in new)
-        return GivenScenario(self.title, self.file, values, folders)
+        return GivenScenario(self.title, self.file, values, folders, self.identify)
 
 
 def _replaced(name: str, value: InputValue) -> tuple[str, ...]:
@@ -145,12 +151,15 @@ def _given(title: str, file: Path | None, text: str) -> GivenScenario:
         parsed = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ParameterError(f"{title} is no TOML: {error}. Correct that place") from error
+    identify = parsed.pop(IDENTIFY, {})
+    if not isinstance(identify, dict):
+        raise ParameterError(f"{title}: {IDENTIFY} is {identify!r}; it must be a table, begun by the line [{IDENTIFY}]")
     try:
         values = in_ranges(flat(parsed))
     except ParameterError as error:
         raise ParameterError(f"{title}: {error}") from error
     folder = file.parent if file is not None else Path()
-    return GivenScenario(title, file, values, dict.fromkeys(PATH_KEYS, folder))
+    return GivenScenario(title, file, values, dict.fromkeys(PATH_KEYS, folder), identify)
 
 
 def flat(sections: Mapping[str, Any]) -> dict[str, object]:

@@ -1,0 +1,154 @@
+"""From files and a scenario to the data of one identification: frames, starts of runs, what is refused at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from ..errors import ParameterError
+from ..simulate.input_keys import nearest
+from ..simulate.scenario import ScenarioFile
+from ..simulate.scenario.given import GivenScenario
+from ..simulate.scenario.keys import SCENARIO_KEYS
+from ..track.track import Track
+from .data import Data, read_data
+from .free_keys import free_key
+from .marks import Marks
+from .observations import START
+from .photo_cells import PhotoCells
+from .track_frame import in_scenario_frame
+from .track_positions import Measured, first_motion, measured, require_near
+
+SNOW_NUMBERS: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
+
+
+@dataclass(frozen=True, slots=True)
+class Collected:
+    """The data of an identification by kind, with names of runs that are all different.
+
+    Attributes
+    ----------
+    tracks, cells, marks
+        What was measured.
+    starts
+        Values of ``start.…`` keys by run, from ``[identify.runs."NAME"]``.
+    fixed
+        Values of keys in every simulated run.
+    first_motions
+        Start keys as the first points of each track show them, where there are several.
+    warnings, methods
+        About the data.
+    """
+
+    tracks: tuple[Measured, ...]
+    cells: tuple[PhotoCells, ...]
+    marks: tuple[Marks, ...]
+    starts: Mapping[str, Mapping[str, float]]
+    fixed: Mapping[str, float]
+    first_motions: Mapping[str, Mapping[str, float]]
+    warnings: tuple[str, ...]
+    methods: tuple[str, ...]
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """Names of all runs."""
+        return tuple(each.name for each in self.tracks) + tuple(run.name for each in self.cells for run in each.runs)
+
+
+def collected(
+    given: GivenScenario, asked: ScenarioFile, data: Sequence[Data | str | Path], keys: Sequence[str]
+) -> Collected:
+    """Read what are paths, turn tracks into the slope's frame, and refuse what does not go with the scenario.
+
+    Raises
+    ------
+    ParameterError, FieldDataError
+        A file cannot be used; a track is of another place; a run is named that is not there.
+    """
+    if not data:
+        raise ParameterError("there are no data: name one or several files")
+    read = [read_data(each) if isinstance(each, str | Path) else each for each in data]
+    names = _Names()
+    methods: list[str] = []
+    tracks = []
+    for each in (each for each in read if isinstance(each, Track)):
+        track, told = in_scenario_frame(each, asked, given.identify.get("site"))
+        methods += told
+        tracks.append(measured(replace(track, name=names.of(each.name))))
+    cells = tuple(
+        replace(each, runs=tuple(replace(run, name=names.of(run.name)) for run in each.runs))
+        for each in read
+        if isinstance(each, PhotoCells)
+    )
+    runs = [each.name for each in tracks] + [run.name for each in cells for run in each.runs]
+    starts = _starts(given.identify.get("runs", {}), runs)
+    warnings = [_near(track, asked, starts, keys) for track in tracks]
+    return Collected(
+        tracks=tuple(tracks),
+        cells=cells,
+        marks=tuple(each for each in read if isinstance(each, Marks)),
+        starts=starts,
+        fixed={key: float(asked.values[key]) for key in SNOW_NUMBERS} if set(keys) & set(SNOW_NUMBERS) else {},
+        first_motions={track.name: first_motion(track) for track in tracks} if len(runs) > 1 else {},
+        warnings=tuple(text for text in warnings if text),
+        methods=tuple(dict.fromkeys(methods)),
+    )
+
+
+def values_to_begin_with(asked: ScenarioFile, data: Collected, given: Iterable[str]) -> dict[str, Any]:
+    """The scenario's values, and for runs with a start of their own what is said or seen of it."""
+    found = dict(asked.values)
+    said = set(given)
+    for run in data.runs:
+        own = {key: value for key, value in data.first_motions.get(run, {}).items() if key not in said}
+        found |= {f"{key}@{run}": value for key, value in {**own, **data.starts.get(run, {})}.items()}
+    if len(data.runs) == 1:
+        found |= data.starts.get(data.runs[0], {})
+    return found
+
+
+class _Names:
+    """Gives every run a name of its own."""
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+
+    def of(self, name: str) -> str:
+        """The name, with a number behind it where it is taken."""
+        clean = name.replace("@", "_")
+        free, number = clean, 2
+        while free in self._taken:
+            free, number = f"{clean}-{number}", number + 1
+        self._taken.add(free)
+        return free
+
+
+def _starts(table: object, runs: Sequence[str]) -> dict[str, dict[str, float]]:
+    if not isinstance(table, dict):
+        raise ParameterError(f'identify.runs is {table!r}; write [identify.runs."NAME"] with start keys below it')
+    found = {}
+    for run, entries in table.items():
+        if run not in runs:
+            raise ParameterError(f'[identify.runs."{run}"]: there is no such run. {nearest(run, runs)}')
+        if not isinstance(entries, dict):
+            raise ParameterError(f'identify.runs."{run}" is {entries!r}; it must be a table of start keys')
+        found[run] = dict(_start(run, word, value) for word, value in entries.items())
+    return found
+
+
+def _start(run: str, word: str, value: object) -> tuple[str, float]:
+    key = free_key(word if word.startswith(START) else f"{START}{word}")
+    number = SCENARIO_KEYS[key].in_range(value)
+    if not isinstance(number, float):
+        raise ParameterError(f'[identify.runs."{run}"]: {word} is {value!r}; it must be a number')
+    return key, number
+
+
+def _near(
+    track: Measured, asked: ScenarioFile, starts: Mapping[str, Mapping[str, float]], keys: Sequence[str]
+) -> str | None:
+    own = {**asked.values, **starts.get(track.name, {})}
+    free = {"start.x_m", "start.y_m"} <= set(keys)
+    return require_near(track, (float(own["start.x_m"]), float(own["start.y_m"])), start_is_free=free)

@@ -1,0 +1,45 @@
+"""A file of measurements, recognised by what stands in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TypeAlias
+
+from ..errors import ParameterError
+from ..track.track import Track
+from .marks import COLUMNS as MARK_COLUMNS
+from .marks import Marks, marks_of
+from .photo_cells import COLUMNS as CELL_COLUMNS
+from .photo_cells import PhotoCells, photo_cells_of
+from .table_file import read_table
+
+Data: TypeAlias = Track | PhotoCells | Marks
+
+
+def read_data(path: str | Path) -> Data:
+    """Read photo-cell times or marks, by their columns, or else a track.
+
+    Raises
+    ------
+    ParameterError, FieldDataError
+        The file cannot be read, or something in it is wrong; place and value are named.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise ParameterError(f"{path} cannot be read: there is no such file. Check the path")
+    if path.suffix.lower() in (".csv", ".txt", ".tsv"):
+        head = _head(path)
+        if "station_m" in head or set(CELL_COLUMNS) <= head:
+            return photo_cells_of(read_table(path))
+        if head & set(MARK_COLUMNS):
+            return marks_of(read_table(path))
+    from ..track.read import read_track
+
+    return read_track(path)
+
+
+def _head(path: Path) -> set[str]:
+    with path.open("rb") as stream:
+        first = stream.readline(4096).decode("utf-8-sig", errors="replace")
+    separator = max(",;\t", key=first.count)
+    return {cell.strip() for cell in first.split(separator)}

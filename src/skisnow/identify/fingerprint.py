@@ -1,0 +1,27 @@
+"""What finished simulations belong to."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from ..simulate.scenario.given import GivenScenario
+from ..simulate.scenario.reading import files_of
+from .track_positions import Measured
+
+
+def fingerprint(given: GivenScenario, tracks: Sequence[Measured]) -> str:
+    """The same for the same scenario, files that it names, times of the tracks, and version of skisnow.
+
+    Places do not count: a simulation does not know what it is held against.
+    """
+    values = json.dumps(sorted((name, value) for name, value in given.values.items()), default=str)
+    digest = hashlib.sha256(f"{version('skisnow')} {values}".encode())
+    for path in files_of(given):
+        if path != given.file:
+            digest.update(path.read_bytes())
+    for track in tracks:
+        digest.update(track.time.tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,193 @@
+"""Intervals by other ways than curvature: profile, bootstrap, posterior."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import PchipInterpolator
+
+from ..statistics import percentile_interval
+from .identification import Identification, Identified, Interval, Profile
+from .parameter import Parameter, bounds_of
+from .result import Solution
+from .search import Search
+
+FloatArray = npt.NDArray[np.float64]
+Told = Callable[[str], None]
+
+PLACES: Final = (-3.0, -2.0, -1.0, 1.0, 2.0, 3.0)
+"""Of a profile, in standard errors from the best value."""
+REFITS: Final = 2
+"""Gauss-Newton steps of all other parameters at each place, with the Jacobian of the best one."""
+
+
+def profiled(found: Identification, solution: Solution, told: Told) -> Identification:
+    """Hold each parameter at several values, fit all others anew, and see how the sum of squares rises.
+
+    Notes
+    -----
+    The interval ends where the rise is the square of the factor of the interval by curvature: 3.84 with stated noise.
+    """
+    known = solution.known()
+    if known is None:
+        return found
+    limit = known.factor**2 * (solution.widening**2)
+    profiles, parameters = [], list(found.parameters)
+    for j, parameter in enumerate(solution.problem.parameters):
+        told(f"profile of {parameter.name}")
+        error = float(known.standard_errors[j])
+        if not np.isfinite(error):
+            continue
+        place, rise = _along(solution, j, error)
+        profile = Profile(parameter.key, np.array([parameter.value(float(u)) for u in place]), rise, limit)
+        profiles.append(profile)
+        ends = _ends(solution.found.place[j], place, rise, limit)
+        parameters[j] = replace(parameters[j], profile_interval=_as_values(parameter, ends))
+    told_how = f"profiles: others fitted anew by {REFITS} Gauss-Newton steps at each value"
+    return replace(found, profiles=tuple(profiles), parameters=tuple(parameters), methods=(*found.methods, told_how))
+
+
+def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatArray]:
+    """Places of parameter j in sizes, rising, and the rise of the sum of squares; the best one among them."""
+    problem, found = solution.problem, solution.found
+    lower, upper = bounds_of(problem.parameters)
+    centre = found.place
+    ends = np.unique(np.clip(centre[j] + error * np.array(PLACES), lower[j], upper[j]))
+    ends = ends[np.abs(ends - centre[j]) > 1e-9]
+    assert found.jacobian is not None
+    begun = [_moved(solution, j, float(end)) for end in ends]
+    costs = np.full(len(ends), np.inf)
+    for _ in range(REFITS):
+        asked = problem.residuals(begun)
+        for i, residuals in enumerate(asked):
+            if residuals is None:
+                continue
+            costs[i] = min(costs[i], float(residuals @ residuals))
+            begun[i] = _refitted(solution, j, begun[i], residuals)
+    for i, residuals in enumerate(problem.residuals(begun)):
+        if residuals is not None:
+            costs[i] = min(costs[i], float(residuals @ residuals))
+    middle = problem.residuals([centre])[0]
+    least = float(middle @ middle) if middle is not None else found.cost
+    places = np.concatenate([ends, [centre[j]]])
+    rise = np.concatenate([costs - least, [0.0]])
+    order = np.argsort(places)
+    return places[order], rise[order]
+
+
+def _moved(solution: Solution, j: int, end: float) -> FloatArray:
+    """The place with parameter j at `end`, the others where the linear model has its least."""
+    found = solution.found
+    assert found.jacobian is not None
+    place = found.place.copy()
+    place[j] = end
+    away = found.residuals + found.jacobian[:, j] * (end - found.place[j])
+    return _refitted(solution, j, place, away)
+
+
+def _refitted(solution: Solution, j: int, place: FloatArray, residuals: FloatArray) -> FloatArray:
+    jacobian = solution.found.jacobian
+    assert jacobian is not None
+    others = np.array([i for i in range(len(place)) if i != j], dtype=int)
+    if not len(others):
+        return place
+    lower, upper = bounds_of(solution.problem.parameters)
+    part = Search(lambda _: [], lower[others], upper[others], solution.manner)
+    from .search import Found
+
+    step = part._step(Found(place[others], residuals, jacobian[:, others]), 1e-9)
+    moved = place.copy()
+    moved[others] = np.clip(place[others] + step, lower[others], upper[others])
+    return moved
+
+
+def _ends(best: float, place: FloatArray, rise: FloatArray, limit: float) -> tuple[float | None, float | None]:
+    """Where the signed root of the rise passes that of the limit; None where it does not."""
+    root = np.sign(place - best) * np.sqrt(np.maximum(rise, 0.0))
+    known = np.isfinite(root)
+    place, root = place[known], np.maximum.accumulate(root[known])
+    rising = np.concatenate([[True], np.diff(root) > 0.0])
+    place, root = place[rising], root[rising]
+    found: list[float | None] = []
+    for target in (-np.sqrt(limit), np.sqrt(limit)):
+        inside = len(root) > 1 and root[0] <= target <= root[-1]
+        found.append(float(PchipInterpolator(root, place)(target)) if inside else None)
+    return found[0], found[1]
+
+
+def _as_values(parameter: Parameter, ends: tuple[float | None, float | None]) -> Interval:
+    low, high = (None if end is None else parameter.value(end) for end in ends)
+    return low, high
+
+
+def bootstrapped(found: Identification, solution: Solution, resamples: int, rng: np.random.Generator) -> Identification:
+    """Resample stretches of residuals and fit each sample by the model linearised at the best values.
+
+    Notes
+    -----
+    Stretches have the length of the cube root of a series, 3 at least: noise that wanders keeps its nature. Refitting by
+    simulation would take hundreds of searches; what is nonlinear shows in the profile.
+    """
+    jacobian = solution.found.jacobian
+    if jacobian is None or solution.degrees_of_freedom < 1:
+        return found
+    inverse = np.linalg.pinv(jacobian, rcond=1e-9)
+    data = sum(solution.problem.lengths)
+    series = [length for each in solution.problem.observations for length in each.series]
+    inflated = np.sqrt(data / max(solution.degrees_of_freedom, 1))
+    places = np.empty((resamples, len(solution.found.place)))
+    fitted = solution.found.residuals
+    lower, upper = bounds_of(solution.problem.parameters)
+    for b in range(resamples):
+        drawn = np.zeros_like(fitted)
+        drawn[:data] = inflated * _resampled(fitted[:data], series, rng)
+        drawn[data:] = rng.standard_normal(len(fitted) - data)
+        places[b] = np.clip(solution.found.place + inverse @ drawn, lower, upper)
+    samples = _in_values(solution, places)
+    intervals = percentile_interval(samples)
+    parameters = tuple(
+        replace(each, bootstrap_interval=(float(low), float(high)))
+        for each, (low, high) in zip(found.parameters, intervals, strict=True)
+    )
+    told = f"bootstrap: {resamples} resamples of stretches of residuals, each fitted by the model linearised at the best values"
+    return replace(found, bootstrap=samples, parameters=parameters, methods=(*found.methods, told))
+
+
+def _resampled(residuals: FloatArray, series: list[int], rng: np.random.Generator) -> FloatArray:
+    """Each series put together anew from stretches of it, its mean taken away."""
+    parts, first = [], 0
+    for length in series:
+        part = residuals[first : first + length] - float(np.mean(residuals[first : first + length]))
+        first += length
+        stretch = min(length, max(3, round(length ** (1.0 / 3.0))))
+        begin = rng.integers(0, length, size=-(-length // stretch))
+        places = (begin[:, None] + np.arange(stretch)).ravel()[:length] % length  # circular: all points equally often
+        parts.append(part[places])
+    return np.concatenate(parts)
+
+
+def _in_values(solution: Solution, places: FloatArray) -> FloatArray:
+    parameters = solution.problem.parameters
+    return np.array([[each.value(float(u)) for each, u in zip(parameters, row, strict=True)] for row in places])
+
+
+def with_posterior(
+    found: Identification, solution: Solution, samples: int, rng: np.random.Generator, told: Told
+) -> Identification:
+    """Sample the posterior with emcee, inside the bounds."""
+    from .posterior import posterior_places
+
+    places, how = posterior_places(solution, samples, rng, told)
+    if places is None:
+        return replace(found, warnings=(*found.warnings, how))
+    values = _in_values(solution, places)
+    intervals = percentile_interval(values)
+    parameters: list[Identified] = [
+        replace(each, posterior_interval=(float(low), float(high)))
+        for each, (low, high) in zip(found.parameters, intervals, strict=True)
+    ]
+    return replace(found, posterior=values, parameters=tuple(parameters), methods=(*found.methods, how))

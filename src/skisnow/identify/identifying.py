@@ -1,0 +1,209 @@
+"""The whole way from a scenario and files to identified parameters."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from ..errors import FitError, ParameterError
+from ..simulate.batch_file import KeptRows
+from ..simulate.scenario import ScenarioFile
+from ..simulate.scenario.given import GivenScenario, given_scenario
+from ..simulate.scenario.reading import resolved
+from .assembling import Collected, collected, values_to_begin_with
+from .data import Data
+from .fingerprint import fingerprint
+from .free_keys import free_keys
+from .identification import Effort, Identification
+from .mark_grooves import MarkGrooves, require_marks_can_be
+from .marks_alone import marks_alone
+from .observations import Observations, keys_of_runs
+from .parameter import Parameter
+from .parameter_table import fixed_by_given, given_parameters, parameter_table
+from .photo_cell_times import PhotoCellTimes
+from .problem import problem_of
+from .result import too_few
+from .run_simulation import RunSimulation
+from .simulations import Simulations
+from .solving import Asked, solved
+from .track_positions import TrackPositions
+
+_NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
+Told = Callable[[str], None]
+
+
+def identify(
+    scenario: str | Path | GivenScenario,
+    data: Sequence[Data | str | Path] | Data | str | Path,
+    free: str | Sequence[str] = (),
+    *,
+    changes: Mapping[str, object] = _NOTHING,
+    starts: int = 1,
+    profile: bool = False,
+    bootstrap: int = 0,
+    posterior: int = 0,
+    clock_is_free: bool | None = None,
+    rng: np.random.Generator | None = None,
+    workers: int | None = None,
+    kept: Path | None = None,
+    told: Told | None = None,
+) -> Identification:
+    """Find the parameters of a scenario that fit what was measured.
+
+    Parameters
+    ----------
+    scenario
+        A built-in name, the path of a file, or values as given.
+    data
+        Tracks, photo-cell times, marks left in the snow, or paths of files with these; several together.
+    free
+        Keys that are looked for, with or without section and unit; left out: those with a table ``[identify."KEY"]``.
+    changes
+        Other values of the scenario, as `skisnow.read_scenario` takes them.
+    starts
+        Searches, the first from the scenario's values, the others from random places about them.
+    profile
+        Whether intervals are also found by fitting all others anew along each parameter.
+    bootstrap, posterior
+        Numbers of resamples, and of samples of the posterior; 0: none.
+    clock_is_free
+        Whether each photo-cell run's clock has an offset of its own; None: as ``[identify] clock`` says, else not.
+    rng
+        Source of random numbers, for starts, bootstrap and posterior; left out, one with the seed 0.
+    workers
+        Processes that simulate; None: as many as this process has cores.
+    kept
+        File in which finished simulations are kept, and looked for first; None: nowhere.
+    told
+        Is told what is being done.
+
+    Returns
+    -------
+    Identification
+        Whatever the outcome. Ctrl-C keeps the best so far with the outcome "interrupted".
+
+    Raises
+    ------
+    ParameterError, FieldDataError
+        A name is unknown, bounds exclude the start, data are of another place or cannot be read.
+    FitError
+        Not even the start can be computed.
+
+    Notes
+    -----
+    Searches simulate with fixed steps of 1 ms; the last steps of the search and what is told of the answer are computed
+    with the scenario's own solver.
+    """
+    begun = time.monotonic()
+    given = (scenario if isinstance(scenario, GivenScenario) else given_scenario(scenario)).changed(changes)
+    asked = resolved(given)
+    own = given_parameters(given.identify)
+    keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in own))
+    if not keys:
+        raise ParameterError('nothing is looked for: name keys with --free, or write [identify."KEY"] in the scenario')
+    read = collected(given, asked, [data] if isinstance(data, Data) or isinstance(data, str | Path) else data, keys)
+    parameters = parameter_table(keys_of_runs(keys, read.runs), values_to_begin_with(asked, read, own), own)
+    simulate = RunSimulation(given, tuple(track.time for track in read.tracks))
+    rows = KeptRows() if kept is None else KeptRows.opened(kept, fingerprint(given, read.tracks))
+    say = told or _silent
+    counted = _Counted(say)
+    with Simulations(simulate, rows, workers, counted) as simulations:
+        observations = _observations(asked, read, simulations, clock_is_free=_clock(given, clock_is_free))
+        _require_used(keys, observations)
+        plan = Asked(
+            title=given.title,
+            starts=starts,
+            profile=profile,
+            bootstrap=bootstrap,
+            posterior=posterior,
+            rng=np.random.default_rng(0) if rng is None else rng,
+            told=counted.about,
+            warnings=(*read.warnings, *_fixed(keys, own)),
+            methods=read.methods,
+        )
+        found = _found(parameters, observations, plan)
+        return replace(
+            found,
+            effort=replace(
+                found.effort,
+                simulations=simulations.computed,
+                kept_simulations=simulations.found,
+                wall_s=time.monotonic() - begun,
+            ),
+        )
+
+
+def _found(parameters: tuple[Parameter, ...], observations: tuple[Observations, ...], plan: Asked) -> Identification:
+    problem = problem_of(parameters, observations)
+    if not problem.priors and problem.points < len(parameters) + problem.nuisances + (not problem.accuracy_is_stated):
+        return too_few(problem, plan.title, plan.warnings)
+    only = observations[0]
+    if len(observations) == 1 and isinstance(only, MarkGrooves):
+        return marks_alone(parameters, only, plan)
+    return solved(problem, plan)
+
+
+def _observations(
+    asked: ScenarioFile, read: Collected, simulations: Simulations, *, clock_is_free: bool
+) -> tuple[Observations, ...]:
+    found: list[Observations] = []
+    if read.tracks:
+        found.append(TrackPositions(read.tracks, simulations, read.fixed, read.starts))
+    found += [PhotoCellTimes(each, asked, read.starts, clock_is_free) for each in read.cells]
+    for each in read.marks:
+        require_marks_can_be(asked)
+        found.append(MarkGrooves(each, asked))
+    return tuple(found)
+
+
+def _clock(given: GivenScenario, asked: bool | None) -> bool:
+    said = given.identify.get("clock", "start")
+    if said not in ("start", "free"):
+        raise ParameterError(f'[identify] clock is {said!r}; it must be "start" or "free"')
+    return said == "free" if asked is None else asked
+
+
+def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> None:
+    for key in keys:
+        if not any(each.depends_on(key) for each in observations):
+            kinds = " and ".join(dict.fromkeys(each.kind.replace("_", " ") for each in observations))
+            raise ParameterError(f"--free: {key} plays no part in {kinds}. Leave it out, or add data that depend on it")
+
+
+def _fixed(keys: Sequence[str], own: Mapping[str, object]) -> tuple[str, ...]:
+    fixed = fixed_by_given(keys, own)
+    if not fixed:
+        return ()
+    return (f"{', '.join(fixed)} stand under [identify] and are not looked for: they keep the scenario's values",)
+
+
+@dataclass(slots=True)
+class _Counted:
+    """What is being done, with the number of simulated runs."""
+
+    say: Told
+    doing: str = "starting"
+    runs: int = 0
+
+    def __call__(self, runs: int) -> None:
+        """Take note of a finished run."""
+        self.runs = runs
+        self.say(f"{self.doing}; {runs} simulated runs")
+
+    def about(self, doing: str) -> None:
+        """Take note of what is being done."""
+        self.doing = doing
+        self.say(f"{doing}; {self.runs} simulated runs" if self.runs else doing)
+
+
+def _silent(_text: str) -> None:
+    return
+
+
+__all__ = ["Effort", "FitError", "Identification", "identify"]

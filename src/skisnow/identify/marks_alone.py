@@ -1,0 +1,139 @@
+"""Marks without a track: whether the edge held or slid decides what they say of S_f."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from scipy.stats import chi2, norm
+
+from .identification import REASONS, Identification, Identified
+from .mark_grooves import STRENGTH, MarkGrooves
+from .parameter import Parameter
+from .problem import problem_of
+from .result import identification_of, too_few
+from .solving import Asked, _Solver, solved
+
+SLID: Final = 0.01
+"""Probability below which marks are not those of an edge that held (Choice)."""
+_ONE_SIDED: Final = 0.95
+
+
+def marks_alone(parameters: Sequence[Parameter], marks: MarkGrooves, plan: Asked) -> Identification:
+    """Identify from marks.
+
+    Notes
+    -----
+    Where S_f is looked for, the marks are first held against a ski whose edge holds, without S_f. If they go with it,
+    S_f can be anything above what the turn needed: a bound from below, no value. If the path is wider than the ski
+    carves by itself beyond chance (1 %), the edge slid: then S_f is what it gave.
+    """
+    strength = next((each for each in parameters if each.key == STRENGTH), None)
+    if strength is None:
+        return solved(problem_of(tuple(parameters), (marks,)), plan)
+    others = tuple(each for each in parameters if each is not strength)
+    if _slid(others, marks, plan):
+        return _sliding(tuple(parameters), strength, marks, plan)
+    return _holding(others, tuple(parameters), strength, marks, plan)
+
+
+def _slid(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Asked) -> bool:
+    """Whether the measured radius is larger than that of an edge that holds, beyond chance."""
+    if not math.isfinite(marks.mean_radius):
+        return False
+    if not others:
+        residuals, values, dof = marks.residuals([{}])[0], {}, marks.points
+    else:
+        problem = problem_of(others, (marks,))
+        if problem.points <= len(others):
+            return False
+        solution = _Solver(problem, replace(plan, starts=1, told=lambda _: None)).solution()
+        values = problem.values(solution.found.place)
+        residuals, dof = marks.residuals([values])[0], problem.points - len(others)
+    groove = marks.groove(values)
+    if residuals is None or groove is None:
+        return False
+    worse = float(chi2.sf(float(residuals @ residuals), dof)) < SLID
+    return worse and marks.mean_radius > groove.turn_radius
+
+
+def _sliding(parameters: tuple[Parameter, ...], strength: Parameter, marks: MarkGrooves, plan: Asked) -> Identification:
+    sliding = replace(marks, slides=True)
+    begin = sliding.strength_for({}, marks.mean_radius)
+    own = strength
+    if begin is not None and strength.lower < begin < strength.upper:
+        own = replace(strength, start=begin)
+    chosen = tuple(own if each is strength else each for each in parameters)
+    told = (
+        "the radius is wider than this ski carves at this edge angle: the edge slid, and S_f follows from the side force "
+        "that the turn needed; the width, swept sideways, was not used"
+    )
+    problem = problem_of(chosen, (sliding,))
+    plan = replace(plan, methods=(*plan.methods, told))
+    if problem.points < len(chosen):
+        return too_few(problem, plan.title, plan.warnings)
+    return solved(problem, plan)
+
+
+def _holding(
+    others: tuple[Parameter, ...],
+    parameters: tuple[Parameter, ...],
+    strength: Parameter,
+    marks: MarkGrooves,
+    plan: Asked,
+) -> Identification:
+    """Identify the others; S_f is bounded from below by what the turn needed."""
+    problem = problem_of(others, (marks,))
+    solution = _Solver(problem, plan).solution()
+    found = identification_of(solution, plan.title, plan.warnings, plan.methods)
+    values = {key: value for key, value in found.values.items() if value is not None}
+    bound, low = _bound(marks, values, found)
+    told = (
+        "the marks go with an edge that held, so S_f is bounded from below alone: the turn "
+        + (
+            f"needed {bound:.3g} N/mm² (95 %: at least {low:.3g})"
+            if bound is not None and low is not None
+            else "says nothing"
+        )
+        + ". A turn in which the edge slides, or a shear test, gives its value"
+    )
+    held = Identified(parameter=strength, interval=(low, None), identifiable=False)
+    entries = {each.parameter.key: each for each in found.parameters} | {STRENGTH: held}
+    p = len(parameters)
+    places = [i for i, each in enumerate(parameters) if each is not strength]
+    correlation, covariance = (np.full((p, p), np.nan) for _ in range(2))
+    correlation[np.ix_(places, places)] = found.correlation
+    covariance[np.ix_(places, places)] = found.covariance
+    outcome = "interrupted" if found.outcome == "interrupted" else "not_identifiable"
+    return replace(
+        found,
+        outcome=outcome,
+        reason=REASONS[outcome],
+        parameters=tuple(entries[each.key] for each in parameters),
+        correlation=correlation,
+        covariance=covariance,
+        warnings=(told, *found.warnings),
+    )
+
+
+def _bound(marks: MarkGrooves, values: dict[str, float], found: Identification) -> tuple[float | None, float | None]:
+    """S_f that the turn needed (N/mm²), and the lower end of its one-sided 95 % interval."""
+    radius = marks.mean_radius
+    bound = marks.strength_for(values, radius) if math.isfinite(radius) else None
+    if bound is None:
+        return None, None
+    keys = [each.parameter.key for each in found.parameters]
+    slopes = []
+    for key in keys:
+        step = 0.01 * values[key]
+        moved = marks.strength_for({**values, key: values[key] + step}, radius)
+        slopes.append(0.0 if moved is None or step == 0.0 else (moved - bound) / step)
+    slope = np.array(slopes)
+    wider = marks.strength_for(values, radius + marks.mean_radius_sd)
+    variance = (0.0 if wider is None else (wider - bound) ** 2) + float(
+        slope @ np.nan_to_num(found.covariance, posinf=0.0) @ slope if keys else 0.0
+    )
+    return bound, max(bound - float(norm.ppf(_ONE_SIDED)) * math.sqrt(variance), 0.0)

@@ -1,0 +1,113 @@
+"""One simulated run of a search: from values of keys to places and speeds at the times that were measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicHermiteSpline
+
+from ..errors import SkisnowError
+from ..simulate.batch_file import Row
+from ..simulate.carve_answer import Sources
+from ..simulate.run import Run
+from ..simulate.scenario import Scenario, Solver, Stop
+from ..simulate.scenario.given import GivenScenario
+from ..simulate.scenario.reading import resolved
+
+FloatArray = npt.NDArray[np.float64]
+
+SEARCH_STEP: Final = 1e-3
+"""Fixed step (s) of ROS2 in a search: a few mm off after 46 m on soft snow (Choice)."""
+OUTPUT_INTERVAL: Final = 0.02
+"""Between the outputs (s) that a cubic with their velocities goes through: 0.2 m at 10 m/s, exact to 0.1 mm on R = 5 m."""
+_AFTER_THE_LAST: Final = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class RunTask:
+    """What one simulated run is asked.
+
+    Attributes
+    ----------
+    values
+        By the scenario's keys.
+    run
+        Number of the track.
+    final
+        Whether with the accuracy of the answer: the scenario's own solver.
+    """
+
+    values: Mapping[str, float]
+    run: int
+    final: bool
+
+
+@dataclass(slots=True)
+class RunSimulation:
+    """Simulates what tracks are held against. An instance can be handed to another process.
+
+    Attributes
+    ----------
+    given
+        The scenario.
+    times
+        For each track the times (s) that are wanted, rising, from the start.
+    """
+
+    given: GivenScenario
+    times: tuple[FloatArray, ...]
+    _sources: Sources = field(init=False, default_factory=Sources)
+
+    def __call__(self, task: RunTask) -> Row:
+        """Lists x_m, y_m, speed_m_per_s at the times, and how many of these the run reached; or why there is none."""
+        from ..simulate.simulated_run import simulated_run
+
+        try:
+            scenario = self._scenario(task)
+            run = simulated_run(scenario)
+        except SkisnowError as error:
+            return {"outcome": "error", "reason": str(error)}
+        if run.outcome == "interrupted":  # half a run is none: the search is what was interrupted
+            raise KeyboardInterrupt
+        return _row(run, self.times[task.run])
+
+    def _scenario(self, task: RunTask) -> Scenario:
+        asked = resolved(self.given.changed(task.values), sources=self._sources).scenario
+        duration = max(float(self.times[task.run][-1]), 1e-3) + _AFTER_THE_LAST
+        interval = min(asked.solver.output_interval, OUTPUT_INTERVAL) if task.final else OUTPUT_INTERVAL
+        solver = replace(asked.solver, output_interval=interval)
+        if not task.final:
+            solver = _search_solver(solver)
+        return replace(asked, stop=Stop(duration=duration), solver=solver)
+
+
+def _search_solver(solver: Solver) -> Solver:
+    return replace(solver, method="ros2", fixed=True, step=SEARCH_STEP)
+
+
+def _row(run: Run, times: FloatArray) -> Row:
+    """Where the run ended before a time it goes on straight, as fast as it was: farther off than any run that goes on."""
+    known = np.isfinite(run.place).all(axis=1) & np.isfinite(run.velocity).all(axis=1)
+    count = int(np.argmin(known)) if not known.all() else len(known)
+    if count < 2:
+        return {"outcome": "error", "reason": run.remedy}
+    time, place, velocity = run.time[:count], run.place[:count, :2], run.velocity[:count, :2]
+    within = np.minimum(times, time[-1])
+    found = CubicHermiteSpline(time, place, velocity)(within) + (times - within)[:, None] * velocity[-1]
+    speed = np.interp(within, time, np.linalg.norm(run.velocity[:count], axis=1))
+    return {
+        "outcome": run.outcome,
+        "reached": int(np.sum(times <= time[-1] + 1e-6)),
+        "x_m": found[:, 0].tolist(),
+        "y_m": found[:, 1].tolist(),
+        "speed_m_per_s": speed.tolist(),
+    }
+
+
+def start_values(table: Mapping[str, Any], keys: Sequence[str]) -> dict[str, float]:
+    """Those of the keys that a table has, as numbers."""
+    return {key: float(table[key]) for key in keys if table.get(key) is not None}

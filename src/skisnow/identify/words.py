@@ -1,0 +1,120 @@
+"""Warnings of an identification in plain sentences: what cannot be told apart, and what would help."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from .parameter import Parameter
+from .uncertainty import Uncertainty
+
+FloatArray = npt.NDArray[np.float64]
+
+CLOSE: Final = 0.9
+"""Correlation beyond which two parameters are warned of."""
+_HELPS: Final = {
+    frozenset({"friction.mu_0", "drag.drag_area_m2"}): "both brake; only drag grows with the speed. Runs on slopes of "
+    "different inclination, slow parts and fast ones, and a known start speed tell them apart",
+    frozenset({"friction.mu_0", "friction.mu_1_s_per_m"}): "they differ only where the speed does. A wider range of "
+    "speeds tells them apart, or fix mu_1",
+    frozenset({"friction.mu_1_s_per_m", "drag.drag_area_m2"}): "both grow with the speed, one with its square. A wider "
+    "range of speeds on different inclinations tells them apart, or a drag area from a wind tunnel as a prior",
+    frozenset({"friction.mu_0", "slope.angle_deg"}): "a steeper slope drives as less friction does. Measure the "
+    "slope's inclination and fix it",
+    frozenset({"friction.mu_0", "start.speed_m_per_s"}): "early and late parts of the run must differ for it. Measure "
+    "the speed at the start, or the way for longer",
+    frozenset({"drag.drag_area_m2", "sledge.mass_kg"}): "drag acts as C_dA over mass. Weigh the skier and fix the mass",
+    frozenset({"drag.drag_area_m2", "drag.air_density_kg_per_m3"}): "only their product acts. Fix the air's density",
+    frozenset({"snow.S_f_N_per_mm2", "snow.H_V_N_per_mm3"}): "grip is S_f times the depth, and H_V sets the depth. "
+    "Depth and width of the marks left in the snow, or a field test, give H_V",
+    frozenset({"start.heading_deg", "sledge.edge_angle_deg"}): "a turn begun further round looks like a tighter one. A "
+    "longer track tells them apart",
+}
+_ALONE: Final = {
+    "snow.S_f_N_per_mm2": "S_f shows only where the edge slides across; an edge that holds bounds it from below. A run "
+    "that skids, a tighter turn or a shear test tells it",
+    "snow.H_V_N_per_mm3": "the path hardly depends on the depth of the groove. Depth and width of the marks, or a "
+    "penetration test, tell it",
+    "drag.drag_area_m2": "at these speeds drag is too small. A faster run tells it",
+    "snow.unloading_ratio": "the path hardly depends on how the groove springs back. Fix it",
+}
+_COMMON: Final = "fix one of them, give it a prior from elsewhere, or add a run in which they act differently"
+
+
+def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArray) -> Iterator[str]:
+    """A sentence for each pair that the data hardly tell apart."""
+    for i, one in enumerate(parameters):
+        for j in range(i):
+            r = float(correlation[i, j])
+            if abs(r) > CLOSE:
+                yield (
+                    f"{parameters[j].name} and {one.name} are hardly told apart (correlation {r:.3f}): "
+                    f"{_help(parameters[j], one)}"
+                )
+
+
+def unknown_warnings(parameters: Sequence[Parameter], known: Uncertainty) -> Iterator[str]:
+    """A sentence for each parameter, or group of them, that the data leave open."""
+    told: set[int] = set()
+    for group in known.groups:
+        told.update(group)
+        if len(group) == 1:
+            yield f"{parameters[group[0]].name} cannot be identified: it has no effect on these data. {_alone(parameters[group[0]])}"
+        else:
+            names = " and ".join(parameters[j].name for j in group)
+            helps = _help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
+            yield f"{names} cannot be told apart at all by these data: {helps}"
+    for j in np.flatnonzero(known.unknown):
+        if int(j) not in told:
+            yield (
+                f"{parameters[j].name} is left open by these data: its interval is as wide as all values it could "
+                f"have. {_alone(parameters[j])}"
+            )
+
+
+def bound_warnings(parameters: Sequence[Parameter], at_bound: Sequence[bool]) -> Iterator[str]:
+    """A sentence for each parameter on a bound."""
+    for each, there in zip(parameters, at_bound, strict=True):
+        if there:
+            yield (
+                f"{each.name} sits on its bound ({each.lower:g} to {each.upper:g}{f' {each.unit}' if each.unit else ''}"
+                "): its interval by curvature does not hold there; --profile gives one that does"
+            )
+
+
+def few_points(points: int, parameters: int) -> str | None:
+    """A warning where so few points are hardly a fit."""
+    if points >= max(10, 3 * parameters):
+        return None
+    return (
+        f"{points} points for {parameters} parameters are few: one bad point decides, and how well the model fits "
+        "cannot be seen. Ten or more are worth having"
+    )
+
+
+def noise_warning(ratio: float) -> str:
+    """Of residuals that are larger than their stated accuracy allows."""
+    return (
+        f"the residuals are {ratio:.2g} times what the data's stated accuracy allows: the accuracy is too good to be "
+        "true, or the model misses something. Intervals are widened by that factor"
+    )
+
+
+def model_warning(correlation: float) -> str:
+    """Of residuals that hang together."""
+    return (
+        f"neighbouring residuals are alike (correlation {correlation:.2f}): the model misses something, or the noise "
+        "wanders, and the intervals by curvature are too narrow; --bootstrap resamples stretches of residuals"
+    )
+
+
+def _help(one: Parameter, other: Parameter) -> str:
+    keys = frozenset(each.key.partition("@")[0] for each in (one, other))
+    return _HELPS.get(keys, _COMMON)
+
+
+def _alone(one: Parameter) -> str:
+    return _ALONE.get(one.key.partition("@")[0], "Fix it, or give it a prior from elsewhere").strip() + "."
