@@ -46,6 +46,16 @@ def test_limit_is_a_speed() -> None:
     assert marked(time, place) == {"jump": [17]}
 
 
+@pytest.mark.parametrize("ahead", [7.0, -7.0])
+def test_out_and_back_count_together(ahead: float) -> None:
+    """Along the run one way is 1.5 m longer than the other: 85 m/s and 55 m/s are 70 m/s, 95 and 65 are 80."""
+    time, place = run()
+    place[17, 1] += ahead
+    assert marked(time, place) == {"impossible_step": [17 if ahead > 0.0 else 18]}
+    place[17, 1] += ahead / 7.0
+    assert marked(time, place) == {"jump": [17]}
+
+
 def test_jumps_side_by_side_at_the_same_place_leave_the_good_point_between() -> None:
     time, place = run()
     place[17, 0] += 500.0

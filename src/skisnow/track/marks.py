@@ -39,8 +39,8 @@ _ALL: Final = (
     PointMark("missing_height", "The point has a place but no height.", False),
     PointMark("repeated_time", "The point has the same time stamp as the one before it.", True),
     PointMark("gap", "The time since the point before is much longer than the usual interval.", False),
-    PointMark("jump", "A single point far off: the speed to it and back again is impossible.", True),
-    PointMark("impossible_step", "The speed to this point is impossible, and the track does not come back.", False),
+    PointMark("jump", "A single point far off: the speed out to it and back again is impossible.", True),
+    PointMark("impossible_step", "The speed to this point is impossible, and no single point explains it.", False),
     PointMark("negative_speed", "The speed is below zero, as devices write that have none; it counts as none.", False),
 )
 MARKS: Final[Mapping[str, PointMark]] = MappingProxyType({mark.code: mark for mark in _ALL})
@@ -102,23 +102,26 @@ def _after_gap(time: FloatArray, factor: float) -> BoolArray:
 
 def _impossible(time: FloatArray, place: FloatArray, fastest: float) -> tuple[list[int], list[int]]:
     """Numbers of the points that jump out and back, and of those reached at an impossible speed for good."""
-    fast = np.hypot(*np.diff(place, axis=0).T) > fastest * np.diff(time)
+    lengths = np.hypot(*np.diff(place, axis=0).T)
+    fast = lengths > fastest * np.diff(time)
     last = len(time) - 1
-    jumps: list[int] = []
-    steps: list[int] = []
-    if last > 1 and fast[0] and not fast[1]:
-        jumps.append(0)  # the first point alone is far from all that follow
-    for point in (np.flatnonzero(fast) + 1).tolist():
-        if jumps and jumps[-1] == point - 1:
-            continue  # the way back
-        if last > 1 and (point == last or (fast[point] and _is_possible(time, place, point, fastest))):
-            jumps.append(point)
-        else:
-            steps.append(point)
+    jumps = _jumps(time, place, lengths, fastest)
+    if last > 1 and fast[0] and not fast[1] and 1 not in jumps:
+        jumps.insert(0, 0)  # the first point alone is far from all that follow
+    if last > 1 and fast[-1] and last - 1 not in jumps:
+        jumps.append(last)
+    known = set(jumps)
+    steps = [point for point in (np.flatnonzero(fast) + 1).tolist() if not known & {point - 1, point}]
     return jumps, steps
 
 
-def _is_possible(time: FloatArray, place: FloatArray, point: int, fastest: float) -> bool:
-    """Whether the step over a point is possible."""
-    step = place[point + 1] - place[point - 1]
-    return bool(np.hypot(*step) <= fastest * (time[point + 1] - time[point - 1]))
+def _jumps(time: FloatArray, place: FloatArray, lengths: FloatArray, fastest: float) -> list[int]:
+    """Inner points over which the way is impossible, while the way past them is possible and less than half as long."""
+    over = lengths[:-1] + lengths[1:]
+    past = np.hypot(*(place[2:] - place[:-2]).T)
+    most = fastest * (time[2:] - time[:-2])
+    jumps: list[int] = []
+    for point in (np.flatnonzero((over > most) & (past <= most) & (past < 0.5 * over)) + 1).tolist():
+        if not jumps or jumps[-1] != point - 1:  # a good point between two jumps looks like one
+            jumps.append(point)
+    return jumps
