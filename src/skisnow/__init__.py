@@ -20,6 +20,8 @@ The public names, loaded when first used:
     A ski in snow under a load, carving steadily or at rest.
 ``read_scenario``, ``scenario_names``, ``Scenario``, ``simulated_run``, ``Run``
     A sledge on two flexible skis: a scenario from its file or a built-in one, and the run that comes out of it.
+``read_track``, ``Track``, ``GeodeticPoint``, ``in_slope_frame``
+    Where something was on a slope, and when: from the files of receivers and watches, into the slope's frame.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 """
@@ -39,24 +41,32 @@ if TYPE_CHECKING:
     from .ski import Ski, read_ski, ski_names
     from .snow import SnowProperties, published_names, published_snow, snow_from_results
     from .statistics import regress
+    from .track.projection import GeodeticPoint
+    from .track.read import read_track
+    from .track.slope_frame import in_slope_frame
+    from .track.track import Track
 
 __all__ = [
     "Analysis",
     "Campaign",
     "Equilibrium",
+    "GeodeticPoint",
     "Run",
     "Scenario",
     "Ski",
     "SnowProperties",
     "Store",
+    "Track",
     "analyse",
     "carve",
     "check_campaign",
+    "in_slope_frame",
     "published_names",
     "published_snow",
     "read_campaign",
     "read_scenario",
     "read_ski",
+    "read_track",
     "regress",
     "rest",
     "results_dict",
@@ -78,6 +88,10 @@ _ROOMS = {
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),
     "statistics": ("regress",),
+    "track.projection": ("GeodeticPoint",),
+    "track.read": ("read_track",),
+    "track.slope_frame": ("in_slope_frame",),
+    "track.track": ("Track",),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 

@@ -117,6 +117,12 @@ def test_points_without_a_place_stay(tmp_path: Path) -> None:
     np.testing.assert_array_equal(track.place[1, :2], [0.0, 0.0])
 
 
+def test_latitude_and_longitude_zero_are_no_place(tmp_path: Path) -> None:
+    track = read(tmp_path, "time,lat,lon,alt_m\n0,0,0.0,0\n1,0,7,5\n2,0,7,5\n")  # on the equator there is a place
+    assert track.marked == {"no_fix": 1}
+    assert track.origin == GeodeticPoint(0.0, 7.0, height=5.0)
+
+
 def test_seconds_and_dates_without_zone(tmp_path: Path) -> None:
     seconds = read(tmp_path, "time,lat,lon\n1672156274.5,46,7\n1672156275.75,46,7\n")
     np.testing.assert_array_equal(seconds.time, [0.0, 1.25])

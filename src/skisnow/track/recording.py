@@ -97,9 +97,7 @@ def track_of(
     """
     _require_in_range(recording)
     _require_time(recording)
-    fix = np.asarray(np.isfinite(recording.place[:, :2]).all(axis=1))
-    if recording.fix is not None:
-        fix &= recording.fix
+    fix = _fix(recording)
     place, velocity, at = _projected(recording, fix, origin)
     speed = np.full(len(recording.time), np.nan) if recording.speed is None else recording.speed
     negative = np.isfinite(speed) & (speed < 0.0)
@@ -124,6 +122,15 @@ def track_of(
         further_columns=recording.further_columns,
         left_out={words: count for words, count in recording.left_out.items() if count},
     )
+
+
+def _fix(recording: Recording) -> BoolArray:
+    """Where there is a place: latitude and longitude that are both exactly 0 are what devices write without one."""
+    horizontal = recording.place[:, :2]
+    fix = np.asarray(np.isfinite(horizontal).all(axis=1))
+    if recording.is_geodetic:
+        fix &= np.any(horizontal != 0.0, axis=1)
+    return fix if recording.fix is None else fix & recording.fix
 
 
 def _projected(

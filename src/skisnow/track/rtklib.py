@@ -102,7 +102,7 @@ def read_rtklib(text: str, name: str) -> Recording:
         axes_in_words="east, north, up in m from the base station of the solution",
         heights="above the ellipsoid" if is_ellipsoidal else "above the geoid",
         default_origin=base if header.kind == "baseline" else None,
-        columns=dict(zip(("x", "y", "z"), PLACES[header.kind], strict=True)),
+        columns=dict(zip("xyz", PLACES["geodetic" if is_geodetic else "baseline"], strict=True)),
     )
 
 

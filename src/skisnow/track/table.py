@@ -67,7 +67,7 @@ def read_table(text: str, name: str) -> Recording:
         speed_sd=table.optional(SPEED_SD),
         odometer=table.optional(ODOMETER),
         further_columns=tuple(column for column in table.header if column not in table.used),
-        columns=dict(zip(("x", "y", "z"), GEODETIC if is_geodetic else LOCAL, strict=True)),
+        columns=dict(zip("xyz", GEODETIC if is_geodetic else LOCAL, strict=True)),
     )
 
 
