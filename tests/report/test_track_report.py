@@ -72,7 +72,7 @@ def test_gap_is_a_hole_in_the_line() -> None:
 
 def test_long_lines_are_thinned_with_both_ends() -> None:
     numbers = drawn_points(7, 1_000_006)
-    assert (numbers[0], numbers[-1], len(numbers)) == (7, 1_000_006, 20_000)
+    assert (numbers[0], numbers[-1], len(numbers)) == (7, 1_000_006, 10_000)
     assert drawn_points(3, 5).tolist() == [3, 4, 5]
 
 

@@ -114,6 +114,19 @@ def test_stated_accuracies_are_weights() -> None:
     assert errors[0] < 0.4 * errors[1]
 
 
+def test_dense_points_share_fits_and_know_it() -> None:
+    """1 kHz, 801 points in a window: fits 20 points apart are the filter's own there, and differ little between."""
+    made = track(circle(15.0, 8.0, duration=3.0, interval=0.001), interval=0.001, noise=0.002)
+    found = smoothed_track(made, window=0.8)
+    for derivative, values, error in ((0, found.place, 0), (1, found.velocity, 1), (2, found.acceleration, 2)):
+        filtered = savgol_filter(made.place[:, :2], 801, 3, deriv=derivative, delta=0.001, axis=0, mode="interp")
+        typical = float(np.median(np.sqrt(found.covariance[:, error, error])))
+        apart = (values - filtered)[400:-400]
+        assert np.sqrt(np.mean(apart**2)) < 0.3 * typical  # windows a fortieth of their length aside share the noise
+        assert np.abs(apart).max() < 1.5 * typical
+    assert np.abs(np.diff(found.place, axis=0)).max() < 0.012  # 8 mm a point, no steps where fits change
+
+
 @pytest.mark.parametrize(
     ("points", "options", "words"),
     [

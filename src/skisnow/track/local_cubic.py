@@ -7,6 +7,7 @@ weighted least squares at its own times, to places and, where they were recorded
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import comb
 from typing import Final
 
 import numpy as np
@@ -21,6 +22,10 @@ FEWEST_POINTS: Final = 6
 """In a window; four determine the cubic, two say how well it fits."""
 _RIDGE: Final = 1e-13
 """Added to a matrix of normal equations, as a share of its trace; the least eigenvalue of a good one is above 10⁻³."""
+_CENTRES_APART: Final = 0.05
+"""Length of the pieces of time that share one fit, in halves of a window."""
+_CROWDED: Final = 80
+"""Points in a window from which on they do."""
 _CHUNK: Final = 8192
 """Points at a time: their moments stay in the processor's cache."""
 
@@ -60,7 +65,7 @@ class LocalCubic:
 def local_cubic(
     time: FloatArray, windows: tuple[IntArray, IntArray], half: float, place: Observed, rate: Observed | None
 ) -> LocalCubic:
-    """Fit every window.
+    """Fit every window; where points are dense, one for several points, a fortieth of a window apart at most.
 
     Parameters
     ----------
@@ -74,14 +79,55 @@ def local_cubic(
         Places (m), and velocities (m/s) or None.
     """
     first, last = windows
+    centre_of, centres = _centres(time, windows, half)
     pieces = []
-    for start in range(0, len(time), _CHUNK):
-        chunk = np.arange(start, min(start + _CHUNK, len(time)))
+    for start in range(0, len(centres), _CHUNK):
+        chunk = centres[start : start + _CHUNK]
         sums = _Moments(len(chunk), place.values.shape[1])
         for offset in range(int((first[chunk] - chunk).min()), int((last[chunk] - chunk).max())):
             sums.add(time, (chunk, first[chunk], last[chunk], offset), half, place, rate)
         pieces.append(_solved(sums, half))
-    return LocalCubic(*(np.concatenate(parts) for parts in zip(*pieces, strict=True)))
+    fits = LocalCubic(*(np.concatenate(parts) for parts in zip(*pieces, strict=True)))
+    return fits if len(centres) == len(time) else _shifted(fits, (time, half), centres, centre_of, place.values)
+
+
+def _centres(time: FloatArray, windows: tuple[IntArray, IntArray], half: float) -> tuple[IntArray, IntArray]:
+    """For each point the number of its centre, and the centres: points of their own, or one for each piece of time.
+
+    Points of different windows at a gap or an end never share a centre: there one piece of time holds both.
+    """
+    first, last = windows
+    cell = np.floor((time - time[0]) / (_CENTRES_APART * half))
+    begins = np.ones(len(time), dtype=bool)
+    crowded = np.minimum(last - first, np.roll(last - first, 1))[1:] > _CROWDED
+    same_part = (np.diff(first) < _CROWDED) & (np.diff(last) < _CROWDED)
+    begins[1:] = ~((np.diff(cell) == 0.0) & crowded & same_part)
+    starts = np.flatnonzero(begins)
+    ends = np.append(starts[1:], len(time)) - 1
+    return np.cumsum(begins) - 1, (starts + ends) // 2
+
+
+def _shifted(
+    fits: LocalCubic, scale: tuple[FloatArray, float], centres: IntArray, centre_of: IntArray, values: FloatArray
+) -> LocalCubic:
+    """The fits about each point in place of those about the centres: the same cubics in another variable."""
+    time, half = scale
+    tau = (time - time[centres][centre_of]) / half
+    shift = np.zeros((len(time), TERMS, TERMS))
+    for row in range(TERMS):
+        for column in range(row, TERMS):
+            shift[:, row, column] = comb(column, row) * tau ** (column - row)
+    coefficients = shift @ fits.coefficients[centre_of]
+    coefficients[:, 0] += values[centres][centre_of] - values
+    covariance = shift @ fits.covariance[centre_of] @ shift.transpose(0, 2, 1)
+    return LocalCubic(
+        coefficients,
+        covariance,
+        fits.place_misfit[centre_of],
+        fits.rate_misfit[centre_of],
+        fits.place_count[centre_of],
+        fits.rate_count[centre_of],
+    )
 
 
 class _Moments:

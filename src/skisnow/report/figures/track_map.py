@@ -30,7 +30,7 @@ _LARGEST_MM, _SMALLEST_MM = 150.0, 36.0
 _FRAME_MM: Final = 30.0
 MOST_TURNS: Final = 40
 """Turns that are told apart; more would be a pattern of dots."""
-MOST_DRAWN: Final = 20_000
+MOST_DRAWN: Final = 10_000
 """Points of a line that a page can show."""
 
 
@@ -85,7 +85,8 @@ def _turns(axes: Axes, summary: TrackSummary) -> None:
     usable = summary.track.usable
     time, place = summary.motion.time[usable], summary.track.place[usable]
     for turn in summary.turns:
-        inside = (time > turn.start) & (time < turn.end)
+        first, last = int(np.searchsorted(time, turn.start, side="right")), int(np.searchsorted(time, turn.end))
+        inside = drawn_points(first, max(last - 1, first))
         colour = BLUE if turn.direction == "left" else VERMILLION
         x, y = (np.interp([turn.start, *time[inside], turn.end], time, place[:, axis]) for axis in (0, 1))
         axes.plot(x, y, color=colour, linewidth=1.3, zorder=4)
