@@ -26,8 +26,8 @@ _LABELS: Final = {
     "slope": ("distance down the fall line $x$ (m)", "to the left $y$ (m)"),
 }
 _MARGIN: Final = 0.04
-_LARGEST_MM, _SMALLEST_MM = 150.0, 36.0
-_FRAME_MM: Final = 30.0
+_LARGEST_MM, _SMALLEST_MM = 150.0, 16.0
+_FRAME_MM: Final = 26.0
 MOST_TURNS: Final = 40
 """Turns that are told apart; more would be a pattern of dots."""
 MOST_DRAWN: Final = 10_000
