@@ -76,6 +76,20 @@ def test_a_place_that_does_not_come_back_is_a_step() -> None:
     assert marked(time, place) == {"impossible_step": [17]}
 
 
+def test_a_step_aside_is_no_jump() -> None:
+    """14 m aside for good: 140 m/s once; the way past the point is hardly shorter than the one over it."""
+    time, place = run()
+    place[17:, 0] += 14.0
+    assert marked(time, place) == {"impossible_step": [17]}
+
+
+def test_a_point_far_off_where_the_track_steps_aside_explains_nothing() -> None:
+    time, place = run()
+    place[17, 0] += 5000.0
+    place[18:, 0] += 500.0
+    assert marked(time, place) == {"impossible_step": [17, 18]}
+
+
 def test_two_points_off_are_steps_there_and_back() -> None:
     time, place = run()
     place[17:19, 0] += 500.0

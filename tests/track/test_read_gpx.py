@@ -58,6 +58,12 @@ def test_speed_of_version_1_0(tmp_path: Path) -> None:
     assert read(tmp_path, content, "a.gpx").speed.tolist() == [6.5]
 
 
+def test_time_zones(tmp_path: Path) -> None:
+    track = read(tmp_path, gpx(point(47.0, "14+01:00") + point(47.0, "14-00:30")), "a.gpx")
+    assert track.start == datetime(2022, 12, 27, 14, 51, 14, tzinfo=UTC)
+    np.testing.assert_array_equal(track.time, [0.0, 5400.0])
+
+
 def test_no_fix(tmp_path: Path) -> None:
     track = read(tmp_path, gpx(point(47.0, "14Z") + point(47.0, "15Z", "<fix>none</fix>")), "a.gpx")
     assert track.marked["no_fix"] == 1

@@ -94,6 +94,16 @@ def test_earth_centred(tmp_path: Path) -> None:
     np.testing.assert_allclose(track.velocity, [[-1.5, 2.5, -0.5]] * 2, atol=1e-5)
 
 
+def test_earth_centred_at_the_date_line(tmp_path: Path) -> None:
+    """There east is -Y, north is Z, up is -X."""
+    tail = "1 12 0.01 0.02 0.03 0.0 0.0 0.0 0.0 99.9 1.5 -0.5 2.5 .1 .1 .1 0 0 0"
+    track = read(tmp_path, f"{EARTH}2022/12/27 15:51:14.000 -6378137.0 0.0 0.0 {tail}\n", "a.pos")
+    assert track.place_sd is not None
+    assert track.velocity is not None
+    np.testing.assert_allclose(track.place_sd, [[0.02, 0.03, 0.01]], rtol=1e-12)
+    np.testing.assert_allclose(track.velocity, [[0.5, 2.5, -1.5]], atol=1e-12)
+
+
 def test_covariances_of_earth_centred_places(tmp_path: Path) -> None:
     """At 45° east on the equator east is (Y - X)/√2: its variance is half of σx² + σy² - 2 σxy, σxy = -0.01²."""
     tail = "1 12 0.02 0.02 0.03 -0.01 0.0 0.0 0.0 99.9 0 0 0 .1 .1 .1 0 0 0"

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from skisnow.track.projection import GeodeticPoint
+
 from . import metres_per_degree
 from .receivers import nav_pvt, sentence, ubx_frame
 from .test_read_table import read, refused
@@ -34,6 +36,15 @@ def test_messages(tmp_path: Path) -> None:
         np.testing.assert_allclose(track.place[1], [0.0, north, 0.0], atol=2e-5)
         assert track.marked == {}
         assert track.left_out == {}
+
+
+def test_velocity_about_an_origin_far_away(tmp_path: Path) -> None:
+    """Meridians converge by Δλ sin φ: seen from 1° further west, north at the point leans 0.734° to the west."""
+    origin = GeodeticPoint(47.2345678, 10.1234567, height=1500.0)
+    track = read(tmp_path, nav_pvt(velocity=(5000, 0, 0)), "a.ubx", origin=origin)
+    assert track.velocity is not None
+    lean = math.degrees(math.atan2(-track.velocity[0, 0], track.velocity[0, 1]))
+    assert lean == pytest.approx(math.sin(math.radians(47.2345678)), abs=1e-3)
 
 
 def test_accuracies(tmp_path: Path) -> None:

@@ -13,7 +13,8 @@ from .gpx import read_gpx
 from .marks import FASTEST, GAP_FACTOR
 from .nmea import SENTENCE, read_nmea
 from .recording import Recording, track_of
-from .rtklib import HEADER, read_rtklib
+from .rtklib import read_rtklib
+from .rtklib_header import HEADER
 from .table import read_table
 from .text import text_of
 from .trouble import refusal

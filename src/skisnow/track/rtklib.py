@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta, timezone
 from typing import Final
 
@@ -17,20 +16,15 @@ import numpy.typing as npt
 
 from .projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
 from .recording import FARTHEST, Recording
+from .rtklib_header import PLACES, Header, header_of
 from .text import number
 from .trouble import refusal
 
 FloatArray = npt.NDArray[np.float64]
 
-SCALES: Final = {"GPST": "GPS", "UTC": "UTC", "JST": "JST"}
 ZONES: Final = {"UTC": UTC, "JST": timezone(timedelta(hours=9))}
 GPS_BEGIN: Final = datetime(1980, 1, 6)
 """Of the weeks that RTKLIB counts; GPS time itself has no zone."""
-PLACES: Final = {
-    "geodetic": ("latitude", "longitude", "height"),
-    "earth_centred": ("x-ecef", "y-ecef", "z-ecef"),
-    "baseline": ("e-baseline", "n-baseline", "u-baseline"),
-}
 DEVIATIONS: Final = {
     "geodetic": ("sde", "sdn", "sdu"),
     "earth_centred": ("sdx", "sdy", "sdz"),
@@ -41,23 +35,6 @@ VELOCITIES: Final = {
     "earth_centred": ("vx", "vy", "vz"),
     "baseline": ("ve", "vn", "vu"),
 }
-HEADER: Final = re.compile(r"^%[ \t]*(GPST|UTC|JST)?[ \t,;]*(latitude|x-ecef|e-baseline).*", re.MULTILINE)
-
-
-@dataclass(frozen=True, slots=True)
-class _Header:
-    """The line that names the columns."""
-
-    scale: str
-    kind: str
-    sexagesimal: bool
-    separator: str
-    columns: tuple[str, ...]
-
-    @property
-    def width(self) -> int:
-        """Numbers in a row behind the time: an angle in degrees, minutes and seconds takes three."""
-        return len(self.columns) + (4 if self.sexagesimal else 0)
 
 
 def read_rtklib(text: str, name: str) -> Recording:
@@ -69,7 +46,7 @@ def read_rtklib(text: str, name: str) -> Recording:
         The header line is missing, a row is shorter than it, or a cell is no number or time.
     """
     lines = re.split(r"\r\n|\r|\n", text)
-    header = _header("\n".join(lines), name)
+    header = header_of("\n".join(lines), name)
     base = _base(lines, header)
     numbered = [
         (row, line) for row, line in enumerate(lines, start=1) if line.strip() and line.lstrip()[0] not in "%+$"
@@ -84,7 +61,7 @@ def read_rtklib(text: str, name: str) -> Recording:
     place, is_geodetic = _place(columns, header, base)
     velocity, place_sd = _velocity(columns, header, place), _deviations(columns, header, place)
     quality = columns.get("q")
-    is_ellipsoidal = "geodetic" not in "".join(lines[:40]).lower()
+    is_ellipsoidal = "/geodetic" not in "".join(lines[:40]).lower()
     return Recording(
         name=name,
         places_in_file=rows,
@@ -106,37 +83,7 @@ def read_rtklib(text: str, name: str) -> Recording:
     )
 
 
-def _header(text: str, name: str) -> _Header:
-    found = HEADER.search(text)
-    if found is None:
-        raise refusal(
-            "missing_column",
-            name,
-            allowed="a header line such as: %  GPST  latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m)",
-            action="Switch the output of the header on in RTKLIB, and solve again.",
-        )
-    line, first = found[0], found[2]
-    kind = next(kind for kind, names in PLACES.items() if names[0] == first)
-    after = line[line.index(first) :]
-    unit = re.match(r"[\w-]+\((.*?)\)(.)?", after)
-    separator = unit[2] if unit and unit[2] in (",", ";", "\t") else " "
-    cells = [cell for cell in re.split(r"[\s,;]+", after) if cell]
-    columns = tuple(re.sub(r"\(.*", "", cell).lower() for cell in cells)
-    absent = [column for column in PLACES[kind] if column not in columns]
-    if absent:
-        raise refusal(
-            "missing_column",
-            name,
-            column=absent[0],
-            value=line,
-            allowed=", ".join(PLACES[kind]),
-            action="The header line is damaged; solve again.",
-        )
-    sexagesimal = kind == "geodetic" and unit is not None and "'" in unit[1]
-    return _Header(SCALES.get(found[1] or "", "local"), kind, sexagesimal, separator, columns)
-
-
-def _row(line: str, header: _Header, name: str, row: int) -> tuple[datetime, list[float]]:
+def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list[float]]:
     """The moment and one number for each column."""
     cells = line.replace(header.separator, " ").split()
     moment = _moment(cells, header.scale)
@@ -202,7 +149,7 @@ def _moment(cells: list[str], scale: str) -> datetime | None:
         return None
 
 
-def _base(lines: list[str], header: _Header) -> GeodeticPoint | None:
+def _base(lines: list[str], header: Header) -> GeodeticPoint | None:
     """The base station, where a baseline's file names one that stands on earth."""
     if header.kind != "baseline":
         return None
@@ -218,7 +165,7 @@ def _base(lines: list[str], header: _Header) -> GeodeticPoint | None:
     return None
 
 
-def _by_name(table: FloatArray, header: _Header) -> dict[str, FloatArray]:
+def _by_name(table: FloatArray, header: Header) -> dict[str, FloatArray]:
     return {column: table[:, place] for place, column in enumerate(header.columns)}
 
 
@@ -228,7 +175,7 @@ def _vectors(columns: dict[str, FloatArray], names: tuple[str, str, str]) -> Flo
     return np.column_stack([columns[name] for name in names])
 
 
-def _place(columns: dict[str, FloatArray], header: _Header, base: GeodeticPoint | None) -> tuple[FloatArray, bool]:
+def _place(columns: dict[str, FloatArray], header: Header, base: GeodeticPoint | None) -> tuple[FloatArray, bool]:
     """Places, and whether they are latitude, longitude and height."""
     place = np.column_stack([columns[name] for name in PLACES[header.kind]])
     if header.kind == "geodetic":
@@ -242,14 +189,14 @@ def _place(columns: dict[str, FloatArray], header: _Header, base: GeodeticPoint 
     return geodetic(begin + place @ east_north_up_axes(base.latitude_deg, base.longitude_deg)), True
 
 
-def _velocity(columns: dict[str, FloatArray], header: _Header, place: FloatArray) -> FloatArray | None:
+def _velocity(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
     velocity = _vectors(columns, VELOCITIES[header.kind])
     if velocity is None or header.kind != "earth_centred":
         return velocity
     return np.asarray(np.einsum("nij,nj->ni", east_north_up_axes(place[:, 0], place[:, 1]), velocity))
 
 
-def _deviations(columns: dict[str, FloatArray], header: _Header, place: FloatArray) -> FloatArray | None:
+def _deviations(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
     deviations = _vectors(columns, DEVIATIONS[header.kind])
     if deviations is None or header.kind != "earth_centred":
         return deviations

@@ -106,10 +106,10 @@ def cells_of(text: str, name: str) -> Cells:
 
 
 def decimal_mark(cells: Iterable[str], separator: str) -> str:
-    """The decimal mark of a file: a comma where more numbers have a comma than a point, and it does not separate.
+    """The decimal mark of a file: a comma where it does not separate and as many numbers have one as have a point.
 
-    >>> decimal_mark(["1", "2,5", "3,5", "1.5"], ";")
-    ','
+    >>> decimal_mark(["1", "2,5", "1.5"], ";"), decimal_mark(["1", "2"], ";")
+    (',', '.')
     """
     if separator == ",":
         return "."
@@ -117,7 +117,7 @@ def decimal_mark(cells: Iterable[str], separator: str) -> str:
     for cell in cells:
         commas += "," in cell and _NUMBER[","].fullmatch(cell) is not None
         points += "." in cell and _NUMBER["."].fullmatch(cell) is not None
-    return "," if commas > points else "."
+    return "," if commas and commas >= points else "."
 
 
 def number(cell: str, mark: str = ".") -> float:
