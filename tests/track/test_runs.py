@@ -126,3 +126,10 @@ def test_gap_inside_a_run_is_counted() -> None:
     found = split(cut)
     assert [run.gaps for run in found.runs] == [1]
     assert found.runs[0].distance == pytest.approx(1000.0, abs=15.0)
+
+
+def test_heights_at_every_fifth_point_are_enough() -> None:
+    made = day([LIFT, REST, RUN, QUEUE])
+    made.place[np.arange(len(made)) % 5 != 0, 2] = np.nan
+    (run,) = split(made).runs
+    assert run.descent == pytest.approx(150.0, abs=2.5)

@@ -29,6 +29,8 @@ LEAST_DISTANCE: Final = 10.0
 """A run's length (m) at least (Choice)."""
 _ZONE: Final = 0.02
 """Share of a descent that counts as its top and as its bottom, at least 1 m of height."""
+_SPARSE: Final = 10
+"""One height in so many points is enough to tell tops from bottoms (Choice)."""
 _LEVEL_SHARE: Final = 0.01
 """Heights that differ by less than this share of the way are none: the slope's own third axis."""
 
@@ -117,7 +119,7 @@ def known_height(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, 
     recorded = np.isfinite(track.place[:, 2])
     if track.axes == "slope":
         return None, ("The track's third axis is that of the slope, not the height: descents are unknown.",)
-    if np.count_nonzero(recorded) < max(2, len(track) // 2):
+    if np.count_nonzero(recorded) < max(2, len(track) // _SPARSE):
         return None, ("No heights in the track: lifts cannot be told from runs, descents are unknown.",)
     height = np.interp(np.arange(len(track)), np.flatnonzero(recorded), track.place[recorded, 2])
     way = float(motion.way[-1] - motion.way[0])
