@@ -24,6 +24,8 @@ The last straight piece of a path is never quite the path's direction at its end
 _FIRST_CANDIDATES: Final = 4
 _MOST_AT_ONCE: Final = 1 << 20
 _LONGEST_OF_MEAN: Final = 2.0
+_NO_NEARER: Final = 1.0 - 1e-8
+"""A piece that could be nearer by less than this share is not looked for: near a circle's centre all of them could."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,7 +131,7 @@ class Path:
         the root of distance² + (length of the piece / 2)². Once the path's points are followed out to there, no
         piece is missed.
         """
-        reach, near = self._tree.query(points, k=candidates)
+        reach, near = self._tree.query(points, k=candidates, workers=-1)
         pieces = np.concatenate([np.maximum(near - 1, 0), np.minimum(near, len(self._piece) - 1)], axis=1)
         apart = points[:, None, :] - self._start[pieces]
         along, squared = self._along[pieces], self._squared[pieces]
@@ -138,7 +140,7 @@ class Path:
         square = np.einsum("nkd,nkd->nk", apart, apart)
         best = np.argmin(square, axis=1)
         rows = np.arange(len(points))
-        enough = np.sqrt(square[rows, best] + self._piece.max() ** 2 / 4.0)
+        enough = _NO_NEARER * np.sqrt(square[rows, best] + self._piece.max() ** 2 / 4.0)
         return pieces[rows, best], (reach[:, -1] >= enough) | (candidates > len(self._piece))
 
 
