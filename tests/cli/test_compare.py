@@ -124,6 +124,23 @@ def test_latitude_and_longitude_come_into_the_slopes_frame(tmp_path: Path, capsy
     assert found["measured"]["length_m"] == pytest.approx(30.0 / math.cos(math.radians(10.0)), rel=1e-6)
 
 
+def test_two_tracks_in_degrees_are_put_on_one_plane(tmp_path: Path, capsys: Printed) -> None:
+    """Each alone has its own first point as origin; 0.001 degrees of longitude at 47 degrees north are 76.1 m apart."""
+    north = np.linspace(47.0, 47.001, 21)
+    for name, lon, first in (("west", 11.0, 0), ("east", 11.001, 5)):
+        rows = [f"{t},{lat!r},{lon}" for t, lat in enumerate(north[first:].tolist())]
+        (tmp_path / f"{name}.csv").write_text("\n".join(["time,lat,lon", *rows]), encoding="utf-8")
+    found = answer([str(tmp_path / "west.csv"), str(tmp_path / "east.csv")], capsys)
+    curvature = 6378137.0 / math.sqrt(
+        1.0 - 0.00669437999 * math.sin(math.radians(47.0005)) ** 2
+    )  # of the prime vertical
+    apart = math.radians(0.001) * curvature * math.cos(math.radians(47.0005))
+    # the parallels draw together by 2 parts in 100 000 over the 0.001 degrees
+    assert found["nearest"]["mean_m"] == pytest.approx(apart, rel=3e-5)
+    assert found["nearest"]["compared_share"] == pytest.approx(1.0, abs=0.01)
+    assert found["warnings"] == []
+
+
 @pytest.mark.parametrize(
     ("words", "status", "told"),
     [

@@ -131,7 +131,7 @@ class Path:
         the root of distance² + (length of the piece / 2)². Once the path's points are followed out to there, no
         piece is missed.
         """
-        reach, near = self._tree.query(points, k=candidates, workers=-1)
+        reach, near = (np.asarray(values) for values in self._tree.query(points, k=candidates, workers=-1))
         pieces = np.concatenate([np.maximum(near - 1, 0), np.minimum(near, len(self._piece) - 1)], axis=1)
         apart = points[:, None, :] - self._start[pieces]
         along, squared = self._along[pieces], self._squared[pieces]
