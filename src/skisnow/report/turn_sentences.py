@@ -115,7 +115,7 @@ def meaning(chain: TurnChain) -> list[Markup]:
     """Model against measurement: which of the two moves the track more."""
     reference, *others = chain.runs.values()
     aside, _ = _widths(chain)
-    far = max(greatest_distance(run, reference) for run in others)
+    far = max(greatest_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
     contacts = (
         "The choice of the contact moves the track by up to {far} m, the uncertainty of the measured snow by {aside} m "
         "(width of the band that holds 90 % at the end). "

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.lines import Line2D
 
 from ..compare_summary import TITLES
 from ..numerals import significant
 from ..symbols import figure_text
 from .run_track import plan_axes, plan_height_mm, track_limits
-from .style import BLACK, BLUE, DOUBLE_MM, GREEN, PALE, PURPLE, VERMILLION, legend_below, new_figure
+from .style import BLACK, BLUE, DOUBLE_MM, GREEN, PALE, PURPLE, VERMILLION, legend_below, new_figure, plain_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from ...track.comparison import Comparison, Distances
 
+FloatArray = npt.NDArray[np.float64]
 MEASURED: Final[dict[str, Any]] = {"color": BLACK, "linewidth": 1.1}
 SIMULATED: Final[dict[str, Any]] = {"color": VERMILLION, "linewidth": 1.1, "linestyle": (0, (5, 1.5))}
 BEFORE: Final[dict[str, Any]] = {"color": PALE, "linewidth": 0.8}
@@ -29,6 +31,10 @@ LOOKS: Final[dict[str, dict[str, Any]]] = {
 }
 MOST_DRAWN: Final = 20_000
 """Points of a line above which every k-th is drawn, the largest among them."""
+EXACTNESS: Final = 1e-6
+"""Distances (m) below this are none."""
+_HIDES: Final = 20.0
+_MARGIN: Final = 0.02
 _DISTANCES_MM: Final = 58.0
 _FRAME_MM: Final = 34.0
 _AXIS_WORDS: Final = {
@@ -42,7 +48,7 @@ def track_comparison(comparison: Comparison) -> Figure:
     lines = [comparison.measured, comparison.simulated]
     if comparison.fitted is not None:
         lines.append(comparison.fitted.before.simulated)
-    limits = track_limits(np.concatenate([line.place[:, :2] for line in lines]))
+    limits = _limits(np.concatenate([line.place[:, :2] for line in lines]))
     height = plan_height_mm(limits)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DISTANCES_MM + _FRAME_MM)
     grid = figure.add_gridspec(2, 1, height_ratios=(height + 10.0, _DISTANCES_MM))
@@ -54,6 +60,12 @@ def track_comparison(comparison: Comparison) -> Figure:
     _along(figure.add_subplot(grid[1]), comparison)
     legend_below(figure, _handles(comparison))
     return figure
+
+
+def _limits(points: FloatArray) -> tuple[float, float, float, float]:
+    """With a margin that suits a turn and a day."""
+    room = _MARGIN * float(np.ptp(points, axis=0).max())
+    return track_limits(np.concatenate([points - room, points + room]))
 
 
 def _other_axes(axes: Axes, x_label: str, y_label: str) -> None:
@@ -95,12 +107,24 @@ def _along(axes: Axes, comparison: Comparison) -> None:
         place = (found.numbers.max_at, found.numbers.max)
         axes.plot(*place, marker="o", markersize=3.0, linestyle="none", color=look["color"], clip_on=False, zorder=4)
     axes.set_xlim(0.0, comparison.measured.length)
-    axes.set_ylim(bottom=0.0)
+    _scale(axes, comparison)
     axes.set_xlabel("way along the measured track (m)")
     axes.set_ylabel("distance of the\nsimulated track (m)")
 
 
-def _drawn(x: np.typing.NDArray[np.float64], y: np.typing.NDArray[np.float64]) -> tuple[Any, Any]:
+def _scale(axes: Axes, comparison: Comparison) -> None:
+    """From 0; logarithmic where one distance would hide another."""
+    every = [getattr(comparison, kind).numbers for kind in LOOKS]
+    largest = [numbers.max for numbers in every if numbers is not None and numbers.max > EXACTNESS]
+    if largest and max(largest) > _HIDES * min(largest):
+        axes.set_yscale("log")
+        axes.set_ylim(0.01 * min(largest), 2.0 * max(largest))
+        axes.yaxis.set_major_formatter(plain_number)
+    else:
+        axes.set_ylim(bottom=0.0)
+
+
+def _drawn(x: FloatArray, y: FloatArray) -> tuple[Any, Any]:
     """Every k-th point of a long line, and those with the largest and smallest y of each stretch."""
     step = 2 * -(-len(x) // MOST_DRAWN)
     if len(x) <= MOST_DRAWN:
