@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -150,8 +155,18 @@ class Identification:
         raise KeyError(key)
 
 
-def identification_dict(found: Identification) -> dict[str, Any]:
-    """The contents of identification.json, and of ``skisnow identify --json``; nothing is rounded, nothing is NaN."""
+def identification_dict(found: Identification, *, files: Iterable[Path] = ()) -> dict[str, Any]:
+    """The contents of identification.json, and of ``skisnow identify --json``; nothing is rounded, nothing is NaN.
+
+    Its JSON Schema is schemas/identification.schema.json.
+
+    Parameters
+    ----------
+    found
+        What came out.
+    files
+        What it was read from, for their SHA-256.
+    """
     keys = [each.parameter.key for each in found.parameters]
     return {
         "schema_version": 1,
@@ -174,6 +189,11 @@ def identification_dict(found: Identification) -> dict[str, Any]:
             "kept_simulations": found.effort.kept_simulations,
             "rounds": found.effort.rounds,
             "wall_s": found.effort.wall_s,
+        },
+        "provenance": {
+            "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
+            "skisnow": version("skisnow"),
+            "time": datetime.now(UTC).isoformat(timespec="seconds"),
         },
     }
 
@@ -207,8 +227,8 @@ def _finite(value: float) -> float | None:
 
 
 def _rms(fit: Fit) -> dict[str, float | None]:
-    with np.errstate(invalid="ignore"):
-        squares = (
-            np.nanmean(fit.residual**2, axis=0) if np.isfinite(fit.residual).any() else np.full(len(fit.labels), np.nan)
-        )
-    return {label: _finite(float(np.sqrt(each))) for label, each in zip(fit.labels, squares, strict=True)}
+    found: dict[str, float | None] = {}
+    for i, label in enumerate(fit.labels):
+        known = fit.residual[np.isfinite(fit.residual[:, i]), i]
+        found[label] = float(np.sqrt(np.mean(known**2))) if known.size else None
+    return found

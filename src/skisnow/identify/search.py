@@ -22,6 +22,8 @@ Told: TypeAlias = Callable[[str], None]
 
 _SMALLEST_DAMPING, _LARGEST_DAMPING = 1e-9, 1e9
 _FIRST_DAMPING: Final = 1e-3
+_KEPT_PROMISE: Final = 0.5
+"""Share of the fall that derivatives foretold, below which they are taken anew."""
 _AT_BOUND: Final = 1e-9
 """Distance (sizes) from a bound that counts as on it."""
 
@@ -36,9 +38,15 @@ class Manner:
         Of the differences, in parameters' sizes; between them the parameter's standard error so far.
     tolerance
         A full step that moves the residuals by less than this many standard deviations of one is the end.
+    worth
+        Fall of the sum of squares, in squared standard deviations, that is worth another round.
     rough
         Residuals move by so many standard deviations for no reason: where no step improves and what is left to gain
         is smaller than this, the search is at its end too.
+    keeps_jacobian
+        Derivatives are taken anew farther away than this from where they were taken, in sizes.
+    longest_move
+        Of a parameter in one step, in sizes: beyond it nothing is known yet.
     smallest_move
         A full step shorter than this, in sizes, is the end: of data without noise.
     most_rounds
@@ -51,15 +59,27 @@ class Manner:
 
     smallest_step: float = 0.01
     largest_step: float = 0.05
-    tolerance: float = 0.05
-    rough: float = 0.5
+    tolerance: float = 0.1
+    worth: float = 0.1
+    rough: float = 1.0
+    keeps_jacobian: float = 0.1
+    longest_move: float = 0.25
     smallest_move: float = 1e-5
     most_rounds: int = 30
     candidates: int = 2
     accuracy_is_stated: bool = False
 
 
-FINE: Final = Manner(smallest_step=1e-3, largest_step=1e-3, tolerance=1e-5, rough=1e-2, smallest_move=1e-9)
+FINE: Final = Manner(
+    smallest_step=1e-3,
+    largest_step=1e-3,
+    tolerance=1e-5,
+    worth=1e-10,
+    rough=1e-2,
+    keeps_jacobian=0.0,
+    longest_move=5.0,
+    smallest_move=1e-9,
+)
 """For residuals in closed form or nearly so."""
 
 
@@ -76,7 +96,9 @@ class Found:
     state
         How it ended.
     rounds
-        Jacobians so far.
+        Jacobians by central differences so far.
+    differentiated_at, is_central, is_trusted
+        Where the derivatives were taken, whether from both sides, and whether the last step did what they foretold.
     """
 
     place: FloatArray
@@ -85,6 +107,9 @@ class Found:
     second: FloatArray | None = None
     state: State = "interrupted"
     rounds: int = 0
+    differentiated_at: FloatArray | None = None
+    is_central: bool = False
+    is_trusted: bool = True
 
     @property
     def cost(self) -> float:
@@ -121,34 +146,81 @@ class Search:
         Ctrl-C ends it with what is best so far in the state "interrupted"; before the first residuals it passes on.
         """
         try:
-            begun = self.residuals([start])[0]
-            if begun is None:
-                return None
-            self.best = Found(start, begun)
-            return self._searched()
+            self.best = self._begun(start)
+            return None if self.best is None else self._searched()
         except KeyboardInterrupt:
             if self.best is None:
                 raise
             return replace(self.best, state="interrupted")
 
     def _searched(self) -> Found:
-        assert self.best is not None
         damping = _FIRST_DAMPING
-        for number in range(1, self.manner.most_rounds + 1):
-            jacobian, second = self._differences(self.best)
-            self.best = replace(self.best, jacobian=jacobian, second=second, rounds=number)
-            self.told(f"round {number}: rms residual {np.sqrt(self.best.cost / len(self.best.residuals)):.4g}")
-            left = self._left_to_gain(self.best)
-            if left <= self.manner.tolerance or self._settled(self.best):
-                return replace(self.best, state="converged")
-            better, damping = self._stepped(self.best, damping)
-            if better is None:
-                return replace(self.best, state="converged" if left <= self.manner.rough else "not_converged")
-            self.best = replace(better, rounds=number)
-        jacobian, second = self._differences(self.best)
-        return replace(self.best, jacobian=jacobian, second=second, state="not_converged")
+        for _ in range(self.manner.most_rounds):
+            here = self._with_jacobian(self._seen())
+            left = self._left_to_gain(here)
+            ends = left <= self.manner.tolerance or self._settled(here)
+            if ends and here.is_central:
+                return replace(here, state="converged")
+            if ends:
+                self._differentiated(here)
+                continue
+            better, damping = self._stepped(here, damping)
+            if better is not None:
+                self.best = better
+            if better is None or here.cost - better.cost < self.manner.worth * self.noise(here) ** 2:
+                if here.is_central and np.array_equal(here.place, here.differentiated_at):
+                    return replace(self._seen(), state="converged" if left <= self.manner.rough else "not_converged")
+                self._differentiated(self._seen())
+                damping = _FIRST_DAMPING
+        return replace(self._differentiated(self._seen()), state="not_converged")
 
-    def polished(self, found: Found, residuals: Residuals, *, most: int = 3) -> Found:
+    def _seen(self) -> Found:
+        assert self.best is not None
+        return self.best
+
+    def _with_jacobian(self, found: Found) -> Found:
+        """With derivatives that hold here: those known, unless they are one-sided, of a place too far away, or failed."""
+        if found.jacobian is None or found.differentiated_at is None:
+            return self._differentiated(found)
+        away = found.place - found.differentiated_at
+        if not np.any(away):
+            return found
+        if not found.is_central or not found.is_trusted or np.max(np.abs(away)) > self.manner.keeps_jacobian:
+            return self._differentiated(found)
+        return found
+
+    def _differentiated(self, found: Found) -> Found:
+        jacobian, second = self._differences(found)
+        renewed = replace(
+            found,
+            jacobian=jacobian,
+            second=second,
+            differentiated_at=found.place,
+            is_central=True,
+            is_trusted=True,
+            rounds=found.rounds + 1,
+        )
+        self.best = renewed
+        self.told(f"round {renewed.rounds}: rms residual {np.sqrt(renewed.cost / len(renewed.residuals)):.4g}")
+        return renewed
+
+    def _begun(self, start: FloatArray) -> Found | None:
+        """Residuals of the start and one-sided derivatives there, in one batch: enough for a first step."""
+        places = [start]
+        steps = np.full(len(start), np.sqrt(self.manner.smallest_step * self.manner.largest_step))
+        for j, step in enumerate(steps):
+            place = start.copy()
+            place[j] += step if start[j] + step <= self.upper[j] else -step
+            places.append(np.clip(place, self.lower, self.upper))
+        asked = self.residuals(places)
+        first = asked[0]
+        if first is None:
+            return None
+        ends = [(places[j + 1][j] - start[j], asked[j + 1]) for j in range(len(start))]
+        jacobian = np.column_stack([_slope_and_bend([end], first)[0] for end in ends])
+        return Found(start, first, jacobian, np.zeros_like(jacobian), differentiated_at=start)
+
+    def polished(self, found: Found, residuals: Residuals, *, most: int = 2) -> Found:
         """Go on with other, dearer residuals and the Jacobian that is known; the best place seen with those."""
         assert found.jacobian is not None
         first = residuals([found.place])[0]
@@ -196,7 +268,8 @@ class Search:
         scale = np.where(scale > 0.0, scale, 1.0)
         system = np.vstack([found.jacobian, np.sqrt(damping) * np.diag(scale)])
         wanted = np.concatenate([-found.residuals, np.zeros(len(scale))])
-        low, high = self.lower - found.place, self.upper - found.place
+        low = np.maximum(self.lower - found.place, -self.manner.longest_move)
+        high = np.minimum(self.upper - found.place, self.manner.longest_move)
         room = np.maximum(high - low, _AT_BOUND)
         solved = lsq_linear(system / scale, wanted, bounds=(low * scale, (low + room) * scale), method="bvls")
         return np.clip(solved.x / scale, low, high)
@@ -211,9 +284,7 @@ class Search:
             number = int(np.argmin(costs))
             best = tried[number]
             if best is not None and costs[number] < found.cost:
-                return Found(places[number], best, found.jacobian, found.second), max(
-                    dampings[number] / 3.0, _SMALLEST_DAMPING
-                )
+                return _secant(found, places[number], best), max(dampings[number] / 3.0, _SMALLEST_DAMPING)
             damping = min(dampings[-1] * 10.0, _LARGEST_DAMPING)
         return None, damping
 
@@ -241,6 +312,20 @@ class Search:
         length = np.linalg.norm(found.jacobian, axis=0)
         with np.errstate(divide="ignore"):
             return np.clip(self.noise(found) / length, low, high)
+
+
+def _secant(found: Found, place: FloatArray, residuals: FloatArray) -> Found:
+    """At a better place, with derivatives that agree with the step there (Broyden 1965)."""
+    assert found.jacobian is not None
+    step = place - found.place
+    foretold = found.residuals + found.jacobian @ step
+    missed = residuals - foretold
+    promised = found.cost - float(foretold @ foretold)
+    kept = found.cost - float(residuals @ residuals)
+    renewed = found.jacobian + np.outer(missed, step) / max(float(step @ step), 1e-300)
+    return replace(
+        found, place=place, residuals=residuals, jacobian=renewed, is_trusted=kept >= _KEPT_PROMISE * promised
+    )
 
 
 def _slope_and_bend(

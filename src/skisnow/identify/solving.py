@@ -20,11 +20,13 @@ from .search import FINE, Found, Manner, Search
 FloatArray = npt.NDArray[np.float64]
 Told = Callable[[str], None]
 
-OF_GROOVES: Final = Manner(smallest_step=0.01, largest_step=0.01, tolerance=1e-3, rough=0.05, smallest_move=1e-6)
+OF_GROOVES: Final = replace(
+    FINE, smallest_step=0.005, largest_step=0.005, tolerance=1e-3, worth=1e-6, rough=0.05, smallest_move=1e-6
+)
 """For equilibria, which are found to some digits."""
 _NOISE_ROUNDS: Final = 3
 _SAME_NOISE: Final = 0.05
-_STEPS_APART: Final = 1.0
+_STEPS_APART: Final = 3.0
 """Rms change of residuals (in standard deviations) by the finer solver from which on the search is repeated with it."""
 
 

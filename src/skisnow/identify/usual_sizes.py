@@ -29,12 +29,12 @@ class Usual:
 
 _USUAL: Final = {
     "slope.angle_deg": Usual(10.0, -15.0, 15.0, about=True),
-    "snow.H_V_N_per_mm3": Usual(1.0, 0.002, 1000.0, logarithmic=True),  # ten times beyond what was measured
-    "snow.S_f_N_per_mm2": Usual(1.0, 0.004, 5.0, logarithmic=True),
-    "snow.unloading_ratio": Usual(1.0, 1.0, 1000.0, logarithmic=True),
-    "friction.mu_0": Usual(0.05, 0.0, 0.5),
-    "friction.mu_1_s_per_m": Usual(0.005, -0.05, 0.05),
-    "drag.drag_area_m2": Usual(0.5, 0.0, 3.0),
+    "snow.H_V_N_per_mm3": Usual(3.0, 0.002, 1000.0, logarithmic=True),  # ten times beyond what was measured
+    "snow.S_f_N_per_mm2": Usual(3.0, 0.004, 5.0, logarithmic=True),
+    "snow.unloading_ratio": Usual(3.0, 1.0, 1000.0, logarithmic=True),
+    "friction.mu_0": Usual(0.1, 0.0, 0.5),
+    "friction.mu_1_s_per_m": Usual(0.01, -0.05, 0.05),
+    "drag.drag_area_m2": Usual(1.0, 0.0, 3.0),
     "drag.air_density_kg_per_m3": Usual(1.0, 0.5, 2.0),
     "drag.centre_of_pressure_height_m": Usual(0.5, 0.0, 3.0),
     "sledge.edge_angle_deg": Usual(30.0, -30.0, 30.0, about=True),

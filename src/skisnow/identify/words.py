@@ -36,10 +36,10 @@ _HELPS: Final = {
 _ALONE: Final = {
     "snow.S_f_N_per_mm2": "S_f shows only where the edge slides across; an edge that holds bounds it from below. A run "
     "that skids, a tighter turn or a shear test tells it",
-    "snow.H_V_N_per_mm3": "the path hardly depends on the depth of the groove. Depth and width of the marks, or a "
+    "snow.H_V_N_per_mm3": "The path hardly depends on the depth of the groove. Depth and width of the marks, or a "
     "penetration test, tell it",
-    "drag.drag_area_m2": "at these speeds drag is too small. A faster run tells it",
-    "snow.unloading_ratio": "the path hardly depends on how the groove springs back. Fix it",
+    "drag.drag_area_m2": "At these speeds drag is too small. A faster run tells it",
+    "snow.unloading_ratio": "The path hardly depends on how the groove springs back. Fix it",
 }
 _COMMON: Final = "fix one of them, give it a prior from elsewhere, or add a run in which they act differently"
 

@@ -1,0 +1,148 @@
+"""``skisnow identify``: parameters from tracks, photo-cell times, or marks left in the snow."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .announced import announced
+from .ending import Ending, ending_is_an_interrupt
+from .progress import Progress
+from .words import seed_number, whole_number
+
+if TYPE_CHECKING:
+    from ..identify import Identification
+    from ..simulate.scenario import ScenarioFile
+
+KEPT = "simulations.partial"
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "identify",
+        help="friction, drag, snow and more from tracks, photo-cell times or marks",
+        description="Find the parameters of a scenario that fit what was measured. Ctrl-C keeps the best so far.",
+    )
+    parser.add_argument("scenario", metavar="NAME|SCENARIO.toml", help="a built-in scenario or a TOML file")
+    parser.add_argument(
+        "data",
+        nargs="+",
+        type=Path,
+        metavar="DATA",
+        help="tracks (CSV, GPX, FIT, NMEA, UBX, .pos), photo-cell times or marks (CSV); several are fitted together",
+    )
+    free = 'what is looked for, such as mu_0,drag_area,S_f; left out: what has a table [identify."KEY"] in the file'
+    parser.add_argument("--free", default="", metavar="KEY,KEY", help=free)
+    changes = "another value for one key of the scenario, several times for several"
+    parser.add_argument("--set", action="append", default=[], dest="changes", metavar="section.key=value", help=changes)
+    _add_ways(parser)
+    parser.add_argument("--json", action="store_true", help="print identification.json alone to standard output")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write identification.json, fits.csv and a report")
+    parser.add_argument("--resume", action="store_true", help="go on with the simulations that are kept in --out")
+    parser.set_defaults(run=run, parser=parser)
+
+
+def _add_ways(parser: argparse.ArgumentParser) -> None:
+    profile = "also intervals by fitting all others anew along each parameter"
+    parser.add_argument("--profile", action="store_true", help=profile)
+    bootstrap = "also intervals by N resamples of the residuals"
+    parser.add_argument("--bootstrap", type=whole_number, default=0, metavar="N", help=bootstrap)
+    posterior = "also about N samples of the posterior (needs emcee)"
+    parser.add_argument("--posterior", type=whole_number, default=0, metavar="N", help=posterior)
+    parser.add_argument("--starts", type=whole_number, default=1, metavar="N", help="searches from N places")
+    parser.add_argument("--seed", type=seed_number, default=0, metavar="N", help="of every random number")
+    clock = "whether photo-cell clocks show 0 at the start, or each run's has an offset of its own"
+    parser.add_argument("--clock", choices=("start", "free"), help=clock)
+    parser.add_argument("--workers", type=whole_number, metavar="N", help="processes; left out: all cores")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Identify, print, write; 0 with every answer, 1 with too few points, 130 when interrupted."""
+    if options.resume and options.out is None:
+        options.parser.error("--resume goes on with what is kept in --out DIR; name it")
+    asked = _prepared(options)
+    with ending_is_an_interrupt() as ending:
+        found = _identified(options)
+        _tell(options, found, asked)
+    return _status(found, ending)
+
+
+def _prepared(options: argparse.Namespace) -> ScenarioFile:
+    """What can be refused is refused before the work."""
+    with announced("loading and, on a machine's first run, compiling the simulator, once"):
+        from ..identify.posterior import require_emcee
+        from ..simulate.scenario import scenario_file
+
+        if options.posterior:
+            require_emcee()
+        asked = scenario_file(options.scenario, changes=_changes(options))
+    if options.out is not None:
+        from ..files import require_writable
+
+        require_writable(options.out)
+        if not options.resume:
+            (options.out / KEPT).unlink(missing_ok=True)
+    for text in asked.warnings:
+        print(f"warning: {text}", file=sys.stderr)
+    return asked
+
+
+def _changes(options: argparse.Namespace) -> dict[str, object]:
+    from ..simulate.scenario.given import change_of
+
+    return dict(change_of(word) for word in options.changes)
+
+
+def _identified(options: argparse.Namespace) -> Identification:
+    import numpy as np
+
+    from ..identify import identify
+
+    with Progress() as progress:
+        return identify(
+            options.scenario,
+            options.data,
+            options.free,
+            changes=_changes(options),
+            starts=options.starts,
+            profile=options.profile,
+            bootstrap=options.bootstrap,
+            posterior=options.posterior,
+            clock_is_free=None if options.clock is None else options.clock == "free",
+            rng=np.random.default_rng(options.seed),
+            workers=options.workers,
+            kept=None if options.out is None else options.out / KEPT,
+            told=progress,
+        )
+
+
+def _tell(options: argparse.Namespace, found: Identification, asked: ScenarioFile) -> None:
+    from ..identify import identification_dict
+
+    told = identification_dict(found, files=(*asked.files, *options.data))
+    for text in found.warnings:
+        print(f"warning: {text}", file=sys.stderr)
+    if options.json:
+        print(json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+    else:
+        from ..report.identify_summary import identify_summary
+
+        print(identify_summary(found), flush=True)
+    if options.out is not None:
+        from ..report.identify_report import write_identify_report
+
+        with Progress() as progress:
+            page = write_identify_report(found, told, options.out, progress=lambda doing: progress(f"writing {doing}"))
+        print(f"Report: {page}", file=sys.stderr)
+    if found.outcome == "interrupted" and options.out is not None:
+        print("The same command with --resume goes on with the simulations that are kept.", file=sys.stderr)
+
+
+def _status(found: Identification, ending: Ending) -> int:
+    if ending.asked or found.outcome == "interrupted":
+        return ending.status()
+    return 1 if found.outcome == "too_few_points" else 0

@@ -1,0 +1,84 @@
+"""What was measured beside what the identified parameters give, and the difference along the run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.lines import Line2D
+
+from ..symbols import figure_text
+from .style import BLACK, COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ...identify.observations import Fit
+
+FloatArray = npt.NDArray[np.float64]
+_MARKERS: Final = ("o", "^", "s", "D", "v", "P", "X")
+_LARGEST_MM, _SMALLEST_MM = 120.0, 55.0
+_MOST_RUNS: Final = 7
+
+
+def tracks_above(fits: Sequence[Fit]) -> Figure:
+    """Measured points and identified lines from above, the same scale along both axes."""
+    places = np.vstack([fit.measured[:, :2] for fit in fits])
+    x, y = np.ptp(places[:, 0]) + 2.0, np.ptp(places[:, 1]) + 2.0
+    height = float(np.clip((DOUBLE_MM - 25.0) * y / x + 25.0, _SMALLEST_MM, _LARGEST_MM))
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height)
+    axes = figure.subplots()
+    handles = []
+    for number, fit in enumerate(fits[:_MOST_RUNS]):
+        colour = COLOURS[number % len(COLOURS)]
+        axes.plot(fit.fitted[:, 0], fit.fitted[:, 1], color=colour, zorder=3)
+        marker = _MARKERS[number % len(_MARKERS)]
+        look = {"linestyle": "none", "marker": marker, "markerfacecolor": "none", "markersize": 3.0, "color": BLACK}
+        axes.plot(fit.measured[:, 0], fit.measured[:, 1], zorder=2, **look)  # type: ignore[arg-type]
+        name = figure_text(fit.name)
+        handles += [
+            Line2D([], [], label=f"{name}, measured", **look),
+            Line2D([], [], color=colour, label=f"{name}, identified"),
+        ]  # type: ignore[arg-type]
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel("x, down the fall line (m)")
+    axes.set_ylabel("y, to the left (m)")
+    legend_below(figure, handles)
+    return figure
+
+
+def residuals_along(fits: Sequence[Fit]) -> Figure:
+    """Measured minus identified for each quantity; the band is twice the standard deviation."""
+    labels = [label for i, label in enumerate(fits[0].labels) if any(_known(fit, i).any() for fit in fits)]
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=30.0 + 34.0 * len(labels))
+    rows = figure.subplots(len(labels), 1, sharex=True, squeeze=False)[:, 0]
+    handles = []
+    for number, fit in enumerate(fits[:_MOST_RUNS]):
+        colour, marker = COLOURS[number % len(COLOURS)], _MARKERS[number % len(_MARKERS)]
+        for axes, label in zip(rows, labels, strict=True):
+            _residual(axes, fit, fit.labels.index(label), colour, marker)
+        handles.append(Line2D([], [], color=colour, marker=marker, markerfacecolor="none", label=figure_text(fit.name)))
+    for axes, label in zip(rows, labels, strict=True):
+        axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
+        axes.set_ylabel(f"{label.replace(' (', chr(10) + 'measured − identified (')}")
+    rows[-1].set_xlabel({"track": "time (s)", "photo_cells": "station (m)", "marks": "place"}[fits[0].kind])
+    figure.align_ylabels()
+    legend_below(figure, handles)
+    return figure
+
+
+def _known(fit: Fit, i: int) -> npt.NDArray[np.bool_]:
+    return np.isfinite(fit.measured[:, i]) & np.isfinite(fit.sd[:, i])
+
+
+def _residual(axes: Axes, fit: Fit, i: int, colour: str, marker: str) -> None:
+    use = _known(fit, i)
+    if not use.any():
+        return
+    along, residual, sd = fit.along[use], fit.residual[use, i], fit.sd[use, i]
+    axes.fill_between(along, -2.0 * sd, 2.0 * sd, color=PALE, alpha=0.35, linewidth=0.0, zorder=0)
+    axes.plot(along, residual, color=colour, marker=marker, markerfacecolor="none", linewidth=0.6, zorder=3)

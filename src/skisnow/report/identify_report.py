@@ -1,0 +1,167 @@
+"""The report of an identification: its JSON, what was measured and fitted, figures, and one page."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from ..files import require_writable, write_file
+from .figures.drawing import Drawing, pictured
+from .figures.identify_fits import residuals_along, tracks_above
+from .figures.identify_profiles import profiles_drawn
+from .figures.style import journal_style
+from .numerals import counted
+from .run_report import write_pictures
+from .sheet import Header, Section, sheet
+from .symbols import html, prose
+from .tables.identified import correlation_table, parameters_table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from markupsafe import Markup
+
+    from ..identify.identification import Identification
+    from .figures.drawing import Picture
+
+FIGURES: Final = ("tracks", "residuals_track", "residuals_photo_cells", "residuals_marks", "profiles")
+"""Names of an identification's figures, in figures/ as .png and .svg."""
+COLUMNS: Final = ("run", "kind", "along", "quantity", "measured", "identified", "sd")
+
+
+def write_identify_report(
+    found: Identification,
+    told: Mapping[str, Any],
+    folder: str | Path,
+    *,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write identification.json, fits.csv, figures/ and report.html; returns the page's path.
+
+    Parameters
+    ----------
+    found
+        What came out.
+    told
+        What `identification_dict` gives.
+    folder
+        Made where it is missing. Other files in it stay; figures of an earlier identification are replaced or removed.
+    progress
+        Called with a line of text now and then.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    """
+    folder = Path(folder)
+    require_writable(folder)
+    say = progress or _silent
+    write_file(folder / "identification.json", json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1) + "\n")
+    write_file(folder / "fits.csv", fits_csv(found))
+    pictures = []
+    with journal_style():
+        for drawing in _drawings(found):
+            say(f"figure {drawing.name}")
+            pictures.append(pictured(drawing))
+    write_pictures(pictures, folder / "figures", every=FIGURES)
+    say("report.html")
+    write_file(folder / "report.html", identify_page(found, pictures))
+    return folder / "report.html"
+
+
+def fits_csv(found: Identification) -> str:
+    """Every measured number with what the identified parameters give; all digits, nothing where there is no number."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for fit in found.fits:
+        for i, along in enumerate(fit.along):
+            for k, label in enumerate(fit.labels):
+                numbers = (fit.measured[i, k], fit.fitted[i, k], fit.sd[i, k])
+                if math.isfinite(numbers[0]):
+                    cells = [repr(float(each)) if math.isfinite(each) else "" for each in numbers]
+                    writer.writerow([fit.name, fit.kind, repr(float(along)), label, *cells])
+    return stream.getvalue()
+
+
+def identify_page(found: Identification, pictures: list[Picture]) -> str:
+    """The HTML of the report."""
+    fits = [picture for picture in pictures if picture.name != "profiles"]
+    profiles = [picture for picture in pictures if picture.name == "profiles"]
+    outcome = found.outcome.replace("_", " ")
+    sections = [
+        Section(
+            "outcome",
+            "Outcome",
+            key=[prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=found.reason)],
+            tables=[parameters_table(found)],
+        )
+    ]
+    if found.warnings:
+        sections.append(Section("warnings", "Warnings", words=[prose("{text}.", text=text) for text in found.warnings]))
+    if fits:
+        sections.append(Section("fit", "Measured and identified", pictures=fits))
+    if len(found.parameters) > 1:
+        sections.append(Section("correlation", "Correlations", tables=[correlation_table(found)]))
+    if profiles:
+        sections.append(Section("profiles", "Profiles", pictures=profiles))
+    sections.append(Section("provenance", "How it was computed", words=_methods(found)))
+    facts = [("Scenario", found.scenario), ("Points", str(found.points)), ("Computed", f"skisnow {version('skisnow')}")]
+    return sheet(Header("Parameters identified from measurements", _title(found), facts), sections)
+
+
+def _title(found: Identification) -> str:
+    names = ", ".join(each.parameter.name for each in found.parameters)
+    return f"{names}: {found.outcome.replace('_', ' ')}"
+
+
+def _methods(found: Identification) -> list[Markup]:
+    effort = found.effort
+    runs = counted(effort.simulations, "simulated run")
+    last = prose(
+        "{runs}, {rounds}, {wall} s.", runs=runs, rounds=counted(effort.rounds, "Jacobian"), wall=f"{effort.wall_s:.1f}"
+    )
+    return [*(prose("{text}.", text=text) for text in found.methods), last]
+
+
+def _drawings(found: Identification) -> Iterator[Drawing]:
+    """One after the other, inside the house style."""
+    tracks = [fit for fit in found.fits if fit.kind == "track"]
+    if tracks:
+        yield Drawing(
+            "tracks",
+            html("Tracks from above: points measured, lines with the identified parameters."),
+            "Measured points and identified tracks from above.",
+            tracks_above(tracks),
+            wide=True,
+        )
+    for kind, words in (("track", "along the run"), ("photo_cells", "over the station"), ("marks", "place by place")):
+        fits = [fit for fit in found.fits if fit.kind == kind]
+        if fits:
+            yield Drawing(
+                f"residuals_{kind}",
+                prose(
+                    "Measured minus identified {words}; the band is ± two standard deviations of the data.", words=words
+                ),
+                f"Residuals {words}.",
+                residuals_along(fits),
+                wide=True,
+            )
+    if found.profiles:
+        yield Drawing(
+            "profiles",
+            html("Rise of the sum of squares, in squared standard deviations, along each parameter."),
+            "Profiles of the sum of squares.",
+            profiles_drawn(found),
+            wide=True,
+        )
+
+
+def _silent(_text: str) -> None:
+    return
