@@ -21,7 +21,7 @@ from .motion.advance import (
 )
 from .motion.along import shares
 from .motion.archive import Archive, grown, new_archive
-from .motion.lines import ABOVE, KEPT, TOUCHED, WINDOW, Lines, new_lines
+from .motion.lines import KEPT, TOUCHED, WINDOW, Lines, new_lines
 from .motion.model import Model, Snow, World, sledge_model
 from .motion.path import AHEAD, follow
 from .motion.settle import settle
@@ -214,7 +214,6 @@ def set_up(scenario: Scenario) -> Setup:
     _place(scenario, memory, depth)
     follow(model, snow, world, lines, archive, memory.state)
     unrest = _settled(model, snow, world, lines, memory)
-    lines.flag[:, ABOVE] = 0  # Newton's steps are no motion: edges hold where they came to rest
     memory.state.velocity[0] = scenario.start.speed
     observe(model, snow, world, lines, archive, memory, True)
     memory.clock.work[:] = 0.0

@@ -18,7 +18,7 @@ from skisnow.simulate.motion.model import PADDING, Snow, State, World
 from skisnow.simulate.sledge import RigidSledge
 from skisnow.ski.beam.clamped import ClampedSki
 
-from .reference_snow import Line, Touch, pressure_sums
+from .reference_snow import Line, Touch, anchor, pressure_sums
 
 FloatArray = npt.NDArray[np.float64]
 _POINT, _WEIGHT = np.polynomial.legendre.leggauss(4)
@@ -249,7 +249,7 @@ def _section(
     u = u * per_length
     forwards = np.cross(u, n)
     hold = snow.shear_stress * deep * weight
-    used = 0.0 if line.anchor is None else (line.anchor - edge) / snow.holding
+    used = (anchor(line, edge, deep) - edge) / snow.holding
     shear = hold * min(max(used, -1.0), 1.0) * u
     off = moment / force if force > 0.0 else 0.0
     at_edge = R @ body.middle[k] + axis + reach * t
@@ -350,8 +350,8 @@ def ros2_step(
     middle = moved(motion, h * k1[:n], speeds + h * k1[n:])
     touches = [(line, line.touch, line.anchor, line.above) for side in lines for line in side]
     stage = felt(body, snow, spacing, lines, middle)
-    for line, touch, anchor, above in touches:  # the snow remembers accepted states alone
-        line.touch, line.anchor, line.above = touch, anchor, above
+    for line, touch, held, above in touches:  # the snow remembers accepted states alone
+        line.touch, line.anchor, line.above = touch, held, above
     k2 = lu_solve(matrix, slope(middle, stage.force, h * k1[3:6]) - 2.0 * k1)
     total = 0.5 * h * (3.0 * k1 + k2)
     return moved(motion, total[:n], speeds + total[n:])

@@ -153,6 +153,16 @@ def _add_piece(sums: Sums, a: float, b: float, touch: Touch, lift: float, hardne
     sums.stiffness = (k0 + branch * float(w.sum()), k1 + branch * float(w @ x), k2 + branch * float(w @ x**2))
 
 
+def anchor(line: Line, edge: float, deep: float) -> float:
+    """Where an edge that is `deep` now is held: where it was, else where it came through the surface."""
+    if line.anchor is not None:
+        return line.anchor
+    if line.above is None:
+        return edge
+    before, height = line.above
+    return before + (edge - before) * height / (height - deep)
+
+
 def remember(line: Line, snow: Snow, most_cells: int) -> None:
     """Keep the base that touches a line, and let its edge take hold."""
     touch = line.touch
@@ -170,10 +180,5 @@ def remember(line: Line, snow: Snow, most_cells: int) -> None:
             cell.deepest, line.slope = here, touch.fall
         cell.start, cell.end = min(cell.start, start), max(cell.end, end)
         start = end
-    if line.anchor is None:
-        line.anchor = touch.edge
-        if line.above is not None:  # where the edge came through the surface, within the step
-            edge, height = line.above
-            line.anchor = edge + (touch.edge - edge) * height / (height - touch.deep)
-            line.above = None
-    line.anchor = min(max(line.anchor, touch.edge - snow.holding), touch.edge + snow.holding)
+    line.anchor = min(max(anchor(line, touch.edge, touch.deep), touch.edge - snow.holding), touch.edge + snow.holding)
+    line.above = None

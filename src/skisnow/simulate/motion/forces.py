@@ -17,7 +17,6 @@ import numpy.typing as npt
 
 from .lines import (
     ABOVE,
-    ANCHOR,
     ANCHORED,
     CELL,
     DEEP_ABOVE,
@@ -33,6 +32,7 @@ from .lines import (
     TOUCHED,
     WINDOW,
     Lines,
+    anchor_of,
     energy_at_edge,
     pressure,
 )  # fmt: skip
@@ -306,7 +306,7 @@ def _forces(  # noqa: PLR0912, PLR0915 - as above
         s0, s1, s2 = u1 * n2 - u2 * n1, u2 * n0 - u0 * n2, u0 * n1 - u1 * n0
         # the edge holds where it first took hold, with up to its strength
         hold = snow.shear_stress * deep * weight
-        used = (value[row, ANCHOR] - edge) * per_holding if flag[row, ANCHORED] == 1 else 0.0
+        used = (anchor_of(value, flag, row, edge, deep) - edge) * per_holding
         sticks = abs(used) < 1.0 or snow.secant > 0.0
         used = min(max(used, -1.0), 1.0)
         shear = hold * used

@@ -168,6 +168,16 @@ def _with_piece(total: Sums, u: float, v: float, p0: float, rise: float, stiffne
     )
 
 
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
+def anchor_of(value: FloatArray, flag: IntArray, row: int, edge: float, deep: float) -> float:
+    """Where across an edge that is `deep` now holds: as before, else where it met the surface since the last look."""
+    if flag[row, ANCHORED] == 1:
+        return value[row, ANCHOR]
+    if flag[row, ABOVE] == 1:
+        return edge - deep / (deep - value[row, DEEP_ABOVE]) * (edge - value[row, EDGE_ABOVE])
+    return edge
+
+
 @numba.njit(cache=True, error_model="numpy", inline="always")
 def mark_cells(cells: FloatArray, value: FloatArray, row: int) -> None:
     """Remember the base that touches a line now; its cells must reach as far."""

@@ -14,11 +14,9 @@ from .lines import (
     ANCHOR,
     ANCHORED,
     CELL,
-    DEEP_ABOVE,
     DEEP_NOW,
     DEPTH,
     EDGE,
-    EDGE_ABOVE,
     EDGE_MARKED,
     FALL,
     HIGH,
@@ -30,6 +28,7 @@ from .lines import (
     TOUCHED,
     WINDOW,
     Lines,
+    anchor_of,
     begin_line,
     energy_left,
     mark_cells,
@@ -199,15 +198,9 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
             edge, depth, fall = value[row, EDGE], value[row, DEPTH], value[row, FALL]
             mark_cells(cells, value, row)
             archive.lost[0] += loss * _swept(value, flag, row, edge, depth, fall)
-            if flag[row, ANCHORED] == 0:
-                flag[row, ANCHORED] = 1
-                value[row, ANCHOR] = edge
-                if flag[row, ABOVE] == 1:  # where the edge was when it met the surface, within the step
-                    rise = value[row, DEEP_ABOVE] / (value[row, DEEP_ABOVE] - value[row, DEEP_NOW])
-                    value[row, ANCHOR] = value[row, EDGE_ABOVE] + rise * (edge - value[row, EDGE_ABOVE])
-                    flag[row, ABOVE] = 0
-            else:
-                value[row, ANCHOR] = max(min(value[row, ANCHOR], edge + snow.holding), edge - snow.holding)
+            anchor = anchor_of(value, flag, row, edge, value[row, DEEP_NOW])
+            value[row, ANCHOR] = max(min(anchor, edge + snow.holding), edge - snow.holding)
+            flag[row, ANCHORED], flag[row, ABOVE] = 1, 0
 
 
 @numba.njit(cache=True, error_model="numpy")

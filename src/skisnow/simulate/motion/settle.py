@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .equations import add_forces, channel_rows, copy_pose, move
 from .forces import Forces, feel
-from .lines import Lines
+from .lines import ABOVE, Lines
 from .model import Model, Snow, State, World
 from .ros2 import Room
 from .system import Factored, add_band, backwards, cholesky, factor, forwards, solve_corner
@@ -37,6 +37,7 @@ def settle(
     scale = 1.0
     for _ in range(MOST_STEPS):
         feel(model, snow, lines, state, size > 0.0, True, start)
+        lines.flag[:, ABOVE] = 0  # Newton's steps are no motion: edges hold where they come to rest
         vector.rigid[:] = 0.0
         vector.bend[:] = 0.0
         add_forces(model, world, state, start, 1.0, vector)
