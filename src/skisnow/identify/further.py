@@ -14,7 +14,7 @@ from ..statistics import percentile_interval
 from .identification import Identification, Identified, Interval, Profile
 from .parameter import Parameter, bounds_of
 from .result import Solution
-from .search import Search
+from .search import step_inside
 
 FloatArray = npt.NDArray[np.float64]
 Told = Callable[[str], None]
@@ -51,6 +51,18 @@ def profiled(found: Identification, solution: Solution, told: Told) -> Identific
     return replace(found, profiles=tuple(profiles), parameters=tuple(parameters), methods=(*found.methods, told_how))
 
 
+def _residuals(solution: Solution) -> Callable[[list[FloatArray]], list[FloatArray | None]]:
+    """Those of the search, moved so that at the best place they are those of the answer."""
+    problem, found = solution.problem, solution.found
+    quick = problem.residuals([found.place])[0]
+    apart = np.zeros_like(found.residuals) if quick is None else found.residuals - quick
+
+    def residuals(places: list[FloatArray]) -> list[FloatArray | None]:
+        return [None if each is None else each + apart for each in problem.residuals(places)]
+
+    return residuals
+
+
 def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatArray]:
     """Places of parameter j in sizes, rising, and the rise of the sum of squares; the best one among them."""
     problem, found = solution.problem, solution.found
@@ -58,23 +70,19 @@ def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatA
     centre = found.place
     ends = np.unique(np.clip(centre[j] + error * np.array(PLACES), lower[j], upper[j]))
     ends = ends[np.abs(ends - centre[j]) > 1e-9]
-    assert found.jacobian is not None
+    ask = _residuals(solution)
     begun = [_moved(solution, j, float(end)) for end in ends]
     costs = np.full(len(ends), np.inf)
     for _ in range(REFITS):
-        asked = problem.residuals(begun)
-        for i, residuals in enumerate(asked):
-            if residuals is None:
-                continue
-            costs[i] = min(costs[i], float(residuals @ residuals))
-            begun[i] = _refitted(solution, j, begun[i], residuals)
-    for i, residuals in enumerate(problem.residuals(begun)):
+        for i, residuals in enumerate(ask(begun)):
+            if residuals is not None:
+                costs[i] = min(costs[i], float(residuals @ residuals))
+                begun[i] = _refitted(solution, j, begun[i], residuals)
+    for i, residuals in enumerate(ask(begun)):
         if residuals is not None:
             costs[i] = min(costs[i], float(residuals @ residuals))
-    middle = problem.residuals([centre])[0]
-    least = float(middle @ middle) if middle is not None else found.cost
     places = np.concatenate([ends, [centre[j]]])
-    rise = np.concatenate([costs - least, [0.0]])
+    rise = np.concatenate([costs - found.cost, [0.0]])
     order = np.argsort(places)
     return places[order], rise[order]
 
@@ -96,10 +104,7 @@ def _refitted(solution: Solution, j: int, place: FloatArray, residuals: FloatArr
     if not len(others):
         return place
     lower, upper = bounds_of(solution.problem.parameters)
-    part = Search(lambda _: [], lower[others], upper[others], solution.manner)
-    from .search import Found
-
-    step = part._step(Found(place[others], residuals, jacobian[:, others]), 1e-9)
+    step = step_inside(jacobian[:, others], residuals, lower[others] - place[others], upper[others] - place[others])
     moved = place.copy()
     moved[others] = np.clip(place[others] + step, lower[others], upper[others])
     return moved
@@ -129,8 +134,8 @@ def bootstrapped(found: Identification, solution: Solution, resamples: int, rng:
 
     Notes
     -----
-    Stretches have the length of the cube root of a series, 3 at least: noise that wanders keeps its nature. Refitting by
-    simulation would take hundreds of searches; what is nonlinear shows in the profile.
+    Stretches have the length of the cube root of a series, 3 at least: noise that wanders keeps its nature. Refitting
+    by simulation would take hundreds of searches; what is nonlinear shows in the profile.
     """
     jacobian = solution.found.jacobian
     if jacobian is None or solution.degrees_of_freedom < 1:
@@ -153,7 +158,7 @@ def bootstrapped(found: Identification, solution: Solution, resamples: int, rng:
         replace(each, bootstrap_interval=(float(low), float(high)))
         for each, (low, high) in zip(found.parameters, intervals, strict=True)
     )
-    told = f"bootstrap: {resamples} resamples of stretches of residuals, each fitted by the model linearised at the best values"
+    told = f"bootstrap: {resamples} resamples of stretches of residuals, each fitted by the linearised model"
     return replace(found, bootstrap=samples, parameters=parameters, methods=(*found.methods, told))
 
 

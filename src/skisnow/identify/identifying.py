@@ -107,7 +107,7 @@ def identify(
     keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in own))
     if not keys:
         raise ParameterError('nothing is looked for: name keys with --free, or write [identify."KEY"] in the scenario')
-    read = collected(given, asked, [data] if isinstance(data, Data) or isinstance(data, str | Path) else data, keys)
+    read = collected(given, asked, [data] if isinstance(data, Data | str | Path) else data, keys)
     parameters = parameter_table(keys_of_runs(keys, read.runs), values_to_begin_with(asked, read, own), own)
     simulate = RunSimulation(given, tuple(track.time for track in read.tracks))
     rows = KeptRows() if kept is None else KeptRows.opened(kept, fingerprint(given, read.tracks))

@@ -176,12 +176,11 @@ class MarkGrooves:
 
     def _columns(self) -> list[tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]]:
         marks = self.marks
-        found = [
+        return [
             (marks.depth, marks.depth_sd, np.isfinite(marks.depth)),
             (marks.width, marks.width_sd, np.isfinite(marks.width) & (not self.slides)),
             (marks.turn_radius, marks.turn_radius_sd, np.isfinite(marks.turn_radius)),
         ]
-        return found
 
     def _residual(self, values: Values) -> FloatArray | None:
         groove = self.groove(values)

@@ -10,12 +10,12 @@ from typing import Final
 import numpy as np
 from scipy.stats import chi2, norm
 
-from .identification import REASONS, Identification, Identified
+from .identification import REASONS, Identification, Identified, Outcome
 from .mark_grooves import STRENGTH, MarkGrooves
 from .parameter import Parameter
 from .problem import problem_of
 from .result import identification_of, too_few
-from .solving import Asked, _Solver, solved
+from .solving import Asked, solution_of, solved
 
 SLID: Final = 0.01
 """Probability below which marks are not those of an edge that held (Choice)."""
@@ -50,7 +50,7 @@ def _slid(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Asked) -> boo
         problem = problem_of(others, (marks,))
         if problem.points <= len(others):
             return False
-        solution = _Solver(problem, replace(plan, starts=1, told=lambda _: None)).solution()
+        solution = solution_of(problem, replace(plan, starts=1, told=lambda _: None))
         values = problem.values(solution.found.place)
         residuals, dof = marks.residuals([values])[0], problem.points - len(others)
     groove = marks.groove(values)
@@ -87,18 +87,14 @@ def _holding(
 ) -> Identification:
     """Identify the others; S_f is bounded from below by what the turn needed."""
     problem = problem_of(others, (marks,))
-    solution = _Solver(problem, plan).solution()
+    solution = solution_of(problem, plan)
     found = identification_of(solution, plan.title, plan.warnings, plan.methods)
     values = {key: value for key, value in found.values.items() if value is not None}
     bound, low = _bound(marks, values, found)
+    needed = "says nothing" if bound is None or low is None else f"needed {bound:.3g} N/mm² (95 %: at least {low:.3g})"
     told = (
-        "the marks go with an edge that held, so S_f is bounded from below alone: the turn "
-        + (
-            f"needed {bound:.3g} N/mm² (95 %: at least {low:.3g})"
-            if bound is not None and low is not None
-            else "says nothing"
-        )
-        + ". A turn in which the edge slides, or a shear test, gives its value"
+        f"the marks go with an edge that held, so S_f is bounded from below alone: the turn {needed}. A turn in which the "
+        "edge slides, or a shear test, gives its value"
     )
     held = Identified(parameter=strength, interval=(low, None), identifiable=False)
     entries = {each.parameter.key: each for each in found.parameters} | {STRENGTH: held}
@@ -107,7 +103,7 @@ def _holding(
     correlation, covariance = (np.full((p, p), np.nan) for _ in range(2))
     correlation[np.ix_(places, places)] = found.correlation
     covariance[np.ix_(places, places)] = found.covariance
-    outcome = "interrupted" if found.outcome == "interrupted" else "not_identifiable"
+    outcome: Outcome = "interrupted" if found.outcome == "interrupted" else "not_identifiable"
     return replace(
         found,
         outcome=outcome,

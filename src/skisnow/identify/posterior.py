@@ -94,7 +94,7 @@ def _true(solution: Solution) -> Callable[[FloatArray], FloatArray]:
     def log_probability(places: FloatArray) -> FloatArray:
         inside = np.all((places >= lower) & (places <= upper), axis=1)
         found = np.full(len(places), -np.inf)
-        asked = solution.problem.residuals([place for place in places[inside]])
+        asked = solution.problem.residuals(list(places[inside]))
         found[inside] = [
             -np.inf if residuals is None else -0.5 * float(residuals @ residuals) / widening**2 for residuals in asked
         ]

@@ -65,7 +65,7 @@ class Solution:
 
     @property
     def widening(self) -> float:
-        """By how much the stated accuracy is too small: the root of χ² per degree of freedom where chance is unlikely."""
+        """By how much the stated accuracy is too small: the root of χ² per degree of freedom, beyond chance."""
         dof = self.degrees_of_freedom
         if not self.problem.accuracy_is_stated or dof < 1 or chi2.sf(self.found.cost, dof) > SURE:
             return 1.0
@@ -223,7 +223,7 @@ def _starts_apart(solution: Solution) -> Iterator[str]:
     apart = sum(cost - min(costs) > 4.0 * unit for cost in costs)
     if apart:
         yield (
-            f"{apart} of {len(costs)} searches ended in another place, with a worse fit: there are several minima; look at "
+            f"{apart} of {len(costs)} searches ended elsewhere, with a worse fit: there are several minima; look at "
             "the best values with care, or try more starts"
         )
 

@@ -23,7 +23,7 @@ FloatArray = npt.NDArray[np.float64]
 SEARCH_STEP: Final = 1e-3
 """Fixed step (s) of ROS2 in a search: a few mm off after 46 m on soft snow (Choice)."""
 OUTPUT_INTERVAL: Final = 0.02
-"""Between the outputs (s) that a cubic with their velocities goes through: 0.2 m at 10 m/s, exact to 0.1 mm on R = 5 m."""
+"""Between the outputs (s) that a cubic with their velocities joins: exact to 0.1 mm on R = 5 m at 10 m/s."""
 _AFTER_THE_LAST: Final = 1e-9
 
 
@@ -90,9 +90,9 @@ def _search_solver(solver: Solver) -> Solver:
 
 
 def _row(run: Run, times: FloatArray) -> Row:
-    """Where the run ended before a time it goes on straight, as fast as it was: farther off than any run that goes on."""
+    """Where the run ended before a time it is taken to go on straight, as fast as it was."""
     known = np.isfinite(run.place).all(axis=1) & np.isfinite(run.velocity).all(axis=1)
-    count = int(np.argmin(known)) if not known.all() else len(known)
+    count = len(run.time) if known.all() else int(np.argmin(known))
     if count < 2:
         return {"outcome": "error", "reason": run.remedy}
     time, place, velocity = run.time[:count], run.place[:count, :2], run.velocity[:count, :2]

@@ -168,7 +168,7 @@ class Search:
             if better is not None:
                 self.best = better
             if better is None or here.cost - better.cost < self.manner.worth * self.noise(here) ** 2:
-                if here.is_central and np.array_equal(here.place, here.differentiated_at):
+                if here.is_central and here.differentiated_at is here.place:
                     return replace(self._seen(), state="converged" if left <= self.manner.rough else "not_converged")
                 self._differentiated(self._seen())
                 damping = _FIRST_DAMPING
@@ -179,7 +179,7 @@ class Search:
         return self.best
 
     def _with_jacobian(self, found: Found) -> Found:
-        """With derivatives that hold here: those known, unless they are one-sided, of a place too far away, or failed."""
+        """With derivatives that hold here: not one-sided ones, nor of a place too far away, nor such as failed."""
         if found.jacobian is None or found.differentiated_at is None:
             return self._differentiated(found)
         away = found.place - found.differentiated_at
@@ -262,17 +262,11 @@ class Search:
         return self._step(found, _SMALLEST_DAMPING)
 
     def _step(self, found: Found, damping: float) -> FloatArray:
-        """The damped step inside the bounds: min ‖J d + r‖² + damping ‖D d‖²."""
+        """The damped step inside the bounds, no longer than is known."""
         assert found.jacobian is not None
-        scale = np.linalg.norm(found.jacobian, axis=0)
-        scale = np.where(scale > 0.0, scale, 1.0)
-        system = np.vstack([found.jacobian, np.sqrt(damping) * np.diag(scale)])
-        wanted = np.concatenate([-found.residuals, np.zeros(len(scale))])
         low = np.maximum(self.lower - found.place, -self.manner.longest_move)
         high = np.minimum(self.upper - found.place, self.manner.longest_move)
-        room = np.maximum(high - low, _AT_BOUND)
-        solved = lsq_linear(system / scale, wanted, bounds=(low * scale, (low + room) * scale), method="bvls")
-        return np.clip(solved.x / scale, low, high)
+        return step_inside(found.jacobian, found.residuals, low, high, damping=damping)
 
     def _stepped(self, found: Found, damping: float) -> tuple[Found | None, float]:
         """The best of some trial steps; None where none of ever shorter ones improves."""
@@ -312,6 +306,28 @@ class Search:
         length = np.linalg.norm(found.jacobian, axis=0)
         with np.errstate(divide="ignore"):
             return np.clip(self.noise(found) / length, low, high)
+
+
+def step_inside(
+    jacobian: FloatArray,
+    residuals: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+    *,
+    damping: float = _SMALLEST_DAMPING,
+) -> FloatArray:
+    """The step d, low ≤ d ≤ high, of least ‖J d + r‖² + damping ‖D d‖², D the lengths of J's columns.
+
+    >>> step_inside(np.eye(2), np.array([-3.0, -1.0]), np.full(2, -2.0), np.full(2, 2.0)).round(6).tolist()
+    [2.0, 1.0]
+    """
+    scale = np.linalg.norm(jacobian, axis=0)
+    scale = np.where(scale > 0.0, scale, 1.0)
+    system = np.vstack([jacobian / scale, np.sqrt(damping) * np.eye(len(scale))])
+    wanted = np.concatenate([-residuals, np.zeros(len(scale))])
+    room = np.maximum(high - low, _AT_BOUND)
+    solved = lsq_linear(system, wanted, bounds=(low * scale, (low + room) * scale), method="bvls")
+    return np.asarray(np.clip(solved.x / scale, low, high))
 
 
 def _secant(found: Found, place: FloatArray, residuals: FloatArray) -> Found:

@@ -71,7 +71,7 @@ def solved(problem: Problem, plan: Asked) -> Identification:
     """
     if plan.starts < 1:
         raise ParameterError(f"starts is {plan.starts}; at least 1 is needed")
-    solution = _Solver(problem, plan).solution()
+    solution = solution_of(problem, plan)
     found = identification_of(solution, plan.title, plan.warnings, plan.methods)
     if found.outcome == "interrupted":
         return found
@@ -86,6 +86,11 @@ def solved(problem: Problem, plan: Asked) -> Identification:
         told = "what was asked beside the values was interrupted; values and intervals by curvature are complete"
         return replace(found, outcome="interrupted", warnings=(*found.warnings, told))
     return found
+
+
+def solution_of(problem: Problem, plan: Asked) -> Solution:
+    """The best place, with derivatives in standard deviations of the data."""
+    return _Solver(problem, plan).solution()
 
 
 def manner_of(problem: Problem) -> Manner:
@@ -166,7 +171,7 @@ class _Solver:
         return found
 
     def _polished(self, found: Found) -> Found:
-        """The last steps with the scenario's own solver; the whole search with it where the quick one was too far off."""
+        """The last steps with the scenario's own solver; all with it where the quick one was too far off."""
         self.plan.told("last steps with the scenario's own solver")
         search = self._search(self.problem, "")
         quick = found.residuals
@@ -176,7 +181,7 @@ class _Solver:
             apart = 0.0 if first is None else float(np.sqrt(np.mean((first - quick) ** 2))) / search.noise(found)
             if apart > _STEPS_APART:
                 self.methods.append(
-                    "fixed steps of 1 ms were too long for this snow: the search was repeated with the scenario's solver"
+                    "fixed steps of 1 ms were too long for this snow: searched again with the scenario's solver"
                 )
                 again = self._search(self.problem, "own solver: ", final=True).run(polished.place)
                 return polished if again is None else again

@@ -45,8 +45,8 @@ def in_scenario_frame(track: Track, asked: ScenarioFile, site: object) -> tuple[
         return track, []
     if site is None:
         raise ParameterError(
-            f"{track.name} is in east, north and up, and the scenario's slope lies nowhere: write [identify.site] with "
-            "fall_line_azimuth_deg (the compass direction in which the slope falls), and latitude_deg and longitude_deg "
+            f"{track.name} is in east, north and up, and the slope lies nowhere: write [identify.site] with "
+            "fall_line_azimuth_deg (the compass direction in which it falls), and latitude_deg and longitude_deg "
             "of its x = y = 0; without these the track's first point is taken as the scenario's start"
         )
     said = _site(site)

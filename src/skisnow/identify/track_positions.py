@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final, Protocol
+from typing import Final, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -213,10 +213,10 @@ class TrackPositions:
         """Points left out, a run that ends early, a track that begins elsewhere, points far off."""
         found = []
         rows = self.simulate(self._tasks(values, final=True))
-        for track, row, task in zip(self.tracks, rows, self._tasks(values, final=True), strict=True):
+        for track, row in zip(self.tracks, rows, strict=True):
             if track.left_out:
                 found.append(f"{track.name}: {track.left_out} points are marked as unusable and were left out")
-            found += _warned(track, row, task.values)
+            found += _warned(track, row)
         return tuple(found)
 
     def _residuals(self, many: Sequence[Values], *, final: bool) -> list[FloatArray | None]:
@@ -246,7 +246,7 @@ def _residual(track: Measured, row: Row) -> FloatArray | None:
     return np.concatenate([away[:, 0], away[:, 1], speed])
 
 
-def _warned(track: Measured, row: Row, values: Mapping[str, Any]) -> list[str]:
+def _warned(track: Measured, row: Row) -> list[str]:
     if "x_m" not in row:
         return [f"{track.name}: no run can be simulated with these values: {row.get('reason', '')}"]
     found = []
@@ -261,7 +261,7 @@ def _warned(track: Measured, row: Row, values: Mapping[str, Any]) -> list[str]:
         far = int(np.sum(np.abs(residual) > _OUTLIER * max(spread, 1e-12)))
         if far:
             found.append(
-                f"{track.name}: {far} of {len(residual)} residuals are more than {_OUTLIER:g} times the usual ones: bad "
+                f"{track.name}: {far} of {len(residual)} residuals are beyond {_OUTLIER:g} times the usual: bad "
                 "points, or a stretch where the model does not hold; look at the figure of residuals"
             )
     return found

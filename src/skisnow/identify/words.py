@@ -62,13 +62,14 @@ def unknown_warnings(parameters: Sequence[Parameter], known: Uncertainty) -> Ite
     for group in known.groups:
         told.update(group)
         if len(group) == 1:
-            yield f"{parameters[group[0]].name} cannot be identified: it has no effect on these data. {_alone(parameters[group[0]])}"
+            alone = parameters[group[0]]
+            yield f"{alone.name} cannot be identified: it has no effect on these data. {_alone(alone)}"
         else:
             names = " and ".join(parameters[j].name for j in group)
             helps = _help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
             yield f"{names} cannot be told apart at all by these data: {helps}"
-    for j in np.flatnonzero(known.unknown):
-        if int(j) not in told:
+    for j in np.flatnonzero(known.unknown).tolist():
+        if j not in told:
             yield (
                 f"{parameters[j].name} is left open by these data: its interval is as wide as all values it could "
                 f"have. {_alone(parameters[j])}"
@@ -117,4 +118,4 @@ def _help(one: Parameter, other: Parameter) -> str:
 
 
 def _alone(one: Parameter) -> str:
-    return _ALONE.get(one.key.partition("@")[0], "Fix it, or give it a prior from elsewhere").strip() + "."
+    return _ALONE.get(one.key.partition("@")[0], "Fix it, or give it a prior from elsewhere")

@@ -67,7 +67,7 @@ def _correlations(found: Identification) -> Iterator[str]:
     for i in range(len(names)):
         for j in range(i):
             r = float(found.correlation[i, j])
-            if r == r:  # a nan is not told
+            if math.isfinite(r):
                 yield f"{names[j]} and {names[i]} {r:.2f}"
 
 

@@ -32,18 +32,23 @@ def tracks_above(fits: Sequence[Fit]) -> Figure:
     height = float(np.clip((DOUBLE_MM - 25.0) * y / x + 25.0, _SMALLEST_MM, _LARGEST_MM))
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height)
     axes = figure.subplots()
-    handles = []
+    handles: list[Line2D] = []
     for number, fit in enumerate(fits[:_MOST_RUNS]):
         colour = COLOURS[number % len(COLOURS)]
         axes.plot(fit.fitted[:, 0], fit.fitted[:, 1], color=colour, zorder=3)
         marker = _MARKERS[number % len(_MARKERS)]
-        look = {"linestyle": "none", "marker": marker, "markerfacecolor": "none", "markersize": 3.0, "color": BLACK}
-        axes.plot(fit.measured[:, 0], fit.measured[:, 1], zorder=2, **look)  # type: ignore[arg-type]
-        name = figure_text(fit.name)
-        handles += [
-            Line2D([], [], label=f"{name}, measured", **look),
-            Line2D([], [], color=colour, label=f"{name}, identified"),
-        ]  # type: ignore[arg-type]
+        points = axes.plot(
+            fit.measured[:, 0],
+            fit.measured[:, 1],
+            linestyle="none",
+            marker=marker,
+            markerfacecolor="none",
+            markersize=3.0,
+            color=BLACK,
+            zorder=2,
+            label=f"{figure_text(fit.name)}, measured",
+        )
+        handles += [*points, Line2D([], [], color=colour, label=f"{figure_text(fit.name)}, identified")]
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x, down the fall line (m)")
     axes.set_ylabel("y, to the left (m)")
