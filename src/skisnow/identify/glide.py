@@ -23,6 +23,10 @@ TABLE_SPACING: Final = 0.02
 """Spacing (m) of the tables of a profile's inclination and curvature."""
 STEPS: Final = 200
 """Time steps over a run at least: the terms change over tens of seconds (Choice)."""
+WAIT: Final = 5.0
+"""How many times as long as a run took its body is waited for."""
+CRAWL: Final = 0.1
+"""Speed (m/s) of a body that does not get there in that time, so that a search is told the way."""
 LONGEST_STEP_ON_PROFILE: Final = 0.02
 """(s): 0.4 m at 20 m/s, less than the points of a profile lie apart (Choice)."""
 
@@ -134,12 +138,13 @@ def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: f
     station
         (n,) or (k, n) m, rising, from 0 on.
     longest
-        About how long the runs take (s); the step follows from it, and five times as long is waited.
+        About how long the runs take (s); the step follows from it, and so many times `WAIT` is waited.
 
     Returns
     -------
     array
-        (k, n) s; infinite where a body stops before.
+        (k, n) s. A body that stops before, or is not there after the wait, is taken to crawl on at 0.1 m/s from then:
+        later than any that gets there, and the later the farther it is from there.
 
     Notes
     -----
@@ -149,8 +154,10 @@ def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: f
     k = len(glide.speed)
     stations = np.broadcast_to(np.asarray(station, float), (k, np.shape(station)[-1]))
     h = longest / STEPS if len(line.way) == 1 else min(longest / STEPS, LONGEST_STEP_ON_PROFILE)
-    way, speed = _histories(line, glide, h, float(stations.max()), 5.0 * longest)
-    return np.array([_passages(way[:, j], speed[:, j], h, stations[j]) for j in range(k)])
+    way, speed = _histories(line, glide, h, float(stations.max()), WAIT * longest)
+    found = [_passages(way[:, j], speed[:, j], h, stations[j]) for j in range(k)]
+    crawling = WAIT * longest + (stations - way[-1][:, None]) / CRAWL
+    return np.where(np.isfinite(found), found, crawling)
 
 
 def _histories(line: SlopeLine, glide: Glide, h: float, last: float, longest: float) -> tuple[FloatArray, FloatArray]:

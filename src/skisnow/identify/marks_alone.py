@@ -68,8 +68,8 @@ def _sliding(parameters: tuple[Parameter, ...], strength: Parameter, marks: Mark
         own = replace(strength, start=begin)
     chosen = tuple(own if each is strength else each for each in parameters)
     told = (
-        "the radius is wider than this ski carves at this edge angle: the edge slid, and S_f follows from the side force "
-        "that the turn needed; the width, swept sideways, was not used"
+        "the radius is wider than this ski carves at this edge angle: the edge slid, and S_f follows from the side "
+        "force that the turn needed; the width, swept sideways, was not used"
     )
     problem = problem_of(chosen, (sliding,))
     plan = replace(plan, methods=(*plan.methods, told))
@@ -93,8 +93,8 @@ def _holding(
     bound, low = _bound(marks, values, found)
     needed = "says nothing" if bound is None or low is None else f"needed {bound:.3g} N/mm² (95 %: at least {low:.3g})"
     told = (
-        f"the marks go with an edge that held, so S_f is bounded from below alone: the turn {needed}. A turn in which the "
-        "edge slides, or a shear test, gives its value"
+        f"the marks go with an edge that held, so S_f is bounded from below alone: the turn {needed}. A turn in which "
+        "the edge slides, or a shear test, gives its value"
     )
     held = Identified(parameter=strength, interval=(low, None), identifiable=False)
     entries = {each.parameter.key: each for each in found.parameters} | {STRENGTH: held}

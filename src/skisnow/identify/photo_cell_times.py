@@ -31,8 +31,6 @@ USED: Final = (
 """Keys that the times depend on."""
 NOMINAL_SD: Final = 0.01
 """Standard deviation (s) where none is stated: it cancels, the noise is then estimated from the residuals."""
-_LATER: Final = 1e3
-"""Time (s) that stands for never, so that a search can turn back from parameters that stop the body."""
 
 
 @dataclass(slots=True)
@@ -162,8 +160,7 @@ class PhotoCellTimes:
         of = {**self.asked.values, **self.starts.get(run.name, {})}
         sets = [{**of, **values_of_run(each, run.name)} for each in many]
         taken = float(run.time[-1] - (run.time[0] if self.clock_is_free else 0.0))
-        times = passage_times(self._line_of(sets), self._glide(sets), station, max(taken, 1e-3))
-        return np.minimum(times, _LATER)
+        return passage_times(self._line_of(sets), self._glide(sets), station, max(taken, 1e-3))
 
     def _line_of(self, sets: Sequence[Mapping[str, Any]]) -> SlopeLine:
         if not isinstance(self.asked.scenario.slope, Plane):

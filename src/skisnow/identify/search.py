@@ -79,6 +79,7 @@ FINE: Final = Manner(
     keeps_jacobian=0.0,
     longest_move=5.0,
     smallest_move=1e-9,
+    most_rounds=100,
 )
 """For residuals in closed form or nearly so."""
 

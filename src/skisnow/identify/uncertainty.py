@@ -76,10 +76,11 @@ def uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None) -> Un
     known = singular > SINGULAR * max(float(singular.max(initial=0.0)), 1e-300)
     inverse = (directions[known].T / singular[known] ** 2) @ directions[known]
     covariance = inverse / unit[:, None] / unit[None, :]
+    covariance = 0.5 * (covariance + covariance.T)  # the same above and below the diagonal, to the last digit
     open_directions = np.vstack([directions[~known], np.zeros((0, p))])
     lost = (np.abs(open_directions) > TAKES_PART).any(axis=0) | (length == 0.0)
     error = np.sqrt(np.where(lost, 1.0, np.diag(covariance)))
-    correlation = covariance / error[:, None] / error[None, :]
+    correlation = covariance / np.outer(error, error)
     correlation[lost, :] = np.nan
     correlation[:, lost] = np.nan
     np.fill_diagonal(correlation, 1.0)

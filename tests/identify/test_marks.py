@@ -1,0 +1,142 @@
+"""H_V and S_f from marks: a rigid-plastic balance by hand, twins of the carved turn, bounds, and files."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.identify import Marks, identify, read_marks
+from skisnow.identify.mark_grooves import MarkGrooves
+from skisnow.simulate.scenario import scenario_file
+
+CHANGES: dict[str, object] = {"snow.H_V_N_per_mm3": 0.1, "start.heading_deg": 0.0}
+
+
+def grooves(marks: Marks | None = None) -> MarkGrooves:
+    none = np.zeros(0)
+    return MarkGrooves(
+        marks or Marks("none", none, none, none, none, none, none), scenario_file("carved-46m", changes=CHANGES)
+    )
+
+
+def marks(depth: float, width: float, radius: float, *, share: float = 0.02, seed: int | None = None) -> Marks:
+    rng = None if seed is None else np.random.default_rng(seed)
+    values = []
+    for value in (depth, width, radius):
+        noise = np.zeros(4) if rng is None else share * value * rng.standard_normal(4)
+        values.append(value + noise)
+    spread = [np.full(4, share * value) for value in (depth, width, radius)]
+    return Marks("marks.csv", *values, *spread)
+
+
+def test_a_groove_is_what_carve_leaves() -> None:
+    """Depth of the wedge 2 % of its width tan 30°, and e (1 - 1/10) of the deepest edge stays."""
+    groove = grooves().groove({"snow.H_V_N_per_mm3": 0.2})
+    assert groove is not None
+    assert groove.depth / 0.9 / groove.width == pytest.approx(math.tan(math.radians(30.0)), rel=0.1)  # twist
+    assert groove.turn_radius == pytest.approx(16.2, abs=0.5)  # the simulated turn's median radius
+
+
+def test_hardness_scales_as_in_the_wedge() -> None:
+    """e = √(2 F tan ϑ/(H_V L)) for a rigid ski: a quarter of the hardness doubles the depth; skis bend, so 20 %."""
+    soft, hard = (grooves().groove({"snow.H_V_N_per_mm3": value}) for value in (0.1, 0.4))
+    assert soft is not None
+    assert hard is not None
+    assert soft.depth / hard.depth == pytest.approx(2.0, rel=0.2)
+
+
+def test_hardness_and_edge_angle_of_a_twin_are_found() -> None:
+    truth = {"snow.H_V_N_per_mm3": 0.25, "sledge.edge_angle_deg": 35.0}
+    groove = grooves().groove(truth)
+    assert groove is not None
+    data = marks(groove.depth, groove.width, groove.turn_radius)
+    found = identify("carved-46m", data, "H_V,edge_angle", changes=CHANGES)
+    assert found.outcome == "converged"
+    assert found["H_V"].value == pytest.approx(0.25, rel=0.01)
+    assert found["edge_angle"].value == pytest.approx(35.0, abs=0.1)
+
+
+def test_an_edge_that_holds_bounds_the_strength_from_below() -> None:
+    """At heading 0 the turn needs m v²/R of both skis, S_f ∫ e ds holds it: the bound by hand from the groove."""
+    own = grooves()
+    groove = own.groove({"snow.H_V_N_per_mm3": 0.25})
+    assert groove is not None
+    data = marks(groove.depth, groove.width, groove.turn_radius)
+    found = identify("carved-46m", data, "H_V,S_f", changes=CHANGES)
+    assert found.outcome == "not_identifiable"
+    assert found["S_f"].value is None
+    scenario = own.asked.scenario
+    mass = scenario.sledge.mass + 2.0 * scenario.ski.mass
+    needed = mass * 7.0**2 / groove.turn_radius / (2.0 * groove.grip_area) / 1e6
+    low, high = found["S_f"].interval or (None, None)
+    assert high is None
+    assert low is not None
+    assert 0.7 * needed < low < needed
+    assert "bounded from below" in found.warnings[0]
+    assert found["H_V"].value == pytest.approx(0.25, rel=0.01)
+
+
+def test_an_edge_that_slides_gives_the_strength() -> None:
+    """The radius that S_f = 0.03 N/mm² holds at 7 m/s, wider than the ski carves."""
+    own = grooves()
+    groove = own.groove({"snow.H_V_N_per_mm3": 0.25})
+    assert groove is not None
+    scenario = own.asked.scenario
+    mass = scenario.sledge.mass + 2.0 * scenario.ski.mass
+    radius = mass * 7.0**2 / (2.0 * 0.03e6 * groove.grip_area)
+    assert radius > 1.2 * groove.turn_radius
+    found = identify("carved-46m", marks(groove.depth, 3.0 * groove.width, radius), "H_V,S_f", changes=CHANGES)
+    assert found.outcome == "converged"
+    assert found["S_f"].value == pytest.approx(0.03, rel=0.01)
+    assert found["H_V"].value == pytest.approx(0.25, rel=0.01)
+    assert any("the edge slid" in text for text in found.methods)
+
+
+def test_side_of_the_slope_counts() -> None:
+    """A turn to the left that heads left of the fall line is pulled outwards by g sin α sin χ."""
+    own = grooves()
+    across = own.demand({"start.heading_deg": 90.0}, math.inf)
+    scenario = own.asked.scenario
+    mass = scenario.sledge.mass + 2.0 * scenario.ski.mass
+    assert across == pytest.approx(mass * 9.81 * math.sin(math.radians(10.0)), rel=1e-9)
+    assert own.demand({"start.heading_deg": -90.0}, math.inf) == pytest.approx(-across, rel=1e-9)
+    right = {"start.heading_deg": 90.0, "sledge.edge_angle_deg": -30.0}
+    assert own.demand(right, math.inf) == pytest.approx(-across, rel=1e-9)
+
+
+def test_elastic_snow_keeps_no_mark() -> None:
+    with pytest.raises(ParameterError, match="elastic snow keeps no mark"):
+        identify("carved-46m", marks(2e-3, 4e-3, 16.0), "H_V", changes={"snow.unloading_ratio": 1.0})
+
+
+class TestFile:
+    def test_units_and_missing_cells(self, tmp_path: Path) -> None:
+        path = tmp_path / "marks.csv"
+        header = "depth_mm,width_mm,turn_radius_m,depth_sd_mm,width_sd_mm,turn_radius_sd_m"
+        path.write_text(f"{header}\n2.5,5,16,0.1,0.5,0.3\n2.6,,-17,0.1,,0.3\n", encoding="utf-8")
+        read = read_marks(path)
+        assert read.stated
+        assert read.depth.tolist() == pytest.approx([2.5e-3, 2.6e-3])
+        assert math.isnan(read.width[1])
+        assert read.turn_radius.tolist() == [16.0, 17.0]
+        assert read.width_sd[0] == pytest.approx(0.5e-3)
+
+    def test_scatter_takes_the_part_of_missing_deviations(self, tmp_path: Path) -> None:
+        path = tmp_path / "marks.csv"
+        path.write_text("depth_mm\n2\n3\n4\n", encoding="utf-8")
+        read = read_marks(path)
+        assert not read.stated
+        assert read.depth_sd.tolist() == pytest.approx([1e-3] * 3)
+        path.write_text("depth_mm\n2\n3\n", encoding="utf-8")
+        with pytest.raises(ParameterError, match="depth_sd_mm"):
+            read_marks(path)
+
+    def test_a_depth_of_nothing_is_refused(self, tmp_path: Path) -> None:
+        path = tmp_path / "marks.csv"
+        path.write_text("depth_mm,depth_sd_mm\n0,0.1\n", encoding="utf-8")
+        with pytest.raises(ParameterError, match="above 0"):
+            read_marks(path)
