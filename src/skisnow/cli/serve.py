@@ -1,0 +1,49 @@
+"""``skisnow serve``: the web lab, on this machine."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from .words import whole_number
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "serve",
+        help="open the web lab: enter a campaign, look at it, play with the turn",
+        description="Serve the web lab. The first line printed is its address; Ctrl-C ends it. No network is used.",
+    )
+    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: this machine alone)")
+    parser.add_argument("--port", type=whole_number, default=8765, help="port, 0 for a free one (default: 8765)")
+    parser.add_argument("--token", help="word that is asked for before anything else; needed with any other host")
+    parser.add_argument("--store", type=Path, metavar="PATH", help="file of the store (default: the user's own)")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Serve until interrupted; 1 where the web lab is not installed."""
+    try:
+        from ..web.server import require_allowed, serve
+    except ModuleNotFoundError as missing:
+        if missing.name is None or missing.name.split(".")[0] == "skisnow":
+            raise
+        text = f"skisnow: the web lab needs {missing.name}; install it with: pip install 'skisnow[web]'"
+        print(text, file=sys.stderr)
+        return 1
+    from ..field.store import Store, default_path
+    from ..web.settings import Lab
+
+    require_allowed(options.host, options.token)
+    place = options.store if options.store is not None else default_path()
+    with Store.open(place) as store:
+        serve(
+            Lab(store, place.parent / "lab"), host=options.host, port=options.port, token=options.token, tell=_printed
+        )
+    return 0
+
+
+def _printed(address: str) -> None:
+    print(address, flush=True)

@@ -1,0 +1,52 @@
+"""The lab as an ASGI application."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from fastapi import FastAPI
+from nicegui import app as pages_app
+from nicegui import ui
+from starlette.responses import FileResponse
+
+from .guard import Access, Guard
+from .layout import STYLES
+from .pages import PAGES
+from .trouble import add_error_pages, log_to
+
+if TYPE_CHECKING:
+    from starlette.types import ASGIApp
+
+    from .settings import Lab
+
+LOG_FILE: Final = "lab.log"
+_STYLESHEET: Final = Path(__file__).with_name("lab.css")
+
+
+def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
+    """Put the pages of a lab together, behind their guard. The framework holds pages per process: one lab in each.
+
+    Parameters
+    ----------
+    lab
+        What the pages work with.
+    host
+        That the lab listens on: what a request may name as Host follows from it.
+    token
+        Asked for before anything else; None where only this machine can come in.
+    """
+    log_to(lab.runs / LOG_FILE)
+    outer = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)
+    outer.add_api_route(STYLES, _styles, include_in_schema=False)
+    for name in PAGES:
+        import_module(f".pages.{name}", __package__).add_page(lab)
+    add_error_pages()
+    ui.run_with(outer, title="skisnow", language="en-US", tailwind=False, show_welcome_message=False)
+    pages_app.config.socket_io_js_transports = ["websocket"]
+    return Guard(outer, Access(host, token, lab.limits.upload_bytes))
+
+
+def _styles() -> FileResponse:
+    return FileResponse(_STYLESHEET, media_type="text/css", headers={"cache-control": "no-cache"})

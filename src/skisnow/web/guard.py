@@ -1,0 +1,190 @@
+"""What stands before every page: whose requests are answered, and with which headers.
+
+The lab is for one person on one machine. A page of another site that is open in the same browser must not reach it: not
+by a form (Origin), not by a name that was made to point here (Host), not by a web socket (both).
+"""
+
+from __future__ import annotations
+
+import hmac
+import ipaddress
+import socket
+from dataclasses import dataclass, field
+from http.cookies import CookieError, SimpleCookie
+from typing import TYPE_CHECKING, Final
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import PlainTextResponse, Response
+
+from .token_page import TOKEN_PATH, answer_to_token, token_page
+
+if TYPE_CHECKING:
+    from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+COOKIE: Final = "skisnow_lab"
+_SAFE: Final = frozenset({"GET", "HEAD", "OPTIONS"})
+_LOOPBACK_NAMES: Final = frozenset({"localhost", "127.0.0.1", "::1"})
+
+# Vue compiles the components' templates in the browser and the framework's start is an inline script: both need the
+# words "unsafe"; what the policy holds is that nothing is loaded from, or sent to, any other place.
+CONTENT_POLICY: Final = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self' 'unsafe-inline' 'unsafe-eval'",
+        "style-src 'self' 'unsafe-inline'",
+        "img-src 'self' data: blob:",
+        "font-src 'self'",
+        "connect-src 'self'",
+        "media-src 'self' blob:",
+        "worker-src 'self' blob:",
+        "form-action 'self'",
+        "base-uri 'none'",
+        "frame-ancestors 'none'",
+    )
+)
+HEADERS: Final = {
+    "content-security-policy": CONTENT_POLICY,
+    "x-content-type-options": "nosniff",
+    "x-frame-options": "DENY",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+}
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a host name or address can be reached from this machine alone.
+
+    >>> [is_loopback(host) for host in ("127.0.0.1", "localhost", "::1", "0.0.0.0", "192.168.1.7")]
+    [True, True, True, False, False]
+    """
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """Who may ask: the host that is listened on, the token (None: none is asked for), and the largest body in bytes."""
+
+    host: str
+    token: str | None
+    body_bytes: int
+    _names: frozenset[str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        own = socket.gethostname().lower()
+        names = {self.host.lower(), own, f"{own}.local"} if not is_loopback(self.host) else set()
+        object.__setattr__(self, "_names", _LOOPBACK_NAMES | names)
+
+    def knows(self, host: str) -> bool:
+        """Whether a request may name this host: our own names, and where others may come, any bare address."""
+        name = (urlsplit(f"//{host}").hostname or "").lower()
+        if name in self._names:
+            return True
+        return not is_loopback(self.host) and _is_address(name)
+
+    @property
+    def cookie(self) -> str:
+        """What the cookie holds: made from the token, so that it outlives a restart, and not the token itself."""
+        return hmac.new((self.token or "").encode(), b"skisnow lab", "sha256").hexdigest()
+
+    def is_let_in(self, headers: Headers) -> bool:
+        """Whether the request carries the cookie; compared in constant time."""
+        if self.token is None:
+            return True
+        try:
+            found = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
+        except CookieError:
+            return False
+        return found is not None and hmac.compare_digest(found.value.encode(), self.cookie.encode())
+
+    def is_token(self, said: str) -> bool:
+        """Whether this is the token; compared in constant time."""
+        return self.token is not None and hmac.compare_digest(said.encode(), self.token.encode())
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+class Guard:
+    """An ASGI application around another one that lets only the lab's own requests through."""
+
+    def __init__(self, app: ASGIApp, access: Access) -> None:
+        self.app = app
+        self.access = access
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer, refuse, or pass on."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        answer = self._refusal(scope, headers)
+        if answer is None and scope["type"] == "http" and not self.access.is_let_in(headers):
+            answer = await self._token_asked(scope, receive)
+        if scope["type"] == "websocket":
+            await self._web_socket(scope, receive, send, refused=answer is not None)
+        elif answer is not None:
+            await answer(scope, receive, _with_headers(send))
+        else:
+            await self.app(scope, _limited(receive, self.access.body_bytes), _with_headers(send))
+
+    async def _web_socket(self, scope: Scope, receive: Receive, send: Send, *, refused: bool) -> None:
+        if refused or not self.access.is_let_in(Headers(scope=scope)):
+            await receive()
+            await send({"type": "websocket.close", "code": 1008})
+            return
+        await self.app(scope, receive, send)
+
+    def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
+        host, origin = headers.get("host", ""), headers.get("origin")
+        if not self.access.knows(host):
+            return PlainTextResponse("This address is not one of the lab's.", 421)
+        needs_origin = scope["type"] == "websocket" or scope["method"] not in _SAFE
+        if (origin is None and needs_origin) or (origin is not None and urlsplit(origin).netloc != host):
+            return PlainTextResponse("Asked for by another site: refused.", 403)
+        size = headers.get("content-length", "0")
+        if not size.isdecimal() or int(size) > self.access.body_bytes:
+            return PlainTextResponse("This is more than the lab takes in at once.", 413)
+        return None
+
+    async def _token_asked(self, scope: Scope, receive: Receive) -> Response:
+        if scope["method"] == "POST" and scope["path"] == TOKEN_PATH:
+            return await answer_to_token(scope, receive, self.access.is_token, (COOKIE, self.access.cookie))
+        return token_page(401)
+
+
+def _with_headers(send: Send) -> Send:
+    """Add the security headers to what is answered; a stricter policy of a page's own stays."""
+
+    async def sent(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            for name, value in HEADERS.items():
+                headers.setdefault(name, value)
+        await send(message)
+
+    return sent
+
+
+def _limited(receive: Receive, most_bytes: int) -> Receive:
+    """Count a body that does not say its size, and cut it off beyond the limit."""
+    taken = 0
+
+    async def received() -> Message:
+        nonlocal taken
+        message = await receive()
+        taken += len(message.get("body", b""))
+        return message if taken <= most_bytes else {"type": "http.disconnect"}
+
+    return received

@@ -1,0 +1,59 @@
+"""The frame that every page stands in: navigation, title, one column of content."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from nicegui import ui
+
+from .pages import PAGES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+STYLES = "/lab.css"
+
+
+@contextmanager
+def framed(title: str, *, here: str = "") -> Iterator[None]:
+    """Put what follows into the frame of the lab.
+
+    Parameters
+    ----------
+    title
+        Heading of the page, and with the lab's name the title of its window.
+    here
+        ``PATH`` of the page in the navigation that this one belongs to.
+    """
+    ui.page_title(f"{title} · skisnow")
+    ui.add_head_html(f'<link rel="stylesheet" href="{STYLES}">')
+    with ui.element("a").props('href="#content"').classes("skip"):
+        ui.label("Skip to the content")
+    with ui.element("header").classes("lab-head"):
+        ui.label("skisnow").classes("lab-name")
+        with ui.element("nav").props('aria-label="Pages"'):
+            for name in PAGES:
+                _link(name, here)
+    with ui.element("main").classes("lab").props('id="content"'):
+        heading(title, 1)
+        yield
+
+
+def _link(name: str, here: str) -> None:
+    page = import_module(f".pages.{name}", __package__)
+    link = ui.link(page.TITLE, page.PATH)
+    if here == page.PATH:
+        link.props('aria-current="page"')
+
+
+def heading(text: str, level: int = 2) -> None:
+    """A heading of the page's outline."""
+    with ui.element(f"h{level}"):
+        ui.label(text)
+
+
+def sentence(text: str, kind: str = "") -> ui.label:
+    """A sentence of its own; ``kind`` is a class of the stylesheet: quiet, good, bad."""
+    return ui.label(text).classes(f"sentence {kind}".strip())

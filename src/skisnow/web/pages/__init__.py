@@ -1,0 +1,12 @@
+"""The pages of the lab, one module each.
+
+A page is a module with ``PATH`` (where it is), ``TITLE`` (its word in the navigation) and ``add_page(lab)``, which adds
+it to the application. A further page is one more module and its name in `PAGES`.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+PAGES: Final = ("campaigns",)
+"""Modules of this folder, in the order of the navigation."""

@@ -1,0 +1,86 @@
+"""The server under the lab: one process, one socket, its address told when it answers."""
+
+from __future__ import annotations
+
+import socket
+from typing import TYPE_CHECKING
+
+import uvicorn
+
+from ..errors import ParameterError
+from .application import lab_application
+from .guard import is_loopback
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .settings import Lab
+
+
+def require_allowed(host: str, token: str | None) -> None:
+    """Refuse to listen where others can come in without a token.
+
+    Raises
+    ------
+    ParameterError
+        The host is not this machine's loopback address and there is no token, or the token is blank.
+    """
+    if token is not None and not token.strip():
+        raise ParameterError("the token is blank; give one that is hard to guess, or leave --token out")
+    if token is None and not is_loopback(host):
+        raise ParameterError(
+            f"on {host} other machines could open the lab; add --token with a word that is hard to guess, "
+            "or leave --host out"
+        )
+
+
+def serve(lab: Lab, *, host: str, port: int, token: str | None, tell: Callable[[str], object]) -> None:
+    """Serve the lab until it is interrupted.
+
+    Parameters
+    ----------
+    lab
+        What the pages work with.
+    host, port
+        Where to listen; port 0 takes a free one.
+    token
+        See `require_allowed`.
+    tell
+        Is told the address as soon as requests are answered.
+
+    Raises
+    ------
+    ParameterError
+        See `require_allowed`.
+    OSError
+        The port is taken.
+    """
+    require_allowed(host, token)
+    with _listening(host, port) as listener:
+        app = lab_application(lab, host=host, token=token)
+        config = uvicorn.Config(
+            app, log_level="error", access_log=False, server_header=False, ws_max_size=4_000_000, lifespan="on"
+        )
+        _Announced(config, lambda: tell(_address(listener, host))).run(sockets=[listener])
+
+
+def _listening(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    return socket.create_server((host, port), family=family)
+
+
+def _address(listener: socket.socket, host: str) -> str:
+    return f"http://{f'[{host}]' if ':' in host else host}:{listener.getsockname()[1]}/"
+
+
+class _Announced(uvicorn.Server):
+    """A server that says when it has begun to answer."""
+
+    def __init__(self, config: uvicorn.Config, begun: Callable[[], object]) -> None:
+        super().__init__(config)
+        self._begun = begun
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        if self.started:
+            self._begun()

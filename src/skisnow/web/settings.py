@@ -1,0 +1,41 @@
+"""What every page of the lab works with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ..field.store import Store
+
+MEGABYTE: Final = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What an upload may hold (Choice: the largest campaign foreseen, a million readings, is 60 MB).
+
+    Attributes
+    ----------
+    upload_bytes
+        Of one request's body.
+    unpacked_bytes
+        Of all files of a zip together, unpacked.
+    files
+        Number of files of one upload, packed or not.
+    """
+
+    upload_bytes: int = 100 * MEGABYTE
+    unpacked_bytes: int = 400 * MEGABYTE
+    files: int = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Lab:
+    """The open store, the folder that runs are kept in, and the limits; handed to each page's ``add_page``."""
+
+    store: Store
+    runs: Path
+    limits: Limits = field(default_factory=Limits)

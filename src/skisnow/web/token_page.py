@@ -1,0 +1,57 @@
+"""The page that asks for the token, before anything else; it needs no script."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Final
+from urllib.parse import parse_qs
+
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import HTMLResponse, RedirectResponse, Response
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from starlette.types import Receive, Scope
+
+TOKEN_PATH: Final = "/token"
+_LONGEST: Final = 2000
+_WAIT_S: Final = 0.5
+"""After a wrong token, so that guessing takes long (Choice)."""
+
+_PAGE: Final = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Token · skisnow</title>
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<style>body{{font:20px/1.5 system-ui,sans-serif;color:#111;background:#fff;max-width:28rem;margin:3rem auto;
+padding:0 1rem}}
+input,button{{font:inherit;width:100%;box-sizing:border-box;min-height:56px;margin:.4rem 0;padding:.4rem .8rem;
+border:2px solid #333;border-radius:6px}}button{{background:#0b4f8a;color:#fff;border-color:#0b4f8a}}
+</style><main><h1>skisnow</h1><p role="status">{said}</p><form method="post" action="{path}">
+<label for="token">Token</label>
+<input id="token" name="token" type="password" autocomplete="current-password" autofocus>
+<button>Open the lab</button></form></main></html>"""
+
+
+def token_page(status: int, said: str = "The lab asks for the token that it was started with.") -> Response:
+    """The form, with a sentence above it."""
+    return HTMLResponse(_PAGE.format(said=said, path=TOKEN_PATH), status, headers={"cache-control": "no-store"})
+
+
+async def answer_to_token(
+    scope: Scope, receive: Receive, is_token: Callable[[str], bool], cookie: tuple[str, str]
+) -> Response:
+    """Let in with a cookie, or ask again."""
+    body = b""
+    try:
+        async for piece in Request(scope, receive).stream():
+            body += piece
+            if len(body) > _LONGEST:
+                return token_page(413, "This is too long for a token.")
+    except ClientDisconnect:
+        return Response(status_code=400)
+    said = parse_qs(body.decode("utf-8", "replace")).get("token", [""])[0]
+    if not is_token(said):
+        await asyncio.sleep(_WAIT_S)
+        return token_page(403, "This is not the token.")
+    answer = RedirectResponse("/", 303)
+    answer.set_cookie(*cookie, httponly=True, samesite="strict", path="/")
+    return answer

@@ -1,0 +1,83 @@
+"""What a person sees when something went wrong: a sentence and a reference. The log file has the rest."""
+
+from __future__ import annotations
+
+import logging
+import secrets
+from logging.handlers import RotatingFileHandler
+from typing import TYPE_CHECKING, Final
+
+from nicegui import app, ui
+from starlette.responses import HTMLResponse, Response
+
+from ..errors import FieldDataError, SkisnowError
+from .layout import framed, sentence
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from starlette.requests import Request
+
+LOG: Final = logging.getLogger("skisnow.web")
+LOG_BYTES: Final = 2_000_000
+
+_PLAIN: Final = """<!doctype html><html lang="en"><meta charset="utf-8"><title>{title} · skisnow</title>
+<meta name="viewport" content="width=device-width, initial-scale=1"><link rel="stylesheet" href="/lab.css">
+<body><main class="lab"><h1>{title}</h1><p>{said}</p><p><a href="/">To the campaigns</a></p></main></body></html>"""
+
+
+def log_to(path: Path) -> None:
+    """Let what went wrong be written to this file, of which the last two are kept."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handler = RotatingFileHandler(path, maxBytes=LOG_BYTES, backupCount=1, encoding="utf-8")
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    LOG.addHandler(handler)
+    LOG.setLevel(logging.INFO)
+    LOG.propagate = False
+
+
+def reported(error: BaseException) -> str:
+    """Write an error to the log; the reference that finds it there."""
+    reference = secrets.token_hex(4)
+    LOG.error("reference %s", reference, exc_info=error)
+    return reference
+
+
+def told(error: BaseException) -> str:
+    """An error as a sentence: our own errors say what to do, all others get a reference into the log."""
+    if isinstance(error, FieldDataError):
+        return f"The campaign cannot be used as it is: {error}"
+    if isinstance(error, SkisnowError):
+        return str(error)
+    return f"Something went wrong that should not. What was shown as stored is stored. Reference: {reported(error)}."
+
+
+def add_error_pages() -> None:
+    """Replace the framework's error pages and messages, which would show the exception."""
+    app._exception_handlers.clear()  # the only one writes traces to the terminal
+    app.on_exception(_notified)
+    app.on_page_exception(_page)
+    app.add_exception_handler(404, _not_found)
+    app.add_exception_handler(Exception, _failed)
+
+
+def _notified(error: Exception) -> None:
+    said = told(error)
+    try:
+        ui.notify(said, type="negative", multi_line=True, timeout=0, close_button="Close")
+    except RuntimeError:  # no page belongs to what failed
+        LOG.info("not shown on a page: %s", said)
+
+
+def _page(error: Exception) -> None:
+    with framed("This page cannot be shown"):
+        sentence(told(error), "bad")
+
+
+async def _not_found(_: Request, __: Exception) -> Response:
+    return HTMLResponse(_PLAIN.format(title="No such page", said="The lab has no page at this address."), 404)
+
+
+async def _failed(_: Request, error: Exception) -> Response:
+    said = f"Something went wrong that should not. Reference: {reported(error)}."
+    return HTMLResponse(_PLAIN.format(title="This cannot be shown", said=said), 500)
