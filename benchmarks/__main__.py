@@ -1,6 +1,7 @@
 """Run every benchmark, print one table: what, seconds, goal, and the ratio to a peer measured in the same run.
 
-``python -m benchmarks turns`` runs those of simulated turns alone and prints them as Markdown.
+``python -m benchmarks turns`` runs those of simulated turns alone and prints them as Markdown, ``identify`` those of
+identifications.
 """
 
 from __future__ import annotations
@@ -12,12 +13,12 @@ import subprocess
 import sys
 import tempfile
 
-TURNS = "turns"
+TURNS, IDENTIFY = "turns", "identify"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("part", nargs="?", choices=[TURNS], help="the simulated turns alone; left out: everything")
+    parser.add_argument("part", nargs="?", choices=[TURNS, IDENTIFY], help="these alone; left out: everything")
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
     parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds of a turn")
     parser.add_argument("--repeats", type=int, default=5, help="of each turn; the shortest time counts")
@@ -25,10 +26,13 @@ def main() -> None:
     options = parser.parse_args()
     if options.part == TURNS:
         _turns(options)
+    elif options.part == IDENTIFY:
+        _identify(options)
     else:
         _everything_else(options.rows)
         print(flush=True)
-        subprocess.run([sys.executable, "-m", "benchmarks", TURNS, *_said(options)], check=True)
+        for part in (TURNS, IDENTIFY):
+            subprocess.run([sys.executable, "-m", "benchmarks", part, *_said(options)], check=True)
 
 
 def _turns(options: argparse.Namespace) -> None:
@@ -38,6 +42,13 @@ def _turns(options: argparse.Namespace) -> None:
         from .turns.table import Effort, print_tables
 
         print_tables(Effort(options.duration, options.repeats, options.runs))
+
+
+def _identify(options: argparse.Namespace) -> None:
+    """With the user's cache: an identification starts with compiled code."""
+    from .identify.table import print_tables
+
+    print_tables(options.duration)
 
 
 def _said(options: argparse.Namespace) -> list[str]:

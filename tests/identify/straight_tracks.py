@@ -31,12 +31,17 @@ def put(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def track(
-    *, seed: int | None = None, name: str = "one", stated: bool = True, points: int = 41, **changes: float
+    *,
+    seed: int | None = None,
+    name: str = "one",
+    stated: bool = True,
+    points: int = 41,
+    changes: dict[str, float] | None = None,
 ) -> Track:
     """Ten points a second; without a seed there is no noise."""
-    truth = {"friction.mu_0": TRUE_FRICTION, "start.speed_m_per_s": TRUE_SPEED} | changes
+    truth = {"friction.mu_0": TRUE_FRICTION, "start.speed_m_per_s": TRUE_SPEED} | (changes or {})
     scenario = read_scenario("carved-46m", changes=SCENARIO | truth)
-    time = 0.1 * np.arange(points)
+    time = np.asarray(0.1 * np.arange(points), dtype=np.float64)
     place = np.zeros((points, 3))
     place[:, 0] = scenario.start.x + scenario.start.speed * time + acceleration(scenario) * time**2 / 2.0
     place[:, 1] = scenario.start.y + ASIDE / 40

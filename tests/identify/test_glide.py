@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -62,7 +63,7 @@ def test_in_a_hollow_the_snow_presses_more() -> None:
     line = slope_line(Profile(x, height), 0.0)
     stations = np.array([10.0, 20.0, 30.0, 40.0])
 
-    def slopes(way: float, state: list[float]) -> list[float]:
+    def slopes(way: float, state: Any) -> list[float]:
         alpha = first - way / radius
         w = max(state[0], 1e-12)
         return [2.0 * 9.81 * math.sin(alpha) - 2.0 * 0.1 * (9.81 * math.cos(alpha) + w / radius), w**-0.5]

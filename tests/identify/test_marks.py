@@ -29,8 +29,9 @@ def marks(depth: float, width: float, radius: float, *, share: float = 0.02, see
     for value in (depth, width, radius):
         noise = np.zeros(4) if rng is None else share * value * rng.standard_normal(4)
         values.append(value + noise)
+    d, w, r = values
     spread = [np.full(4, share * value) for value in (depth, width, radius)]
-    return Marks("marks.csv", *values, *spread)
+    return Marks("marks.csv", d, w, r, spread[0], spread[1], spread[2])
 
 
 def test_a_groove_is_what_carve_leaves() -> None:

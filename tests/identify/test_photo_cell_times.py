@@ -41,8 +41,8 @@ def cells(time: np.ndarray, sd: float | None = SD, name: str = "1") -> PhotoCell
     return PhotoCells("cells.csv", (run,))
 
 
-def found_from(data: PhotoCells, free: str = "mu_0,drag_area", **changes: object) -> Identification:
-    return identify("carved-46m", data, free, changes=CHANGES | changes)
+def found_from(data: PhotoCells, free: str = "mu_0,drag_area") -> Identification:
+    return identify("carved-46m", data, free, changes=CHANGES)
 
 
 def fisher_errors(columns: list[int]) -> np.ndarray:
@@ -107,7 +107,8 @@ def test_one_slope_hardly_tells_friction_from_drag_and_two_slopes_do() -> None:
 
 def test_a_stop_before_the_last_cell_does_not_end_the_search() -> None:
     """It begins with friction at which the body would stop."""
-    found = found_from(cells(truth()), **{"friction.mu_0": 0.3, "drag.drag_area_m2": 1.0})
+    stopping = CHANGES | {"friction.mu_0": 0.3, "drag.drag_area_m2": 1.0}
+    found = identify("carved-46m", cells(truth()), "mu_0,drag_area", changes=stopping)
     assert found["mu_0"].value == pytest.approx(MU, abs=1e-6)
 
 

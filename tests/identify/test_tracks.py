@@ -66,7 +66,7 @@ class TestStraight:
         assert found["mu_0"].standard_error == pytest.approx(found_from(one)["mu_0"].standard_error, rel=0.3)
 
     def test_two_tracks_have_starts_of_their_own(self) -> None:
-        two = [track(name="slow"), track(name="fast", **{"start.speed_m_per_s": 9.0})]
+        two = [track(name="slow"), track(name="fast", changes={"start.speed_m_per_s": 9.0})]
         found = found_from(two)
         assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
         assert found["speed@slow"].value == pytest.approx(TRUE_SPEED, abs=1e-4)
