@@ -1,0 +1,17 @@
+"""The replay of a simulated run: its arrays, their compact binary, and what a browser needs to show them."""
+
+from .binary import replay_bytes, replay_of_bytes
+from .of_file import replay_of_file
+from .of_run import replay_of_run
+from .replay import Replay, ReplayTrack
+from .shape import ski_edges
+
+__all__ = [
+    "Replay",
+    "ReplayTrack",
+    "replay_bytes",
+    "replay_of_bytes",
+    "replay_of_file",
+    "replay_of_run",
+    "ski_edges",
+]
