@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 ID_DIGITS: Final = 12
 _SHORTEST_PREFIX: Final = 4
 _SHOWN_CANDIDATES: Final = 10
-_TIME: Final = "%Y-%m-%dT%H:%M:%SZ"
+TIME: Final = "%Y-%m-%dT%H:%M:%SZ"
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +107,7 @@ def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> St
     return StoredCampaign(
         id=row.id,
         name=row.name,
-        added_at=datetime.strptime(row.added_at, _TIME).replace(tzinfo=UTC),
+        added_at=datetime.strptime(row.added_at, TIME).replace(tzinfo=UTC),
         sha256=row.sha256,
         n_errors=row.n_errors,
         n_warnings=row.n_warnings,
@@ -179,7 +179,7 @@ def keep_campaign(
             id=id_,
             sha256=sha256,
             name=name,
-            added_at=datetime.now(UTC).strftime(_TIME),
+            added_at=datetime.now(UTC).strftime(TIME),
             n_errors=counts[0],
             n_warnings=counts[1],
         )

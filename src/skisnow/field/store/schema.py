@@ -15,6 +15,7 @@ from sqlalchemy import (
     Column,
     ForeignKey,
     ForeignKeyConstraint,
+    Index,
     Integer,
     LargeBinary,
     MetaData,
@@ -23,7 +24,7 @@ from sqlalchemy import (
     Text,
 )
 
-REVISION: Final = "0001"
+REVISION: Final = "0002"
 """Newest migration; tests hold it against the migrations themselves."""
 
 APPLICATION_ID: Final = 0x536B6953
@@ -81,3 +82,31 @@ campaign_file = Table(
     Column("sha256", String(64), ForeignKey("content.sha256"), nullable=False, index=True),
 )
 """``path``: relative to the campaign's folder, parts joined by ``/``."""
+
+journal = Table(
+    "journal",
+    metadata,
+    Column("id", String(12), primary_key=True),
+    Column("begun_at", String(20), nullable=False),
+)
+"""A campaign that is still being entered. What it holds follows from its entries alone."""
+
+journal_entry = Table(
+    "journal_entry",
+    metadata,
+    Column("sequence", Integer, primary_key=True),
+    Column("journal_id", String(12), ForeignKey("journal.id", ondelete="CASCADE"), nullable=False),
+    Column("at", String(20), nullable=False),
+    Column("who", Text, nullable=False),
+    Column("action", String(8), nullable=False),
+    Column("file", Text, nullable=False),
+    Column("test", Text, nullable=False),
+    Column("position", Integer),
+    Column("about", Integer, ForeignKey("journal_entry.sequence")),
+    Column("cells", Text, nullable=False),
+    Column("why", Text, nullable=False),
+    CheckConstraint("action IN ('describe', 'add', 'correct', 'cancel', 'undo')", name="known_action"),
+    CheckConstraint("(about IS NULL) = (action IN ('describe', 'add', 'cancel'))", name="about_an_entry"),
+    Index(None, "journal_id", "file", "test"),
+)
+"""Entries are only ever added. ``about``: the entry that is corrected or undone; ``cells``: a JSON object of texts."""

@@ -1,0 +1,205 @@
+"""Journals: campaigns that are being entered. Each entry is on the disk before it is said to be stored.
+
+A journal is a list of entries that only grows. A reading is an entry; so is its correction, a cancelling, an undoing:
+nothing is overwritten, and what the campaign holds now follows from all of them (`grown`).
+"""
+
+from __future__ import annotations
+
+import json
+import secrets
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+
+from sqlalchemy import ColumnElement, Connection, RowMapping, and_, func, insert, select
+
+from ...errors import StoreError
+from .engine import database_told, reading, writing
+from .rows import TIME
+from .schema import journal, journal_entry
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from .store import Store
+
+Action: TypeAlias = Literal["describe", "add", "correct", "cancel", "undo"]
+
+DESCRIPTION: Final = "campaign.toml"
+"""The file, and the only cell, of an entry that describes the campaign."""
+
+
+class OvertakenError(StoreError):
+    """Somebody else wrote about the same test since it was last looked at; nothing was stored."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NewEntry:
+    """What is to be written down.
+
+    Attributes
+    ----------
+    action
+        describe (the whole of campaign.toml), add (a row), correct (one cell of a row), cancel (a test), undo.
+    file, test
+        The table's file and the test's name; ``""`` for a description.
+    cells
+        Texts by column.
+    position
+        Place of an added row within its test; rows are given back in this order, however late one was filled in.
+    about
+        The sequence of the entry that is corrected or undone.
+    who, why
+        As corrections.csv has them; why a test was cancelled.
+    """
+
+    action: Action
+    file: str
+    test: str = ""
+    cells: Mapping[str, str] = field(default_factory=dict)
+    position: int | None = None
+    about: int | None = None
+    who: str = ""
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JournalEntry(NewEntry):
+    """What was written down: with its number in the store, which rises, and the time in UTC (ISO 8601)."""
+
+    sequence: int
+    at: str
+
+
+@dataclass(frozen=True, slots=True)
+class JournalHead:
+    """A journal in a list: when it was begun (UTC, ISO 8601), how many entries it has, when the last was made."""
+
+    id: str
+    begun_at: str
+    n_entries: int
+    last_at: str
+
+
+class Journals:
+    """The journals of a store."""
+
+    def __init__(self, store: Store) -> None:
+        self._engine = store.engine
+        self._path = store.path
+
+    def begin(self, description: str, *, who: str = "") -> str:
+        """Begin a campaign with the text of its campaign.toml; gives the journal's id."""
+        id_ = secrets.token_hex(6)
+        with database_told(self._path, "could not be written"), writing(self._engine) as connection:
+            connection.execute(insert(journal).values(id=id_, begun_at=_now()))
+            entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: description}, who=who)
+            _write(connection, id_, entry)
+        return id_
+
+    def list(self) -> tuple[JournalHead, ...]:
+        """Give all journals, oldest first."""
+        asked = (
+            select(
+                journal.c.id,
+                journal.c.begun_at,
+                func.count(journal_entry.c.sequence),
+                func.coalesce(func.max(journal_entry.c.at), journal.c.begun_at),
+            )
+            .join_from(journal, journal_entry, isouter=True)
+            .group_by(journal.c.id)
+            .order_by(journal.c.begun_at, journal.c.id)
+        )
+        with database_told(self._path, "could not be read"), reading(self._engine) as connection:
+            return tuple(JournalHead(*row) for row in connection.execute(asked).all())
+
+    def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
+        """Give the entries of a journal, oldest first, from the one behind a sequence on.
+
+        Raises
+        ------
+        StoreError
+            There is no such journal.
+        """
+        asked = (
+            select(journal_entry)
+            .where(journal_entry.c.journal_id == id, journal_entry.c.sequence > after)
+            .order_by(journal_entry.c.sequence)
+        )
+        with database_told(self._path, "could not be read"), reading(self._engine) as connection:
+            _require(connection, id)
+            return tuple(_entry(row) for row in connection.execute(asked).mappings())
+
+    def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
+        """Write an entry down; when this returns it is on the disk.
+
+        Parameters
+        ----------
+        id
+            The journal.
+        entry
+            What to write.
+        seen
+            The last sequence that the writer knows of the entry's test; 0 for a test that it takes for new.
+
+        Raises
+        ------
+        OvertakenError
+            There is a later entry about the same test.
+        StoreError
+            There is no such journal, or no such entry to correct or undo.
+        """
+        with database_told(self._path, "could not be written"), writing(self._engine) as connection:
+            _require(connection, id)
+            _refuse_overtaken(connection, id, entry, seen)
+            _require_subject(connection, id, entry)
+            return _write(connection, id, entry)
+
+
+def _now() -> str:
+    return datetime.now(UTC).strftime(TIME)
+
+
+def _require(connection: Connection, id_: str) -> None:
+    if connection.execute(select(journal.c.id).where(journal.c.id == id_)).first() is None:
+        raise StoreError(f"The store has no campaign in entry with the id {id_!r}; the list of campaigns names all.")
+
+
+def _of_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
+    columns = journal_entry.c
+    return and_(columns.journal_id == id_, columns.file == entry.file, columns.test == entry.test)
+
+
+def _refuse_overtaken(connection: Connection, id_: str, entry: NewEntry, seen: int) -> None:
+    found = select(journal_entry).where(_of_test(id_, entry), journal_entry.c.sequence > seen)
+    row = connection.execute(found.order_by(journal_entry.c.sequence.desc())).mappings().first()
+    if row is not None:
+        subject = f"{entry.file}, {entry.test}" if entry.test else entry.file
+        raise OvertakenError(
+            f"Nothing was stored: {row['who'] or 'somebody'} wrote about {subject} meanwhile ({row['at']}). "
+            "Look at it as it is now, then enter again what is still missing."
+        )
+
+
+def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
+    if entry.about is None:
+        return
+    found = select(journal_entry.c.sequence).where(_of_test(id_, entry), journal_entry.c.sequence == entry.about)
+    if connection.execute(found).first() is None:
+        raise StoreError(f"{entry.test} has no entry {entry.about} that could be corrected or undone.")
+
+
+def _write(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry:
+    values = {name: getattr(entry, name) for name in ("action", "file", "test", "position", "about", "who", "why")}
+    at = _now()
+    cells = json.dumps(dict(entry.cells), ensure_ascii=False)
+    written = connection.execute(insert(journal_entry).values(journal_id=id_, at=at, cells=cells, **values))
+    key = written.inserted_primary_key
+    assert key is not None
+    return JournalEntry(**values, cells=dict(entry.cells), at=at, sequence=int(key[0]))
+
+
+def _entry(row: RowMapping) -> JournalEntry:
+    values: dict[str, Any] = {str(name): value for name, value in row.items() if name not in ("journal_id", "cells")}
+    return JournalEntry(**values, cells=json.loads(row["cells"]))
