@@ -185,6 +185,9 @@ def _warned(solution: Solution, known: Uncertainty | None) -> Iterator[str]:
         yield from unknown_warnings(parameters, known)
         yield from correlation_warnings(parameters, known.correlation)
     yield from bound_warnings(parameters, [each.at_bound for each in _identified(solution, known)])
+    if solution.found.state == "interrupted":
+        yield "the search had not ended: intervals and correlations are those of a place on the way"
+        return
     if solution.widening > 1.0:
         yield noise_warning(solution.widening)
     alike = _likeness(solution)
