@@ -21,10 +21,16 @@ from .hardness import DEFINITIONS
 from .remarks import remarks
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ..field.records import PenetrationTests, ShearTests
     from .analysis import Analysis, ModelTable, PenetrationAnalysis, ShearAnalysis
     from .model_choice import NestedRows
+    from .hardness import Hardness
     from .models import Model, ModelFit
     from .regressions import Regression
+    from .screening import Screened
+    from .shear_stress import ShearStress
 
 FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
@@ -55,20 +61,20 @@ def results_dict(analysis: Analysis) -> Json:
         "comparisons": [row.as_dict() for row in analysis.comparisons],
         "provenance": _provenance(analysis),
     }
-    cleaned: Json = _without_nan(results)
+    cleaned: Json = without_nan(results)
     return cleaned
 
 
-def _without_nan(value: Any) -> Any:
+def without_nan(value: Any) -> Any:
     """Replace every number that is not finite by None, and every interval that is not known at both ends as a whole."""
     if isinstance(value, _Rows):
         return value
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):
-        return {key: _without_nan(item) for key, item in value.items()}
+        return {key: without_nan(item) for key, item in value.items()}
     if isinstance(value, list):
-        cleaned = [_without_nan(item) for item in value]
+        cleaned = [without_nan(item) for item in value]
         pair = len(value) == 2 and all(isinstance(item, float) for item in value)
         return None if pair and None in cleaned else cleaned
     return value
@@ -123,7 +129,7 @@ def _penetration(analysis: Analysis) -> Json:
             "errors_in_depth": {"models": _no_models(), "experiments": []},
         }
     return {
-        "experiments": _penetration_experiments(analysis, found),
+        "experiments": penetration_experiments(tests, found.screened, found.hardness),
         "models": _models(found.table),
         "tests": [_nested(row) for row in found.nested],
         "selected": _selected(found),
@@ -135,22 +141,23 @@ def _penetration(analysis: Analysis) -> Json:
     }
 
 
-def _penetration_experiments(analysis: Analysis, found: PenetrationAnalysis) -> list[Json]:
-    tests = analysis.campaign.penetration
-    assert tests is not None
+def penetration_experiments(
+    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness]
+) -> list[Json]:
+    """The rows ``penetration.experiments``: of each series what it was, its marks, its hardness by each definition."""
     columns: dict[str, list[Any]] = {
         "experiment": list(tests.experiment),
         "site": list(tests.site),
         "tool": list(tests.tool),
         "edge_angle_deg": _degrees(tests.edge_angle),
         "n_loads": np.diff(tests.first).tolist(),
-        "used": found.screened.used.tolist(),
-        "flags": found.screened.flags(),
+        "used": screened.used.tolist(),
+        "flags": screened.flags(),
     }
     for symbol, definition in DEFINITIONS.items():
-        columns[definition.key] = _numbers(found.hardness[symbol].value / definition.si)
+        columns[definition.key] = _numbers(hardness[symbol].value / definition.si)
     for symbol, definition in DEFINITIONS.items():
-        columns[f"{symbol}_interval_{definition.unit_key}"] = _numbers(found.hardness[symbol].interval / definition.si)
+        columns[f"{symbol}_interval_{definition.unit_key}"] = _numbers(hardness[symbol].interval / definition.si)
     return _rows(columns)
 
 
@@ -281,21 +288,24 @@ def _shear(analysis: Analysis) -> Json:
     tests = analysis.campaign.shear
     if found is None or tests is None:
         return {"experiments": []}
-    return {
-        "experiments": _rows(
-            {
-                "experiment": list(tests.experiment),
-                "site": list(tests.site),
-                "plate": list(tests.plate),
-                "edge_angle_deg": _degrees(tests.edge_angle),
-                "F_t_N": _numbers(found.stress.force),
-                "S_f_N_per_mm2": _numbers(found.stress.value / N_PER_MM2),
-                "S_f_interval_N_per_mm2": _numbers(found.stress.interval / N_PER_MM2),
-                "used": found.screened.used.tolist(),
-                "flags": found.screened.flags(),
-            }
-        )
-    }
+    return {"experiments": shear_experiments(tests, found.screened, found.stress)}
+
+
+def shear_experiments(tests: ShearTests, screened: Screened, stress: ShearStress) -> list[Json]:
+    """The rows ``shear.experiments``: of each test what it was, its marks, its force and stress."""
+    return _rows(
+        {
+            "experiment": list(tests.experiment),
+            "site": list(tests.site),
+            "plate": list(tests.plate),
+            "edge_angle_deg": _degrees(tests.edge_angle),
+            "F_t_N": _numbers(stress.force),
+            "S_f_N_per_mm2": _numbers(stress.value / N_PER_MM2),
+            "S_f_interval_N_per_mm2": _numbers(stress.interval / N_PER_MM2),
+            "used": screened.used.tolist(),
+            "flags": screened.flags(),
+        }
+    )
 
 
 def _regression(regression: Regression) -> Json:

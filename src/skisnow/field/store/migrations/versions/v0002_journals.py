@@ -32,17 +32,17 @@ def upgrade() -> None:
         sa.Column("cells", sa.Text, nullable=False),
         sa.Column("why", sa.Text, nullable=False),
         sa.PrimaryKeyConstraint("sequence", name=op.f("pk_journal_entry")),
-        sa.ForeignKeyConstraint(
-            ["journal_id"], ["journal.id"], name=op.f("fk_journal_entry_journal_id_journal"), ondelete="CASCADE"
-        ),
-        sa.ForeignKeyConstraint(
-            ["about"], ["journal_entry.sequence"], name=op.f("fk_journal_entry_about_journal_entry")
-        ),
         sa.CheckConstraint(
             "action IN ('describe', 'add', 'correct', 'cancel', 'undo')", name=op.f("ck_journal_entry_known_action")
         ),
         sa.CheckConstraint(
             "(about IS NULL) = (action IN ('describe', 'add', 'cancel'))", name=op.f("ck_journal_entry_about_an_entry")
+        ),
+        sa.ForeignKeyConstraint(
+            ["journal_id"], ["journal.id"], name=op.f("fk_journal_entry_journal_id_journal"), ondelete="CASCADE"
+        ),
+        sa.ForeignKeyConstraint(
+            ["about"], ["journal_entry.sequence"], name=op.f("fk_journal_entry_about_journal_entry")
         ),
     )
     op.create_index(op.f("ix_journal_entry_journal_id_file_test"), "journal_entry", ["journal_id", "file", "test"])

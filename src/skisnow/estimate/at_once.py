@@ -1,0 +1,42 @@
+"""What single experiments say by themselves, at once: the rows of results.json without the fits over all of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .hardness import DEFINITIONS, ReadingUncertainty, hardness
+from .readings import readings_of
+from .results import penetration_experiments, shear_experiments, without_nan
+from .screening import screened_penetration, screened_shear
+from .shear_stress import shear_stress
+
+if TYPE_CHECKING:
+    from ..field.records import Campaign
+    from ..geometry import GeometryForm
+    from .results import Json
+
+
+def experiments_at_once(campaign: Campaign, *, geometry: GeometryForm = "extended") -> Json:
+    """The experiments of a campaign as results.json has them, without its model table and regressions.
+
+    Parameters
+    ----------
+    campaign
+        As it is now; it may be unfinished.
+    geometry
+        As in `skisnow.estimate.analyse`.
+
+    Returns
+    -------
+    ``{"penetration": {"experiments": [...]}, "shear": {"experiments": [...]}}``, number for number as in results.json.
+    """
+    penetration, shear = [], []
+    if (tests := campaign.penetration) is not None:
+        readings = readings_of(tests, campaign.tools, geometry=geometry)
+        uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
+        found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
+        penetration = penetration_experiments(tests, screened_penetration(campaign, geometry=geometry), found)
+    if (sheared := campaign.shear) is not None:
+        shear = shear_experiments(sheared, screened_shear(campaign), shear_stress(campaign, sheared))
+    answer: Json = without_nan({"penetration": {"experiments": penetration}, "shear": {"experiments": shear}})
+    return answer
