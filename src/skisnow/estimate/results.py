@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from ..field.records import PenetrationTests, ShearTests
     from .analysis import Analysis, ModelTable, PenetrationAnalysis, ShearAnalysis
-    from .model_choice import NestedRows
     from .hardness import Hardness
+    from .model_choice import NestedRows
     from .models import Model, ModelFit
     from .regressions import Regression
     from .screening import Screened

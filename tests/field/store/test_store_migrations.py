@@ -136,9 +136,9 @@ def test_the_next_migration_starts_from_a_form(tmp_path: Path) -> None:
     shutil.copytree(HERE, copy, ignore=shutil.ignore_patterns("__pycache__"))
     config = alembic_config()
     config.set_main_option("script_location", str(copy))
-    made = command.revision(config, message="Drafts of the web lab", rev_id="0002")
+    made = command.revision(config, message="A further table", rev_id="9998")
     assert made is not None
     names = runpy.run_path(made.path)  # type: ignore[union-attr]
-    assert (names["revision"], names["down_revision"]) == ("0002", REVISION)
+    assert (names["revision"], names["down_revision"]) == ("9998", REVISION)
     assert callable(names["upgrade"])
     assert callable(names["downgrade"])

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ...geometry import in_form
-from ...units import DEGREE, MM, N_PER_MM3
+from ...units import DEGREE, MM
+from ..curves import law_of_series
 from ..numerals import whole
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
@@ -123,8 +124,7 @@ def _law(material: Material, tests: PenetrationTests, index: int, wide_range: bo
     e = np.geomspace(deepest * 1e-3, deepest, 60) if wide_range else np.linspace(0.0, deepest, 60)
     geometry = material.results["provenance"]["options"]["geometry"]
     tool = in_form(material.campaign.tools[series.tool], geometry)
-    volume = tool.displaced_volume(e, row["edge_angle_deg"] * DEGREE)
-    return e / MM, row["H_V_N_per_mm3"] * N_PER_MM3 * volume
+    return law_of_series(tool, row["edge_angle_deg"] * DEGREE, row["H_V_N_per_mm3"], e)
 
 
 def _caption(counts: list[tuple[float, int, int]], elsewhere: int, *, wide_range: bool) -> Markup:

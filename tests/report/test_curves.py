@@ -1,0 +1,26 @@
+"""The curve beside the entry form: a flat disc by hand."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.estimate.at_once import experiments_at_once
+from skisnow.field import read_campaign
+from skisnow.report.curves import series_curves
+
+
+def test_a_disc_by_hand(tmp_path: Path) -> None:
+    """A disc of 10 cm² 4 mm deep under 80 N: V = 4000 mm³, H_V = 0.02 N/mm³, and half the load at half the depth."""
+    diameter = 2.0 * np.sqrt(1000.0 / np.pi)
+    (tmp_path / "campaign.toml").write_text(f'[[tool]]\nname = "d"\nshape = "disc"\ndiameter_mm = {diameter!r}\n')
+    rows = ["experiment,site,tool,edge_angle_deg,load_N,depth_mm", "1,A,d,0,20,1", "1,A,d,0,40,2", "1,A,d,0,80,4"]
+    (tmp_path / "penetration.csv").write_text("\n".join(rows) + "\n")
+    campaign = read_campaign(tmp_path)
+    found = experiments_at_once(campaign)["penetration"]["experiments"]
+    assert found[0]["H_V_N_per_mm3"] == pytest.approx(0.02, rel=1e-12)
+    (curve,) = series_curves(campaign, found)
+    assert curve.load_N == (20.0, 40.0, 80.0)
+    assert curve.depth_mm == pytest.approx((1.0, 2.0, 4.0), rel=1e-12)
+    assert (curve.law_depth_mm[-1], curve.law_load_N[-1]) == pytest.approx((4.0, 80.0), rel=1e-12)
+    assert np.interp(2.0, curve.law_depth_mm, curve.law_load_N) == pytest.approx(40.0, rel=1e-12)
