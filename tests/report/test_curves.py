@@ -12,7 +12,7 @@ from skisnow.report.curves import series_curves
 
 def test_a_disc_by_hand(tmp_path: Path) -> None:
     """A disc of 10 cm² 4 mm deep under 80 N: V = 4000 mm³, H_V = 0.02 N/mm³, and half the load at half the depth."""
-    diameter = 2.0 * np.sqrt(1000.0 / np.pi)
+    diameter = float(2.0 * np.sqrt(1000.0 / np.pi))
     (tmp_path / "campaign.toml").write_text(f'[[tool]]\nname = "d"\nshape = "disc"\ndiameter_mm = {diameter!r}\n')
     rows = ["experiment,site,tool,edge_angle_deg,load_N,depth_mm", "1,A,d,0,20,1", "1,A,d,0,40,2", "1,A,d,0,80,4"]
     (tmp_path / "penetration.csv").write_text("\n".join(rows) + "\n")
