@@ -3,6 +3,7 @@
 from .binary import replay_bytes, replay_of_bytes
 from .of_file import replay_of_file
 from .of_run import replay_of_run
+from .page import replay_page, write_replay
 from .replay import Replay, ReplayTrack
 from .shape import ski_edges
 
@@ -13,5 +14,7 @@ __all__ = [
     "replay_of_bytes",
     "replay_of_file",
     "replay_of_run",
+    "replay_page",
     "ski_edges",
+    "write_replay",
 ]

@@ -124,7 +124,6 @@ def assembled(
     """A replay from a run's arrays, named as in run.nc with vectors in one, and its setting."""
     if not len(arrays["time"]):
         raise ParameterError(f"{title} has no moment to show: it ended before it began")
-    plane = isinstance(setting.slope, Plane)
     with np.errstate(divide="ignore"):
         curvature = 1.0 / arrays["turn_radius"]
     return Replay(
@@ -142,7 +141,7 @@ def assembled(
         depth=arrays["depth"],
         skis=_skis(arrays, setting),
         groove=_groove(arrays, setting.line_spacing),
-        track=track if track is None or not plane else _on_the_plane(track),
+        track=None if track is None else _on_the_snow(track, setting.slope),
     )
 
 
@@ -153,10 +152,11 @@ def _profile(slope: Profile) -> FloatArray:
     return np.column_stack([x, slope.heights(x)])
 
 
-def _on_the_plane(track: ReplayTrack) -> ReplayTrack:
+def _on_the_snow(track: ReplayTrack, slope: Plane | Profile) -> ReplayTrack:
     """A height that was not measured is that of the snow."""
     place = np.array(track.place, dtype=float)
-    place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], 0.0)
+    snow = np.zeros(len(place)) if isinstance(slope, Plane) else slope.heights(place[:, 0])
+    place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], snow)
     return ReplayTrack(name=track.name, place=place, time=track.time)
 
 

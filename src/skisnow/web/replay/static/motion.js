@@ -88,12 +88,13 @@ export function edges(run, time, ski, exaggeration) {
   );
 }
 
+const distances = new WeakMap(); // the profile's x alone, found once
+
 /** Height of the snow's surface at x. */
 export function surfaceHeight(run, x) {
   const profile = run.arrays.profile?.values;
   if (!profile) return 0;
-  const count = profile.length / 2;
-  const xs = Float64Array.from({ length: count }, (_, i) => profile[2 * i]);
-  const [index, share] = between(xs, x);
+  if (!distances.has(run)) distances.set(run, profile.filter((_, i) => i % 2 === 0));
+  const [index, share] = between(distances.get(run), x);
   return (1 - share) * profile[2 * index + 1] + share * profile[2 * index + 3];
 }

@@ -1,0 +1,122 @@
+// Where one looks from: the boot, above, along the edge, or freely around the sledge.
+
+import * as THREE from "./three.module.min.js";
+import { surfaceHeight } from "./motion.js";
+
+export const VIEWS = ["boot", "above", "edge", "free"];
+const UPRIGHT = new THREE.Vector3(0, 0, 1);
+const NEAREST = 0.15;
+const FARTHEST = 15;
+
+/** A camera that follows a run shown in `space`, whose axes may be tilted against the horizon. */
+export class Follower {
+  constructor(run, space) {
+    this.run = run;
+    this.space = space;
+    this.camera = new THREE.PerspectiveCamera(50, 1, 0.05, 900);
+    this.view = "boot";
+    this.zoom = { boot: 1, above: 1, edge: 1, free: 1 };
+    this.around = { azimuth: -2.4, height: 0.42 };
+    this.outer = outerSki(run);
+  }
+
+  resize(width, height) {
+    this.camera.aspect = width / height;
+    this.camera.fov = width < height ? 66 : 48; // a narrow picture needs the height to hold both skis
+    this.camera.updateProjectionMatrix();
+  }
+
+  nearer(factor) {
+    this.zoom[this.view] = Math.min(Math.max(this.zoom[this.view] * factor, NEAREST), FARTHEST);
+  }
+
+  /** Turn about the sledge (rad); any other view becomes the free one from where it stands. */
+  turn(azimuth, height) {
+    if (this.view !== "free") this.#setFree();
+    this.around.azimuth += azimuth;
+    this.around.height = Math.min(Math.max(this.around.height + height, 0.03), 1.55);
+  }
+
+  #setFree() {
+    const target = this.#world(this.pose.place);
+    const from = this.camera.position.clone().sub(target);
+    this.around.azimuth = Math.atan2(from.y, from.x);
+    this.around.height = Math.atan2(from.z, Math.hypot(from.x, from.y));
+    this.zoom.free = Math.min(Math.max(from.length() / FREE_DISTANCE, NEAREST), FARTHEST);
+    this.view = "free";
+  }
+
+  follow(pose) {
+    this.pose = pose;
+    this[this.view](pose);
+  }
+
+  boot(pose) {
+    const zoom = this.zoom.boot;
+    const from = offset(pose, -0.75 * zoom, 0, 1.25 * zoom);
+    this.#look(from, offset(pose, 1.15, 0, 0), UPRIGHT);
+  }
+
+  above(pose) {
+    const from = pose.place.slice();
+    from[2] += 5.5 * this.zoom.above;
+    const down = this.#direction([-1, 0, 0]); // the fall line goes down the picture
+    this.#look(from, pose.place, down);
+  }
+
+  edge(pose) {
+    const zoom = this.zoom.edge;
+    const middle = this.run.arrays.middle.values;
+    const side = middle[3 * this.outer + 1];
+    const tail = this.run.arrays.station.values.at(-1);
+    const from = offset(pose, tail - 0.55 * zoom, side + Math.sign(side) * 0.16 * zoom, 0);
+    from[2] = surfaceHeight(this.run, from[0]) + 0.2 * zoom;
+    this.#look(from, offset(pose, 0.35, side, 0.02), UPRIGHT);
+  }
+
+  free(pose) {
+    const { azimuth, height } = this.around;
+    const distance = FREE_DISTANCE * this.zoom.free;
+    const target = this.#world(pose.place);
+    const way = new THREE.Vector3(
+      Math.cos(azimuth) * Math.cos(height), Math.sin(azimuth) * Math.cos(height), Math.sin(height),
+    );
+    this.#aim(target.clone().addScaledVector(way, distance), target, UPRIGHT);
+  }
+
+  #look(from, to, up) {
+    this.#aim(this.#world(from), this.#world(to), up);
+  }
+
+  #aim(from, to, up) {
+    this.camera.position.copy(from);
+    this.camera.up.copy(up);
+    this.camera.lookAt(to);
+  }
+
+  #world(place) {
+    return this.space.localToWorld(new THREE.Vector3(...place));
+  }
+
+  #direction(vector) {
+    return new THREE.Vector3(...vector).transformDirection(this.space.matrixWorld);
+  }
+}
+
+const FREE_DISTANCE = 4;
+
+/** A place beside the sledge: forward, left, up of its own axes (m). */
+function offset(pose, forward, left, up) {
+  return [0, 1, 2].map(
+    (axis) => pose.place[axis] + forward * pose.forward[axis] + left * pose.left[axis] + up * pose.up[axis],
+  );
+}
+
+/** The ski that carries more over the run: 0 left, 1 right. */
+function outerSki(run) {
+  const force = run.arrays.force_per_length.values;
+  const count = run.arrays.station.values.length;
+  const sums = [0, 0];
+  for (let i = 0; i < force.length; i++) sums[Math.floor(i / count) % 2] += force[i];
+  return sums[1] >= sums[0] ? 1 : 0;
+}

@@ -1,0 +1,125 @@
+// The words, buttons and sliders around the picture: made once, each with a name that a screen reader says.
+
+import { css, GHOST, gradient, TRACK } from "./colours.js";
+
+export const SPEEDS = [[1, "true speed"], [0.5, "half speed"], [0.25, "a quarter"], [0.1, "a tenth"]];
+export const VIEW_NAMES = { boot: "From the boot", above: "From above", edge: "Along the edge", free: "Free" };
+const KEYS = [
+  ["Space", "play or pause"], ["← →", "a twentieth of a second; with Shift half a second"], ["Home End", "start, end"],
+  ["1 2 3 4", "boot, above, edge, free"], ["+ −", "nearer, farther"], ["A D W S", "turn the free view"],
+  ["X C", "less, more exaggeration"], ["G O T", "groove, other run, measured track"],
+];
+
+/** An element with properties, attributes (`aria-…`, `data-…`, `for`) and children. */
+export function made(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name.includes("-") || name === "for" || name === "role") element.setAttribute(name, value);
+    else element[name] = value;
+  }
+  element.append(...children);
+  return element;
+}
+
+/** All parts of the page, by name. */
+export function controls({ run, ghost, modelAddress }) {
+  const parts = {
+    canvas: made("canvas", { className: "replay-canvas", tabIndex: 0, role: "img", "aria-label": `Replay of ${run.title}` }),
+    readings: made("dl", { className: "replay-readings", "aria-label": "Readings" }),
+    legend: made("div", { className: "replay-legend" }),
+    message: made("p", { className: "replay-message", role: "status" }),
+    play: made("button", { type: "button", className: "replay-play", textContent: "Play" }),
+    time: slider("Time", 0, 1, 0.001),
+    speed: choice("Speed of play", SPEEDS),
+    exaggeration: slider("Exaggeration of bending and twist", 1, 20, 1),
+    exaggerated: made("output", { textContent: "1 ×" }),
+    views: made("div", { className: "replay-views", role: "group", "aria-label": "View" }),
+    shown: made("div", { className: "replay-shown", role: "group", "aria-label": "What is shown" }),
+    picture: made("button", { type: "button", textContent: "Picture (PNG)" }),
+    film: made("button", { type: "button", textContent: "Film (WebM)" }),
+    model: modelAddress ? made("a", { textContent: "Model (glTF)", className: "replay-button", download: "" }) : null,
+  };
+  for (const [name, text] of Object.entries(VIEW_NAMES)) {
+    parts.views.append(made("button", { type: "button", textContent: text, "data-view": name, "aria-pressed": "false" }));
+  }
+  const toggles = [["groove", "Groove", null]];
+  if (ghost) toggles.push(["ghost", `Other run: ${ghost.title}`, css(GHOST)]);
+  if (run.track_name) toggles.push(["track", `Measured: ${run.track_name}`, css(TRACK)]);
+  for (const [name, text, colour] of toggles) parts.shown.append(toggle(name, text, colour));
+  return parts;
+}
+
+function slider(label, min, max, step) {
+  return made("input", { type: "range", min, max, step, value: min, "aria-label": label });
+}
+
+function choice(label, entries) {
+  const options = entries.map(([value, text]) => made("option", { value, textContent: text }));
+  return made("select", { "aria-label": label }, ...options);
+}
+
+function toggle(name, text, colour) {
+  const box = made("input", { type: "checkbox", checked: true, "data-show": name });
+  const mark = colour ? [made("span", { className: "replay-swatch", style: `background:${colour}` })] : [];
+  return made("label", {}, box, ...mark, made("span", { textContent: text }));
+}
+
+/** Put the parts into the page. */
+export function laidOut(root, parts, run) {
+  const facts = made("dl", { className: "replay-facts" });
+  for (const [name, value] of run.facts) facts.append(made("dt", { textContent: name }), made("dd", { textContent: value }));
+  const field = (text, ...inputs) => made("div", { className: "replay-field" }, made("span", { textContent: text }), ...inputs);
+  const keys = made("dl", { className: "replay-keys" });
+  for (const [key, text] of KEYS) keys.append(made("dt", { textContent: key }), made("dd", { textContent: text }));
+  const takeAway = [parts.picture, parts.film, parts.model].filter(Boolean);
+  root.classList.add("replay");
+  root.replaceChildren(
+    made("div", { className: "replay-stage" }, parts.canvas, parts.readings, parts.legend),
+    made(
+      "div",
+      { className: "replay-controls", role: "group", "aria-label": "Controls of the replay" },
+      made("div", { className: "replay-row replay-playing" }, parts.play, parts.time, parts.speed),
+      made("div", { className: "replay-row" }, parts.views),
+      made("div", { className: "replay-row" }, field("Bending and twist ×", parts.exaggeration, parts.exaggerated), parts.shown),
+      made("div", { className: "replay-row" }, field("Take away", ...takeAway)),
+      parts.message,
+      made("details", {}, made("summary", { textContent: "Keys, and what this run is" }), keys, facts),
+    ),
+  );
+}
+
+/** The legend of force and groove, with units. */
+export function fillLegend(element, scales) {
+  const bar = (kind, title, ticks) => {
+    const marks = ticks.map((text) => made("span", { textContent: text }));
+    return made("div", { className: "replay-scale" },
+      made("span", { className: "replay-scale-title", textContent: title }),
+      made("span", { className: "replay-bar", style: `background:${gradient(kind)}` }),
+      made("span", { className: "replay-ticks" }, ...marks));
+  };
+  element.replaceChildren(
+    bar("force", "Force of the snow on the ski (N/mm)", ticksOf(scales.force / 1000)),
+    scales.staysNothing
+      ? made("span", { textContent: "Elastic snow: no groove stays; the line is where the skis went" })
+      : bar("depth", "Groove that stays (mm)", ticksOf(scales.depth * 1000)),
+  );
+}
+
+function ticksOf(most) {
+  return [0, most / 2, most].map((value) => String(Number(value.toPrecision(3))));
+}
+
+/** Lines of name and value for a moment. */
+export function readings(run, pose, time, row) {
+  const of = (name, size = 1) => row(run.arrays[name].values, pose.at, size);
+  const curvature = of("curvature")[0];
+  const radius = Math.abs(curvature) < 1e-3 ? "straight" : `${(1 / Math.abs(curvature)).toFixed(1)} m ${curvature > 0 ? "left" : "right"}`;
+  const [left, right] = Array.from(of("depth", 2), (depth) => (depth > 0 ? `${(1000 * depth).toFixed(1)} mm` : "off the snow"));
+  return [
+    ["Time", `${time.toFixed(2)} s`],
+    ["Speed", `${of("speed")[0].toFixed(2)} m/s`],
+    ["Turn radius", radius],
+    ["Edge depth, left", left],
+    ["Edge depth, right", right],
+  ];
+}

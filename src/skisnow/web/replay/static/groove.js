@@ -1,0 +1,86 @@
+// The groove that stays behind, growing as the boots pass, and a measured track.
+
+import { depthColour, TRACK } from "./colours.js";
+import { largest } from "./binary.js";
+import { between, surfaceHeight } from "./motion.js";
+import { ribbon } from "./snow.js";
+
+/** The deepest groove that stays in a run (m). */
+export const deepest = (run) => Math.max(0, largest(run.arrays.groove_residual_depth.values));
+
+/** A run's groove as a mesh with `grow(time)`; `colour` fixed for a ghost, else by the depth that stays. */
+export function groove(run, { most, colour = null, order = 3 }) {
+  const pieces = Array.from(run.arrays.groove_time.values, (_, i) => piece(run, i, most, colour));
+  const mesh = ribbon(pieces, { least: colour ? 1.6 : 2.4, relief: colour ? 0 : 0.16, order });
+  const times = run.arrays.groove_time.values; // rising
+  return {
+    mesh,
+    grow(time) {
+      mesh.geometry.setDrawRange(0, 6 * made(times, time));
+    },
+  };
+}
+
+/** How many of rising times are not after a time. */
+export function made(times, time) {
+  let low = 0;
+  let high = times.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= time) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+function piece(run, i, most, colour) {
+  const { groove_middle: middle, groove_left: left, groove_width: width, groove_residual_depth: depth } = run.arrays;
+  const across = left.values.subarray(3 * i, 3 * i + 3);
+  const normal = surfaceNormal(run, middle.values[3 * i]);
+  const half = run.groove_spacing / 2;
+  return {
+    middle: middle.values.subarray(3 * i, 3 * i + 3),
+    beside: Array.from(across, (part) => (part * width.values[i]) / 2),
+    along: [
+      half * (across[1] * normal[2] - across[2] * normal[1]),
+      half * (across[2] * normal[0] - across[0] * normal[2]),
+      half * (across[0] * normal[1] - across[1] * normal[0]),
+    ],
+    colour: colour ?? depthColour(depth.values[i], most),
+  };
+}
+
+function surfaceNormal(run, x) {
+  if (!run.arrays.profile) return [0, 0, 1];
+  const slope = (surfaceHeight(run, x + 0.1) - surfaceHeight(run, x - 0.1)) / 0.2;
+  const size = Math.hypot(1, slope);
+  return [-slope / size, 0, 1 / size];
+}
+
+/** A measured track as a line, and `placeAt(time)`, null where its times are not known. */
+export function measuredTrack(run) {
+  const place = run.arrays.track_place.values;
+  const points = Array.from({ length: place.length / 3 }, (_, i) => Array.from(place.subarray(3 * i, 3 * i + 3)));
+  const times = run.arrays.track_time?.values ?? null;
+  const mesh = ribbon(points.slice(1).map((end, i) => dash(points[i], end)), { least: 3, order: 4 });
+  return {
+    mesh,
+    placeAt(time) {
+      if (!times) return null;
+      const [index, share] = between(times, time);
+      const next = points[Math.min(index + 1, points.length - 1)];
+      return points[index].map((part, axis) => (1 - share) * part + share * next[axis]);
+    },
+  };
+}
+
+function dash(start, end) {
+  const way = [0, 1, 2].map((axis) => (end[axis] - start[axis]) / 2);
+  const size = Math.hypot(way[0], way[1]) || 1;
+  return {
+    middle: start.map((part, axis) => part + way[axis]),
+    beside: [(-0.01 * way[1]) / size, (0.01 * way[0]) / size, 0],
+    along: way,
+    colour: TRACK,
+  };
+}

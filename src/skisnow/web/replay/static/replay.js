@@ -1,0 +1,285 @@
+// The replay: plays a run on its stage and answers buttons, sliders, keys and fingers.
+
+import { decoded } from "./binary.js";
+import { VIEWS } from "./cameras.js";
+import { controls, fillLegend, laidOut, made, readings } from "./controls.js";
+import { edges, row } from "./motion.js";
+import { Sharpness, STILL } from "./sharpness.js";
+import { Stage } from "./stage.js";
+import { composed, filmType, recording, saved } from "./takeaway.js";
+
+const STEP = 0.05; // s that an arrow key goes
+const LARGE_STEP = 0.5;
+
+/**
+ * Show a run in an element.
+ *
+ * `run` and, for a second one laid over it, `ghost` are the bytes of replays; `modelAddress(time, exaggeration)` gives
+ * the address of a glTF model where there is a server.
+ */
+export function startReplay(root, { run, ghost = null, modelAddress = null }) {
+  return new Player(root, decoded(run), ghost ? decoded(ghost) : null, modelAddress);
+}
+
+class Player {
+  constructor(root, run, ghost, modelAddress) {
+    this.run = run;
+    this.ghost = ghost;
+    this.modelAddress = modelAddress;
+    this.parts = controls({ run, ghost, modelAddress });
+    laidOut(root, this.parts, run);
+    const times = run.arrays.time.values;
+    [this.start, this.end] = [times[0], times[times.length - 1]];
+    Object.assign(this, { time: this.start, playing: false, rate: 1, exaggeration: 1, frames: 0, film: null });
+    this.shown = { groove: true, ghost: true, track: true };
+    this.flat = document.createElement("canvas");
+    this.sharpness = new Sharpness();
+    try {
+      this.stage = new Stage(this.parts.canvas, run, ghost);
+    } catch (error) {
+      this.say("This browser shows no WebGL picture. Switch hardware acceleration on, or take another browser.");
+      throw error;
+    }
+    this.#fill();
+    this.#listen(root);
+    new ResizeObserver(() => this.resize()).observe(this.parts.canvas.parentElement);
+    this.resize();
+  }
+
+  #fill() {
+    const { parts } = this;
+    Object.assign(parts.time, { min: this.start, max: this.end, step: 0.01, value: this.start });
+    fillLegend(parts.legend, this.stage.scales);
+    if (!filmType()) {
+      parts.film.disabled = true;
+      parts.film.title = "This browser records no film.";
+    }
+    this.look("boot");
+  }
+
+  say(text) {
+    this.parts.message.textContent = text;
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.parts.canvas.parentElement;
+    if (!clientWidth || !clientHeight) return;
+    const ratio = this.playing ? this.sharpness.ratio : Math.max(STILL, window.devicePixelRatio || 1);
+    this.stage.resize(clientWidth, clientHeight, ratio);
+    this.draw();
+  }
+
+  /** Draw the present moment, and tell it in words. */
+  draw() {
+    const pose = this.stage.draw(this.time, this.exaggeration);
+    this.frames += 1;
+    this.lines = readings(this.run, pose, this.time, row);
+    this.#tell();
+    if (this.film) composed(this.parts.canvas, this.flat, this.lines, this.#words());
+  }
+
+  #tell() {
+    const { parts } = this;
+    if (!parts.readings.children.length) {
+      this.values = this.lines.map(([name]) => {
+        const value = made("dd");
+        parts.readings.append(made("dt", { textContent: name }), value);
+        return value;
+      });
+    }
+    this.lines.forEach(([, text], i) => {
+      if (this.values[i].textContent !== text) this.values[i].textContent = text;
+    });
+    parts.time.value = this.time;
+    parts.time.setAttribute("aria-valuetext", `${this.time.toFixed(2)} seconds`);
+    if (parts.model) parts.model.href = this.modelAddress(this.time, this.exaggeration);
+  }
+
+  #words() {
+    const bent = this.exaggeration === 1 ? [] : [`bending and twist ${this.exaggeration} times`];
+    return [this.run.title, ...bent];
+  }
+
+  seek(time) {
+    this.time = Math.min(Math.max(time, this.start), this.end);
+    this.draw();
+  }
+
+  play() {
+    if (this.playing) return;
+    if (this.time >= this.end) this.time = this.start;
+    this.playing = true;
+    this.parts.play.textContent = "Pause";
+    this.sharpness.start();
+    this.resize();
+    let before = null;
+    const next = (now) => {
+      if (!this.playing) return;
+      const gone = before === null ? 0 : now - before;
+      this.time = Math.min(this.time + (this.rate * gone) / 1000, this.end);
+      before = now;
+      if (gone > 0 && !this.film && this.sharpness.took(gone)) this.resize();
+      else this.draw();
+      if (this.time >= this.end) this.pause();
+      else requestAnimationFrame(next);
+    };
+    requestAnimationFrame(next);
+  }
+
+  pause() {
+    if (!this.playing) return;
+    this.playing = false;
+    this.parts.play.textContent = "Play";
+    if (this.film) this.#endFilm();
+    this.resize();
+  }
+
+  look(view) {
+    this.stage.follower.view = view;
+    this.#press();
+    if (this.stage.follower.pose) this.draw();
+  }
+
+  #press() {
+    for (const button of this.parts.views.children) {
+      button.setAttribute("aria-pressed", String(button.dataset.view === this.stage.follower.view));
+    }
+  }
+
+  exaggerate(factor) {
+    this.exaggeration = Math.min(Math.max(factor, 1), 20);
+    this.parts.exaggeration.value = this.exaggeration;
+    this.parts.exaggerated.textContent = `${this.exaggeration} ×`;
+    this.draw();
+  }
+
+  show(name, on) {
+    this.shown[name] = on;
+    const box = this.parts.shown.querySelector(`[data-show="${name}"]`);
+    if (box) box.checked = on;
+    this.stage.choose(this.shown);
+    this.draw();
+  }
+
+  turn(azimuth, height) {
+    this.stage.follower.turn(azimuth, height);
+    this.#press();
+    if (!this.playing) this.draw();
+  }
+
+  nearer(factor) {
+    this.stage.follower.nearer(factor);
+    if (!this.playing) this.draw();
+  }
+
+  /** The picture as a PNG, with its readings. */
+  picture() {
+    this.draw();
+    const flat = composed(this.parts.canvas, this.flat, this.lines, this.#words());
+    return new Promise((resolve) => flat.toBlob(resolve, "image/png"));
+  }
+
+  /** Record from here, or from the start if at the end, until the end or the next press. */
+  startFilm() {
+    if (this.time >= this.end) this.time = this.start;
+    this.draw();
+    composed(this.parts.canvas, this.flat, this.lines, this.#words());
+    this.film = recording(this.flat);
+    this.parts.film.textContent = "End the film";
+    this.say("Recording while it plays.");
+    this.play();
+  }
+
+  async #endFilm() {
+    const film = this.film;
+    this.film = null;
+    this.parts.film.textContent = "Film (WebM)";
+    this.lastFilm = await film.stop();
+    saved(this.lastFilm, `${fileName(this.run.title)}.webm`);
+    this.say(`The film is saved: ${(this.lastFilm.size / 1e6).toFixed(1)} MB.`);
+  }
+
+  #listen(root) {
+    const { parts } = this;
+    parts.play.addEventListener("click", () => (this.playing ? this.pause() : this.play()));
+    parts.time.addEventListener("input", () => this.seek(Number(parts.time.value)));
+    parts.speed.addEventListener("change", () => (this.rate = Number(parts.speed.value)));
+    parts.exaggeration.addEventListener("input", () => this.exaggerate(Number(parts.exaggeration.value)));
+    parts.views.addEventListener("click", (event) => event.target.dataset.view && this.look(event.target.dataset.view));
+    parts.shown.addEventListener("change", (event) => this.show(event.target.dataset.show, event.target.checked));
+    parts.film.addEventListener("click", () => (this.film ? this.pause() : this.startFilm()));
+    parts.picture.addEventListener("click", async () => {
+      saved(await this.picture(), `${fileName(this.run.title)}-${this.time.toFixed(2)}s.png`);
+      this.say("The picture is saved.");
+    });
+    root.addEventListener("keydown", (event) => this.#key(event));
+    this.#fingers();
+  }
+
+  /** Drag to turn, wheel or two fingers to come nearer. */
+  #fingers() {
+    const { canvas } = this.parts;
+    const down = new Map();
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (!down.has(event.pointerId)) return;
+      const [x, y] = down.get(event.pointerId);
+      const apart = spread(down);
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+      if (down.size === 1) this.turn(-0.006 * (event.clientX - x), 0.006 * (event.clientY - y));
+      else if (apart > 0) this.nearer(apart / spread(down));
+    });
+    for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => down.delete(event.pointerId));
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.nearer(Math.exp(0.001 * event.deltaY));
+    }, { passive: false });
+  }
+
+  #key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const { target } = event;
+    const step = event.shiftKey ? LARGE_STEP : STEP;
+    const ownKeys = target.tagName === "SELECT" || (target.type === "range" && target !== this.parts.time);
+    const presses = ["BUTTON", "SUMMARY", "A"].includes(target.tagName) || target.type === "checkbox";
+    const deeds = {
+      " ": presses || ownKeys ? null : () => (this.playing ? this.pause() : this.play()),
+      ArrowLeft: ownKeys ? null : () => this.seek(this.time - step),
+      ArrowRight: ownKeys ? null : () => this.seek(this.time + step),
+      Home: ownKeys ? null : () => this.seek(this.start),
+      End: ownKeys ? null : () => this.seek(this.end),
+      "+": () => this.nearer(0.85),
+      "=": () => this.nearer(0.85),
+      "-": () => this.nearer(1 / 0.85),
+      a: () => this.turn(-0.1, 0),
+      d: () => this.turn(0.1, 0),
+      w: () => this.turn(0, 0.08),
+      s: () => this.turn(0, -0.08),
+      x: () => this.exaggerate(this.exaggeration - 1),
+      c: () => this.exaggerate(this.exaggeration + 1),
+      g: () => this.show("groove", !this.shown.groove),
+      o: () => this.show("ghost", !this.shown.ghost),
+      t: () => this.show("track", !this.shown.track),
+    };
+    VIEWS.forEach((view, i) => (deeds[String(i + 1)] = () => this.look(view)));
+    const deed = target.tagName === "SELECT" ? null : deeds[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!deed) return;
+    event.preventDefault();
+    deed();
+  }
+
+  /** Both edges of a ski as they are drawn, for whoever checks them. */
+  edgesAt(time, ski, exaggeration = 1) {
+    return edges(this.run, time, ski, exaggeration);
+  }
+}
+
+function spread(down) {
+  const [one, other] = [...down.values()];
+  return other ? Math.hypot(one[0] - other[0], one[1] - other[1]) : 0;
+}
+
+const fileName = (title) => title.replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "") || "replay";

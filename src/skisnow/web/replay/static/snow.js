@@ -1,0 +1,181 @@
+// The slope, calm: one light surface with a grid of metres, fading into the sky; and what is drawn flat on it.
+
+import * as THREE from "./three.module.min.js";
+
+const FAR = 260; // m that the surface reaches beyond the run
+const HORIZON = new THREE.Color(0xdfe9f1);
+const LOWEST_SKY = 0.12; // rad below the horizontal: under it all is snow, or the colour of the horizon
+
+/** What is behind everything. */
+export const BACKGROUND = HORIZON;
+
+const SURFACE = {
+  vertex: `
+    varying vec2 place;
+    varying float away;
+    void main() {
+      place = position.xy;
+      vec4 seen = modelViewMatrix * vec4(position, 1.0);
+      away = -seen.z;
+      gl_Position = projectionMatrix * seen;
+    }`,
+  // lines as wide as a pixel at least, and fainter where they come closer than a few pixels
+  fragment: `
+    precision highp float;
+    uniform vec3 horizon;
+    varying vec2 place;
+    varying float away;
+    float lines(float every, float width) {
+      vec2 at = place / every;
+      vec2 pixel = fwidth(at);
+      vec2 off = abs(fract(at - 0.5) - 0.5);
+      float half_width = 0.5 * width / every;
+      vec2 on = 1.0 - smoothstep(vec2(half_width), half_width + pixel * 1.4, off);
+      vec2 faint = 1.0 - smoothstep(vec2(0.06), vec2(0.35), pixel);
+      return max(on.x * faint.x, on.y * faint.y);
+    }
+    void main() {
+      vec3 snow = vec3(0.945, 0.962, 0.978);
+      snow = mix(snow, vec3(0.80, 0.855, 0.905), 0.75 * lines(1.0, 0.008));
+      snow = mix(snow, vec3(0.66, 0.745, 0.82), 0.8 * lines(5.0, 0.015));
+      snow = mix(snow, horizon, smoothstep(25.0, 150.0, away));
+      gl_FragColor = vec4(snow, 1.0); // as the screen takes it: nothing left to convert
+    }`,
+};
+
+const RIBBON = {
+  vertex: `
+    attribute vec3 beside;   // half the width, across
+    attribute vec3 along;    // half the length, ahead
+    attribute vec2 corner;   // -1 or 1 across, and ahead
+    attribute vec3 tint;
+    uniform float height;    // of the picture in pixels
+    uniform float least;     // width in pixels
+    varying vec3 hue;
+    varying float across;
+    void main() {
+      vec4 middle = modelViewMatrix * vec4(position, 1.0);
+      float pixel = 2.0 * max(-middle.z, 0.01) / (projectionMatrix[1][1] * height);
+      float half_width = length(beside);
+      float wide = max(half_width, 0.5 * least * pixel) / max(half_width, 1e-9);
+      vec3 place = position + corner.x * wide * beside + corner.y * along;
+      hue = tint;
+      across = corner.x;
+      gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
+    }`,
+  fragment: `
+    precision highp float;
+    uniform float relief;
+    varying vec3 hue;
+    varying float across;
+    void main() {
+      gl_FragColor = vec4(hue * (1.0 - relief * across), 1.0);
+    }`,
+};
+
+/** The surface of a run's slope, drawn behind everything. */
+export function surface(run) {
+  const points = profilePoints(run);
+  const [low, high] = extent(run.arrays.place.values, 1);
+  const positions = [];
+  const indices = [];
+  for (const [x, z] of points) positions.push(x, low - FAR, z, x, high + FAR, z);
+  for (let i = 0; i < points.length - 1; i++) indices.push(2 * i, 2 * i + 2, 2 * i + 1, 2 * i + 1, 2 * i + 2, 2 * i + 3);
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(positions, 3));
+  geometry.setIndex(indices);
+  const material = new THREE.ShaderMaterial({
+    vertexShader: SURFACE.vertex,
+    fragmentShader: SURFACE.fragment,
+    uniforms: { horizon: { value: HORIZON.clone().convertLinearToSRGB() } },
+    side: THREE.DoubleSide,
+    depthWrite: false,
+    depthTest: false, // what lies on it or a millimetre in it is never torn by it
+  });
+  return flat(new THREE.Mesh(geometry, material), 1);
+}
+
+function profilePoints(run) {
+  const profile = run.arrays.profile?.values;
+  if (profile) {
+    const points = Array.from({ length: profile.length / 2 }, (_, i) => [profile[2 * i], profile[2 * i + 1]]);
+    return [goneOn(points[0], points[1]), ...points, goneOn(points.at(-1), points.at(-2))];
+  }
+  const [low, high] = extent(run.arrays.place.values, 0);
+  return [[low - FAR, 0], [high + FAR, 0]];
+}
+
+/** A point far out on the line from one through another. */
+function goneOn([x, z], [towardX, towardZ]) {
+  const way = FAR * Math.sign(x - towardX);
+  return [x + way, z + (way * (z - towardZ)) / (x - towardX)];
+}
+
+function extent(values, axis) {
+  let [low, high] = [Infinity, -Infinity];
+  for (let i = axis; i < values.length; i += 3) {
+    low = Math.min(low, values[i]);
+    high = Math.max(high, values[i]);
+  }
+  return [low, high];
+}
+
+function flat(mesh, order) {
+  mesh.renderOrder = order;
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+/** The sky: light at the horizon, a little bluer above. */
+export function sky() {
+  const geometry = new THREE.SphereGeometry(400, 24, 12, 0, 2 * Math.PI, 0, Math.PI / 2 + LOWEST_SKY);
+  const colours = [];
+  const above = new THREE.Color(0xa9c6de);
+  const positions = geometry.attributes.position;
+  for (let i = 0; i < positions.count; i++) {
+    // a sphere of three.js has its poles on y; here z is up
+    const mixed = HORIZON.clone().lerp(above, Math.min(1, Math.max(0, (2.2 * positions.getY(i)) / 400)));
+    colours.push(mixed.r, mixed.g, mixed.b);
+  }
+  geometry.setAttribute("color", new THREE.Float32BufferAttribute(colours, 3));
+  geometry.rotateX(Math.PI / 2);
+  const material = new THREE.MeshBasicMaterial({
+    vertexColors: true, side: THREE.BackSide, depthWrite: false, depthTest: false,
+  });
+  return flat(new THREE.Mesh(geometry, material), 0);
+}
+
+/**
+ * Pieces lying on the snow, each a rectangle: middle, half across, half ahead, colour (0 to 255). It is never narrower
+ * than `least` pixels, so that a groove of millimetres is seen from above.
+ */
+export function ribbon(pieces, { least = 2, relief = 0, order = 3 } = {}) {
+  const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
+  const names = { position: [], beside: [], along: [], tint: [], corner: [] };
+  const indices = [];
+  for (const piece of pieces) {
+    const first = names.position.length / 3;
+    indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
+    for (const corner of corners) {
+      names.position.push(...piece.middle);
+      names.beside.push(...piece.beside);
+      names.along.push(...piece.along);
+      names.tint.push(...piece.colour.map((part) => part / 255));
+      names.corner.push(...corner);
+    }
+  }
+  const geometry = new THREE.BufferGeometry();
+  for (const [name, values] of Object.entries(names)) {
+    geometry.setAttribute(name, new THREE.Float32BufferAttribute(values, name === "corner" ? 2 : 3));
+  }
+  geometry.setIndex(indices);
+  const material = new THREE.ShaderMaterial({
+    vertexShader: RIBBON.vertex,
+    fragmentShader: RIBBON.fragment,
+    uniforms: { height: { value: 720 }, least: { value: least }, relief: { value: relief } },
+    side: THREE.DoubleSide,
+    depthWrite: false,
+    depthTest: false, // drawn in the order given, before the skis
+  });
+  return flat(new THREE.Mesh(geometry, material), order);
+}

@@ -1,0 +1,55 @@
+// To take away: the picture as PNG and a film as WebM, both with the readings written on them.
+
+/** Draw the picture with its readings and scales on a flat canvas of its own. */
+export function composed(canvas, flat, lines, scales) {
+  if (flat.width !== canvas.width || flat.height !== canvas.height) {
+    flat.width = canvas.width;
+    flat.height = canvas.height;
+  }
+  const pen = flat.getContext("2d");
+  pen.drawImage(canvas, 0, 0);
+  const size = Math.max(13, Math.round(flat.height / 42));
+  pen.font = `600 ${size}px system-ui, sans-serif`;
+  pen.textBaseline = "top";
+  const texts = [...lines.map(([name, value]) => `${name}: ${value}`), ...scales];
+  const width = Math.max(...texts.map((text) => pen.measureText(text).width));
+  pen.fillStyle = "rgba(255, 255, 255, 0.86)";
+  pen.fillRect(size * 0.6, size * 0.6, width + size * 1.2, texts.length * size * 1.4 + size * 0.8);
+  pen.fillStyle = "#10202e";
+  texts.forEach((text, i) => pen.fillText(text, size * 1.2, size * (1.1 + 1.4 * i)));
+  return flat;
+}
+
+export function saved(blob, name) {
+  const address = URL.createObjectURL(blob);
+  const link = document.createElement("a");
+  link.href = address;
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(address), 60_000);
+}
+
+/** The film's format that this browser can write, or null. */
+export function filmType() {
+  if (typeof MediaRecorder === "undefined" || !HTMLCanvasElement.prototype.captureStream) return null;
+  const types = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
+  return types.find((type) => MediaRecorder.isTypeSupported(type)) ?? null;
+}
+
+/** Record a canvas: `stop()` gives a promise of the film. */
+export function recording(flat) {
+  const recorder = new MediaRecorder(flat.captureStream(30), { mimeType: filmType(), videoBitsPerSecond: 6_000_000 });
+  const pieces = [];
+  recorder.ondataavailable = (event) => pieces.push(event.data);
+  const film = new Promise((resolve, reject) => {
+    recorder.onstop = () => resolve(new Blob(pieces, { type: "video/webm" }));
+    recorder.onerror = (event) => reject(event.error);
+  });
+  recorder.start(500);
+  return {
+    stop() {
+      if (recorder.state !== "inactive") recorder.stop();
+      return film;
+    },
+  };
+}
