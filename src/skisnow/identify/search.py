@@ -22,6 +22,8 @@ Told: TypeAlias = Callable[[str], None]
 
 _SMALLEST_DAMPING, _LARGEST_DAMPING = 1e-9, 1e9
 _FIRST_DAMPING: Final = 1e-3
+_SLIGHT: Final = 3.0
+"""Change of the residuals (standard deviations of one) over which derivatives hold, however far the parameters went."""
 _KEPT_PROMISE: Final = 0.5
 """Share of the fall that derivatives foretold, below which they are taken anew."""
 _AT_BOUND: Final = 1e-9
@@ -44,7 +46,7 @@ class Manner:
         Residuals move by so many standard deviations for no reason: where no step improves and what is left to gain
         is smaller than this, the search is at its end too.
     keeps_jacobian
-        Derivatives are taken anew farther away than this from where they were taken, in sizes.
+        Derivatives are taken anew farther away than this from where they were taken, in sizes; 0: always.
     longest_move
         Of a parameter in one step, in sizes: beyond it nothing is known yet.
     smallest_move
@@ -59,8 +61,8 @@ class Manner:
 
     smallest_step: float = 0.01
     largest_step: float = 0.05
-    tolerance: float = 0.1
-    worth: float = 0.1
+    tolerance: float = 0.2
+    worth: float = 0.3
     rough: float = 1.0
     keeps_jacobian: float = 0.1
     longest_move: float = 0.25
@@ -186,7 +188,10 @@ class Search:
         away = found.place - found.differentiated_at
         if not np.any(away):
             return found
-        if not found.is_central or not found.is_trusted or np.max(np.abs(away)) > self.manner.keeps_jacobian:
+        far = np.max(np.abs(away)) > self.manner.keeps_jacobian and self._in_noise(found, away) > min(
+            _SLIGHT, 1e3 * self.manner.keeps_jacobian
+        )
+        if far or not found.is_central or not found.is_trusted:
             return self._differentiated(found)
         return found
 
@@ -279,7 +284,7 @@ class Search:
             number = int(np.argmin(costs))
             best = tried[number]
             if best is not None and costs[number] < found.cost:
-                return _secant(found, places[number], best), max(dampings[number] / 3.0, _SMALLEST_DAMPING)
+                return _moved(found, places[number], best), max(dampings[number] / 3.0, _SMALLEST_DAMPING)
             damping = min(dampings[-1] * 10.0, _LARGEST_DAMPING)
         return None, damping
 
@@ -331,18 +336,17 @@ def step_inside(
     return np.asarray(np.clip(solved.x / scale, low, high))
 
 
-def _secant(found: Found, place: FloatArray, residuals: FloatArray) -> Found:
-    """At a better place, with derivatives that agree with the step there (Broyden 1965)."""
+def _moved(found: Found, place: FloatArray, residuals: FloatArray) -> Found:
+    """At a better place, with the derivatives as they were.
+
+    Broyden's update is left away: along a direction that hardly shows in the data it would learn the roughness of the
+    simulation, and make the direction look well known.
+    """
     assert found.jacobian is not None
-    step = place - found.place
-    foretold = found.residuals + found.jacobian @ step
-    missed = residuals - foretold
+    foretold = found.residuals + found.jacobian @ (place - found.place)
     promised = found.cost - float(foretold @ foretold)
     kept = found.cost - float(residuals @ residuals)
-    renewed = found.jacobian + np.outer(missed, step) / max(float(step @ step), 1e-300)
-    return replace(
-        found, place=place, residuals=residuals, jacobian=renewed, is_trusted=kept >= _KEPT_PROMISE * promised
-    )
+    return replace(found, place=place, residuals=residuals, is_trusted=kept >= _KEPT_PROMISE * promised)
 
 
 def _slope_and_bend(
