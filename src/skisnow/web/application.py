@@ -13,7 +13,8 @@ from starlette.responses import FileResponse
 
 from .guard import Access, Guard
 from .layout import STYLES
-from .pages import PAGES
+from .pages import INNER, PAGES
+from .transfer import add_transfer
 from .trouble import add_error_pages, log_to
 
 if TYPE_CHECKING:
@@ -40,9 +41,10 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     log_to(lab.runs / LOG_FILE)
     outer = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)
     outer.add_api_route(STYLES, _styles, include_in_schema=False)
-    for name in PAGES:
+    add_transfer(outer, lab)
+    for name in (*PAGES, *INNER):
         import_module(f".pages.{name}", __package__).add_page(lab)
-    add_error_pages()
+    add_error_pages(outer)
     ui.run_with(outer, title="skisnow", language="en-US", tailwind=False, show_welcome_message=False)
     pages_app.config.socket_io_js_transports = ["websocket"]
     return Guard(outer, Access(host, token, lab.limits.upload_bytes))

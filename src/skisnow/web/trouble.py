@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import secrets
+from html import escape
 from logging.handlers import RotatingFileHandler
 from typing import TYPE_CHECKING, Final
 
@@ -16,6 +17,7 @@ from .layout import framed, sentence
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from fastapi import FastAPI
     from starlette.requests import Request
 
 LOG: Final = logging.getLogger("skisnow.web")
@@ -52,13 +54,14 @@ def told(error: BaseException) -> str:
     return f"Something went wrong that should not. What was shown as stored is stored. Reference: {reported(error)}."
 
 
-def add_error_pages() -> None:
-    """Replace the framework's error pages and messages, which would show the exception."""
+def add_error_pages(outer: FastAPI) -> None:
+    """Replace the frameworks' error pages and messages, which would show the exception; ``outer`` holds all else."""
     app._exception_handlers.clear()  # the only one writes traces to the terminal
     app.on_exception(_notified)
     app.on_page_exception(_page)
-    app.add_exception_handler(404, _not_found)
-    app.add_exception_handler(Exception, _failed)
+    for each in (app, outer):
+        each.add_exception_handler(404, _not_found)
+        each.add_exception_handler(Exception, _failed)
 
 
 def _notified(error: Exception) -> None:
@@ -74,10 +77,14 @@ def _page(error: Exception) -> None:
         sentence(told(error), "bad")
 
 
+def plain_page(title: str, said: str, status: int) -> Response:
+    """A page without any script: a title, a sentence, the way back."""
+    return HTMLResponse(_PLAIN.format(title=escape(title), said=escape(said)), status)
+
+
 async def _not_found(_: Request, __: Exception) -> Response:
-    return HTMLResponse(_PLAIN.format(title="No such page", said="The lab has no page at this address."), 404)
+    return plain_page("No such page", "The lab has no page at this address.", 404)
 
 
 async def _failed(_: Request, error: Exception) -> Response:
-    said = f"Something went wrong that should not. Reference: {reported(error)}."
-    return HTMLResponse(_PLAIN.format(title="This cannot be shown", said=said), 500)
+    return plain_page("This cannot be shown", f"Something went wrong. Reference: {reported(error)}.", 500)

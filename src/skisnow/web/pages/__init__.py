@@ -10,3 +10,6 @@ from typing import Final
 
 PAGES: Final = ("campaigns",)
 """Modules of this folder, in the order of the navigation."""
+
+INNER: Final = ("describe", "enter", "analysis")
+"""Modules of pages that are reached from another page."""

@@ -1,4 +1,4 @@
-"""The list of campaigns."""
+"""The list of campaigns: those being entered, those kept; import and export."""
 
 from __future__ import annotations
 
@@ -6,9 +6,16 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ..layout import framed, sentence
+from ...field.store import Journals
+from ...report.numerals import counted
+from ..desk import Desk
+from ..fields import link
+from ..layout import framed, heading, sentence
+from ..names import analysis, entering, export
+from ..transfer import IMPORT
 
 if TYPE_CHECKING:
+    from ...field.store import StoredCampaign
     from ..settings import Lab
 
 PATH: Final = "/"
@@ -19,7 +26,70 @@ def add_page(lab: Lab) -> None:
     """Add the page to the application."""
 
     @ui.page(PATH)
-    def campaigns() -> None:
+    def campaigns(added: str = "") -> None:
         with framed("Campaigns", here=PATH):
-            for stored in lab.store.list():
-                sentence(stored.name)
+            if added:
+                sentence("The campaign is kept, byte for byte.", "good").props("role=status")
+            link("New campaign", "/describe", "main")
+            _in_entry(lab)
+            _kept(lab)
+            _import_form(lab)
+
+
+def _in_entry(lab: Lab) -> None:
+    heads = Journals(lab.store).list()
+    heading("Being entered")
+    if not heads:
+        sentence("None. Begin one with New campaign.", "quiet")
+    for head in reversed(heads):
+        desk = Desk(lab, head.id)
+        tests = [test for test in desk.campaign.tests.values() if test.rows]
+        with ui.element("section").classes("card"):
+            heading(desk.described.name or "(no name)", 3)
+            words = [desk.described.place, counted(len(tests), "test"), f"last entry {_minute(head.last_at)}"]
+            sentence(" · ".join(filter(None, words)), "quiet")
+            with ui.element("div").classes("acts"):
+                link("Enter tests", entering(head.id), "main")
+                link("Analysis", analysis("entry", head.id))
+                link("Export", export("entry", head.id))
+
+
+def _kept(lab: Lab) -> None:
+    heading("Kept")
+    stored = lab.store.list()
+    if not stored:
+        sentence("None. Import one below.", "quiet")
+    for campaign in reversed(stored):
+        with ui.element("section").classes("card"):
+            heading(campaign.name, 3)
+            sentence(f"{campaign.id} · added {campaign.added_at:%Y-%m-%d %H:%M} UTC · {_checked(campaign)}", "quiet")
+            with ui.element("div").classes("acts"):
+                link("Analysis", analysis("kept", campaign.id))
+                link("Export", export("kept", campaign.id))
+
+
+def _checked(campaign: StoredCampaign) -> str:
+    if campaign.n_errors is None or campaign.n_warnings is None:
+        return "not checked"
+    return f"{counted(campaign.n_errors, 'error')}, {counted(campaign.n_warnings, 'warning')}"
+
+
+def _minute(at: str) -> str:
+    return at.replace("T", " ")[:16] + " UTC"
+
+
+def _import_form(lab: Lab) -> None:
+    heading("Import")
+    sentence(
+        "A campaign's folder, its files, or a zip of it. It is kept byte for byte and never changed. "
+        f"At most {counted(lab.limits.files, 'file')}.",
+        "quiet",
+    )
+    for id_, text, further in (("folder", "Folder", "webkitdirectory"), ("files", "Files or zip", "")):
+        form = f'method=post action="{IMPORT}" enctype="multipart/form-data"'
+        with ui.element("form").props(form).classes("acts"):
+            with ui.element("label").props(f"for=import-{id_}"):
+                ui.label(text)
+            ui.element("input").props(f"type=file name=files multiple required id=import-{id_} {further}")
+            with ui.element("button").props("type=submit").classes("act"):
+                ui.label(f"Import {text.lower()}")

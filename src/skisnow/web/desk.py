@@ -1,0 +1,95 @@
+"""A campaign on the desk: what its journal comes to, and what its tests say at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from ..estimate import marks_of
+from ..estimate.at_once import experiments_at_once
+from ..field import MARKS, read_campaign
+from ..field.reading.campaign_file import read_campaign_file
+from ..field.store import Journals, grown, write_campaign
+from ..report.curves import SeriesCurve, series_curves
+
+if TYPE_CHECKING:
+    from ..field.problems import Problem
+    from ..field.reading.campaign_file import CampaignFile
+    from ..field.store import GrownCampaign, GrownTest, JournalEntry, NewEntry
+    from .settings import Lab
+
+
+@dataclass(frozen=True, slots=True)
+class AtOnce:
+    """What the tests of a site say: rows of results.json by experiment, curves, marks in words by experiment."""
+
+    penetration: dict[str, dict[str, Any]]
+    shear: dict[str, dict[str, Any]]
+    curves: dict[str, SeriesCurve]
+    marks: dict[str, tuple[str, ...]]
+
+
+class Desk:
+    """The journal of one campaign as one page sees it; what others wrote comes with `refresh`."""
+
+    def __init__(self, lab: Lab, id_: str) -> None:
+        self.id = id_
+        self._journals = Journals(lab.store)
+        self._entries: tuple[JournalEntry, ...] = ()
+        self.refresh()
+
+    @property
+    def campaign(self) -> GrownCampaign:
+        """The campaign as it was at the last look."""
+        return self._campaign
+
+    @property
+    def described(self) -> CampaignFile:
+        """What its campaign.toml says."""
+        found: list[Problem] = []
+        described = read_campaign_file(self._campaign.description, found)
+        assert described is not None  # it was read before it was written down
+        return described
+
+    def refresh(self) -> None:
+        """Look at what was written since."""
+        last = self._entries[-1].sequence if self._entries else 0
+        self._entries += self._journals.entries(self.id, after=last)
+        self._campaign = grown(self._entries)
+
+    def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
+        """Store an entry; when this returns it is on the disk. See `Journals.append`."""
+        written = self._journals.append(self.id, entry, seen=seen)
+        self.refresh()
+        return written
+
+    def tests_of_site(self, site: str) -> list[GrownTest]:
+        """Every test made at a site, and the snow data of that site."""
+        return [test for test in self._campaign.tests.values() if test.rows and test.rows[0].cells["site"] == site]
+
+    def at_once(self, site: str) -> AtOnce:
+        """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
+        with TemporaryDirectory(prefix="skisnow-desk-") as folder:
+            write_campaign(self._campaign, Path(folder), of=self.tests_of_site(site))
+            campaign = read_campaign(folder)
+        found = experiments_at_once(campaign)
+        penetration, shear = found["penetration"]["experiments"], found["shear"]["experiments"]
+        curves = series_curves(campaign, penetration)
+        return AtOnce(
+            penetration={row["experiment"]: row for row in penetration},
+            shear={row["experiment"]: row for row in shear},
+            curves={curve.experiment: curve for curve in curves},
+            marks=_in_words(marks_of(campaign)),
+        )
+
+
+def _in_words(problems: list[Problem]) -> dict[str, tuple[str, ...]]:
+    """Marks by file and experiment, as sentences."""
+    told: dict[str, tuple[str, ...]] = {}
+    for problem in problems:
+        found = f" Found: {problem.value}; unmarked would be {problem.allowed}." if problem.value is not None else ""
+        key = f"{problem.file}/{problem.experiment}"
+        told[key] = (*told.get(key, ()), f"{MARKS[problem.code].sentence}{found} {problem.action}")
+    return told

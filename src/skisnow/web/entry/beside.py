@@ -1,0 +1,111 @@
+"""What stands beside the form and follows each reading: hardness or stress, marks in words, the curve."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import background_tasks, run, ui
+
+from ...errors import FieldDataError
+from ..trouble import told
+from ..words import hardness_words, label, stress_words
+
+if TYPE_CHECKING:
+    from ...report.curves import SeriesCurve
+    from ..desk import AtOnce
+    from .sheet import Sheet
+
+OWN: Final = "#0b4f8a"
+INK: Final = "#14181c"
+OTHERS: Final = "#8b96a1"
+
+
+class Beside:
+    """Follows one test of a site."""
+
+    def __init__(self, sheet: Sheet) -> None:
+        self._sheet = sheet
+        self._wanted: tuple[str, str] | None = None
+        self._working = False
+        with ui.element("section").classes("beside").props('aria-label="What the readings say"'):
+            self._name = ui.label("").classes("quiet")
+            self._value = ui.label("").classes("value").props("role=status")
+            self._marks = ui.element("ul").classes("marks")
+            self._plot: ui.plotly | None = None
+            if sheet.file == "penetration.csv":
+                words = "Load against depth: this series and the others of its site"
+                self._plot = ui.plotly(_figure(None, {})).props(f'role=img aria-label="{words}"').classes("plot")
+
+    def follow(self, name: str, site: str) -> None:
+        """Show this test; what is computed meanwhile for an older state is dropped."""
+        self._wanted = (name, site)
+        if not self._working:
+            self._working = True
+            background_tasks.create(self._work(), name="beside")
+
+    async def _work(self) -> None:
+        try:
+            while self._wanted is not None:
+                (name, site), self._wanted = self._wanted, None
+                try:
+                    found = await run.io_bound(self._sheet.desk.at_once, site)
+                except FieldDataError as error:
+                    self._value.set_text(told(error))
+                    continue
+                if self._wanted is None and found is not None:
+                    self._show(name, found)
+        finally:
+            self._working = False
+
+    def _show(self, name: str, found: AtOnce) -> None:
+        pressed = self._sheet.file == "penetration.csv"
+        row = (found.penetration if pressed else found.shear).get(name)
+        self._name.set_text(f"Test {name}" if row else "")
+        self._value.set_text(_value(row, pressed=pressed))
+        self._marks.clear()
+        with self._marks:
+            for sentence in found.marks.get(f"{self._sheet.file}/{name}", ()):
+                with ui.element("li"):
+                    ui.label(sentence)
+        if self._plot is not None:
+            self._plot.update_figure(_figure(name, found.curves))
+
+
+def _value(row: dict[str, Any] | None, *, pressed: bool) -> str:
+    if row is None:
+        return ""
+    return f"H_V = {hardness_words(row)}" if pressed else f"S_f = {stress_words(row)}"
+
+
+def _figure(name: str | None, curves: dict[str, SeriesCurve]) -> dict[str, Any]:
+    traces = [trace for other, curve in curves.items() if other != name for trace in _traces(curve, own=False)]
+    if name in curves:
+        traces += _traces(curves[name], own=True)
+    axis = {
+        "rangemode": "tozero",
+        "fixedrange": True,
+        "gridcolor": "#d8dee4",
+        "linecolor": "#14181c",
+        "ticks": "outside",
+    }
+    return {
+        "data": traces,
+        "layout": {
+            "xaxis": {**axis, "title": {"text": label("depth_mm")}},
+            "yaxis": {**axis, "title": {"text": label("load_N")}},
+            "margin": {"l": 60, "r": 10, "t": 10, "b": 50},
+            "font": {"size": 15, "color": INK},
+            "showlegend": False,
+            "hovermode": "closest",
+            "height": 340,
+        },
+        "config": {"displayModeBar": False, "responsive": True},
+    }
+
+
+def _traces(curve: SeriesCurve, *, own: bool) -> list[dict[str, Any]]:
+    colour, size, width = (OWN, 11, 3) if own else (OTHERS, 6, 1)
+    name = f"test {curve.experiment}".replace("<", "‹")  # the drawing library reads a few tags in names
+    points = {"x": curve.depth_mm, "y": curve.load_N, "mode": "markers", "marker": {"color": colour, "size": size}}
+    line = {"x": curve.law_depth_mm, "y": curve.law_load_N, "mode": "lines", "line": {"color": colour, "width": width}}
+    return [{"type": "scatter", "name": name, **points}, {"type": "scatter", "hoverinfo": "skip", **line}]

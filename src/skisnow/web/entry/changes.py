@@ -1,0 +1,127 @@
+"""Below the form of a test: undo, cancel with a reason, correct with a reason, and the history."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from nicegui import ui
+
+from ..fields import button, field
+from ..layout import sentence
+from ..words import label
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ...field.store import GrownTest, JournalEntry
+    from .sheet import Sheet
+
+USUAL_REASON: Final = "typing error"
+_SAME: Final = ("experiment", "sample", "test", "site", "spot", "tool", "plate")
+_DONE: Final = {"add": "entered", "correct": "corrected", "cancel": "cancelled", "undo": "undid the entry before"}
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where a form draws: itself, and below what the readings say."""
+
+    form: ui.element
+    below: ui.element
+
+    def clear(self) -> None:
+        """Take away what was drawn."""
+        self.form.clear()
+        self.below.clear()
+
+
+def ask_reason(
+    place: ui.element,
+    words: str,
+    act: tuple[str, Callable[[str], object]],
+    *,
+    usual: str = "",
+    leave: Callable[[], object],
+) -> None:
+    """Ask in a place of the page, not in a window over it: what is to happen, why, and the way back.
+
+    Parameters
+    ----------
+    place
+        Is emptied and filled.
+    words
+        What is about to happen.
+    act
+        The word on the button, and what is called with the reason.
+    usual
+        Reason that stands there already.
+    leave
+        Called when it is left as it was.
+    """
+    place.clear()
+    with place, ui.element("div").classes("card ask"):
+        sentence(words)
+        reason = field("Why", usual, wide=True)
+
+        def done() -> None:
+            act[1](reason.value or "")
+
+        def left() -> None:
+            place.clear()
+            leave()
+
+        reason.on("keydown.enter", done)
+        reason.on("keydown.esc", left)
+        with ui.element("div").classes("acts"):
+            button(act[0], done, "main")
+            button("Leave it as it was", left)
+    reason.run_method("focus")
+    if usual:
+        reason.run_method("select")
+
+
+def changes(sheet: Sheet, test: GrownTest, ask: ui.element, changed: Callable[[], object]) -> None:
+    """The buttons and the history of a test; ``ask``: where a reason is asked for."""
+
+    def undo() -> None:
+        sheet.undo(test)
+        changed()
+
+    def cancel(why: str) -> None:
+        if sheet.cancel(test, why):
+            changed()
+
+    def ask_cancel() -> None:
+        words = f"Cancel {test.name}? Its readings are kept and take no part."
+        ask_reason(ask, words, ("Cancel the test", cancel), leave=lambda: None)
+
+    with ui.element("div").classes("acts"):
+        if test.undoable is not None:
+            button(f"Undo: {_done(test.undoable)}", undo)
+        if not test.cancelled and test.rows:
+            button("Cancel this test", ask_cancel)
+    _history(test)
+
+
+def _history(test: GrownTest) -> None:
+    if not test.history:
+        return
+    with ui.element("details"):
+        with ui.element("summary"):
+            ui.label(f"History of {test.name}")
+        with ui.element("ol"):
+            for entry in test.history:
+                with ui.element("li"):
+                    undone = " (undone)" if entry.sequence in test.undone else ""
+                    who = f" · {entry.who}" if entry.who else ""
+                    ui.label(f"{entry.at}{who} · {_done(entry)}{undone}")
+
+
+def _done(entry: JournalEntry) -> str:
+    cells = entry.cells
+    if entry.action == "add" and "load_N" in cells:
+        what = f"{cells['depth_mm']} mm under {cells['load_N']} N"
+    else:
+        what = ", ".join(f"{label(column)} {text}" for column, text in cells.items() if text and column not in _SAME)
+    why = f" ({entry.why})" if entry.why else ""
+    return f"{_DONE[entry.action]} {what}".rstrip() + why

@@ -1,0 +1,104 @@
+"""One table of a campaign on one page: who writes, what was said last, and each way of writing something down."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from nicegui import ui
+
+from ...errors import ParameterError, StoreError
+from ...field.store import NewEntry, OvertakenError
+from ...field.store.cells import FORMS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ...field.reading.table_forms import TableForm
+    from ...field.store import GrownTest
+    from ..desk import Desk
+
+WHO: Final = "Who enters"
+
+
+class Sheet:
+    """Writes about the tests of one table, and says aloud what came of it."""
+
+    def __init__(self, desk: Desk, file: str, who: ui.select | ui.input, status: ui.label) -> None:
+        self.desk = desk
+        self.file = file
+        self.form: TableForm = FORMS[file]
+        self._who = who
+        self._status = status
+
+    def test(self, name: str) -> GrownTest:
+        """A test as it was at the last look."""
+        return self.desk.campaign.test(self.file, name)
+
+    def tests(self) -> list[GrownTest]:
+        """All tests of the table, in the order of entry."""
+        return self.desk.campaign.of_file(self.file)
+
+    def next_name(self) -> str:
+        """The number behind the largest one among the names."""
+        numbers = [int(test.name) for test in self.tests() if test.name.isdecimal()]
+        return str(max(numbers, default=0) + 1)
+
+    def add(self, name: str, cells: Mapping[str, str], *, position: int, seen: int, said: str) -> bool:
+        """Store a row; whether it is stored."""
+        entry = NewEntry(
+            action="add", file=self.file, test=name, cells=cells, position=position, who=self._who.value or ""
+        )
+        return self._write(entry, seen, said)
+
+    def correct(self, test: GrownTest, row: int, cells: Mapping[str, str], why: str) -> bool:
+        """Store a correction of the row that was entered under this sequence."""
+        if not why.strip():
+            self.say("A correction needs a reason.", "bad")
+            return False
+        entry = NewEntry(
+            action="correct",
+            file=self.file,
+            test=test.name,
+            about=row,
+            cells=cells,
+            who=self._who.value or "",
+            why=why.strip(),
+        )
+        return self._write(entry, test.last, "Corrected; the first reading is kept.")
+
+    def cancel(self, test: GrownTest, why: str) -> bool:
+        """Store that a test does not count, and why."""
+        if not why.strip():
+            self.say("A test is cancelled with a reason.", "bad")
+            return False
+        entry = NewEntry(
+            action="cancel", file=self.file, test=test.name, who=self._who.value or "", why=" ".join(why.split())
+        )
+        return self._write(entry, test.last, f"{test.name} is cancelled; its readings are kept.")
+
+    def undo(self, test: GrownTest) -> bool:
+        """Store that the last entry was not meant."""
+        last = test.undoable
+        if last is None:
+            self.say("There is nothing to undo.", "bad")
+            return False
+        entry = NewEntry(action="undo", file=self.file, test=test.name, about=last.sequence, who=self._who.value or "")
+        return self._write(entry, test.last, "Undone.")
+
+    def say(self, text: str, kind: str = "good") -> None:
+        """Say something where a screen reader hears it."""
+        self._status.set_text(text)
+        self._status.classes(remove="good bad", add=kind)
+
+    def _write(self, entry: NewEntry, seen: int, said: str) -> bool:
+        try:
+            self.desk.write_down(entry, seen=seen)
+        except OvertakenError as error:
+            self.desk.refresh()
+            self.say(str(error), "bad")
+            return False
+        except (StoreError, ParameterError) as error:
+            self.say(str(error), "bad")
+            return False
+        self.say(said)
+        return True

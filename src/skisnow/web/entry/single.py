@@ -1,0 +1,172 @@
+"""Tests of one row: a shear test, a density sample, a repeat of a drop cone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from nicegui import ui
+
+from ...errors import ParameterError
+from ...field.store.cells import checked_cell
+from ..fields import button, choice, field
+from ..layout import heading, sentence
+from ..words import label
+from .changes import USUAL_REASON, Places, ask_reason, changes
+
+if TYPE_CHECKING:
+    from ...field.store import GrownRow, GrownTest
+    from .beside import Beside
+    from .sheet import Sheet
+
+OPTIONAL: Final = {"shear.csv": ("spot",)}
+KEPT: Final = ("site", "plate", "edge_angle_deg", "lever_arm_mm")
+"""What the next test has in common with the one before: filled in already."""
+
+
+class SingleForm:
+    """The form of one row at a time, and the rows so far."""
+
+    def __init__(self, sheet: Sheet, beside: Beside, places: Places) -> None:
+        self._sheet = sheet
+        self._beside = beside
+        self._places = places
+        form = sheet.form
+        required = [column.name for column in form.numbers if column.required]
+        self._columns = (*form.names, *OPTIONAL.get(form.file, ()), *required)
+        self._numeric = {column.name for column in form.numbers}
+        self._fields: dict[str, ui.input | ui.select] = {}
+
+    def begin(self) -> None:
+        """Ask for a new row."""
+        self._draw(self._prefilled(), None)
+
+    def show(self, name: str) -> None:
+        """Show a test's first row, to be corrected."""
+        test = self._sheet.test(name)
+        if test.rows:
+            self._draw(test.rows[0].cells, (test, test.rows[0]))
+            self._beside.follow(name, test.rows[0].cells["site"])
+        else:
+            self.begin()
+
+    def _prefilled(self) -> dict[str, str]:
+        tests, key = self._sheet.tests(), self._sheet.form.key
+        before = tests[-1].rows[-1].cells if tests else {}
+        cells = {column: before.get(column, "") for column in KEPT}
+        cells[key] = self._sheet.next_name()
+        if "repeat" in self._columns:
+            cells[key] = before.get(key, cells[key])
+            cells["repeat"] = str(len(tests[-1].rows) + 1) if tests else "1"
+        return cells
+
+    def _draw(self, cells: dict[str, str], correcting: tuple[GrownTest, GrownRow] | None) -> None:
+        self._places.clear()
+        with self._places.form:
+            heading("Correct a test" if correcting else "New test")
+            if correcting and correcting[0].cancelled:
+                sentence(f"Cancelled: {correcting[0].cancelled}", "bad")
+            with ui.element("div").classes("fields"):
+                self._fields = {column: self._field(column, cells, fixed=bool(correcting)) for column in self._columns}
+            self._ask = ui.element("div")
+            with ui.element("div").classes("acts"):
+                if correcting is None:
+                    button("Store", self._store, "main")
+                else:
+                    button("Correct", lambda: self._ask_correction(*correcting), "main")
+                    button("New test", self.begin)
+        with self._places.below:
+            if correcting is not None:
+                changes(self._sheet, correcting[0], self._ask, lambda: self.show(correcting[0].name))
+            self._list()
+        self._focus_first()
+
+    def _field(self, column: str, cells: dict[str, str], *, fixed: bool) -> ui.input | ui.select:
+        if column == "plate":
+            plates = sorted(self._sheet.desk.described.plates)
+            return choice(label(column), plates, cells.get(column) or (plates[0] if plates else None))
+        made = field(label(column), cells.get(column, ""), numeric=column in self._numeric)
+        if fixed and column == self._sheet.form.key:
+            made.props("readonly")
+        made.on("keydown.enter", lambda: self._enter(column))
+        return made
+
+    def _focus_first(self) -> None:
+        empty = [each for each in self._fields.values() if not each.value and isinstance(each, ui.input)]
+        wanted = [each for each in empty if each is not self._fields.get("spot")]
+        if wanted:
+            wanted[0].run_method("focus")
+
+    def _enter(self, column: str) -> None:
+        """Enter goes to the next empty field, and from the last one stores."""
+        columns = list(self._columns)
+        behind = columns[columns.index(column) + 1 :]
+        empty = [self._fields[each] for each in behind if not self._fields[each].value and each != "spot"]
+        if empty:
+            empty[0].run_method("focus")
+        else:
+            self._store()
+
+    def _cells(self) -> dict[str, str] | None:
+        try:
+            typed = {column: str(each.value or "") for column, each in self._fields.items()}
+            return {column: checked_cell(self._sheet.form, column, text) for column, text in typed.items()}
+        except ParameterError as error:
+            self._sheet.say(f"Not stored: {error}.", "bad")
+            return None
+
+    def _store(self) -> None:
+        cells = self._cells()
+        if cells is None:
+            return
+        test = self._sheet.test(cells[self._sheet.form.key])
+        if test.history and (fault := self._second_row_fault(test, cells)):
+            self._sheet.say(f"Not stored: {fault}.", "bad")
+            return
+        said = f"Stored: test {test.name}."
+        if self._sheet.add(test.name, cells, position=len(test.rows), seen=test.last, said=said):
+            self._beside.follow(test.name, cells["site"])
+            self.begin()
+
+    def _second_row_fault(self, test: GrownTest, cells: dict[str, str]) -> str:
+        if "repeat" not in cells:
+            return f"there is a test {test.name} already; give this one another name"
+        if any(row.cells["repeat"] == cells["repeat"] for row in test.rows):
+            return f"test {test.name} has a repeat {cells['repeat']} already"
+        if test.rows and test.rows[0].cells["site"] != cells["site"]:
+            return f"test {test.name} is at the site {test.rows[0].cells['site']}"
+        return ""
+
+    def _ask_correction(self, test: GrownTest, row: GrownRow) -> None:
+        cells = self._cells()
+        if cells is None:
+            return
+        now = row.cells
+        changed = {column: text for column, text in cells.items() if text != now.get(column, "")}
+        if not changed:
+            self._sheet.say("Nothing is different.")
+            return
+
+        def correct(why: str) -> None:
+            if self._sheet.correct(test, row.entered.sequence, changed, why):
+                self.show(test.name)
+
+        words = "; ".join(f"{label(column)}: {now.get(column, '')} becomes {new}" for column, new in changed.items())
+        ask_reason(self._ask, f"{words}.", ("Correct it", correct), usual=USUAL_REASON, leave=lambda: None)
+
+    def _list(self) -> None:
+        tests = self._sheet.tests()
+        if not tests:
+            return
+        heading("So far", 3)
+        with ui.element("ul").classes("so-far"):
+            for test in reversed(tests[-30:]):
+                for row in reversed(test.rows):
+                    with ui.element("li"):
+                        self._so_far(test, row)
+
+    def _so_far(self, test: GrownTest, row: GrownRow) -> None:
+        words = [f"{label(column)} {row.cells[column]}" for column in self._columns if row.cells.get(column)]
+        ui.label(" · ".join(words) + (f" · cancelled: {test.cancelled}" if test.cancelled else ""))
+        button("Correct", lambda: self._draw(row.cells, (test, row)), "small").props(
+            f'aria-label="Correct {" ".join(test.name.split())}"'.replace("'", "")
+        )

@@ -1,0 +1,36 @@
+"""Fields and buttons of the forms: large, each with its name, for keyboard and gloves."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from nicegui import ui
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+
+def field(label: str, value: str = "", *, numeric: bool = False, wide: bool = False) -> ui.input:
+    """A field with its name above it. Numeric fields take what is typed as it is: a comma or a point."""
+    made = ui.input(label, value=value).props("outlined stack-label autocomplete=off")
+    made.classes("field wide" if wide else "field")
+    if numeric:
+        made.props("inputmode=decimal")
+    return made
+
+
+def choice(label: str, options: Sequence[str] | dict[str, str], value: str | None) -> ui.select:
+    """One of several; the keyboard opens it with the space bar or the arrow."""
+    made = ui.select(list(options) if not isinstance(options, dict) else options, label=label, value=value)
+    return made.props(f'outlined stack-label options-dense=false aria-label="{label}"').classes("field")
+
+
+def button(text: str, act: Callable[..., Any], kind: str = "") -> ui.button:
+    """A button; ``kind``: main or quiet."""
+    made = ui.button(text, on_click=act, color=None).props("no-caps unelevated")
+    return made.classes(f"act {kind}".strip())
+
+
+def link(text: str, address: str, kind: str = "") -> ui.link:
+    """A link as large as a button."""
+    return ui.link(text, address).classes(f"act {kind}".strip())

@@ -1,0 +1,40 @@
+"""Addresses of the pages that belong to one campaign. An id in an address is letters and digits, or it is no id."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+from urllib.parse import quote
+
+from ..errors import StoreError
+
+_ID: Final = re.compile(r"[0-9a-f]{4,64}")
+
+
+def entering(id_: str, *, table: str = "", test: str = "") -> str:
+    """Where a campaign is entered; with a table and a test: where that test is."""
+    words = [f"{key}={quote(value, safe='')}" for key, value in (("table", table), ("test", test)) if value]
+    return f"/enter/{id_}" + ("?" + "&".join(words) if words else "")
+
+
+def analysis(kind: str, id_: str) -> str:
+    """Where a campaign is analysed; kind: entry or kept."""
+    return f"/analysis/{kind}/{id_}"
+
+
+def export(kind: str, id_: str) -> str:
+    """Where a campaign's zip comes from."""
+    return f"/export/{kind}/{id_}.zip"
+
+
+def required_id(said: str) -> str:
+    """An id as it stands in an address.
+
+    Raises
+    ------
+    StoreError
+        It is none.
+    """
+    if not _ID.fullmatch(said):
+        raise StoreError("This address names no campaign; the list of campaigns names all.")
+    return said

@@ -1,0 +1,7 @@
+"""Stub."""
+
+from ..settings import Lab
+
+
+def add_page(lab: Lab) -> None:
+    """Add."""

@@ -1,0 +1,161 @@
+"""A new campaign, or the description of one that is being entered: name, people, gauge, discs, tools, plates."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import ui
+
+from ...errors import ParameterError, SkisnowError
+from ...field.reading.tool_shapes import SHAPES
+from ...field.store import Journals, NewEntry
+from ...field.store.description import Description, description_text
+from ...field.store.journal import DESCRIPTION
+from ..desk import Desk
+from ..fields import button, choice, field
+from ..layout import framed, heading, sentence
+from ..names import entering, required_id
+
+if TYPE_CHECKING:
+    from ..settings import Lab
+
+HERE: Final = "/"
+NUMBERS: Final = {
+    "gauge_resolution_mm": "Step of the depth gauge (mm)",
+    "load_uncertainty_N": "Uncertainty of the load (N)",
+    "moment_uncertainty_Nm": "Uncertainty of the moment (N m)",
+    "lever_arm_uncertainty_mm": "Uncertainty of the lever arm (mm)",
+}
+LENGTHS: Final = {"length_mm": "Length (mm)", "width_mm": "Width (mm)", "diameter_mm": "Diameter (mm)"}
+LENGTHS_OF_SHAPES: Final = LENGTHS | {"radius_mm": "Radius (mm)"}
+SHAPE_WORDS: Final = {"ski": "piece of ski", "disc": "disc", "cylinder": "cylinder on its side"}
+
+
+def add_page(lab: Lab) -> None:
+    """Add the page to the application."""
+
+    @ui.page("/describe")
+    def describe(entry: str = "") -> None:
+        desk = Desk(lab, required_id(entry)) if entry else None
+        with framed("Campaign" if desk else "New campaign", here=HERE):
+            status = ui.label("").classes("status").props("role=status")
+            form = DescriptionForm(tomllib.loads(desk.campaign.description) if desk else {})
+
+            def done() -> None:
+                try:
+                    id_ = _stored(lab, desk, form.text())
+                except SkisnowError as error:
+                    status.set_text(f"Not stored: {error}")
+                    status.classes(add="bad")
+                    status.run_method("scrollIntoView")
+                else:
+                    ui.navigate.to(entering(id_))
+
+            with ui.element("div").classes("acts end"):
+                button("Store and enter tests", done, "main")
+
+
+def _stored(lab: Lab, desk: Desk | None, text: str) -> str:
+    if desk is None:
+        return Journals(lab.store).begin(text)
+    if text != desk.campaign.description:
+        entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: text})
+        desk.write_down(entry, seen=desk.campaign.described)
+    return desk.id
+
+
+class DescriptionForm:
+    """The fields of campaign.toml; a key that the form does not know, such as the screening's, is kept."""
+
+    def __init__(self, given: dict[str, Any]) -> None:
+        self._given = given
+        with ui.element("div").classes("fields"):
+            self._name = field("Name of the campaign", given.get("name", ""), wide=True)
+            self._place = field("Place", given.get("place", ""), wide=True)
+            self._observers = field("Observers, with commas between", ", ".join(given.get("observers", ())), wide=True)
+        heading("Discs and gauges")
+        sentence("What is left empty counts as 0, and the report says so.", "quiet")
+        loads = " ".join(f"{load:g}" for load in given.get("load_steps_N", ()))
+        with ui.element("div").classes("fields"):
+            self._loads = field("Loads of the disc set (N), with blanks between", loads, wide=True)
+            self._numbers = {key: field(words, _shown(given.get(key)), numeric=True) for key, words in NUMBERS.items()}
+        self._tools = _Entries("Tools", "tool", given.get("tool", ()))
+        self._plates = _Entries("Plates of the shear test", "plate", given.get("plate", ()))
+
+    def text(self) -> str:
+        """The text of campaign.toml; errors as `description_text` raises them."""
+        observers = [name.strip() for name in (self._observers.value or "").split(",") if name.strip()]
+        loads = [_number("the loads", word) for word in (self._loads.value or "").replace(";", " ").split()]
+        values: dict[str, Any] = {"name": (self._name.value or "").strip(), "place": (self._place.value or "").strip()}
+        if not values["name"]:
+            raise ParameterError("the campaign has no name")
+        values |= {"observers": observers or None, "load_steps_N": loads or None}
+        values |= {key: _number(NUMBERS[key], each.value or "") for key, each in self._numbers.items() if each.value}
+        text = description_text(Description(values, self._tools.values(), self._plates.values()))
+        return text + _screening(self._given)
+
+
+class _Entries:
+    """Tools or plates: a name and lengths each, as many as are needed."""
+
+    def __init__(self, title: str, kind: str, given: Any) -> None:
+        self._kind = kind
+        self._rows: list[tuple[ui.input, ui.select | None, dict[str, ui.input]]] = []
+        heading(title)
+        self._place = ui.element("div")
+        for entry in list(given) or [dict[str, Any]()]:
+            self._add(entry)
+        button(f"Another {kind}", lambda: self._add({}))
+
+    def _add(self, given: dict[str, Any]) -> None:
+        number = len(self._rows) + 1
+        with self._place, ui.element("div").classes("fields row"):
+            name = field(f"Name of {self._kind} {number}", given.get("name", ""))
+            shape = None
+            if self._kind == "tool":
+                shape = choice(f"Shape of tool {number}", SHAPE_WORDS, given.get("shape", "ski"))
+            keys = LENGTHS_OF_SHAPES if shape is not None else {"length_mm": LENGTHS["length_mm"]}
+            lengths = {
+                key: field(f"{words} of {self._kind} {number}", _shown(given.get(key)), numeric=True)
+                for key, words in keys.items()
+            }
+        self._rows.append((name, shape, lengths))
+        if shape is not None:
+            shape.on_value_change(lambda: _show_lengths(shape, lengths))
+            _show_lengths(shape, lengths)
+
+    def values(self) -> list[dict[str, Any]]:
+        """The entries that have a name."""
+        found = []
+        for name, shape, lengths in self._rows:
+            if not (name.value or "").strip():
+                continue
+            entry: dict[str, Any] = {"name": name.value.strip()}
+            if shape is not None:
+                entry["shape"] = shape.value
+            used = SHAPES[shape.value].argument_of_key if shape is not None else lengths
+            entry |= {key: _number(key, lengths[key].value or "") for key in used}
+            found.append(entry)
+        return found
+
+
+def _show_lengths(shape: ui.select, lengths: dict[str, ui.input]) -> None:
+    for key, each in lengths.items():
+        each.set_visibility(key in SHAPES[shape.value].argument_of_key)
+
+
+def _shown(value: float | None) -> str:
+    return "" if value is None else f"{value:.12g}"
+
+
+def _number(what: str, typed: str) -> float:
+    try:
+        return float(typed.strip().replace(",", "."))
+    except ValueError:
+        raise ParameterError(f"{what}: {typed.strip()!r} is no number") from None
+
+
+def _screening(given: dict[str, Any]) -> str:
+    codes = given.get("screening", {}).get("exclude")
+    return "" if codes is None else f"\n[screening]\nexclude = {codes!r}\n"

@@ -1,0 +1,107 @@
+"""Campaigns into the lab and out of it: uploads by a form, exports as zip files."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Final
+
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import UploadFile
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+
+from ..errors import ParameterError, SkisnowError, StoreError
+from ..field.store import Journals, grown, write_campaign
+from .names import required_id
+from .trouble import plain_page, told
+from .unpacking import Unpacking, campaign_folder, files_below, write_zip
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fastapi import FastAPI
+
+    from .settings import Lab
+
+IMPORT: Final = "/import"
+
+
+def add_transfer(app: FastAPI, lab: Lab) -> None:
+    """Add the addresses that take campaigns in and give them out."""
+
+    async def take_in(request: Request) -> Response:
+        try:
+            async with request.form(max_files=lab.limits.files, max_fields=10) as form:
+                uploads = [item for item in form.getlist("files") if isinstance(item, UploadFile) and item.filename]
+                added = await run_in_threadpool(_added, lab, uploads)
+        except (SkisnowError, OSError) as error:
+            return plain_page("This was not taken in", f"Nothing was stored: {told(error)}", 400)
+        except HTTPException:
+            text = f"Nothing was stored: at most {lab.limits.files} files at once are taken in."
+            return plain_page("This was not taken in", text, 400)
+        return RedirectResponse(f"/?added={added}", 303)
+
+    async def entry(id_: str) -> Response:
+        return await _packed(lambda folder: _write_entry(lab, id_, folder), id_)
+
+    async def kept(id_: str) -> Response:
+        return await _packed(lambda folder: _write_kept(lab, id_, folder), id_)
+
+    app.add_api_route(IMPORT, take_in, methods=["POST"], response_model=None)
+    app.add_api_route("/export/entry/{id_}.zip", entry, response_model=None)
+    app.add_api_route("/export/kept/{id_}.zip", kept, response_model=None)
+
+
+def _added(lab: Lab, uploads: Sequence[UploadFile]) -> str:
+    if not uploads:
+        raise ParameterError("no file was chosen; choose the files of a campaign, its folder, or a zip of it")
+    with TemporaryDirectory(prefix="skisnow-upload-") as name:
+        unpacking = Unpacking(Path(name) / "campaign", lab.limits)
+        unpacking.folder.mkdir()
+        for upload in uploads:
+            if (upload.filename or "").lower().endswith(".zip"):
+                unpacking.take_zip(upload.file)
+            else:
+                unpacking.take(upload.filename or "", upload.file)
+        folder = campaign_folder(unpacking.folder)
+        if not (folder / "campaign.toml").is_file():
+            raise ParameterError("there is no campaign.toml in it; choose the folder of a campaign, or a zip of it")
+        return lab.store.add(folder).id
+
+
+async def _packed(write: Writing, id_: str) -> Response:
+    try:
+        content = await run_in_threadpool(_zip, write)
+    except StoreError as error:
+        return plain_page("This cannot be exported", told(error), 404)
+    headers = {"content-disposition": f'attachment; filename="campaign-{required_id(id_)}.zip"'}
+    return Response(content, media_type="application/zip", headers=headers)
+
+
+def _zip(write: Writing) -> bytes:
+    packed = io.BytesIO()
+    with TemporaryDirectory(prefix="skisnow-export-") as name:
+        folder = Path(name) / "campaign"
+        write(folder)
+        write_zip(files_below(folder, under=folder.name), packed)
+    return packed.getvalue()
+
+
+def _write_entry(lab: Lab, id_: str, folder: Path) -> None:
+    entries = Journals(lab.store).entries(required_id(id_))
+    folder.mkdir()
+    write_campaign(grown(entries), folder)
+
+
+def _write_kept(lab: Lab, id_: str, folder: Path) -> None:
+    lab.store.export(required_id(id_), folder)
+
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeAlias
+
+    Writing: TypeAlias = Callable[[Path], None]

@@ -1,0 +1,58 @@
+"""Words of the pages: what columns and tables are called, with their units as in the field."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from ..report.numerals import interval, significant
+
+LABELS: Final = {
+    "experiment": "Name of the test",
+    "sample": "Name of the sample",
+    "test": "Name of the test",
+    "repeat": "Repeat",
+    "site": "Site",
+    "spot": "Spot",
+    "tool": "Tool",
+    "plate": "Plate",
+    "edge_angle_deg": "Edge angle (°)",
+    "load_N": "Load (N)",
+    "depth_mm": "Depth (mm)",
+    "lever_arm_mm": "Lever arm (mm)",
+    "moment_Nm": "Moment (N m)",
+    "snow_density_kg_per_m3": "Density (kg/m³)",
+    "drop_cone_depth_mm": "Drop-cone depth (mm)",
+    "remark": "Remark",
+}
+TABLES: Final = {
+    "penetration.csv": "Penetration",
+    "shear.csv": "Shear",
+    "density.csv": "Density",
+    "drop_cone.csv": "Drop cone",
+}
+
+
+def label(column: str) -> str:
+    """What a column is called on a page.
+
+    >>> label("depth_mm")
+    'Depth (mm)'
+    """
+    return LABELS.get(column, column)
+
+
+def hardness_words(row: dict[str, Any]) -> str:
+    """H_V with its interval, from a row of ``penetration.experiments``."""
+    return _estimate(row["H_V_N_per_mm3"], row["H_V_interval_N_per_mm3"], "N/mm³")
+
+
+def stress_words(row: dict[str, Any]) -> str:
+    """S_f with its interval, from a row of ``shear.experiments``."""
+    return _estimate(row["S_f_N_per_mm2"], row["S_f_interval_N_per_mm2"], "N/mm²")
+
+
+def _estimate(value: float | None, pair: list[float] | None, unit: str) -> str:
+    if value is None:
+        return "not defined"
+    known = interval(pair) if pair is not None else "interval not known"
+    return f"{significant(value)} {unit}, {known}"
