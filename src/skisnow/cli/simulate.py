@@ -40,6 +40,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="another value for one key, several times for several; the section may be left out",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json, track.csv, run.nc and a report")
+    replay = "with --out: also write replay.html, the run in three dimensions, which opens without network"
+    parser.add_argument("--replay", action="store_true", help=replay)
     finer = "repeat the run finer, one choice of the solver at a time, and say how far its end moves"
     parser.add_argument("--verify", action="store_true", help=finer)
     parser.add_argument("--json", action="store_true", help="print summary.json alone to standard output")
@@ -53,6 +55,8 @@ def run(options: argparse.Namespace) -> int:
         return _list(options.scenario)
     if options.scenario is None:
         options.parser.error("name a scenario: a built-in one (--list names them) or a TOML file")
+    if options.replay and options.out is None:
+        options.parser.error("--replay writes into the folder of --out: name one")
     with announced(LOADING):
         from ..simulate.scenario import scenario_file
         from ..simulate.scenario.given import change_of
@@ -122,6 +126,11 @@ def _tell(options: argparse.Namespace, asked: ScenarioFile, found: Run, verifica
         print(simulate_summary(summary, title=asked.title), flush=True)
     if options.out is not None:
         _write(options.out, found, summary)
+        if options.replay:
+            from ..web.replay import write_replay
+
+            page = write_replay(found, options.out / "replay.html", title=asked.title)
+            print(f"Replay: {page}", file=sys.stderr)
 
 
 def _write(folder: Path, found: Run, summary: dict[str, Any]) -> None:

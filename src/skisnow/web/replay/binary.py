@@ -3,9 +3,10 @@
 The bytes are: the four letters ``SKRP``, a little-endian uint32 with the length of the header, the header as JSON in
 UTF-8 padded with spaces to a multiple of four, then the arrays one after the other, each padded to a multiple of four.
 
-The header has ``format`` (1), the words and single numbers of the replay, and ``arrays``: under each name its ``type``
-("float32" or "uint16", little-endian), ``shape``, ``start`` (bytes from the end of the header), ``unit``, and for
-uint16 ``lowest`` and ``step``: value = lowest + step * number. ``error`` is the largest difference from the run.
+The header has ``format`` (1), the words and single numbers of the replay, the colours it is shown in, and ``arrays``:
+under each name its ``type`` ("float32" or "uint16", little-endian), ``shape``, ``start`` (bytes from the end of the
+header), ``unit``, and for uint16 ``lowest`` and ``step``: value = lowest + step * number. ``error`` is the largest
+difference from the run.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import ParameterError
+from .looks import COLOURS, drawn_thickness
 from .replay import Replay, ReplayGroove, ReplaySkis, ReplayTrack
 
 if TYPE_CHECKING:
@@ -55,6 +57,7 @@ KEPT: Final[dict[str, _Kept]] = {
     "station": _Kept(_EXACT, "m"),
     "half_width": _Kept(_EXACT, "m"),
     "base_height": _Kept(_EXACT, "m"),
+    "thickness": _Kept(_EXACT, "m"),
     "middle": _Kept(_EXACT, "m"),
     "bending": _Kept(_COARSE, "m"),
     "twist": _Kept(_COARSE, "rad"),
@@ -78,7 +81,8 @@ def replay_bytes(replay: Replay) -> bytes:
 
     Notes
     -----
-    A run of 5 s of two skis with 42 stations at 100 moments a second is 0.5 MB: two thirds along the skis, a third of groove.
+    A run of 5 s of two skis with 42 stations at 100 moments a second is 0.5 MB: two thirds along the skis, a third of
+    groove.
     """
     arrays, described, at = [], {}, 0
     for name, values in _arrays(_thinned(replay)).items():
@@ -141,7 +145,7 @@ def _arrays(replay: Replay) -> dict[str, FloatArray]:
     }
     for name in ("station", "half_width", "base_height", "middle", "bending", "twist", "edge_depth"):
         found[name] = getattr(skis, name)
-    found["force_per_length"] = skis.force_per_length
+    found |= {"force_per_length": skis.force_per_length, "thickness": drawn_thickness(skis.station)}
     for name in ("middle", "left", "width", "depth", "residual_depth", "time", "ski"):
         found[f"groove_{name}"] = getattr(groove, name)
     if replay.track is not None:
@@ -158,6 +162,7 @@ def _words(replay: Replay) -> dict[str, Any]:
         "edge_angle": replay.skis.edge_angle,
         "centre_of_mass_height": replay.centre_of_mass_height,
         "groove_spacing": replay.groove.spacing,
+        "colours": COLOURS,
         "track_name": None if replay.track is None else replay.track.name,
     }
 

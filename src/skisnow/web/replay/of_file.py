@@ -55,8 +55,9 @@ def replay_of_file(
     path = path / RUN_FILE if path.is_dir() else path
     try:
         with netcdf_file(path, "r", mmap=False) as file:
-            arrays, values = _arrays(file), _scenario(file)
-            outcome, spacing = file.outcome.decode("utf-8"), float(file.solver_line_spacing_m)
+            content: Any = file  # its attributes are those of the file
+            arrays, values = _arrays(content), _scenario(content)
+            outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
     except (TypeError, ValueError, KeyError, AttributeError) as error:

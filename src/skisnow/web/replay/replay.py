@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from ...errors import ParameterError
+
+if TYPE_CHECKING:
+    from ...track.track import Track
+
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
+FEWEST_POINTS: Final = 2
 SKI_NAMES: Final = ("left", "right")
 
 
@@ -79,6 +85,31 @@ class ReplayTrack:
     name: str
     place: FloatArray
     time: FloatArray | None = None
+
+
+def measured_track(track: Track, *, starts_at: float = 0.0) -> ReplayTrack:
+    """A measured track to stand beside a run; points without a place are left out.
+
+    Parameters
+    ----------
+    track
+        In the run's axes: x down the fall line, y left, z out of the snow.
+    starts_at
+        Time of the run (s) at its first point.
+
+    Raises
+    ------
+    ParameterError
+        Its axes are east, north and up, or fewer than two of its points have a place.
+    """
+    if track.axes == "east_north_up":
+        raise ParameterError(
+            f"{track.name} is in east, north and up; a run is in the axes of the slope. Turn it with slope_frame first"
+        )
+    placed = np.isfinite(track.place[:, :2]).all(axis=1)
+    if placed.sum() < FEWEST_POINTS:
+        raise ParameterError(f"{track.name} has {placed.sum()} points with a place; a line needs {FEWEST_POINTS}")
+    return ReplayTrack(name=track.name, place=track.place[placed], time=track.time[placed] + starts_at)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

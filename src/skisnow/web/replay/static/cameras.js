@@ -53,8 +53,8 @@ export class Follower {
 
   boot(pose) {
     const zoom = this.zoom.boot;
-    const from = offset(pose, -0.75 * zoom, 0, 1.25 * zoom);
-    this.#look(from, offset(pose, 1.15, 0, 0), UPRIGHT);
+    const from = offset(pose, -0.7 * zoom, 0, 1.05 * zoom);
+    this.#look(from, offset(pose, 0.95, 0, 0), UPRIGHT);
   }
 
   above(pose) {

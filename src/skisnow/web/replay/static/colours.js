@@ -1,11 +1,5 @@
-// Colours with a meaning: force along a ski, depth of a groove. Dark is much, so that both stand out on snow.
+// Colours with a meaning: those of force and depth come with the run, so that every picture of it has the same.
 
-// yellow, orange, red, purple, near black: rising in darkness all the way, told apart without red or green as well
-const FORCE = [[255, 233, 148], [253, 180, 83], [240, 105, 68], [190, 45, 92], [112, 20, 106], [45, 10, 70]];
-const DEPTH = [[170, 196, 219], [95, 144, 190], [38, 92, 150], [12, 42, 92]];
-
-/** A ski without load (sRGB, 0 to 255). */
-export const UNLOADED = [214, 220, 226];
 export const GHOST = [124, 77, 190];
 export const TRACK = [0, 110, 90];
 
@@ -15,13 +9,13 @@ function along(colours, share) {
   return colours[index].map((part, i) => part + (at - index) * (colours[index + 1][i] - part));
 }
 
-/** Colour of a force per length; `most` is the end of the scale. */
-export function forceColour(force, most) {
-  return force <= 0.002 * most ? UNLOADED : along(FORCE, force / most);
+/** Colour of a force per length; `most` is the end of the scale, `colours` those of a run. */
+export function forceColour(force, most, colours) {
+  return force <= colours.least_share * most ? colours.unloaded : along(colours.force, force / most);
 }
 
-export function depthColour(depth, most) {
-  return along(DEPTH, most > 0 ? depth / most : 0);
+export function depthColour(depth, most, colours) {
+  return along(colours.depth, most > 0 ? depth / most : 0);
 }
 
 /** The next of 1, 2, 5 times a power of ten that is not below a number. */
@@ -34,7 +28,6 @@ export function roundAbove(value) {
 export const css = ([r, g, b]) => `rgb(${Math.round(r)}, ${Math.round(g)}, ${Math.round(b)})`;
 
 /** A CSS gradient of a scale, from nothing to the most. */
-export function gradient(kind) {
-  const colours = kind === "force" ? FORCE : DEPTH;
+export function gradient(colours) {
   return `linear-gradient(to right, ${colours.map(css).join(", ")})`;
 }

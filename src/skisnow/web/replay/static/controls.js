@@ -79,9 +79,8 @@ export function laidOut(root, parts, run) {
       "div",
       { className: "replay-controls", role: "group", "aria-label": "Controls of the replay" },
       made("div", { className: "replay-row replay-playing" }, parts.play, parts.time, parts.speed),
-      made("div", { className: "replay-row" }, parts.views),
-      made("div", { className: "replay-row" }, field("Bending and twist ×", parts.exaggeration, parts.exaggerated), parts.shown),
-      made("div", { className: "replay-row" }, field("Take away", ...takeAway)),
+      made("div", { className: "replay-row" }, parts.views, field("Bending and twist", parts.exaggeration, parts.exaggerated)),
+      made("div", { className: "replay-row" }, parts.shown, field("Take away", ...takeAway)),
       parts.message,
       made("details", {}, made("summary", { textContent: "Keys, and what this run is" }), keys, facts),
     ),
@@ -89,12 +88,12 @@ export function laidOut(root, parts, run) {
 }
 
 /** The legend of force and groove, with units. */
-export function fillLegend(element, scales) {
+export function fillLegend(element, scales, colours) {
   const bar = (kind, title, ticks) => {
     const marks = ticks.map((text) => made("span", { textContent: text }));
     return made("div", { className: "replay-scale" },
       made("span", { className: "replay-scale-title", textContent: title }),
-      made("span", { className: "replay-bar", style: `background:${gradient(kind)}` }),
+      made("span", { className: "replay-bar", style: `background:${gradient(colours[kind])}` }),
       made("span", { className: "replay-ticks" }, ...marks));
   };
   element.replaceChildren(

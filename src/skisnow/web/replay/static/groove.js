@@ -10,7 +10,8 @@ export const deepest = (run) => Math.max(0, largest(run.arrays.groove_residual_d
 
 /** A run's groove as a mesh with `grow(time)`; `colour` fixed for a ghost, else by the depth that stays. */
 export function groove(run, { most, colour = null, order = 3 }) {
-  const pieces = Array.from(run.arrays.groove_time.values, (_, i) => piece(run, i, most, colour));
+  const beside = neighbours(run.arrays.groove_ski.values);
+  const pieces = Array.from(run.arrays.groove_time.values, (_, i) => piece(run, i, beside[i], most, colour));
   const mesh = ribbon(pieces, { least: colour ? 1.6 : 2.4, relief: colour ? 0 : 0.16, order });
   const times = run.arrays.groove_time.values; // rising
   return {
@@ -33,21 +34,45 @@ export function made(times, time) {
   return low;
 }
 
-function piece(run, i, most, colour) {
+/** For each piece the pieces of the same ski just before and after it. */
+function neighbours(skis) {
+  const found = Array.from(skis, (_, i) => [i, i]);
+  const last = [-1, -1];
+  skis.forEach((ski, i) => {
+    const before = last[Math.round(ski)];
+    if (before >= 0) {
+      found[i][0] = before;
+      found[before][1] = i;
+    }
+    last[Math.round(ski)] = i;
+  });
+  return found;
+}
+
+function piece(run, i, beside, most, colour) {
   const { groove_middle: middle, groove_left: left, groove_width: width, groove_residual_depth: depth } = run.arrays;
   const across = left.values.subarray(3 * i, 3 * i + 3);
-  const normal = surfaceNormal(run, middle.values[3 * i]);
-  const half = run.groove_spacing / 2;
   return {
     middle: middle.values.subarray(3 * i, 3 * i + 3),
     beside: Array.from(across, (part) => (part * width.values[i]) / 2),
-    along: [
-      half * (across[1] * normal[2] - across[2] * normal[1]),
-      half * (across[2] * normal[0] - across[0] * normal[2]),
-      half * (across[0] * normal[1] - across[1] * normal[0]),
-    ],
-    colour: colour ?? depthColour(depth.values[i], most),
+    along: reach(run, across, beside.map((j) => middle.values.subarray(3 * j, 3 * j + 3)), middle.values[3 * i]),
+    colour: colour ?? depthColour(depth.values[i], most, run.colours),
   };
+}
+
+/** Half of a piece's length ahead: towards its neighbours, or straight across its own line where they lie elsewhere. */
+function reach(run, across, [before, after], x) {
+  const way = [0, 1, 2].map((axis) => after[axis] - before[axis]);
+  const [long, aside] = [Math.hypot(...way), way.reduce((sum, part, axis) => sum + part * across[axis], 0)];
+  const half = run.groove_spacing / 2;
+  if (long > half && long < 8 * half && Math.abs(aside) < 0.3 * long) {
+    return way.map((part) => (part * half) / Math.sqrt(long * long - aside * aside));
+  }
+  const normal = surfaceNormal(run, x);
+  return [0, 1, 2].map((axis) => {
+    const [j, k] = [(axis + 1) % 3, (axis + 2) % 3];
+    return half * (across[j] * normal[k] - across[k] * normal[j]);
+  });
 }
 
 function surfaceNormal(run, x) {

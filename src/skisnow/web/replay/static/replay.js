@@ -49,7 +49,7 @@ class Player {
   #fill() {
     const { parts } = this;
     Object.assign(parts.time, { min: this.start, max: this.end, step: 0.01, value: this.start });
-    fillLegend(parts.legend, this.stage.scales);
+    fillLegend(parts.legend, this.stage.scales, this.run.colours);
     if (!filmType()) {
       parts.film.disabled = true;
       parts.film.title = "This browser records no film.";

@@ -1,12 +1,10 @@
 // Two skis and the sledge on them, as meshes that follow a run.
 
 import * as THREE from "./three.module.min.js";
-import { forceColour, GHOST, UNLOADED } from "./colours.js";
+import { largest } from "./binary.js";
+import { forceColour, GHOST } from "./colours.js";
 import { poseAt, row, sections, surfaceHeight } from "./motion.js";
 
-const SIDE = [58, 66, 76]; // side walls, dark on snow
-const THICKEST = 0.018; // m under the boot, and
-const THINNEST = 0.006; // m at tip and tail: drawn, not computed with
 // corners of a cross section, each as often as a face needs its own colour and normal: [across, thickness, kind]
 const CORNERS = [
   [1, 1, "face"], [-1, 1, "face"], // top
@@ -59,7 +57,7 @@ function skiMesh(run, ski, ghost) {
   const colours = new Float32Array(3 * count * CORNERS.length);
   geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
   for (let j = 0; j < count; j++) {
-    CORNERS.forEach(([, , kind], c) => paint(colours, j * CORNERS.length + c, kind === "side" ? SIDE : UNLOADED));
+    CORNERS.forEach(([, , kind], c) => paint(colours, j * CORNERS.length + c, kind === "side" ? run.colours.side : run.colours.unloaded));
   }
   const material = ghost
     ? new THREE.MeshBasicMaterial({
@@ -82,18 +80,12 @@ function paint(colours, vertex, colour) {
   }
 }
 
-/** Thickness at a station as drawn: a core that thins to both ends. */
-function thickness(stations, j) {
-  const reach = stations[j] >= 0 ? stations[0] : -stations[stations.length - 1];
-  return THINNEST + (THICKEST - THINNEST) * (1 - Math.min(1, Math.abs(stations[j]) / reach) ** 1.5);
-}
-
 function bendMesh(mesh, run, found) {
   const half = run.arrays.half_width.values;
-  const stations = run.arrays.station.values;
+  const thick = run.arrays.thickness.values;
   const positions = mesh.geometry.attributes.position;
-  for (let j = 0; j < stations.length; j++) {
-    const high = thickness(stations, j);
+  for (let j = 0; j < half.length; j++) {
+    const high = thick[j];
     CORNERS.forEach(([side, up], c) => {
       const inset = half[j] * (up ? 0.97 : 1);
       const at = 3 * (j * CORNERS.length + c);
@@ -111,7 +103,7 @@ function colourMesh(mesh, run, pose, ski, most) {
   const force = row(run.arrays.force_per_length.values, pose.at, 2 * count);
   const colours = mesh.geometry.attributes.color;
   for (let j = 0; j < count; j++) {
-    const colour = forceColour(force[ski * count + j], most);
+    const colour = forceColour(force[ski * count + j], most, run.colours);
     for (let c = 0; c < 4; c++) paint(colours.array, j * CORNERS.length + c, colour);
   }
   colours.needsUpdate = true;
@@ -152,16 +144,17 @@ function sledgeMesh(run, ghost) {
   const middle = run.arrays.middle.values;
   const bases = [0, 1].map((ski) => new THREE.Vector3(...middle.subarray(3 * ski, 3 * ski + 3)));
   const height = 0.085;
+  const thick = largest(run.arrays.thickness.values);
   for (const base of bases) {
     const boot = new THREE.Mesh(new THREE.BoxGeometry(0.27, 0.062, height), material);
     const turned = new THREE.Group();
     turned.add(boot);
-    boot.position.z = THICKEST + height / 2;
+    boot.position.z = thick + height / 2;
     turned.position.copy(base);
     turned.rotation.x = -run.edge_angle;
     group.add(turned);
   }
-  const top = bases.map((base) => base.clone().add(upAlong(run.edge_angle, THICKEST + height)));
+  const top = bases.map((base) => base.clone().add(upAlong(run.edge_angle, thick + height)));
   group.add(beam(top[0], top[1], material));
   const mass = new THREE.Mesh(new THREE.SphereGeometry(0.03, 16, 10), material);
   mass.position.set(0, 0, run.centre_of_mass_height);

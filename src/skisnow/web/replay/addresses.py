@@ -1,0 +1,116 @@
+"""Addresses that a web server answers for the replay: its program, a run's bytes, a model, and the page itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+from urllib.parse import quote
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from starlette.responses import HTMLResponse, PlainTextResponse, Response
+
+from ...errors import ParameterError
+from .binary import replay_bytes
+from .model import replay_model
+from .of_file import RUN_FILE, replay_of_file
+from .page import MODULES, STYLE, static_text
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fastapi import FastAPI
+
+LIST: Final = "/replay"
+SHOW: Final = f"{LIST}/show"
+FILES: Final = f"{LIST}/files"
+DATA: Final = f"{LIST}/data"
+MODEL: Final = f"{LIST}/model"
+_TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
+_LARGEST_FACTOR: Final = 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class RunFolders:
+    """Runs kept in a folder, each in a folder of its own with a run.nc in it, known by that folder's name."""
+
+    folder: Path
+
+    def names(self) -> list[str]:
+        """Of all runs, the newest first."""
+        if not self.folder.is_dir():
+            return []
+        found = [place for place in self.folder.iterdir() if (place / RUN_FILE).is_file()]
+        return [place.name for place in sorted(found, key=lambda place: -(place / RUN_FILE).stat().st_mtime)]
+
+    def place(self, name: str) -> Path:
+        """The folder of a run; a name that is none of `names` is refused, wherever it would lead.
+
+        Raises
+        ------
+        ParameterError
+            There is no such run.
+        """
+        if name not in self.names():
+            raise ParameterError(f"there is no run {name!r} here. Choose one from the list")
+        return self.folder / name
+
+
+def add_addresses(app: FastAPI, runs: RunFolders) -> None:
+    """Let an application answer for the replays of these runs."""
+
+    def show(run: str, ghost: str = "") -> Response:
+        try:
+            for name in filter(None, (run, ghost)):
+                runs.place(name)
+        except ParameterError as error:
+            return PlainTextResponse(str(error), 404)
+        return HTMLResponse(show_page(run, ghost or None))
+
+    def data(name: str) -> Response:
+        try:
+            content = replay_bytes(replay_of_file(runs.place(name), title=name))
+        except ParameterError as error:
+            return PlainTextResponse(str(error), 404)
+        return Response(content, media_type="application/octet-stream", headers={"cache-control": "no-cache"})
+
+    def model(name: str, time: float = 0.0, exaggeration: float = 1.0) -> Response:
+        try:
+            factor = min(max(exaggeration, 1.0), _LARGEST_FACTOR)
+            content = replay_model(replay_of_file(runs.place(name), title=name), time, exaggeration=factor)
+        except ParameterError as error:
+            return PlainTextResponse(str(error), 404)
+        named = f"attachment; filename*=UTF-8''{quote(name)}-{time:.2f}s.glb"
+        return Response(content, media_type="model/gltf-binary", headers={"content-disposition": named})
+
+    for address, answer in ((SHOW, show), (f"{FILES}/{{name}}", program_file)):
+        app.add_api_route(address, answer, include_in_schema=False, response_model=None)
+    for address, of_run in ((f"{DATA}/{{name}}", data), (f"{MODEL}/{{name}}.glb", model)):
+        app.add_api_route(address, of_run, include_in_schema=False, response_model=None)
+
+
+def program_file(name: str) -> Response:
+    """A file of the program in the browser; nothing else of the package is given out."""
+    if name not in (*MODULES, STYLE):
+        return PlainTextResponse("The replay has no such file.", 404)
+    kind = _TYPES[name[name.rindex(".") :]]
+    return Response(static_text(name), media_type=kind, headers={"cache-control": "no-cache"})
+
+
+def show_page(run: str, ghost: str | None) -> str:
+    """The HTML that fetches a run, and a second one to lay over it, by their names."""
+    environment = Environment(
+        loader=PackageLoader("skisnow.web.replay", "static"), autoescape=True, undefined=StrictUndefined
+    )
+    return environment.get_template("show.html").render(
+        title=run,
+        files=FILES,
+        list=LIST,
+        run=f"{DATA}/{quote(run)}",
+        ghost=f"{DATA}/{quote(ghost)}" if ghost else "",
+        model=f"{MODEL}/{quote(run)}.glb",
+    )
+
+
+def show_address(run: str, ghost: str | None = None) -> str:
+    """Where a run is shown, with a second one over it."""
+    return f"{SHOW}?run={quote(run, safe='')}" + (f"&ghost={quote(ghost, safe='')}" if ghost else "")
