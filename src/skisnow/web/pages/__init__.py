@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-PAGES: Final = ("campaigns",)
+PAGES: Final = ("campaigns", "replay")
 """Modules of this folder, in the order of the navigation."""
 
 INNER: Final = ("describe", "enter", "analysis")
