@@ -1,0 +1,116 @@
+"""A campaign's folder analysed with a choice of what takes part: numbers and tables, figures, the report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from ..errors import SkisnowError
+from ..estimate import analyse, results_dict
+from ..field import MARKS, read_campaign
+from ..field.marks import ALWAYS_EXCLUDE
+from ..report import write_report
+from ..report.figures import figures_of
+from ..report.material import Material
+from ..report.table_html import table_html
+from ..report.tables import tables_of
+
+if TYPE_CHECKING:
+    from ..field.records import Campaign, PenetrationTests, ShearTests
+
+LEFT_OUT: Final = "left out by choice in the lab"
+SHOWN_TABLES: Final = ("sites", "models", "model_tests", "regressions", "penetration_experiments", "shear_experiments")
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What takes part.
+
+    Attributes
+    ----------
+    excluding
+        Codes of the marks that leave an experiment out; None: those of the campaign.
+    left_out
+        Experiments that are left out besides, by file and name.
+    """
+
+    excluding: frozenset[str] | None = None
+    left_out: frozenset[tuple[str, str]] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Numbers:
+    """Results as results.json has them, the tables as HTML by name, and which marks leave out."""
+
+    results: dict[str, Any]
+    tables: dict[str, str]
+    excluding: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A figure: its name, the words for who cannot see it, its caption as HTML, its SVG."""
+
+    name: str
+    alt: str
+    caption: str
+    svg: str
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why there is no answer, in a sentence. An exception would not travel between processes whole."""
+
+    said: str
+
+
+def numbers_of(folder: str, choice: Choice) -> Numbers | Refusal:
+    """Analyse a campaign's folder."""
+    try:
+        campaign = _chosen(read_campaign(folder), choice)
+        results = results_dict(analyse(campaign))
+    except SkisnowError as error:
+        return Refusal(str(error))
+    tables = tables_of(Material(campaign, results))
+    present = [tables[name] for name in SHOWN_TABLES if name in tables and tables[name].rows]
+    html = {table.name: str(table_html(table, number=number)) for number, table in enumerate(present, start=1)}
+    return Numbers(results, html, campaign.excluding)
+
+
+def figures(folder: str, choice: Choice, results: dict[str, Any]) -> list[Shown]:
+    """Draw the report's figures of what `numbers_of` gave for the same folder and choice."""
+    pictures, _ = figures_of(Material(_chosen(read_campaign(folder), choice), results))
+    return [Shown(each.name, each.alt, str(each.caption), each.svg) for each in pictures]
+
+
+def write_whole_report(folder: str, choice: Choice, results: dict[str, Any], out: str) -> None:
+    """Write the report with its tables, figures and results.json."""
+    write_report(_chosen(read_campaign(folder), choice), results, Path(out))
+
+
+def choosable_marks() -> dict[str, str]:
+    """Codes of the marks that may be let in or left out, with their sentences."""
+    return {code: mark.sentence for code, mark in MARKS.items() if code not in ALWAYS_EXCLUDE}
+
+
+def _chosen(campaign: Campaign, choice: Choice) -> Campaign:
+    excluding = campaign.excluding if choice.excluding is None else choice.excluding | ALWAYS_EXCLUDE
+    return replace(
+        campaign,
+        excluding=excluding,
+        penetration=_less(campaign.penetration, "penetration.csv", choice),
+        shear=_less(campaign.shear, "shear.csv", choice),
+    )
+
+
+def _less(tests: Any, file: str, choice: Choice) -> Any:
+    """The tests with those cancelled that are left out: they stay in every table, with the reason."""
+    typed: PenetrationTests | ShearTests | None = tests
+    if typed is None:
+        return None
+    gone = np.array([(file, name) in choice.left_out for name in typed.experiment], dtype=bool)
+    cancelled = tuple(why or (LEFT_OUT if out else "") for why, out in zip(typed.cancelled, gone, strict=True))
+    return replace(typed, cancelled=cancelled)
