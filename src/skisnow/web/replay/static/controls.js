@@ -4,6 +4,7 @@ import { css, GHOST, gradient, TRACK } from "./colours.js";
 
 export const SPEEDS = [[1, "true speed"], [0.5, "half speed"], [0.25, "a quarter"], [0.1, "a tenth"]];
 export const VIEW_NAMES = { boot: "From the boot", above: "From above", edge: "Along the edge", free: "Free" };
+export const FORCE_TITLE = "Force of the snow on the ski (N/mm)";
 const KEYS = [
   ["Space", "play or pause"], ["← →", "a twentieth of a second; with Shift half a second"], ["Home End", "start, end"],
   ["1 2 3 4", "boot, above, edge, free"], ["+ −", "nearer, farther"], ["A D W S", "turn the free view"],
@@ -97,7 +98,7 @@ export function fillLegend(element, scales, colours) {
       made("span", { className: "replay-ticks" }, ...marks));
   };
   element.replaceChildren(
-    bar("force", "Force of the snow on the ski (N/mm)", ticksOf(scales.force / 1000)),
+    bar("force", FORCE_TITLE, ticksOf(scales.force / 1000)),
     scales.staysNothing
       ? made("span", { textContent: "Elastic snow: no groove stays; the line is where the skis went" })
       : bar("depth", "Groove that stays (mm)", ticksOf(scales.depth * 1000)),
@@ -113,12 +114,12 @@ export function readings(run, pose, time, row) {
   const of = (name, size = 1) => row(run.arrays[name].values, pose.at, size);
   const curvature = of("curvature")[0];
   const radius = Math.abs(curvature) < 1e-3 ? "straight" : `${(1 / Math.abs(curvature)).toFixed(1)} m ${curvature > 0 ? "left" : "right"}`;
-  const [left, right] = Array.from(of("depth", 2), (depth) => (depth > 0 ? `${(1000 * depth).toFixed(1)} mm` : "off the snow"));
+  const [left, right] = Array.from(of("depth", 2), (depth) => (depth > 0 ? `${(1000 * depth).toFixed(1)} mm` : "above the snow"));
   return [
     ["Time", `${time.toFixed(2)} s`],
     ["Speed", `${of("speed")[0].toFixed(2)} m/s`],
     ["Turn radius", radius],
-    ["Edge depth, left", left],
-    ["Edge depth, right", right],
+    ["Depth at left boot", left],
+    ["Depth at right boot", right],
   ];
 }

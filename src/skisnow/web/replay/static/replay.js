@@ -2,7 +2,7 @@
 
 import { decoded } from "./binary.js";
 import { VIEWS } from "./cameras.js";
-import { controls, fillLegend, laidOut, made, readings } from "./controls.js";
+import { controls, fillLegend, FORCE_TITLE, laidOut, made, readings } from "./controls.js";
 import { edges, row } from "./motion.js";
 import { Sharpness, STILL } from "./sharpness.js";
 import { Stage } from "./stage.js";
@@ -75,7 +75,7 @@ class Player {
     this.frames += 1;
     this.lines = readings(this.run, pose, this.time, row);
     this.#tell();
-    if (this.film) composed(this.parts.canvas, this.flat, this.lines, this.#words());
+    if (this.film) this.#compose();
   }
 
   #tell() {
@@ -95,9 +95,11 @@ class Player {
     if (parts.model) parts.model.href = this.modelAddress(this.time, this.exaggeration);
   }
 
-  #words() {
-    const bent = this.exaggeration === 1 ? [] : [`bending and twist ${this.exaggeration} times`];
-    return [this.run.title, ...bent];
+  #compose() {
+    const bent = this.exaggeration === 1 ? [] : [`Bending and twist ${this.exaggeration} times`];
+    const words = [this.run.title, ...this.lines.map(([name, value]) => `${name}: ${value}`), ...bent];
+    const most = this.stage.scales.force / 1000;
+    composed(this.parts.canvas, this.flat, words, { title: FORCE_TITLE, colours: this.run.colours.force, most });
   }
 
   seek(time) {
@@ -175,15 +177,15 @@ class Player {
   /** The picture as a PNG, with its readings. */
   picture() {
     this.draw();
-    const flat = composed(this.parts.canvas, this.flat, this.lines, this.#words());
-    return new Promise((resolve) => flat.toBlob(resolve, "image/png"));
+    this.#compose();
+    return new Promise((resolve) => this.flat.toBlob(resolve, "image/png"));
   }
 
   /** Record from here, or from the start if at the end, until the end or the next press. */
   startFilm() {
     if (this.time >= this.end) this.time = this.start;
     this.draw();
-    composed(this.parts.canvas, this.flat, this.lines, this.#words());
+    this.#compose();
     this.film = recording(this.flat);
     this.parts.film.textContent = "End the film";
     this.say("Recording while it plays.");

@@ -1,7 +1,9 @@
 // To take away: the picture as PNG and a film as WebM, both with the readings written on them.
 
-/** Draw the picture with its readings and scales on a flat canvas of its own. */
-export function composed(canvas, flat, lines, scales) {
+import { css } from "./colours.js";
+
+/** Draw the picture with words and the scale of the force, {title, colours, most}, on a flat canvas of its own. */
+export function composed(canvas, flat, words, scale) {
   if (flat.width !== canvas.width || flat.height !== canvas.height) {
     flat.width = canvas.width;
     flat.height = canvas.height;
@@ -11,13 +13,25 @@ export function composed(canvas, flat, lines, scales) {
   const size = Math.max(13, Math.round(flat.height / 42));
   pen.font = `600 ${size}px system-ui, sans-serif`;
   pen.textBaseline = "top";
-  const texts = [...lines.map(([name, value]) => `${name}: ${value}`), ...scales];
+  const texts = [...words, scale.title];
   const width = Math.max(...texts.map((text) => pen.measureText(text).width));
   pen.fillStyle = "rgba(255, 255, 255, 0.86)";
-  pen.fillRect(size * 0.6, size * 0.6, width + size * 1.2, texts.length * size * 1.4 + size * 0.8);
+  pen.fillRect(size * 0.6, size * 0.6, width + size * 1.2, (texts.length + 1.9) * size * 1.4 + size * 0.4);
   pen.fillStyle = "#10202e";
   texts.forEach((text, i) => pen.fillText(text, size * 1.2, size * (1.1 + 1.4 * i)));
+  bar(pen, scale, size * 1.2, size * (1.1 + 1.4 * texts.length), width, size);
   return flat;
+}
+
+function bar(pen, { colours, most }, left, top, width, size) {
+  const shades = pen.createLinearGradient(left, 0, left + width, 0);
+  colours.forEach((colour, i) => shades.addColorStop(i / (colours.length - 1), css(colour)));
+  pen.fillStyle = shades;
+  pen.fillRect(left, top, width, size * 0.8);
+  pen.fillStyle = "#10202e";
+  pen.fillText("0", left, top + size);
+  const end = String(most);
+  pen.fillText(end, left + width - pen.measureText(end).width, top + size);
 }
 
 export function saved(blob, name) {
