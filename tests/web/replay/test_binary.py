@@ -37,7 +37,11 @@ def test_what_comes_back_is_within_the_stated_error(replay: Replay) -> None:
     content = replay_bytes(replay)
     back, errors = replay_of_bytes(content), {name: each["error"] for name, each in header(content)["arrays"].items()}
     compared = 0
-    for before, of, found in (("", replay, back), ("", replay.skis, back.skis), ("groove_", replay.groove, back.groove)):
+    for before, of, found in (
+        ("", replay, back),
+        ("", replay.skis, back.skis),
+        ("groove_", replay.groove, back.groove),
+    ):
         for name, values in arrays(of).items():
             difference = np.abs(arrays(found)[name] - values).max()
             # the error is that of the encoder; reading multiplies and adds once more
@@ -97,7 +101,9 @@ def test_five_seconds_are_below_a_megabyte() -> None:
 
 def test_one_moment_is_enough_and_none_is_refused() -> None:
     one = replay_of_run(circle_run(count=3))
-    over = {name: getattr(one, name)[:1] for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth")}
+    over = {
+        name: getattr(one, name)[:1] for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
+    }
     skis = replace(one.skis, **{
         name: getattr(one.skis, name)[:1] for name in ("bending", "twist", "edge_depth", "force_per_length")
     })  # fmt: skip
@@ -109,7 +115,7 @@ def test_one_moment_is_enough_and_none_is_refused() -> None:
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (lambda content: b"", "do not begin with SKRP"),
+        (lambda content: content[:0], "do not begin with SKRP"),
         (lambda content: b"GIF8" + content[4:], "do not begin with SKRP"),
         (lambda content: content[:-4000], "damaged or cut off"),
         (lambda content: content[:100], "damaged or cut off"),

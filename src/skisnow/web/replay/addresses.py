@@ -60,7 +60,7 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
     def show(run: str, ghost: str = "") -> Response:
         try:
-            for name in filter(None, (run, ghost)):
+            for name in (run, ghost) if ghost else (run,):
                 runs.place(name)
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)

@@ -1,0 +1,102 @@
+"""What a server gives out: runs of the list alone, whatever is asked for."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("fastapi", reason="the web lab is not installed: pip install 'skisnow[web]'")
+pytest.importorskip("httpx", reason="requests of the test need httpx")
+
+import httpx
+from fastapi import FastAPI
+
+from skisnow.errors import ParameterError
+from skisnow.report.run_file import write_run_file
+from skisnow.simulate.scenario import scenario_values
+from skisnow.simulate.scenario.values import in_sections
+from skisnow.web.replay import replay_bytes, replay_model, replay_of_file
+from skisnow.web.replay.addresses import RunFolders, add_addresses, show_address
+
+from ...report.runs import circle_run
+
+ODD = 'a "b" <i>&c%2e'
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("lab") / "runs"
+    run = circle_run(count=11)
+    for name, when in (("older", 1_000_000_000), (ODD, 1_100_000_000), ("../outside", 1_200_000_000)):
+        place = folder / name / "run.nc"
+        place.parent.mkdir(parents=True)
+        write_run_file(run, in_sections(scenario_values(run.scenario)), place)
+        os.utime(place, (when, when))
+    (folder / "no run").mkdir()
+    (folder / "lab.log").write_text("words", encoding="utf-8")
+    return folder
+
+
+class Client:
+    """Asks the application itself: no socket, no server."""
+
+    def __init__(self, app: FastAPI) -> None:
+        self.app = app
+
+    def get(self, address: str, params: dict[str, str] | None = None) -> httpx.Response:
+        async def asked() -> httpx.Response:
+            transport = httpx.ASGITransport(app=self.app)
+            async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as client:
+                return await client.get(address, params=params)
+
+        return asyncio.run(asked())
+
+
+@pytest.fixture
+def client(runs: Path) -> Client:
+    app = FastAPI()
+    add_addresses(app, RunFolders(runs))
+    return Client(app)
+
+
+def test_runs_are_listed_newest_first(runs: Path) -> None:
+    assert RunFolders(runs).names() == [ODD, "older"]
+    assert RunFolders(runs / "not there").names() == []
+
+
+@pytest.mark.parametrize("name", ["../outside", "..", "", ".", "no run", "lab.log", "/etc", "older/../older"])
+def test_only_names_of_the_list_lead_anywhere(runs: Path, client: Client, name: str) -> None:
+    with pytest.raises(ParameterError, match="no run"):
+        RunFolders(runs).place(name)
+    assert client.get("/replay/show", params={"run": name}).status_code == 404
+    assert client.get("/replay/show", params={"run": "older", "ghost": name or "?"}).status_code == 404
+    escaped = name.replace("/", "%2F") or "%20"
+    assert client.get(f"/replay/data/{escaped}").status_code == 404
+    assert client.get(f"/replay/model/{escaped}.glb").status_code == 404
+
+
+def test_bytes_and_model_are_those_of_the_library(runs: Path, client: Client) -> None:
+    replay = replay_of_file(runs / "older", title="older")
+    assert client.get("/replay/data/older").content == replay_bytes(replay)
+    answer = client.get("/replay/model/older.glb", params={"time": "1.0", "exaggeration": "4.0"})
+    assert answer.content == replay_model(replay, 1.0, exaggeration=4.0)
+    assert answer.headers["content-type"] == "model/gltf-binary"
+
+
+def test_an_odd_name_is_text_on_its_page_and_its_address_leads_there(client: Client) -> None:
+    answer = client.get(show_address(ODD, "older"))
+    assert answer.status_code == 200
+    assert "<i>" not in answer.text
+    assert "&lt;i&gt;" in answer.text
+    assert client.get("/replay/data/a%20%22b%22%20%3Ci%3E%26c%252e").status_code == 200
+    assert "/replay/data/a%20%22b%22%20%3Ci%3E%26c%252e" in answer.text
+
+
+def test_files_of_the_program_and_no_others(client: Client) -> None:
+    assert client.get("/replay/files/replay.js").headers["content-type"].startswith("text/javascript")
+    assert client.get("/replay/files/replay.css").status_code == 200
+    for name in ("show.html", "..%2Fpage.py", "page.py", "LICENSE-three.txt"):
+        assert client.get(f"/replay/files/{name}").status_code == 404

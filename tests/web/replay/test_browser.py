@@ -1,0 +1,247 @@
+"""The replay in a browser that draws in software: seen, moving, by keyboard, on a phone, and alone on its machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.web.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_replay
+
+from ...report.runs import circle_run
+from .browsers import Watched, chromium
+
+TRACK = ReplayTrack(name="GNSS", place=np.array([[0.0, 0.0, 0.0], [10.0, 3.0, 0.0]]), time=np.array([0.0, 2.0]))
+SNOW = np.array([241, 245, 249])
+
+
+@pytest.fixture(scope="module")
+def replay() -> Replay:
+    return replay_of_run(circle_run(), title="A turn", track=TRACK)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with chromium() as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def address(replay: Replay, tmp_path_factory: pytest.TempPathFactory) -> str:
+    ghost = replay_of_run(circle_run(radius=13.0), title="wider")
+    return write_replay(replay, tmp_path_factory.mktemp("page") / "replay.html", ghost=ghost).as_uri()
+
+
+@pytest.fixture
+def seen(browser: Any, address: str) -> Iterator[Watched]:
+    watched = Watched(browser, address)
+    yield watched
+    watched.close()
+
+
+def coloured(picture: Any) -> int:
+    """Pixels with the warm colours of force, which nothing else has."""
+    red, green, blue = picture[..., 0], picture[..., 1], picture[..., 2]
+    return int(((red > 150) & (red - blue > 70) & (green < 240)).sum())
+
+
+def test_every_view_shows_snow_and_loaded_skis(seen: Watched) -> None:
+    seen.does("replay.seek(2.0)")
+    pictures = []
+    for view in ("boot", "above", "edge", "free"):
+        seen.does(f"replay.look('{view}')")
+        pictures.append(seen.picture())
+        assert coloured(pictures[-1]) > 300, view
+        near_snow = np.abs(pictures[-1] - SNOW).max(axis=2) < 8
+        assert near_snow.mean() > 0.2, view
+    for one, other in pairwise(pictures):
+        assert (one != other).mean() > 0.1
+
+
+def test_the_picture_changes_while_it_plays(seen: Watched) -> None:
+    first = seen.picture()
+    seen.page.get_by_role("button", name="Play").click()
+    seen.page.wait_for_function("window.skisnowReplay.time > 0.4")
+    assert (np.abs(seen.picture() - first).max(axis=2) > 30).mean() > 0.01
+    seen.page.get_by_role("button", name="Pause").click()
+    stopped = seen.does("return replay.time")
+    seen.page.wait_for_timeout(150)
+    assert seen.does("return replay.time") == stopped
+
+
+def test_a_second_of_play_is_a_second_of_the_run_or_the_chosen_part_of_it(seen: Watched) -> None:
+    """With the browser's clock in our hand: two pictures 0.3 s apart."""
+    played = """
+        const real = window.requestAnimationFrame, waiting = [];
+        window.requestAnimationFrame = (deed) => waiting.push(deed);
+        replay.seek(1.0); replay.play();
+        waiting.shift()(5000); waiting.shift()(5300);
+        replay.pause(); window.requestAnimationFrame = real;
+        return replay.time;"""
+    assert seen.does(played) == pytest.approx(1.3, abs=1e-9)
+    seen.page.get_by_label("Speed of play").select_option("0.1")
+    assert seen.does(played) == pytest.approx(1.03, abs=1e-9)
+
+
+def test_it_ends_at_the_end_and_begins_anew(seen: Watched) -> None:
+    seen.does("replay.seek(3.9); replay.play()")
+    seen.page.wait_for_function("!window.skisnowReplay.playing")
+    assert seen.does("return replay.time") == pytest.approx(4.0)
+    seen.does("replay.play()")
+    assert seen.does("return replay.time") < 1.0
+
+
+def test_nothing_is_asked_for_and_nothing_complained_about(seen: Watched, address: str) -> None:
+    for view in ("boot", "above", "edge", "free"):
+        seen.does(f"replay.look('{view}'); replay.exaggerate(7); replay.seek(1.0)")
+    seen.page.wait_for_timeout(200)
+    asked = [each for each in seen.requests if not each.startswith(("blob:", "data:"))]
+    assert asked == [address]
+    assert seen.complaints == []
+
+
+def test_edges_in_the_browser_are_those_of_the_library(seen: Watched, replay: Replay) -> None:
+    for time, frame, factor in ((2.0, 100, 1.0), (3.0, 150, 4.0)):
+        expected = ski_edges(replay, frame, exaggeration=factor)
+        for ski in (0, 1):
+            found = np.array(seen.does(f"return replay.edgesAt({time}, {ski}, {factor})"))
+            # float32 over 30 m, and half a step of the bending four times
+            assert found.transpose(1, 0, 2) == pytest.approx(expected[ski], abs=5e-6)
+
+
+def test_readings_are_the_runs_numbers_with_units(seen: Watched) -> None:
+    seen.does("replay.seek(2.0)")
+    text = seen.page.locator(".replay-readings").inner_text()
+    for words in ("2.00 s", "8.00 m/s", "12.0 m left", "mm"):
+        assert words in text
+    legend = seen.page.locator(".replay-legend").inner_text()
+    assert "(N/mm)" in legend
+    assert "(mm)" in legend
+
+
+def test_the_groove_grows_and_can_be_hidden(seen: Watched) -> None:
+    seen.does("replay.look('above'); replay.nearer(8); replay.show('ghost', false); replay.show('track', false)")
+    counts = []
+    for time in (0.5, 2.0, 4.0):
+        counts.append(seen.does(f"replay.seek({time}); return replay.stage.groove.mesh.geometry.drawRange.count"))
+    assert counts == [6 * 2 * 13, 6 * 2 * 51, 6 * 2 * 101]  # a piece each second output, two skis, six corners each
+    with_groove = seen.picture()
+    seen.does("replay.show('groove', false)")
+    assert (np.abs(seen.picture() - with_groove).max(axis=2) > 40).sum() > 200
+
+
+def test_ghost_and_measured_track_are_switches(seen: Watched) -> None:
+    seen.does("replay.seek(1.0); replay.look('above')")
+    everything = seen.picture()
+    for name in ("Other run: wider", "Measured: GNSS"):
+        seen.page.get_by_label(name).uncheck()
+        fewer = seen.picture()
+        assert (np.abs(fewer - everything).max(axis=2) > 25).sum() > 100, name
+        everything = fewer
+
+
+def test_exaggeration_bends_more(seen: Watched) -> None:
+    seen.does("replay.seek(2.0); replay.look('edge')")
+    true = seen.picture()
+    seen.page.get_by_label("Exaggeration of bending and twist").fill("10")
+    assert seen.does("return replay.exaggeration") == 10
+    assert (np.abs(seen.picture() - true).max(axis=2) > 25).mean() > 0.005
+
+
+def test_everything_by_keyboard(seen: Watched) -> None:
+    keyboard = seen.page.keyboard
+    seen.page.locator("canvas.replay-canvas").focus()
+    keyboard.press("ArrowRight")
+    keyboard.press("Shift+ArrowRight")
+    assert seen.does("return replay.time") == pytest.approx(0.55)
+    keyboard.press("End")
+    assert seen.does("return replay.time") == pytest.approx(4.0)
+    keyboard.press("Home")
+    for key, view in (("2", "above"), ("3", "edge"), ("4", "free"), ("1", "boot")):
+        keyboard.press(key)
+        assert seen.does("return replay.stage.follower.view") == view
+        assert seen.page.locator(f'[data-view="{view}"]').get_attribute("aria-pressed") == "true"
+    keyboard.press("d")
+    assert seen.does("return replay.stage.follower.view") == "free"
+    keyboard.press("c")
+    assert seen.does("return replay.exaggeration") == 2
+    keyboard.press("g")
+    assert not seen.page.get_by_label("Groove", exact=True).is_checked()
+    keyboard.press(" ")
+    assert seen.does("return replay.playing")
+    keyboard.press(" ")
+    assert not seen.does("return replay.playing")
+
+
+def test_every_control_has_a_name(seen: Watched) -> None:
+    unnamed = seen.does(
+        """return [...document.querySelectorAll("button, input, select, canvas, a")].filter((each) =>
+            !(each.getAttribute("aria-label") || each.textContent.trim() || each.closest("label")?.textContent.trim())
+        ).map((each) => each.outerHTML)"""
+    )
+    assert unnamed == []
+
+
+def test_dragging_turns_and_the_wheel_comes_nearer(seen: Watched) -> None:
+    box = seen.page.locator("canvas.replay-canvas").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    seen.page.mouse.move(x, y)
+    before = seen.does("return replay.stage.follower.camera.position.length()")
+    seen.page.mouse.down()
+    seen.page.mouse.move(x + 80, y - 40)
+    seen.page.mouse.up()
+    assert seen.does("return replay.stage.follower.view") == "free"
+    zoom = seen.does("return replay.stage.follower.zoom.free")
+    seen.page.mouse.wheel(0, -300)
+    seen.page.wait_for_function(f"window.skisnowReplay.stage.follower.zoom.free < {zoom}")
+    assert before > 0.0
+
+
+def test_picture_and_film_are_files(seen: Watched, tmp_path: Path) -> None:
+    from PIL import Image
+
+    seen.does("replay.seek(3.4)")
+    with seen.page.expect_download() as download:
+        seen.page.get_by_role("button", name="Picture (PNG)").click()
+    download.value.save_as(tmp_path / "turn.png")
+    with Image.open(tmp_path / "turn.png") as image:
+        assert image.width >= 1280
+        assert coloured(np.asarray(image.convert("RGB")).astype(int)) > 300
+    film = seen.page.get_by_role("button", name="Film (WebM)")
+    if film.is_disabled():
+        pytest.skip("this Chromium records no WebM film")
+    with seen.page.expect_download() as download:
+        film.click()
+    download.value.save_as(tmp_path / "turn.webm")
+    content = (tmp_path / "turn.webm").read_bytes()
+    assert content[:4] == b"\x1a\x45\xdf\xa3"  # EBML, which WebM is
+    assert len(content) > 5000
+
+
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390)])
+def test_a_phone_shows_it_all_without_scrolling_sideways(browser: Any, address: str, width: int, height: int) -> None:
+    phone = Watched(browser, address, width=width, height=height)
+    try:
+        phone.does("replay.seek(2.0)")
+        assert phone.does("return document.documentElement.scrollWidth") <= width
+        assert coloured(phone.picture()) > 100
+        cut = phone.does(
+            f"""return [...document.querySelectorAll("button, select, input, label")].filter((each) => {{
+                const box = each.getBoundingClientRect();
+                return box.width && (box.left < -1 || box.right > {width} + 1);
+            }}).map((each) => each.outerHTML)"""
+        )
+        assert cut == []
+        small = phone.does(
+            """return [...document.querySelectorAll("button, select")].filter((each) => {
+                const box = each.getBoundingClientRect();
+                return box.height < 44 || box.width < 44;
+            }).map((each) => each.outerHTML)"""
+        )
+        assert small == []  # a finger in a glove
+    finally:
+        phone.close()
