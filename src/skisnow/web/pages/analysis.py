@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import secrets
 from base64 import b64encode
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -24,7 +25,7 @@ from ..unpacking import files_below, write_zip
 from ..worker import Worker
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
+    from collections.abc import Awaitable, Callable, Iterator
     from typing import TypeAlias
 
     from nicegui.events import ValueChangeEventArguments
@@ -34,6 +35,10 @@ if TYPE_CHECKING:
     Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
 
 HERE: Final = "/"
+LONG_TABLES: Final = {
+    "penetration_experiments": "Every penetration experiment",
+    "shear_experiments": "Every shear experiment",
+}
 MOST_LISTED: Final = 400
 REPORT_POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; sandbox"
 
@@ -159,23 +164,20 @@ class _View:
     def _show_tables(self, found: Numbers) -> None:
         self._tables.clear()
         with self._tables:
-            heading("Results")
+            heading(found.results["campaign"]["name"])
             if (selected := found.results["penetration"]["selected"]) is not None:
                 sentence(f"Law: {selected['id']}. {selected['reason']}")
-            for html in found.tables.values():
-                ui.html(html, sanitize=False)  # the report's own table, in which all that users wrote is escaped
+            for name, html in found.tables.items():
+                with _behind(LONG_TABLES[name]) if name in LONG_TABLES else nullcontext():
+                    ui.html(html, sanitize=False)  # the report's own table, in which all that users wrote is escaped
 
     def _show_choices(self, found: Numbers) -> None:
         with self._choices:
             heading("What takes part")
-            with ui.element("details"):
-                with ui.element("summary"):
-                    ui.label("Leave out experiments with these marks")
+            with _behind("Leave out experiments with these marks"):
                 for code, words in choosable_marks().items():
                     ui.checkbox(words, value=code in found.excluding, on_change=self._mark_chooser(code))
-            with ui.element("details"):
-                with ui.element("summary"):
-                    ui.label("Experiments that take part")
+            with _behind("Experiments that take part"):
                 for file, kind in (("penetration.csv", "penetration"), ("shear.csv", "shear")):
                     rows = found.results[kind]["experiments"]
                     for row in rows[:MOST_LISTED]:
@@ -212,6 +214,15 @@ class _View:
         self._page.choice = choice
         self._status.set_text("Computing …")
         await self.compute()
+
+
+@contextmanager
+def _behind(words: str) -> Iterator[None]:
+    """Let what is long be opened by who wants it."""
+    with ui.element("details"):
+        with ui.element("summary"):
+            ui.label(words)
+        yield
 
 
 def _counts(found: Numbers) -> str:

@@ -1,0 +1,108 @@
+"""The command, and the addresses behind it, without a browser."""
+
+from __future__ import annotations
+
+import http.client
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+
+from .conftest import MISSING, Served
+
+if "nicegui" in MISSING:
+    pytest.skip("the web lab is not installed", allow_module_level=True)
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """One server for all questions here, none of which changes anything."""
+    lab = Served(tmp_path_factory.mktemp("lab") / "store.sqlite3").start()
+    yield lab
+    lab.kill()
+
+
+def asked(served: Served, path: str, *, method: str = "GET", **headers: str) -> tuple[int, dict[str, str], str]:
+    parts = urlsplit(served.address)
+    assert parts.hostname is not None
+    connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=30)
+    connection.request(method, path, headers=headers)
+    answer = connection.getresponse()
+    found = answer.status, {name.lower(): value for name, value in answer.getheaders()}, answer.read().decode()
+    connection.close()
+    return found
+
+
+def command(*words: str, store: Path) -> subprocess.CompletedProcess[str]:
+    arguments = [sys.executable, "-m", "skisnow", "serve", "--store", str(store), *words]
+    return subprocess.run(arguments, capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_the_first_line_is_the_address_of_this_machine_alone(served: Served) -> None:
+    parts = urlsplit(served.address)
+    assert (parts.scheme, parts.hostname) == ("http", "127.0.0.1")
+    status, headers, text = asked(served, "/")
+    assert status == 200 and "skisnow" in text
+    assert "default-src 'none'" in headers["content-security-policy"]
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.0.2.1"])
+def test_another_host_needs_a_token(host: str, tmp_path: Path) -> None:
+    done = command("--host", host, store=tmp_path / "s.sqlite3")
+    assert done.returncode == 1 and done.stdout == ""
+    assert "add --token" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_a_blank_token_is_none(tmp_path: Path) -> None:
+    assert "token is blank" in command("--token", " ", store=tmp_path / "s.sqlite3").stderr
+
+
+def test_a_port_that_is_taken_is_said(served: Served, tmp_path: Path) -> None:
+    port = str(urlsplit(served.address).port)
+    done = command("--port", port, store=tmp_path / "other.sqlite3")
+    assert done.returncode == 1 and "Traceback" not in done.stderr and "in use" in done.stderr
+
+
+def test_no_trace_reaches_a_page(served: Served) -> None:
+    for path in (
+        "/nowhere",
+        "/enter/0123456789ab",
+        "/enter/..%2f",
+        "/analysis/entry/ffffffffffff",
+        "/report/x/report.html",
+    ):
+        status, _, text = asked(served, path)
+        assert status in (200, 307, 404, 500), path
+        assert "Traceback" not in text and "skisnow/web" not in text, path
+    for path in ("/export/entry/ffffffffffff.zip", "/export/kept/..%2f.zip", "/export/kept/0000.zip"):
+        status, _, text = asked(served, path)
+        assert status == 404 and "Traceback" not in text, path
+
+
+def test_a_store_that_broke_is_said_in_a_sentence(tmp_path: Path) -> None:
+    lab = Served(tmp_path / "store.sqlite3").start()
+    try:
+        for name in ("store.sqlite3-wal", "store.sqlite3-shm"):
+            (tmp_path / name).unlink(missing_ok=True)
+        lab.store.write_bytes(bytes(8192))
+        status, _, text = asked(lab, "/export/kept/abcd.zip")
+    finally:
+        lab.kill()
+    assert status == 404
+    assert "this file is no store" in text
+    assert "Traceback" not in text
+
+
+def test_foreign_posts_and_sockets_are_refused(served: Served) -> None:
+    assert asked(served, "/import", method="POST", Origin="http://evil.example")[0] == 403
+    assert asked(served, "/import", method="POST")[0] == 403
+    upgrade = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13"}
+    key = {"Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ=="}
+    path = "/_nicegui_ws/socket.io/?EIO=4&transport=websocket"
+    assert asked(served, path, **upgrade, **key, Origin="http://evil.example")[0] == 403
+    own = served.address.rstrip("/")
+    assert asked(served, "/", Host="evil.example")[0] == 421
+    assert asked(served, "/", Origin=own)[0] == 200
