@@ -1,0 +1,84 @@
+"""Pictures a second of the replay, drawn in software by Chromium: ``python -m benchmarks.replay``, as Markdown.
+
+The run is carved-46m with the same turn on elastic snow laid over it. Playwright and Chromium must be there; another
+place of Chromium stands in the environment as SKISNOW_CHROMIUM.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import shutil
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skisnow import read_scenario, simulated_run
+from skisnow.web.replay import replay_bytes, replay_of_run, write_replay
+
+if TYPE_CHECKING:
+    from skisnow.web.replay import Replay
+
+SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+SIZES = {"laptop, 1280 × 800": (1280, 800), "large, 1920 × 1080": (1920, 1080), "phone, 390 × 844": (390, 844)}
+VIEWS = ("boot", "above", "edge", "free")
+GOAL = 15.0
+
+# Plays for some seconds; the first tenth is left out, in which the picture finds how fine it can be.
+PLAYED = """([view, seconds]) => new Promise((done) => {
+    const replay = window.skisnowReplay;
+    replay.look(view); replay.seek(0); replay.play();
+    setTimeout(() => {
+        const frames = replay.frames, now = performance.now();
+        setTimeout(() => {
+            const rate = (replay.frames - frames) / (performance.now() - now) * 1000;
+            replay.pause();
+            done([rate, replay.sharpness.ratio]);
+        }, 900 * seconds);
+    }, 100 * seconds);
+})"""
+
+
+def runs(duration: float) -> tuple[Replay, Replay]:
+    """The run and its ghost."""
+    changes = {"run.duration_s": duration}
+    found = [
+        simulated_run(read_scenario("carved-46m", changes=changes | {"snow.penetration": kind}))
+        for kind in ("hypoplastic", "elastic")
+    ]
+    return replay_of_run(found[0], title="carved-46m"), replay_of_run(found[1], title="elastic snow")
+
+
+def rates(page: Any, seconds: float) -> dict[str, tuple[float, float]]:
+    """Pictures a second, and pixels drawn for each of the page, by view."""
+    page.wait_for_function("window.skisnowReplay")
+    return {view: tuple(page.evaluate(PLAYED, [view, seconds])) for view in VIEWS}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.replay", description=__doc__)
+    parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds, all of them played")
+    options = parser.parse_args()
+    from playwright.sync_api import sync_playwright
+
+    run, ghost = runs(options.duration)
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        page = write_replay(run, Path(folder) / "replay.html", ghost=ghost)
+        print(f"{platform.machine()}, {os.cpu_count()} cores, busy with {os.getloadavg()[0]:.1f} processes before")
+        print(f"{len(replay_bytes(run)) / 1e6:.2f} MB a run, {page.stat().st_size / 1e6:.2f} MB the page with two\n")
+        place = os.environ.get("SKISNOW_CHROMIUM") or shutil.which("chromium")
+        browser = playwright.chromium.launch(executable_path=place, args=SOFTWARE)
+        print(f"Chromium {browser.version}, drawing in software; goal: {GOAL:g} pictures a second\n")
+        print(f"| window | {' | '.join(VIEWS)} |\n| --- |{' ---: |' * len(VIEWS)}")
+        for name, (width, height) in SIZES.items():
+            seen = browser.new_page(viewport={"width": width, "height": height})
+            seen.goto(page.as_uri())
+            cells = [f"{rate:.0f} at {ratio:g}" for rate, ratio in rates(seen, options.duration).values()]
+            print(f"| {name} | {' | '.join(cells)} |", flush=True)
+            seen.close()
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
