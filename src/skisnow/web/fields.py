@@ -22,7 +22,7 @@ def field(label: str, value: str = "", *, numeric: bool = False, wide: bool = Fa
 def choice(label: str, options: Sequence[str] | dict[str, str], value: str | None) -> ui.select:
     """One of several; the keyboard opens it with the space bar or the arrow."""
     made = ui.select(list(options) if not isinstance(options, dict) else options, label=label, value=value)
-    return made.props(f'outlined stack-label options-dense=false aria-label="{label}"').classes("field")
+    return made.props("outlined stack-label").classes("field")
 
 
 def button(text: str, act: Callable[..., Any], kind: str = "") -> ui.button:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import background_tasks, run, ui
 
 from ...errors import FieldDataError
+from ..charts import axis, chart
 from ..trouble import told
 from ..words import hardness_words, label, stress_words
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from .sheet import Sheet
 
 OWN: Final = "#0b4f8a"
-INK: Final = "#14181c"
 OTHERS: Final = "#8b96a1"
 
 
@@ -81,26 +81,8 @@ def _figure(name: str | None, curves: dict[str, SeriesCurve]) -> dict[str, Any]:
     traces = [trace for other, curve in curves.items() if other != name for trace in _traces(curve, own=False)]
     if name in curves:
         traces += _traces(curves[name], own=True)
-    axis = {
-        "rangemode": "tozero",
-        "fixedrange": True,
-        "gridcolor": "#d8dee4",
-        "linecolor": "#14181c",
-        "ticks": "outside",
-    }
-    return {
-        "data": traces,
-        "layout": {
-            "xaxis": {**axis, "title": {"text": label("depth_mm")}},
-            "yaxis": {**axis, "title": {"text": label("load_N")}},
-            "margin": {"l": 60, "r": 10, "t": 10, "b": 50},
-            "font": {"size": 15, "color": INK},
-            "showlegend": False,
-            "hovermode": "closest",
-            "height": 340,
-        },
-        "config": {"displayModeBar": False, "responsive": True},
-    }
+    x, y = (axis(label(column), rangemode="tozero") for column in ("depth_mm", "load_N"))
+    return chart(traces, x, y, height=340)
 
 
 def _traces(curve: SeriesCurve, *, own: bool) -> list[dict[str, Any]]:

@@ -1,0 +1,194 @@
+"""A carved turn under the hand: edge angle, load and snow by sliders, and how the ski stands in the snow."""
+
+from __future__ import annotations
+
+import json
+import threading
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import background_tasks, run, ui
+
+from ...errors import SkisnowError
+from ...report.numerals import significant
+from ...ski import ski_names
+from ..charts import axis, chart, line
+from ..fields import choice
+from ..layout import framed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from nicegui.events import GenericEventArguments
+
+    from ...simulate.carve_answer import Sources
+    from ..settings import Lab
+
+PATH: Final = "/carve"
+TITLE: Final = "Carve"
+ALONG: Final = "Station from the boot (m), tip to the right"
+PANELS: Final = {
+    "edge_depth_mm": "Depth of the edge (mm)",
+    "force_per_length_N_per_m": "Force per length (N/m)",
+    "bending_mm": "Bending (mm)",
+    "twist_deg": "Twist (°)",
+}
+# Stops of the sliders and where they stand first (Choice): whole numbers of the field, over what was measured.
+ANGLES: Final = tuple(str(angle) for angle in range(0, 86))
+LOADS: Final = tuple(str(load) for load in range(100, 3001, 50))
+_SOFT: Final = (0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.2, 1.5, 2)
+_HARD: Final = (2.5, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 90)
+HARDNESSES: Final = tuple(f"{hardness:g}" for hardness in (*_SOFT, *_HARD))
+STRESSES: Final = tuple(f"{hundredths / 100:g}" for hundredths in range(4, 53, 2))
+RATIOS: Final = {"1": "1 (elastic)", "10": "10", "100": "100", "inf": "no spring back"}
+SLIDERS: Final = {
+    "edge_angle_deg": ("Edge angle (°)", ANGLES, "45"),
+    "load_N": ("Load on this ski (N)", LOADS, "800"),
+    "H_V_N_per_mm3": ("Snow hardness H_V (N/mm³)", HARDNESSES, "0.2"),
+    "S_f_N_per_mm2": ("Failure shear stress S_f (N/mm²)", STRESSES, "0.5"),
+}
+MOVED: Final = """(event) => {
+  event.target.setAttribute('aria-valuetext', STOPS[event.target.value]);
+  emit(event.target.value);
+}"""
+"""In the browser: were the slider drawn anew by the server, it would jump back under a quick hand."""
+FACTS: Final = {
+    "turn_radius_boot_m": ("Turn radius at the boot", "m"),
+    "turn_radius_chord_m": ("Turn radius of the contact", "m"),
+    "contact_length_m": ("Contact length", "m"),
+    "side_force_N": ("Side force", "N"),
+    "side_force_limit_N": ("What the snow holds", "N"),
+}
+
+
+def add_page(_: Lab) -> None:
+    """Add the page to the application."""
+    solver = _Solver()
+
+    @ui.page(PATH)
+    async def carve() -> None:
+        with framed("Carve", here=PATH):
+            page = _Carve(solver)
+        await ui.context.client.connected()
+        page.ask()
+
+
+class _Solver:
+    """Answers one question at a time; skis are read once. Imported late: the solver's compiler is heavy."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._sources: Sources | None = None
+
+    def answers(self, questions: Sequence[dict[str, object]]) -> list[dict[str, Any]] | str:
+        """The JSON of `skisnow carve` for each question, or why there is none, in a sentence."""
+        from ...simulate.carve_answer import Sources, answered
+        from ...simulate.carve_dict import answer_dict
+        from ...simulate.carve_question import carve_question
+
+        with self._lock:
+            self._sources = self._sources or Sources()
+            try:
+                return [answer_dict(answered(carve_question(each), sources=self._sources)) for each in questions]
+            except SkisnowError as error:
+                return str(error)
+
+
+class _Carve:
+    """The sliders and what follows them; while one answer is computed only the latest question waits."""
+
+    def __init__(self, solver: _Solver) -> None:
+        self._solver = solver
+        self._values: dict[str, str] = {key: start for key, (_, _, start) in SLIDERS.items()}
+        self._waiting = False
+        self._working = False
+        names = list(ski_names())
+        with ui.element("div").classes("fields"):
+            self._ski = choice("Ski", names, names[0])
+            self._other = choice("Compared with", ["nothing", *names], "nothing")
+            self._ratio = choice("Unloading ratio k_u/H_V", RATIOS, "10")
+        with ui.element("div").classes("sliders"):
+            for key in SLIDERS:
+                self._slider(key)
+        self._status = ui.label("Computing … On a machine's first run the solver is compiled, once.").classes("status")
+        self._status.props("role=status")
+        self._facts = ui.element("div").classes("table")
+        with ui.element("div").classes("two"):
+            self._plots = {key: self._plot(title) for key, title in PANELS.items()}
+        for each in (self._ski, self._other, self._ratio):
+            each.on_value_change(self.ask)
+
+    def _slider(self, key: str) -> None:
+        words, stops, start = SLIDERS[key]
+        with ui.element("div").classes("slider"):
+            shown = ui.label(f"{words}: {start}")
+
+            def moved(event: GenericEventArguments) -> None:
+                self._values[key] = stops[min(max(int(event.args), 0), len(stops) - 1)]
+                shown.set_text(f"{words}: {self._values[key]}")
+                self.ask()
+
+            # the browser's own slider: arrow keys, touch and screen readers know it
+            made = ui.element("input").props(f'type=range min=0 max={len(stops) - 1} step=1 aria-label="{words}"')
+            made.props(f'aria-valuetext="{start}"')
+            made.props["^value"] = str(stops.index(start))  # as an attribute, which a later drawing does not put back
+            made.on("input", moved, js_handler=MOVED.replace("STOPS", json.dumps(stops)))
+
+    def _plot(self, title: str) -> ui.plotly:
+        words = f"{title} along the ski"
+        return ui.plotly(chart([], axis(ALONG), axis(title))).props(f'role=img aria-label="{words}"').classes("plot")
+
+    def ask(self) -> None:
+        """Ask for the answer to where the sliders stand now."""
+        self._waiting = True
+        if not self._working:
+            self._working = True
+            background_tasks.create(self._work(), name="carve")
+
+    async def _work(self) -> None:
+        try:
+            while self._waiting:
+                self._waiting = False
+                found = await run.io_bound(self._solver.answers, self._questions())
+                if isinstance(found, str):
+                    self._status.set_text(found)
+                elif found is not None:
+                    self._show(found)
+        finally:
+            self._working = False
+
+    def _questions(self) -> list[dict[str, object]]:
+        numbers = {key: float(value) for key, value in self._values.items()}
+        skis = [name for name in (self._ski.value, self._other.value) if name != "nothing"]
+        return [{"ski": name, **numbers, "unloading_ratio": float(str(self._ratio.value))} for name in skis]
+
+    def _show(self, answers: list[dict[str, Any]]) -> None:
+        self._status.set_text(" ".join(_told(answer) for answer in answers))
+        self._facts.clear()
+        with self._facts:
+            _table(answers)
+        for key, title in PANELS.items():
+            lines = [line(a["station_m"], a[key], number) for number, a in enumerate(answers) if a[key] is not None]
+            self._plots[key].update_figure(chart(lines, axis(ALONG), axis(title)))
+
+
+def _told(answer: dict[str, Any]) -> str:
+    words = f"{answer['ski']['name']}: {str(answer['outcome']).replace('_', ' ')}"
+    remedy = f", {answer['remedy']}" if answer["remedy"] else ""
+    warned = "".join(f" Warning: {text}." for text in answer["warnings"])
+    return f"{words}{remedy}.{warned}"
+
+
+def _table(answers: list[dict[str, Any]]) -> None:
+    with ui.element("table"):
+        with ui.element("thead"), ui.element("tr"):
+            for text in ("", *(answer["ski"]["name"] for answer in answers)):
+                with ui.element("th").props("scope=col"):
+                    ui.label(text)
+        with ui.element("tbody"):
+            for key, (words, unit) in FACTS.items():
+                with ui.element("tr"):
+                    with ui.element("th").props("scope=row"):
+                        ui.label(words)
+                    for answer in answers:
+                        with ui.element("td").classes("n"):
+                            ui.label(f"{significant(answer[key])} {unit}")
