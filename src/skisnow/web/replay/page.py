@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from .replay import ReplayTrack
 
 MODULES: Final = (
-    "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow.js", "groove.js",
+    "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow.js", "grid.js",
+    "groove.js",
     "skis.js", "cameras.js", "controls.js", "sharpness.js", "takeaway.js", "stage.js",
     "replay.js",
 )  # fmt: skip

@@ -1,6 +1,6 @@
 // How fine the picture is drawn: as fine as the machine keeps up with while it plays, and finer when it stands.
 
-const RATIOS = [0.6, 0.8, 1, 1.5, 2]; // pixels drawn for each of the page
+const RATIOS = [0.45, 0.6, 0.8, 1, 1.5, 2]; // pixels drawn for each of the page
 const SLOW = 50; // ms between pictures above which it gets coarser: 20 a second
 const QUICK = 22; // ms below which it may get finer
 const PATIENCE = 12; // pictures between changes

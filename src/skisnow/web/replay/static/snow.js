@@ -1,4 +1,4 @@
-// The slope, calm: one light surface with a grid of metres, fading into the sky; and what is drawn flat on it.
+// The slope, calm: one light surface, fading into the sky; and what is drawn flat on it.
 
 import * as THREE from "./three.module.min.js";
 
@@ -9,37 +9,23 @@ const LOWEST_SKY = 0.12; // rad below the horizontal: under it all is snow, or t
 /** What is behind everything. */
 export const BACKGROUND = HORIZON;
 
+const SNOW = [241, 245, 249];
+// plain, as most of the picture is snow: where there is no graphics card, each sum of a pixel counts
 const SURFACE = {
   vertex: `
-    varying vec2 place;
     varying float away;
     void main() {
-      place = position.xy;
       vec4 seen = modelViewMatrix * vec4(position, 1.0);
       away = -seen.z;
       gl_Position = projectionMatrix * seen;
     }`,
-  // lines as wide as a pixel at least, and fainter where they come closer than a few pixels
   fragment: `
     precision highp float;
     uniform vec3 horizon;
-    varying vec2 place;
+    uniform vec3 snow;
     varying float away;
-    float lines(float every, float width) {
-      vec2 at = place / every;
-      vec2 pixel = fwidth(at);
-      vec2 off = abs(fract(at - 0.5) - 0.5);
-      float half_width = 0.5 * width / every;
-      vec2 on = 1.0 - smoothstep(vec2(half_width), half_width + pixel * 1.4, off);
-      vec2 faint = 1.0 - smoothstep(vec2(0.06), vec2(0.35), pixel);
-      return max(on.x * faint.x, on.y * faint.y);
-    }
     void main() {
-      vec3 snow = vec3(0.945, 0.962, 0.978);
-      snow = mix(snow, vec3(0.80, 0.855, 0.905), 0.75 * lines(1.0, 0.008));
-      snow = mix(snow, vec3(0.66, 0.745, 0.82), 0.8 * lines(5.0, 0.015));
-      snow = mix(snow, horizon, smoothstep(25.0, 150.0, away));
-      gl_FragColor = vec4(snow, 1.0); // as the screen takes it: nothing left to convert
+      gl_FragColor = vec4(mix(snow, horizon, clamp((away - 25.0) / 125.0, 0.0, 1.0)), 1.0);
     }`,
 };
 
@@ -87,13 +73,17 @@ export function surface(run) {
   const material = new THREE.ShaderMaterial({
     vertexShader: SURFACE.vertex,
     fragmentShader: SURFACE.fragment,
-    uniforms: { horizon: { value: HORIZON.clone().convertLinearToSRGB() } },
+    uniforms: shades(),
     side: THREE.DoubleSide,
     depthWrite: false,
     depthTest: false, // what lies on it or a millimetre in it is never torn by it
   });
   return flat(new THREE.Mesh(geometry, material), 1);
 }
+
+export const shade = (colour) => ({ value: new THREE.Vector3(...colour).divideScalar(255) });
+/** Colours that a shader of the surface starts from. */
+export const shades = () => ({ horizon: { value: HORIZON.clone().convertLinearToSRGB() }, snow: shade(SNOW) });
 
 function profilePoints(run) {
   const profile = run.arrays.profile?.values;
@@ -111,7 +101,8 @@ function goneOn([x, z], [towardX, towardZ]) {
   return [x + way, z + (way * (z - towardZ)) / (x - towardX)];
 }
 
-function extent(values, axis) {
+/** Lowest and highest of one coordinate of places. */
+export function extent(values, axis) {
   let [low, high] = [Infinity, -Infinity];
   for (let i = axis; i < values.length; i += 3) {
     low = Math.min(low, values[i]);
@@ -120,7 +111,8 @@ function extent(values, axis) {
   return [low, high];
 }
 
-function flat(mesh, order) {
+/** Drawn in this order, wherever it is. */
+export function flat(mesh, order) {
   mesh.renderOrder = order;
   mesh.frustumCulled = false;
   return mesh;

@@ -4,6 +4,7 @@ import * as THREE from "./three.module.min.js";
 import { largest } from "./binary.js";
 import { Follower } from "./cameras.js";
 import { GHOST, roundAbove, TRACK } from "./colours.js";
+import { grid } from "./grid.js";
 import { deepest, groove, measuredTrack } from "./groove.js";
 import { skis } from "./skis.js";
 import { BACKGROUND, sky, surface } from "./snow.js";
@@ -15,7 +16,7 @@ export class Stage {
   constructor(canvas, run, ghost) {
     this.run = run;
     this.ghost = ghost;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
+    this.renderer = new THREE.WebGLRenderer({ canvas, context: context(canvas) });
     this.scene = new THREE.Scene();
     this.scene.background = BACKGROUND;
     this.space = new THREE.Group();
@@ -44,7 +45,7 @@ export class Stage {
     const { run, ghost } = this;
     this.skis = skis(run, { most: this.scales.force });
     this.groove = groove(run, { most: this.scales.depth, order: 4 });
-    this.space.add(surface(run), this.groove.mesh, this.skis.group);
+    this.space.add(surface(run), grid(run), this.groove.mesh, this.skis.group);
     if (ghost) {
       this.ghostSkis = skis(ghost, { most: this.scales.force, ghost: true });
       this.ghostGroove = groove(ghost, { most: this.scales.depth, colour: GHOST_GROOVE, order: 3 });
@@ -96,6 +97,14 @@ export class Stage {
     this.marker.visible = Boolean(place) && this.trackShown;
     if (place) this.marker.position.set(...place);
   }
+}
+
+/** Opaque and without smoothing by the card: a picture that stands is drawn twice as fine instead. */
+function context(canvas) {
+  const wishes = { alpha: false, antialias: false, stencil: false, powerPreference: "high-performance" };
+  const found = canvas.getContext("webgl2", wishes);
+  if (!found) throw new Error("no WebGL 2");
+  return found;
 }
 
 function marker() {
