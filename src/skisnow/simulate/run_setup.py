@@ -38,9 +38,9 @@ ONE_SIDED: Final = math.sin(math.radians(2.0))
 """Sine of the edge angle above which the shear acts at the edge alone; below, it moves to the ski's middle (Choice)."""
 ELEMENTS: Final = 40
 """Finite elements over a ski at least: 4.5 cm each (Choice, see the convergence of the docs)."""
-LINE_SPACING: Final = 0.024
+LINE_SPACING: Final = 0.02
 """Largest spacing (m) of the snow's lines (Choice)."""
-CELLS_ACROSS: Final = 6
+CELLS_ACROSS: Final = 8
 """Cells over the width of the contact (Choice)."""
 CELLS: Final = 64
 """Cells that a line keeps at a time: many more than a contact needs, few enough for the processor's cache."""
@@ -265,7 +265,6 @@ def _snow(scenario: Scenario) -> Snow:
         friction=contact.friction,
         friction_by_speed=contact.friction_by_speed,
         friction_speed=FRICTION_SPEED,
-        secant=float(scenario.solver.method == "fast"),
         one_sided=ONE_SIDED,
     )
 

@@ -37,9 +37,9 @@ def _three(comparison: Comparison) -> Json:
 def _distances(found: Distances, length: float) -> Json:
     numbers = found.numbers
     metres = {
-        "max_m": numbers and numbers.max,
-        "mean_m": numbers and numbers.mean,
-        "rms_m": numbers and numbers.rms,
+        "max_m": None if numbers is None else numbers.max,
+        "mean_m": None if numbers is None else numbers.mean,
+        "rms_m": None if numbers is None else numbers.rms,
     }
     shares = {
         f"{key.removesuffix('_m')}_share": None if value is None else value / length for key, value in metres.items()

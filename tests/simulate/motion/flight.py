@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy.linalg import eigh
 
 from skisnow.simulate.motion.equations import copy_state
-from skisnow.simulate.motion.fast import fast_step
+from skisnow.simulate.motion.fast import REACH, fast_step, new_past
 from skisnow.simulate.motion.forces import new_forces
 from skisnow.simulate.motion.lines import new_lines
 from skisnow.simulate.motion.model import Model, Snow, World, new_state, sledge_model
@@ -32,7 +32,6 @@ NO_SNOW = Snow(
     friction=0.05,
     friction_by_speed=0.0,
     friction_speed=0.01,
-    secant=0.0,
     one_sided=0.03,
 )
 
@@ -64,18 +63,20 @@ class Flight:
         self._forces, self._stage = new_forces(n, 4), new_forces(n, 4)
         self._lines = new_lines(4, 16, spacing=0.02, cell=1e-3)
         self._system, self._room = new_factored(n), new_room(n)
+        self._past = new_past(n)
 
     def fly(self, duration: float, steps: int, *, method: str = "ros2") -> Flight:
         """Go on for a duration (s) in equal steps."""
         h = duration / steps
-        reach = h if method == "fast" else GAMMA * h
-        rows = np.zeros((2, CHANNELS, 6))
-        structure = reach * (reach + self.model.damping)
-        assert factor(self.model, self._forces, rows, structure, reach * reach, self._system)
-        for _ in range(steps):
+        for i in range(steps):
+            if i < 2:  # the fast mode's first step is one of Euler's method
+                reach = GAMMA * h if method == "ros2" else h if self._past.step[0] != h else REACH * h
+                structure = reach * (reach + self.model.damping)
+                rows = np.zeros((2, CHANNELS, 6))
+                assert factor(self.model, self._forces, rows, structure, reach * reach, self._system)
             if method == "fast":
                 fast_step(
-                    self.model, self.world, self.state, self._forces, self._system, h, self._room, self._next
+                    self.model, self.world, self.state, self._forces, self._system, h, self._past, self._next
                 )  # fmt: skip
             else:
                 ros2_step(

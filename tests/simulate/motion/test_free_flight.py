@@ -36,8 +36,8 @@ def energy(flight: Flight) -> float:
     return float(0.5 * speeds @ dense_mass(model) @ speeds + 0.5 * bend @ dense_stiffness(model) @ bend)
 
 
-@pytest.mark.parametrize(("method", "order"), [("ros2", 2.0), ("fast", 1.0)])
-def test_momenta_and_energy_are_kept(method: str, order: float) -> None:
+@pytest.mark.parametrize("method", ["ros2", "fast"])
+def test_momenta_and_energy_are_kept(method: str) -> None:
     start = tumbling()
     momentum, turning = start.momenta()
     before = energy(start)
@@ -53,16 +53,10 @@ def test_momenta_and_energy_are_kept(method: str, order: float) -> None:
             ]
         )
     drift = np.array(drifts)
-    assert np.all(drift[-1] < (5e-6 if method == "ros2" else 2e-3))
-    if (
-        method == "ros2"
-    ):  # what is left is the bent skis' share in the momenta, of the size of mass × w × ω, at any step
-        assert np.all(np.abs(drift[-1] / drift[-2] - 1.0) < 0.1)
-        return
-    seen = np.log2(drift[:-1] / drift[1:])
-    # the declared order, or better where errors cancel
-    assert np.all(seen[-1] > order - 0.15)
-    assert np.min(seen[-1]) < order + 0.3
+    # what is left at any step is the bent skis' share in the momenta, of the size of mass × w × ω
+    assert np.all(drift[-1] < 5e-6), drift
+    if method == "ros2":
+        assert np.all(np.abs(drift[-1] / drift[-2] - 1.0) < 0.1), drift
 
 
 def test_a_free_turn_keeps_its_angle() -> None:

@@ -206,7 +206,7 @@ def test_window_moves_along_with_the_ski(way: float) -> None:
         middle = way * 4e-3 * step
         lines.value[0, [LOW, HIGH, EDGE]] = middle - 6.5e-3, middle + 6.5e-3, middle
         before, old = total_energy(lines, archive), groove(lines)
-        make_room(archive, lines, 0, H, K - H)
+        make_room(archive, lines, 0, lines.value[0, LOW], lines.value[0, HIGH], H, K - H)
         assert total_energy(lines, archive) == pytest.approx(
             before, rel=1e-6, abs=1e-12
         )  # the archive is single precision
@@ -227,7 +227,7 @@ def test_coarser_cells_keep_depth_and_energy(fall: float) -> None:
     press(lines, -15e-3, 15e-3, 0.0, 5e-3, fall)
     before, energy = groove(lines), total_energy(lines, archive)
     lines.value[0, [LOW, HIGH]] = -30e-3, 30e-3
-    make_room(archive, lines, 0, H, K - H)
+    make_room(archive, lines, 0, lines.value[0, LOW], lines.value[0, HIGH], H, K - H)
     assert lines.value[0, CELL] == 2e-3
     for j, (deepest, low, high) in groove(lines).items():
         assert deepest == pytest.approx(5e-3 + fall * (j + 0.5) * 2e-3, rel=1e-12)
@@ -240,7 +240,7 @@ def test_a_fresh_line_chooses_cells_wide_enough() -> None:
     lines, archive = one_line(), new_archive(50, 5000)
     lines.flag[0, KEPT] = 0
     lines.value[0, [LOW, HIGH]] = -0.05, 0.05
-    make_room(archive, lines, 0, H, K - H)
+    make_room(archive, lines, 0, lines.value[0, LOW], lines.value[0, HIGH], H, K - H)
     assert lines.value[0, CELL] == 4e-3
     start = int(lines.flag[0, WINDOW])
     assert start * 4e-3 < -0.05

@@ -19,7 +19,7 @@ from .dense_model import INNER
 from .flight import Flight, first_mode, light_ski
 
 FloatArray = npt.NDArray[np.float64]
-METHODS = pytest.mark.parametrize(("method", "order"), [("ros2", 2.0), ("fast", 1.0)])
+METHODS = pytest.mark.parametrize(("method", "order"), [("ros2", 2.0), ("fast", 2.0)])
 
 
 def orders(error: Callable[[int], float], steps: tuple[int, ...]) -> list[float]:

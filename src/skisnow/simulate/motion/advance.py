@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .archive import Archive
 from .equations import add_forces, channel_rows, copy_state
-from .fast import STEPS_PER_TANGENT, fast_step
+from .fast import REACH, STEPS_PER_TANGENT, Past, fast_step, new_past
 from .forces import FRICTION, NORMAL, RELEASED, SHEAR, SIDEWAYS, Forces, feel, new_forces
 from .lines import Lines
 from .model import PADDING, Model, Snow, State, World, new_state
@@ -56,6 +56,7 @@ class Memory(NamedTuple):
     half_start: Forces
     system: Factored
     room: Room
+    past: Past
     clock: Clock
     scratch: Vector
 
@@ -72,6 +73,7 @@ def new_memory(size: int, ring: int) -> Memory:
         new_forces(size, ring),
         new_factored(size),
         new_room(size),
+        new_past(size),
         Clock(np.zeros(3), np.zeros(3, np.int64), np.zeros(WORKS), np.zeros(WORKS)),
         new_vector(size),
     )
@@ -127,16 +129,15 @@ def advance_fixed(
         return GOES_ON
     steps = max(1, int(np.ceil(left / step - 1e-9)))
     h = left / steps
-    changed = h != clock.time[1]
     clock.time[1] = h
     for i in range(steps):
         if fast:
-            if changed or clock.counts[2] % STEPS_PER_TANGENT == 0:
-                if not _factor(model, lines, memory, h, 1.0):
+            first = memory.past.step[0] != h
+            if first or clock.counts[2] % STEPS_PER_TANGENT == 0:
+                if not _factor(model, lines, memory, h, 1.0 if first else REACH):
                     return NOT_FINITE
-                clock.counts[2] = 0
-                changed = False
-            fast_step(model, world, memory.state, memory.start, memory.system, h, memory.room, memory.next)
+                clock.counts[2] = -1 if first else 0  # Euler's matrix serves one step alone
+            fast_step(model, world, memory.state, memory.start, memory.system, h, memory.past, memory.next)
         else:
             if not _factor(model, lines, memory, h, GAMMA):
                 return NOT_FINITE

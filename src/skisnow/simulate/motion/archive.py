@@ -13,10 +13,8 @@ from .lines import (
     CENTRE,
     DEEPEST,
     FROM,
-    HIGH,
     KEPT,
     LOST,
-    LOW,
     MARGIN,
     NOTHING,
     SLOPE,
@@ -31,11 +29,14 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 SmallArray: TypeAlias = npt.NDArray[np.float32]
 IntArray: TypeAlias = npt.NDArray[np.int64]
 
-BUCKET = 0.5
+BUCKET = 0.25
 """Size (m) of the squares in which pieces are looked up."""
-LONGEST = 0.25
+LONGEST = 0.12
 """Longest piece (m): less than half a square."""
-BUCKETS = 4096
+BUCKETS = 16384
+SWEEP = 0.01
+"""Cells that an edge leaves sideways grow until they reach as far (m): on ice it would leave them at
+every step (Choice)."""
 
 
 class Archive(NamedTuple):
@@ -128,11 +129,12 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
 
 
 @numba.njit(cache=True, error_model="numpy")
-def meets_older(archive: Archive, x: float, y: float) -> bool:
-    """Whether there is any older track near a place."""
+def meets_older(archive: Archive, x: float, y: float, reach: float) -> bool:
+    """Whether there is any older track within reach (m) of a place, about."""
     a, b = int(np.floor(x / BUCKET)), int(np.floor(y / BUCKET))
-    for i in range(-1, 2):
-        for j in range(-1, 2):
+    around = 1 + int(np.ceil(reach / BUCKET))
+    for i in range(-around, around + 1):
+        for j in range(-around, around + 1):
             if archive.head[_bucket(a + i, b + j)] >= 0:
                 return True
     return False
@@ -154,18 +156,27 @@ def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hard
         for j in range(-around, around + 1):
             piece = archive.head[_bucket(a + i, b + j)]
             while piece >= 0:
-                half = 0.5 * archive.start[piece, 1] * archive.cell[piece]
-                middle = archive.start[piece, 0] * archive.cell[piece] + half
-                ex = archive.frame[piece, 0] + middle * archive.frame[piece, 6] - x0
-                ey = archive.frame[piece, 1] + middle * archive.frame[piece, 7] - y0
-                ez = archive.frame[piece, 2] + middle * archive.frame[piece, 8] - z0
-                far = reach + half + lines.spacing[0]
-                if ex * ex + ey * ey + ez * ez < far * far:
+                if _lies_on(archive, piece, x0, y0, z0, frame, reach, 0.5 * lines.spacing[0]):
                     found = _take_over(archive, piece, lines, row, first, last, mask) or found
                 piece = archive.before[piece]
     if found:
         lines.value[row, LOST] += energy_left(lines, row, first, last, hardness, excess)
     return found
+
+
+@numba.njit(cache=True, error_model="numpy", inline="always")
+def _lies_on(
+    archive: Archive, piece: int, x: float, y: float, z: float, frame: FloatArray, reach: float, wide: float
+) -> bool:
+    """Whether a piece may lie on a line's cells within reach of a place; a piece counts `wide` before and behind."""
+    other = archive.frame[piece]
+    ex, ey, ez = x - other[0], y - other[1], z - other[2]
+    tilt = abs(frame[6] * other[3] + frame[7] * other[4] + frame[8] * other[5])
+    if abs(ex * other[3] + ey * other[4] + ez * other[5]) > wide + reach * tilt:
+        return False
+    half = 0.5 * archive.start[piece, 1] * archive.cell[piece]
+    across = ex * other[6] + ey * other[7] + ez * other[8]
+    return abs(across - archive.start[piece, 0] * archive.cell[piece] - half) <= half + reach
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -202,19 +213,20 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
 @numba.njit(cache=True, error_model="numpy")
 def look_ahead(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
     """Give a fresh line the older tracks that lie on it, if there are any."""
-    if not meets_older(archive, lines.frame[row, 0], lines.frame[row, 1]):
-        return
     cells = lines.cells.shape[1]
+    if not meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], 0.5 * cells * lines.value[row, CELL]):
+        return
     open_window(lines, row, -cells // 2)
     if not recall(archive, lines, row, -cells // 2, cells - cells // 2, hardness, excess):
         lines.flag[row, KEPT] = 0
 
 
 @numba.njit(cache=True, error_model="numpy")
-def make_room(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
+def make_room(
+    archive: Archive, lines: Lines, row: int, low: float, high: float, hardness: float, excess: float
+) -> None:  # fmt: skip
     """Bring a line's cells to where it is touched now: open them, move them along, or make them coarser."""
     cells = lines.cells.shape[1]
-    low, high = lines.value[row, LOW], lines.value[row, HIGH]
     fresh = lines.flag[row, KEPT] == 0
     while (high - low) / lines.value[row, CELL] > cells - 4 * MARGIN:
         if fresh:
@@ -226,10 +238,16 @@ def make_room(archive: Archive, lines: Lines, row: int, hardness: float, excess:
     start = lines.flag[row, WINDOW]
     if not fresh and start <= first and last < start + cells:
         return
+    while not fresh and cell * cells < SWEEP:
+        _coarsen(lines, row)
+        cell, start = lines.value[row, CELL], lines.flag[row, WINDOW]
+        first, last = int(np.floor(low / cell)) - MARGIN, int(np.floor(high / cell)) + MARGIN
+        if start <= first and last < start + cells:
+            return
     new = (first + last) // 2 - cells // 2
     if fresh:
         open_window(lines, row, new)
-        if meets_older(archive, lines.frame[row, 0], lines.frame[row, 1]):
+        if meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], max(abs(new), abs(new + cells)) * cell):
             recall(archive, lines, row, new, new + cells, hardness, excess)
         return
     before = lines.value[row, LOST]

@@ -307,7 +307,7 @@ def _forces(  # noqa: PLR0912, PLR0915 - as above
         # the edge holds where it first took hold, with up to its strength
         hold = snow.shear_stress * deep * weight
         used = (anchor_of(value, flag, row, edge, deep) - edge) * per_holding
-        sticks = abs(used) < 1.0 or snow.secant > 0.0
+        sticks = abs(used) < 1.0
         used = min(max(used, -1.0), 1.0)
         shear = hold * used
         # centre of pressure, on the base

@@ -42,11 +42,12 @@ CELL, SLOPE, LOST, ANCHOR, LOW, HIGH, EDGE, DEPTH, FALL, DEEP_NOW, EDGE_ABOVE, D
     10,
     11,
 )
-# where its edge was marked last (m)
-EDGE_MARKED = 12
+# where its edge was marked last, and how deep (m)
+EDGE_MARKED, DEPTH_MARKED = 12, 13
 # columns of `flag`: number of the first cell, whether the cells hold anything, whether the edge holds, whether the base
-# is there, whether at the last look it was just above, whether its base was marked at the last look
-WINDOW, KEPT, ANCHORED, TOUCHED, ABOVE, MARKED = 0, 1, 2, 3, 4, 5
+# is there, whether at the last look it was just above, whether its base was marked at the last look, whether
+# an edge has swept across it by more than a cell in a step: its ground is flat then
+WINDOW, KEPT, ANCHORED, TOUCHED, ABOVE, MARKED, SWEPT = 0, 1, 2, 3, 4, 5, 6
 # columns of `cells`: deepest base extended to the cell's middle, part that a base has covered, across; deepest base at
 # the middle itself, which counts for the energy: an edge that leaves a cell is deeper, extended to the middle (m)
 DEEPEST, FROM, TO, CENTRE = 0, 1, 2, 3
@@ -57,8 +58,8 @@ class Lines(NamedTuple):
 
     frame: FloatArray  # (2 ring, 12) origin, unit vectors ahead, to the left, out of the snow
     cells: FloatArray  # (2 ring, cells, 4)
-    value: FloatArray  # (2 ring, 13)
-    flag: IntArray  # (2 ring, 6)
+    value: FloatArray  # (2 ring, 14)
+    flag: IntArray  # (2 ring, 7)
     first: IntArray  # (2,) of the ring, the line nearest the tail
     count: IntArray  # type: ignore[assignment]  # (2,) hides the tuple's own, which nothing asks for
     spacing: FloatArray  # (2,) of the lines along the path, and of fresh cells across (m)
@@ -70,8 +71,8 @@ def new_lines(ring: int, cells: int, *, spacing: float, cell: float) -> Lines:
     return Lines(
         np.zeros((rows, 12)),
         np.zeros((rows, cells, 4)),
-        np.zeros((rows, 13)),
-        np.zeros((rows, 6), np.int64),
+        np.zeros((rows, 14)),
+        np.zeros((rows, 7), np.int64),
         np.zeros(2, np.int64),
         np.zeros(2, np.int64),
         np.array([spacing, cell]),
@@ -91,6 +92,7 @@ def begin_line(lines: Lines, row: int, frame: FloatArray) -> None:
     lines.flag[row, TOUCHED] = 0
     lines.flag[row, ABOVE] = 0
     lines.flag[row, MARKED] = 0
+    lines.flag[row, SWEPT] = 0
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -202,11 +204,33 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: int) -> None:
         j += 1
 
 
+@numba.njit(cache=True, error_model="numpy", inline="always")
+def mark_swept(cells: FloatArray, value: FloatArray, row: int) -> None:
+    """Remember the ground that the edge left sideways since it was marked last: as deep as the edge that passed."""
+    edge, before, depth, slope = value[row, EDGE], value[row, EDGE_MARKED], value[row, DEPTH], value[row, FALL]
+    cell = value[row, CELL]
+    rise = (depth - value[row, DEPTH_MARKED]) / (edge - before)
+    mask = cells.shape[1] - 1
+    low, high = min(edge, before), max(edge, before)
+    j, last = int(np.floor(low / cell)), int(np.floor(high / cell))
+    while j <= last:
+        i = j & mask
+        middle = (j + 0.5) * cell
+        passed = min(max(middle, low), high)
+        here = depth + rise * (passed - edge) + slope * (middle - passed)
+        if passed == middle:
+            cells[row, i, CENTRE] = max(cells[row, i, CENTRE], here)
+        cells[row, i, DEEPEST] = max(cells[row, i, DEEPEST], here)
+        cells[row, i, FROM] = min(cells[row, i, FROM], max(low, j * cell))
+        cells[row, i, TO] = max(cells[row, i, TO], min(high, (j + 1) * cell))
+        j += 1
+
+
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> float:
     """Energy lost to the groove in the cells first ≤ j < last of a line (J): ½ H_V g² (1 - H_V/k_u) per area."""
     mask = lines.cells.shape[1] - 1
-    cell, slope = lines.value[row, CELL], lines.value[row, SLOPE]
+    cell, slope = lines.value[row, CELL], 0.0 if lines.flag[row, SWEPT] == 1 else lines.value[row, SLOPE]
     total = 0.0
     for j in range(first, last):
         i = j & mask

@@ -58,7 +58,6 @@ class Snow(NamedTuple):
     friction: float  # μ at rest
     friction_by_speed: float  # (s/m)
     friction_speed: float  # below which friction fades to zero (m/s)
-    secant: float  # 1.0: the tangent takes an edge that yields as if it held; 0.0: not
     one_sided: float  # sine of the edge angle above which the shear acts at the edge alone
 
 

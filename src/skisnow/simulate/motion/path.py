@@ -16,6 +16,7 @@ from .lines import (
     CELL,
     DEEP_NOW,
     DEPTH,
+    DEPTH_MARKED,
     EDGE,
     EDGE_MARKED,
     FALL,
@@ -25,6 +26,7 @@ from .lines import (
     LOW,
     MARGIN,
     MARKED,
+    SWEPT,
     TOUCHED,
     WINDOW,
     Lines,
@@ -32,6 +34,7 @@ from .lines import (
     begin_line,
     energy_left,
     mark_cells,
+    mark_swept,
 )
 from .model import Model, Snow, State, World
 
@@ -158,29 +161,12 @@ def _leave_all(snow: Snow, lines: Lines, archive: Archive, k: int) -> None:
     lines.count[k] = 0
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _swept(value: FloatArray, flag: IntArray, row: int, edge: float, depth: float, fall: float) -> float:
-    """How much more ∫ε² (m³) the ground has that the edge left since the last look, than what was marked there then.
-
-    Each place was as deep as the edge when the edge passed; at the last look it was d off the edge and fall × d less
-    deep.
-    """
-    moved = edge - value[row, EDGE_MARKED]
-    more = 0.0
-    if flag[row, MARKED] == 1 and moved * fall < 0.0:
-        d, f = abs(moved), min(abs(fall), depth / max(abs(moved), 1e-12))
-        more = max(0.0, d * d * f * (depth - f * d / 3.0))
-    value[row, EDGE_MARKED], flag[row, MARKED] = edge, 1
-    return more
-
-
 @numba.njit(cache=True, error_model="numpy")
 def press(snow: Snow, lines: Lines, archive: Archive) -> None:
     """Let the snow remember the bases that touch its lines now, and where the edges hold."""
     ring = len(lines.flag) // 2
     value, flag, cells = lines.value, lines.flag, lines.cells
     size = cells.shape[1]
-    loss = 0.5 * snow.hardness * snow.excess / (snow.hardness + snow.excess) * lines.spacing[0]
     for k in range(2):
         for c in range(lines.count[k]):
             row = k * ring + (lines.first[k] + c) % ring
@@ -188,16 +174,19 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
                 flag[row, MARKED] = 0
                 continue
             cell, start = value[row, CELL], flag[row, WINDOW]
+            edge, low, high = value[row, EDGE], value[row, LOW], value[row, HIGH]
+            swept = flag[row, MARKED] == 1 and (edge - value[row, EDGE_MARKED]) * value[row, FALL] < 0.0
+            if swept:
+                low, high = min(low, value[row, EDGE_MARKED]), max(high, value[row, EDGE_MARKED])
             reach = MARGIN * cell
-            if (
-                flag[row, KEPT] == 0
-                or value[row, LOW] - reach < start * cell
-                or value[row, HIGH] + reach >= (start + size) * cell
-            ):
-                make_room(archive, lines, row, snow.hardness, snow.excess)
-            edge, depth, fall = value[row, EDGE], value[row, DEPTH], value[row, FALL]
+            if flag[row, KEPT] == 0 or low - reach < start * cell or high + reach >= (start + size) * cell:
+                make_room(archive, lines, row, low, high, snow.hardness, snow.excess)
+            if swept:
+                if high - low > value[row, HIGH] - value[row, LOW] + cell:
+                    flag[row, SWEPT] = 1
+                mark_swept(cells, value, row)
             mark_cells(cells, value, row)
-            archive.lost[0] += loss * _swept(value, flag, row, edge, depth, fall)
+            value[row, EDGE_MARKED], value[row, DEPTH_MARKED], flag[row, MARKED] = edge, value[row, DEPTH], 1
             anchor = anchor_of(value, flag, row, edge, value[row, DEEP_NOW])
             value[row, ANCHOR] = max(min(anchor, edge + snow.holding), edge - snow.holding)
             flag[row, ANCHORED], flag[row, ABOVE] = 1, 0
