@@ -21,9 +21,9 @@ from .sledges import load, rigid_ski, scenario
 
 PAGE: Final = Path(__file__).parents[3] / "docs" / "validation" / "simulated-turn.md"
 SNOWS: Final = (
-    (0.04, 0.2), (0.04, 0.02), (0.2, 0.5), (0.2, 0.1), (1.0, 1.0), (1.0, 0.3), (90.0, 10.0), (90.0, 0.3),
+    (0.04, 0.2), (0.04, 0.04), (0.2, 0.5), (0.2, 0.1), (1.0, 1.0), (1.0, 0.25), (1.0, 0.3), (90.0, 10.0), (90.0, 0.3),
 )  # fmt: skip
-"""H_V and S_f (N/mm³, N/mm²): for each hardness one that carves and one that skids."""
+"""H_V and S_f (N/mm³, N/mm²): for each hardness one that carves and others that skid."""
 RATIOS: Final = (1.0, 2.0, 5.0, 10.0, 50.0)
 LAST_BIT: Final = (("start.speed_m_per_s", 7.0), ("snow.H_V_N_per_mm3", 0.2), ("sledge.mass_kg", 80.0))
 

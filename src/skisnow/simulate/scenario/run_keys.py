@@ -65,7 +65,7 @@ SOLVER_KEYS: Final = (
         name="solver.method",
         kind="text",
         choices=("ros2", "fast"),
-        meaning="ROS2, of second order, or the linearly implicit Euler method",
+        meaning="ROS2, or the linearly implicit BDF2 of the fast mode, both of second order",
         default=_SOLVER.method,
         origin="choice: the more exact one",
     ),

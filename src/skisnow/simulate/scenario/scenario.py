@@ -73,7 +73,7 @@ class Solver:
     Attributes
     ----------
     method
-        "ros2" or "fast" (linearly implicit Euler).
+        "ros2" or "fast" (linearly implicit BDF2).
     step
         The first step (s), or with `fixed` every step.
     tolerance
