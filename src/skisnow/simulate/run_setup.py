@@ -163,15 +163,18 @@ _Piece: TypeAlias = tuple[FloatArray, float, float, float]
 
 
 def _archived(archive: Archive) -> list[_Piece]:
-    found = []
-    for m in range(int(archive.used[0])):
-        first, count, place = archive.start[m]
-        pool = archive.pool[place : place + count]
-        middle = (first + 0.5 + np.arange(count)) * archive.cell[m]
-        low, high = float((middle + pool[:, 1]).min()), float((middle + pool[:, 2]).max())
-        depth = pool[:, 0] + np.abs(archive.slope[m]) * np.maximum(-pool[:, 1], pool[:, 2])
-        found.append((archive.frame[m], low, high, float(depth.max())))
-    return found
+    pieces, places = (int(n) for n in archive.used)
+    if not pieces:
+        return []
+    first, count, place = archive.start[:pieces].T
+    cell, slope = np.repeat(archive.cell[:pieces], count), np.repeat(np.abs(archive.slope[:pieces]), count)
+    pool = archive.pool[:places].astype(np.float64)
+    middle = (np.repeat(first - place, count) + np.arange(places) + 0.5) * cell
+    low = np.minimum.reduceat(middle + pool[:, 1], place)
+    high = np.maximum.reduceat(middle + pool[:, 2], place)
+    depth = np.maximum.reduceat(pool[:, 0] + slope * np.maximum(-pool[:, 1], pool[:, 2]), place)
+    ends = zip(low.tolist(), high.tolist(), depth.tolist(), strict=True)
+    return [(archive.frame[m], *each) for m, each in enumerate(ends)]
 
 
 def _under_skis(lines: Lines) -> list[_Piece]:
