@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 PATH: Final = "/carve"
 TITLE: Final = "Carve"
-ALONG: Final = "Station from the boot (m), tip to the right"
+ALONG: Final = "Station from the boot (m)"
 PANELS: Final = {
     "edge_depth_mm": "Depth of the edge (mm)",
     "force_per_length_N_per_m": "Force per length (N/m)",
@@ -51,6 +51,8 @@ MOVED: Final = """(event) => {
   emit(event.target.value);
 }"""
 """In the browser: were the slider drawn anew by the server, it would jump back under a quick hand."""
+ABOVE_MM: Final = 3.0
+"""How much of the edge above the snow the chart of depths shows (mm)."""
 FACTS: Final = {
     "turn_radius_boot_m": ("Turn radius at the boot", "m"),
     "turn_radius_chord_m": ("Turn radius of the contact", "m"),
@@ -168,7 +170,13 @@ class _Carve:
             _table(answers)
         for key, title in PANELS.items():
             lines = [line(a["station_m"], a[key], number) for number, a in enumerate(answers) if a[key] is not None]
-            self._plots[key].update_figure(chart(lines, axis(ALONG), axis(title)))
+            self._plots[key].update_figure(chart(lines, axis(ALONG), axis(title, **_range(key, answers))))
+
+
+def _range(key: str, answers: list[dict[str, Any]]) -> dict[str, Any]:
+    """Depth counts downwards, and the shovel high above the snow would leave no room for what is in it."""
+    depths = [depth for answer in answers for depth in (answer[key] or ()) if depth is not None]
+    return {"range": [1.1 * max(depths), -ABOVE_MM]} if key == "edge_depth_mm" and depths else {}
 
 
 def _told(answer: dict[str, Any]) -> str:

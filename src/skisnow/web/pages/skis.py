@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 PATH: Final = "/skis"
 TITLE: Final = "Skis"
-ALONG: Final = "Station from the boot (m), tip to the right"
+ALONG: Final = "Station from the boot (m)"
 PANELS: Final = {
     "half_width_mm": "Edge (mm)",
     "base_height_mm": "Base (mm)",

@@ -1,0 +1,52 @@
+"""The sliders give the numbers of the library, and the skis their drawings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from skisnow.report.numerals import significant
+from skisnow.simulate.carve_answer import answered
+from skisnow.simulate.carve_dict import answer_dict
+from skisnow.simulate.carve_question import carve_question
+
+from .conftest import Served
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+COMPILING_MS = 240_000  # on a machine's first run
+
+
+def radius(edge_angle_deg: float) -> str:
+    asked = {"ski": "carver", "edge_angle_deg": edge_angle_deg, "load_N": 800.0, "H_V_N_per_mm3": 0.2}
+    answer = answer_dict(answered(carve_question({**asked, "S_f_N_per_mm2": 0.5, "unloading_ratio": 10.0})))
+    return f"{significant(answer['turn_radius_boot_m'])} m"
+
+
+def test_the_radius_follows_the_slider(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}carve")
+    first = page.get_by_role("row", name="Turn radius at the boot").get_by_role("cell")
+    first.wait_for(timeout=COMPILING_MS)
+    assert first.inner_text() == radius(45.0)
+    slider = page.get_by_role("slider", name="Edge angle (°)")
+    slider.focus()
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    page.get_by_text("Edge angle (°): 48").wait_for()
+    page.get_by_role("cell", name=radius(48.0), exact=True).wait_for()
+    assert slider.get_attribute("aria-valuetext") == "48"
+    assert radius(48.0) != radius(45.0)
+
+
+def test_an_edited_ski_is_drawn_and_its_faults_are_said(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}skis")
+    page.get_by_role("row", name="Mass").wait_for()
+    text = page.get_by_label("File of the edited ski")
+    given = text.input_value()
+    text.fill(given.replace("length_mm = 1755", "length_mm = 1800").replace('name = "carver"', 'name = "longer"'))
+    page.get_by_role("button", name="Draw").click()
+    page.get_by_role("columnheader", name="longer").wait_for()
+    page.get_by_role("cell", name="1.800 m").wait_for()
+    text.fill(given.replace("mass_kg = 2.246", "mass_kg = -1"))
+    page.get_by_role("button", name="Draw").click()
+    page.get_by_text("mass_kg").filter(has_text="-1").first.wait_for()

@@ -1,0 +1,53 @@
+"""Dark on light: text against what is behind it, as the guidelines for accessible pages count it (WCAG 2.2, 1.4.3)."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from .conftest import Served
+from .test_day import create, enter_series
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+LEAST = 4.5
+
+COLOURS = """() => [...document.querySelectorAll('main *, header *')].filter(element =>
+  [...element.childNodes].some(node => node.nodeType === 3 && node.textContent.trim()) && element.offsetParent
+  && !element.closest('svg') && !element.closest('.q-icon')).map(element => {
+    let behind = element, colour = 'rgba(0, 0, 0, 0)';
+    while (behind && /, 0\\)$|transparent/.test(colour)) {
+      colour = getComputedStyle(behind).backgroundColor; behind = behind.parentElement; }
+    return [element.textContent.trim().slice(0, 40), getComputedStyle(element).color, colour]; })"""
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance of an opaque colour (WCAG 2.2)."""
+    red, green, blue = (int(part) / 255 for part in re.findall(r"\d+", colour)[:3])
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (red, green, blue)]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(ink: str, paper: str) -> float:
+    light, dark = sorted((luminance(ink), luminance(paper)), reverse=True)
+    return (light + 0.05) / (dark + 0.05)
+
+
+def test_black_on_white_by_definition() -> None:
+    assert contrast("rgb(0, 0, 0)", "rgb(255, 255, 255)") == 21.0
+
+
+def test_all_text_stands_out(page: Page, served: Served) -> None:
+    create(page, served)
+    enter_series(page, "1")
+    page.get_by_text("below the one before it").wait_for()
+    entry = page.url.split("?")[0]
+    for place in (page.url, served.address, f"{entry}?table=shear.csv", f"{served.address}skis"):
+        page.goto(place)
+        page.locator("h1").wait_for()
+        page.locator("h2").first.wait_for()
+        page.wait_for_timeout(500)  # colours fade in
+        found = page.evaluate(COLOURS)
+        assert len(found) > 5
+        assert [row for row in found if contrast(row[1], row[2]) < LEAST] == [], place
