@@ -7,7 +7,6 @@ import * as THREE from "./three.module.min.js";
 const FINE = { every: 1, width: 0.012, colour: [205, 219, 231], reach: 22, gone: 45 };
 const COARSE = { every: 5, width: 0.02, colour: [168, 190, 209], reach: 60, gone: 150 };
 
-
 // Lines on the snow, smooth at their edges and as faint as they are thin: mixed with the snow's own colour.
 const LINES = {
   vertex: `

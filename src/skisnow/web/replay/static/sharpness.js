@@ -1,8 +1,8 @@
 // How fine the picture is drawn: as fine as the machine keeps up with while it plays, and finer when it stands.
 
 const RATIOS = [0.45, 0.6, 0.8, 1, 1.5, 2]; // pixels drawn for each of the page
-const SLOW = 50; // ms between pictures above which it gets coarser: 20 a second
-const QUICK = 22; // ms below which it may get finer
+const SLOW = 55; // ms between pictures above which it gets coarser: 18 a second
+const QUICK = 28; // ms below which it may get finer
 const PATIENCE = 12; // pictures between changes
 
 /** The ratio of a picture that stands still: edges are smooth when two are made one. */
