@@ -37,27 +37,30 @@ class Desk:
     def __init__(self, lab: Lab, id_: str) -> None:
         self.id = id_
         self._journals = Journals(lab.store)
-        self._entries: tuple[JournalEntry, ...] = ()
+        self._last = 0
+        self._campaign: GrownCampaign | None = None
         self.refresh()
 
     @property
     def campaign(self) -> GrownCampaign:
         """The campaign as it was at the last look."""
+        assert self._campaign is not None  # looked at since the beginning
         return self._campaign
 
     @property
     def described(self) -> CampaignFile:
         """What its campaign.toml says."""
         found: list[Problem] = []
-        described = read_campaign_file(self._campaign.description, found)
+        described = read_campaign_file(self.campaign.description, found)
         assert described is not None  # it was read before it was written down
         return described
 
     def refresh(self) -> None:
         """Look at what was written since."""
-        last = self._entries[-1].sequence if self._entries else 0
-        self._entries += self._journals.entries(self.id, after=last)
-        self._campaign = grown(self._entries)
+        new = self._journals.entries(self.id, after=self._last)
+        if new or self._campaign is None:
+            self._last = new[-1].sequence if new else self._last
+            self._campaign = grown(new, before=self._campaign)
 
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
         """Store an entry; when this returns it is on the disk. See `Journals.append`."""
@@ -67,12 +70,12 @@ class Desk:
 
     def tests_of_site(self, site: str) -> list[GrownTest]:
         """Every test made at a site, and the snow data of that site."""
-        return [test for test in self._campaign.tests.values() if test.rows and test.rows[0].cells["site"] == site]
+        return [test for test in self.campaign.tests.values() if test.rows and test.rows[0].cells["site"] == site]
 
     def at_once(self, site: str) -> AtOnce:
         """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
         with TemporaryDirectory(prefix="skisnow-desk-") as folder:
-            write_campaign(self._campaign, Path(folder), of=self.tests_of_site(site))
+            write_campaign(self.campaign, Path(folder), of=self.tests_of_site(site))
             campaign = read_campaign(folder)
         found = experiments_at_once(campaign)
         penetration, shear = found["penetration"]["experiments"], found["shear"]["experiments"]

@@ -160,3 +160,19 @@ def test_entries_can_only_be_added_by_the_rules(store: Store) -> None:
             "VALUES (?, '', '', 'overwrite', '', '', '{}', '')",
             (id_,),
         )
+
+
+def test_what_comes_later_can_be_put_on_top(store: Store) -> None:
+    """Bit by bit, as a page sees a journal grow, is the same as all at once; what was there before stays as it was."""
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5", "2.25")
+    early = grown(journals.entries(id_))
+    entries = journals.entries(id_)
+    undo = NewEntry(action="undo", file="penetration.csv", test="1", about=last)
+    last = journals.append(id_, undo, seen=last).sequence
+    journals.append(id_, reading("1", 1, "40", "2.3"), seen=last)
+    journals.append(id_, reading("2", 0, "20", "1"), seen=0)
+    later = journals.entries(id_, after=entries[-1].sequence)
+    assert grown(later, before=early) == grown(journals.entries(id_))
+    assert [row.cells["depth_mm"] for row in early.test("penetration.csv", "1").rows] == ["1.5", "2.25"]
+    assert len(early.tests) == 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from .journal import DESCRIPTION
@@ -78,27 +78,38 @@ class GrownCampaign:
         return self.tests.get((file, name)) or GrownTest(file, name)
 
 
-def grown(entries: Iterable[JournalEntry]) -> GrownCampaign:
-    """Put a journal's entries, oldest first, together. What was undone is left out, but stays in the history."""
-    entries = tuple(entries)
-    campaign = GrownCampaign()
-    undone = {entry.about for entry in entries if entry.action == "undo"}
-    rows: dict[int, GrownRow] = {}
+def grown(entries: Iterable[JournalEntry], *, before: GrownCampaign | None = None) -> GrownCampaign:
+    """Put a journal's entries, oldest first, together. What was undone is left out, but stays in the history.
+
+    Parameters
+    ----------
+    entries
+        All entries, or those behind ``before``.
+    before
+        What the entries up to there came to; it is not changed. Only tests that are spoken of are put together anew.
+    """
+    campaign = replace(before, tests=dict(before.tests)) if before is not None else GrownCampaign()
+    added: dict[tuple[str, str], list[JournalEntry]] = {}
     for entry in entries:
         if entry.file == DESCRIPTION:
-            campaign.described = entry.sequence
-            campaign.description = entry.cells[DESCRIPTION]
-            continue
-        key = (entry.file, entry.test)
-        test = campaign.tests.setdefault(key, GrownTest(*key))
-        test.history.append(entry)
-        if entry.sequence in undone:
-            test.undone.add(entry.sequence)
+            campaign.described, campaign.description = entry.sequence, entry.cells[DESCRIPTION]
         else:
-            _take(test, rows, entry)
-    for test in campaign.tests.values():
-        test.rows.sort(key=lambda row: (row.entered.position or 0, row.entered.sequence))
+            added.setdefault((entry.file, entry.test), []).append(entry)
+    for key, new in added.items():
+        known = campaign.tests[key].history if key in campaign.tests else []
+        campaign.tests[key] = _test(key, [*known, *new])
     return campaign
+
+
+def _test(key: tuple[str, str], history: list[JournalEntry]) -> GrownTest:
+    test = GrownTest(*key, history=history)
+    test.undone = {entry.about for entry in history if entry.action == "undo" and entry.about is not None}
+    rows: dict[int, GrownRow] = {}
+    for entry in history:
+        if entry.sequence not in test.undone:
+            _take(test, rows, entry)
+    test.rows.sort(key=lambda row: (row.entered.position or 0, row.entered.sequence))
+    return test
 
 
 def _take(test: GrownTest, rows: dict[int, GrownRow], entry: JournalEntry) -> None:

@@ -78,16 +78,27 @@ def _value(row: dict[str, Any] | None, *, pressed: bool) -> str:
 
 
 def _figure(name: str | None, curves: dict[str, SeriesCurve]) -> dict[str, Any]:
-    traces = [trace for other, curve in curves.items() if other != name for trace in _traces(curve, own=False)]
+    # one trace for all the others: a site may have hundreds
+    others = [curve for other, curve in curves.items() if other != name]
+    traces = _traces(others, OTHERS, size=6, width=1) if others else []
     if name in curves:
-        traces += _traces(curves[name], own=True)
+        traces += _traces([curves[name]], OWN, size=11, width=3)
     x, y = (axis(label(column), rangemode="tozero") for column in ("depth_mm", "load_N"))
     return chart(traces, x, y, height=340)
 
 
-def _traces(curve: SeriesCurve, *, own: bool) -> list[dict[str, Any]]:
-    colour, size, width = (OWN, 11, 3) if own else (OTHERS, 6, 1)
-    name = f"test {curve.experiment}".replace("<", "‹")  # the drawing library reads a few tags in names
-    points = {"x": curve.depth_mm, "y": curve.load_N, "mode": "markers", "marker": {"color": colour, "size": size}}
-    line = {"x": curve.law_depth_mm, "y": curve.law_load_N, "mode": "lines", "line": {"color": colour, "width": width}}
-    return [{"type": "scatter", "name": name, **points}, {"type": "scatter", "hoverinfo": "skip", **line}]
+def _traces(curves: list[SeriesCurve], colour: str, *, size: int, width: int) -> list[dict[str, Any]]:
+    """Readings as points and laws as lines, broken between one series and the next."""
+    points = {
+        "x": [depth for curve in curves for depth in curve.depth_mm],
+        "y": [load for curve in curves for load in curve.load_N],
+    }
+    lines = {
+        "x": [depth for curve in curves for depth in (*curve.law_depth_mm, None)],
+        "y": [load for curve in curves for load in (*curve.law_load_N, None)],
+    }
+    marker, line = {"color": colour, "size": size}, {"color": colour, "width": width}
+    return [
+        {"type": "scatter", "mode": "markers", "marker": marker, "hoverinfo": "x+y", **points},
+        {"type": "scatter", "mode": "lines", "line": line, "hoverinfo": "skip", **lines},
+    ]

@@ -50,6 +50,7 @@ class Analysed:
     folder: TemporaryDirectory[str]
     choice: Choice = field(default_factory=Choice)
     numbers: Numbers | None = None
+    closed: bool = False
 
     @property
     def campaign(self) -> Path:
@@ -70,6 +71,7 @@ def add_page(lab: Lab) -> None:
 
         def closed() -> None:
             open_pages.pop(key, None)
+            page.closed = True
             page.folder.cleanup()
 
         ui.context.client.on_delete(closed)
@@ -141,7 +143,7 @@ class _View:
         self._asked += 1
         asked, page = self._asked, self._page
         found = await run.io_bound(numbers_of, str(page.campaign), page.choice)
-        if asked != self._asked or found is None:
+        if asked != self._asked or page.closed or found is None:
             return
         if isinstance(found, Refusal):
             self._status.set_text(f"This campaign cannot be analysed yet. {found.said}")
@@ -152,7 +154,7 @@ class _View:
         self._show_tables(found)
         self._status.set_text(f"{_counts(found)} Drawing the figures …")
         drawn = await self._worker.do(figures, str(page.campaign), page.choice, found.results)
-        if asked != self._asked:
+        if asked != self._asked or page.closed:
             return
         self._figures.clear()
         with self._figures:
