@@ -1,34 +1,24 @@
-"""A browser that draws in software, as on a machine without a graphics card; skipped where there is none."""
+"""A browser that draws in software, as on a machine without a graphics card."""
 
 from __future__ import annotations
 
-import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import pytest
-
 SOFTWARE = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
-NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
 @contextmanager
-def chromium() -> Iterator[Any]:
-    """Playwright's handle of Chromium; skips the test with the reason where one of both is missing."""
-    playwright = pytest.importorskip(
-        "playwright.sync_api", reason="playwright is not installed: pip install playwright"
-    )
-    place = os.environ.get("SKISNOW_CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
-    if place is None:
-        pytest.skip(f"there is no Chromium: none of {', '.join(NAMES)} is found, and SKISNOW_CHROMIUM is not set")
-    with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=place, args=list(SOFTWARE))
-        try:
-            yield browser
-        finally:
-            browser.close()
+def drawing_in_software(other: Any) -> Iterator[Any]:
+    """A Chromium of its own beside one that runs: of Playwright there can be only one at a time."""
+    place = shutil.which("chromium") or shutil.which("chromium-browser")
+    browser = other.browser_type.launch(executable_path=place, args=list(SOFTWARE))
+    try:
+        yield browser
+    finally:
+        browser.close()
 
 
 class Watched:

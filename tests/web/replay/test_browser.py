@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -10,10 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow.simulate.scenario import Profile
 from skisnow.web.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_replay
 
 from ...report.runs import circle_run
-from .browsers import Watched, chromium
+from .browsers import Watched, drawing_in_software
 
 TRACK = ReplayTrack(name="GNSS", place=np.array([[0.0, 0.0, 0.0], [10.0, 3.0, 0.0]]), time=np.array([0.0, 2.0]))
 SNOW = np.array([241, 245, 249])
@@ -25,8 +27,8 @@ def replay() -> Replay:
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with chromium() as found:
+def browser(chromium: Any) -> Iterator[Any]:
+    with drawing_in_software(chromium) as found:
         yield found
 
 
@@ -220,6 +222,35 @@ def test_picture_and_film_are_files(seen: Watched, tmp_path: Path) -> None:
     content = (tmp_path / "turn.webm").read_bytes()
     assert content[:4] == b"\x1a\x45\xdf\xa3"  # EBML, which WebM is
     assert len(content) > 5000
+
+
+def test_a_measured_slope_is_drawn_as_it_falls(browser: Any, tmp_path: Path) -> None:
+    """A profile of 20 %: the run lies on it, and the horizon is level."""
+    x = np.linspace(-30.0, 60.0, 91)
+    run = circle_run()
+    place = run.place - np.array([0.0, 0.0, 0.2]) * run.place[:, :1]
+    groove = replace(run.groove, middle=run.groove.middle - np.array([0.0, 0.0, 0.2]) * run.groove.middle[:, :1])
+    scenario = replace(run.scenario, slope=Profile(x, -0.2 * x))
+    page = write_replay(replace(run, scenario=scenario, place=place, groove=groove), tmp_path / "profile.html")
+    seen = Watched(browser, page.as_uri())
+    try:
+        for view in ("boot", "above", "edge", "free"):
+            seen.does(f"replay.seek(2.0); replay.look('{view}')")
+            assert coloured(seen.picture()) > 300, view
+        assert seen.complaints == []
+    finally:
+        seen.close()
+
+
+def test_elastic_snow_says_that_nothing_stays(browser: Any, tmp_path: Path) -> None:
+    run = circle_run(unloading_ratio=1.0)
+    elastic = replace(run, groove=replace(run.groove, residual_depth=np.zeros(len(run.groove.width))))
+    seen = Watched(browser, write_replay(elastic, tmp_path / "elastic.html").as_uri())
+    try:
+        assert "no groove stays" in seen.page.locator(".replay-legend").inner_text()
+        assert seen.complaints == []
+    finally:
+        seen.close()
 
 
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390)])

@@ -1,0 +1,60 @@
+"""The page of the lab: the list, the form of two runs, and the replay behind it, as a person opens them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from skisnow.cli import main
+from skisnow.report.run_file import write_run_file
+from skisnow.simulate.scenario import scenario_values
+from skisnow.simulate.scenario.values import in_sections
+
+from ...report.runs import circle_run
+
+ODD = 'wide "turn" <b>'
+
+
+def kept(folder: Path, name: str, **how: Any) -> None:
+    """A run in the lab's folder."""
+    run = circle_run(count=21, **how)
+    (folder / name).mkdir(parents=True)
+    write_run_file(run, in_sections(scenario_values(run.scenario)), folder / name / "run.nc")
+
+
+def test_runs_are_listed_and_two_are_watched(served: Any, page: Any) -> None:
+    runs = served.store.parent / "lab"
+    page.goto(f"{served.address.rstrip('/')}/replay")
+    page.get_by_text("Simulate one, then it can be watched here.").wait_for()
+    kept(runs, "tight")
+    kept(runs, ODD, radius=13.0)
+    page.reload()
+    page.get_by_text("2 runs kept").wait_for()
+    assert page.get_by_role("heading", name=ODD).count() == 1  # text, no mark-up
+    page.get_by_label("Run", exact=True).select_option("tight")
+    page.get_by_label("Laid over it, translucent").select_option(ODD)
+    page.get_by_role("button", name="Watch both").click()
+    page.wait_for_function("window.skisnowReplay")
+    assert page.evaluate("[skisnowReplay.run.title, skisnowReplay.ghost.title]") == ["tight", ODD]
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function("window.skisnowReplay.time > 0.2")
+    page.get_by_role("button", name="Pause").click()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Model (glTF)").click()
+    assert Path(download.value.path()).read_bytes()[:4] == b"glTF"
+
+
+def test_the_command_writes_a_replay_beside_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["simulate", "carved-46m", "--set", "run.duration_s=0.05", "--out", str(tmp_path / "run"), "--replay"]
+    assert main(words) == 0
+    assert "<h1>carved-46m</h1>" in (tmp_path / "run" / "replay.html").read_text(encoding="utf-8")
+    assert "replay.html" in capsys.readouterr().err
+
+
+def test_a_replay_needs_a_folder(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["simulate", "carved-46m", "--replay"])
+    assert ended.value.code == 2
+    assert "--out" in capsys.readouterr().err
