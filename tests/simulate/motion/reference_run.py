@@ -31,7 +31,14 @@ class ReferenceRun:
         self.spacing, self.cell = (float(value) for value in setup.lines.spacing)
         self.most_cells = setup.lines.cells.shape[1] - FREE_CELLS
         for line in (*self.lines[0], *self.lines[1]):
-            line.cells, line.anchor, line.cell, line.slope, line.above = {}, None, self.cell, 0.0, None
+            line.cells, line.anchor, line.cell, line.slope, line.above, line.marked = (
+                {},
+                None,
+                self.cell,
+                0.0,
+                None,
+                None,
+            )
         self._feel()
 
     def step(self, h: float) -> None:

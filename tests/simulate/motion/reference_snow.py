@@ -57,7 +57,8 @@ class Touch:
 class Line:
     """A line across the path: frame, size of its cells (m), cells by number, where the edge holds, the touch of now.
 
-    `above`: where the edge was, and how deep (< 0), when it was last looked at from above.
+    `above`: where the edge was, and how deep (< 0), when it was last looked at from above; `marked`: the same, when
+    the snow was last pressed there, if the base has not left it since.
     """
 
     origin: FloatArray
@@ -70,6 +71,7 @@ class Line:
     anchor: float | None = None
     touch: Touch | None = None
     above: tuple[float, float] | None = None
+    marked: tuple[float, float] | None = None
 
 
 @dataclass
@@ -165,11 +167,14 @@ def anchor(line: Line, edge: float, deep: float) -> float:
 
 def remember(line: Line, snow: Snow, most_cells: int) -> None:
     """Keep the base that touches a line, and let its edge take hold."""
-    touch = line.touch
+    touch, before = line.touch, line.marked
+    line.marked = None if touch is None else (touch.edge, touch.depth)
     if touch is None:
         return
     while not line.cells and (touch.high - touch.low) / line.cell > most_cells:
         line.cell *= 2.0
+    if before is not None and (touch.edge - before[0]) * touch.fall < 0.0:
+        _sweep(line, touch, *before)
     start = touch.low
     last = math.floor(touch.high / line.cell)
     for j in range(math.floor(touch.low / line.cell), last + 1):
@@ -182,3 +187,17 @@ def remember(line: Line, snow: Snow, most_cells: int) -> None:
         start = end
     line.anchor = min(max(anchor(line, touch.edge, touch.deep), touch.edge - snow.holding), touch.edge + snow.holding)
     line.above = None
+
+
+def _sweep(line: Line, touch: Touch, edge_before: float, depth_before: float) -> None:
+    """Ground between where the edge was and is has been as deep as the edge when it passed."""
+    low, high = sorted((edge_before, touch.edge))
+    for j in range(math.floor(low / line.cell), math.floor(high / line.cell) + 1):
+        middle = (j + 0.5) * line.cell
+        nearest = float(np.clip(middle, low, high))
+        share = (nearest - edge_before) / (touch.edge - edge_before)
+        depth = depth_before + share * (touch.depth - depth_before) + touch.fall * (middle - nearest)
+        cell = line.cells.setdefault(j, Cell(-math.inf, math.inf, -math.inf))
+        cell.deepest = max(cell.deepest, depth)
+        cell.start = min(cell.start, max(low, j * line.cell))
+        cell.end = max(cell.end, min(high, (j + 1) * line.cell))
