@@ -1,7 +1,7 @@
 // A grid of metres on the slope, as lines drawn for themselves: a picture of them on the whole surface costs more.
 
 import { surfaceHeight } from "./motion.js";
-import { extent, flat, shade, shades } from "./snow.js";
+import { extent, flat, hills, shade, shades } from "./snow.js";
 import * as THREE from "./three.module.min.js";
 
 const FINE = { every: 1, width: 0.012, colour: [205, 219, 231], reach: 22, gone: 45 };
@@ -57,7 +57,7 @@ function lines(run, kind) {
     const [low, high] = extent(place, axis);
     return [Math.floor((low - kind.gone) / 5) * 5, Math.ceil((high + kind.gone) / 5) * 5];
   });
-  const chains = steps(y0, y1, kind.every).map((y) => steps(x0, x1, run.arrays.profile ? 1 : 5).map((x) => [x, y]));
+  const chains = steps(y0, y1, kind.every).map((y) => steps(x0, x1, hills(run) ? 0.5 : 5).map((x) => [x, y]));
   for (const x of steps(x0, x1, kind.every)) chains.push(steps(y0, y1, 5).map((y) => [x, y]));
   const mesh = chained(run, chains, kind);
   mesh.material = new THREE.ShaderMaterial({
@@ -71,7 +71,7 @@ function lines(run, kind) {
     blendEquation: THREE.MinEquation,
     side: THREE.DoubleSide,
     depthWrite: false,
-    depthTest: false,
+    depthTest: hills(run),
   });
   return flat(mesh, kind === FINE ? 1.2 : 1.4);
 }

@@ -3,7 +3,7 @@
 import { depthColour, TRACK } from "./colours.js";
 import { largest } from "./binary.js";
 import { between, surfaceHeight } from "./motion.js";
-import { ribbon } from "./snow.js";
+import { hills, ribbon } from "./snow.js";
 
 /** The deepest groove that stays in a run (m). */
 export const deepest = (run) => Math.max(0, largest(run.arrays.groove_residual_depth.values));
@@ -12,7 +12,7 @@ export const deepest = (run) => Math.max(0, largest(run.arrays.groove_residual_d
 export function groove(run, { most, colour = null, order = 3 }) {
   const beside = neighbours(run.arrays.groove_ski.values);
   const pieces = Array.from(run.arrays.groove_time.values, (_, i) => piece(run, i, beside[i], most, colour));
-  const mesh = ribbon(pieces, { least: colour ? 1.6 : 2.4, relief: colour ? 0 : 0.16, order });
+  const mesh = ribbon(pieces, { least: colour ? 1.6 : 2.4, relief: colour ? 0 : 0.16, order, hidden: hills(run) });
   const times = run.arrays.groove_time.values; // rising
   return {
     mesh,
@@ -87,7 +87,7 @@ export function measuredTrack(run) {
   const place = run.arrays.track_place.values;
   const points = Array.from({ length: place.length / 3 }, (_, i) => Array.from(place.subarray(3 * i, 3 * i + 3)));
   const times = run.arrays.track_time?.values ?? null;
-  const mesh = ribbon(points.slice(1).map((end, i) => dash(points[i], end)), { least: 3, order: 4 });
+  const mesh = ribbon(points.slice(1).map((end, i) => dash(points[i], end)), { least: 3, order: 4, hidden: hills(run) });
   return {
     mesh,
     placeAt(time) {

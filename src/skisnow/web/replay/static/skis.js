@@ -4,6 +4,7 @@ import * as THREE from "./three.module.min.js";
 import { largest } from "./binary.js";
 import { forceColour, GHOST } from "./colours.js";
 import { poseAt, row, sections, surfaceHeight } from "./motion.js";
+import { hills } from "./snow.js";
 
 // corners of a cross section, each as often as a face needs its own colour and normal: [across, thickness, kind]
 const CORNERS = [
@@ -113,7 +114,7 @@ function colourMesh(mesh, run, pose, ski, most) {
 function shadowMesh(run, ghost) {
   const geometry = strip(run.arrays.station.values.length, 2, [[0, 1]]);
   const material = new THREE.MeshBasicMaterial({
-    color: 0xc3d0dc, side: THREE.DoubleSide, depthWrite: false, depthTest: false, // flat on the snow, under the rest
+    color: 0xc3d0dc, side: THREE.DoubleSide, depthWrite: false, depthTest: hills(run), // flat on the snow, under the rest
   });
   const mesh = new THREE.Mesh(geometry, material);
   mesh.renderOrder = 2;

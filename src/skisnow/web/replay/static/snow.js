@@ -12,11 +12,14 @@ export const BACKGROUND = HORIZON;
 const SNOW = [241, 245, 249];
 // plain, as most of the picture is snow: where there is no graphics card, each sum of a pixel counts
 const SURFACE = {
+  // It hides as if it were a little farther away: what lies on it is drawn whole, what is behind a crest is not.
   vertex: `
     varying float away;
+    varying vec2 depth;
     void main() {
       vec4 seen = modelViewMatrix * vec4(position, 1.0);
       away = -seen.z;
+      depth = vec2(projectionMatrix[2][2], projectionMatrix[3][2]);
       gl_Position = projectionMatrix * seen;
     }`,
   fragment: `
@@ -24,8 +27,13 @@ const SURFACE = {
     uniform vec3 horizon;
     uniform vec3 snow;
     varying float away;
+    varying vec2 depth;
     void main() {
       gl_FragColor = vec4(mix(snow, horizon, clamp((away - 25.0) / 125.0, 0.0, 1.0)), 1.0);
+      #ifdef HILLS
+        float farther = 1.01 * away + 0.05; // m
+        gl_FragDepth = 0.5 + 0.5 * (depth.y / farther - depth.x);
+      #endif
     }`,
 };
 
@@ -59,6 +67,9 @@ const RIBBON = {
     }`,
 };
 
+/** Whether a slope may hide something of itself. */
+export const hills = (run) => Boolean(run.arrays.profile);
+
 /** The surface of a run's slope, drawn behind everything. */
 export function surface(run) {
   const points = profilePoints(run);
@@ -74,9 +85,10 @@ export function surface(run) {
     vertexShader: SURFACE.vertex,
     fragmentShader: SURFACE.fragment,
     uniforms: shades(),
+    defines: hills(run) ? { HILLS: 1 } : {},
     side: THREE.DoubleSide,
-    depthWrite: false,
-    depthTest: false, // what lies on it or a millimetre in it is never torn by it
+    depthWrite: hills(run),
+    depthTest: hills(run), // a plane hides nothing, and drawing is quicker so
   });
   return flat(new THREE.Mesh(geometry, material), 1);
 }
@@ -141,7 +153,7 @@ export function sky() {
  * Pieces lying on the snow, each a rectangle: middle, half across, half ahead, colour (0 to 255). It is never narrower
  * than `least` pixels, so that a groove of millimetres is seen from above.
  */
-export function ribbon(pieces, { least = 2, relief = 0, order = 3 } = {}) {
+export function ribbon(pieces, { least = 2, relief = 0, order = 3, hidden = false } = {}) {
   const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
   const names = { position: [], beside: [], along: [], tint: [], corner: [] };
   const indices = [];
@@ -167,7 +179,7 @@ export function ribbon(pieces, { least = 2, relief = 0, order = 3 } = {}) {
     uniforms: { height: { value: 720 }, least: { value: least }, relief: { value: relief } },
     side: THREE.DoubleSide,
     depthWrite: false,
-    depthTest: false, // drawn in the order given, before the skis
+    depthTest: hidden, // by hills; else drawn in the order given, before the skis
   });
   return flat(new THREE.Mesh(geometry, material), order);
 }
