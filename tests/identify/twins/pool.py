@@ -1,0 +1,78 @@
+"""Twins on several processes; each that is finished is kept at once, and one that is kept is not computed again."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from typing import TypeAlias
+
+from .kept import KeptTwins, Row
+
+Twin: TypeAlias = Callable[[str, int], list[tuple[str, Row]]]
+"""From a case and a seed to rows by case; the first of them is the case itself, the last to be kept."""
+
+
+def run_twins(
+    twin: Twin, asked: Iterable[tuple[str, int]], kept: KeptTwins, *, workers: int, seconds: float | None = None
+) -> int:
+    """Compute what is missing, in the order asked, and say how many were computed.
+
+    After `seconds` no twin is begun any more. Ctrl-C keeps those that are finished.
+    """
+    missing = [each for each in asked if each not in kept.rows]
+    if workers == 1 or not missing:
+        return _one_by_one(twin, missing, kept, seconds)
+    return _side_by_side(twin, missing, kept, workers, seconds)
+
+
+def _one_by_one(twin: Twin, missing: Sequence[tuple[str, int]], kept: KeptTwins, seconds: float | None) -> int:
+    begun, done = time.monotonic(), 0
+    for case, seed in missing:
+        if seconds is not None and time.monotonic() - begun > seconds:
+            break
+        _keep(kept, seed, twin(case, seed))
+        done += 1
+        _told(case, done, len(missing), begun)
+    return done
+
+
+def _side_by_side(
+    twin: Twin, missing: Sequence[tuple[str, int]], kept: KeptTwins, workers: int, seconds: float | None
+) -> int:
+    begun, done = time.monotonic(), 0
+    with ProcessPoolExecutor(workers, initializer=_ignore_interrupts) as pool:
+        asked: dict[Future[list[tuple[str, Row]]], tuple[str, int]] = {
+            pool.submit(twin, case, seed): (case, seed) for case, seed in missing
+        }
+        try:
+            for future in as_completed(asked):
+                if future.cancelled():
+                    continue
+                case, seed = asked[future]
+                _keep(kept, seed, future.result())
+                done += 1
+                _told(case, done, len(missing), begun)
+                if seconds is not None and time.monotonic() - begun > seconds:
+                    for each in asked:
+                        each.cancel()
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)
+            print(f"interrupted; {done} twins of this start are kept in {kept.path}", file=sys.stderr, flush=True)
+            raise
+    return done
+
+
+def _keep(kept: KeptTwins, seed: int, rows: Sequence[tuple[str, Row]]) -> None:
+    for case, row in reversed(rows):
+        kept.add(case, seed, row)
+
+
+def _ignore_interrupts() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _told(case: str, done: int, of: int, begun: float) -> None:
+    print(f"  {case}: {done} of {of} twins, {time.monotonic() - begun:.0f} s", file=sys.stderr, flush=True)
