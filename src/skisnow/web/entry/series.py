@@ -39,6 +39,7 @@ class SeriesForm:
         self._head: dict[str, str] = {}
         self._fields: list[ui.input] = []
         self._stored: list[ui.label] = []
+        self._asking: tuple[int, str] | None = None
 
     # The head of a series
 
@@ -97,7 +98,7 @@ class SeriesForm:
     def _draw(self, test: GrownTest) -> None:
         head = self._head
         loads = self._loads(test)
-        self._fields, self._stored = [], []
+        self._fields, self._stored, self._asking = [], [], None
         self._places.clear()
         with self._places.form:
             heading(f"Series {test.name}")
@@ -215,5 +216,8 @@ class SeriesForm:
             if self._sheet.correct(test, entered.sequence, {"depth_mm": new}, why):
                 self.show(test.name, self._head)
 
+        if self._asking == (position, new):  # Enter, and then the field was left: one question is enough
+            return
+        self._asking = (position, new)
         words = f"{row.cells['load_N']} N: {row.cells['depth_mm']} mm becomes {new} mm."
         ask_reason(self._ask, words, ("Correct it", correct), usual=USUAL_REASON, leave=self.show_again)
