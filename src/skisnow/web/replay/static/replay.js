@@ -62,11 +62,15 @@ class Player {
   }
 
   resize() {
-    const { clientWidth, clientHeight } = this.parts.canvas.parentElement;
-    if (!clientWidth || !clientHeight) return;
-    const ratio = this.playing ? this.sharpness.ratio : Math.max(STILL, window.devicePixelRatio || 1);
-    this.stage.resize(clientWidth, clientHeight, ratio);
+    const [width, height] = this.#size();
+    if (!width || !height) return;
+    this.stage.resize(width, height, this.#ratio());
     this.draw();
+  }
+
+  #ratio() {
+    if (this.film) return 1; // a film keeps its size
+    return this.playing ? this.sharpness.ratio : Math.max(STILL, window.devicePixelRatio || 1);
   }
 
   /** Draw the present moment, and tell it in words. */
@@ -182,18 +186,25 @@ class Player {
   }
 
   /** Record from here, or from the start if at the end, until the end or the next press. */
-  startFilm() {
+  async startFilm() {
+    this.pause();
     if (this.time >= this.end) this.time = this.start;
-    this.draw();
-    this.#compose();
     this.film = recording(this.flat);
+    this.resize();
     this.parts.film.textContent = "End the film";
     this.say("Recording while it plays.");
+    await this.film.begun;
     this.play();
+  }
+
+  #size() {
+    const { clientWidth, clientHeight } = this.parts.canvas.parentElement;
+    return [clientWidth, clientHeight];
   }
 
   async #endFilm() {
     const film = this.film;
+    this.draw();
     this.film = null;
     this.parts.film.textContent = "Film (WebM)";
     this.lastFilm = await film.stop();

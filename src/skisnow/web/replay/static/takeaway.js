@@ -50,7 +50,9 @@ export function filmType() {
   return types.find((type) => MediaRecorder.isTypeSupported(type)) ?? null;
 }
 
-/** Record a canvas: `stop()` gives a promise of the film. */
+const LINGER = 300; // ms that the last picture stands: an encoder on a slow machine has fewer pictures in hand than drawn
+
+/** Record a canvas: `begun` is a promise of its start, `stop()` one of the film. */
 export function recording(flat) {
   const recorder = new MediaRecorder(flat.captureStream(30), { mimeType: filmType(), videoBitsPerSecond: 6_000_000 });
   const pieces = [];
@@ -59,9 +61,12 @@ export function recording(flat) {
     recorder.onstop = () => resolve(new Blob(pieces, { type: "video/webm" }));
     recorder.onerror = (event) => reject(event.error);
   });
+  const begun = new Promise((resolve) => recorder.addEventListener("start", resolve, { once: true }));
   recorder.start(500);
   return {
-    stop() {
+    begun,
+    async stop() {
+      await new Promise((resolve) => setTimeout(resolve, LINGER));
       if (recorder.state !== "inactive") recorder.stop();
       return film;
     },
