@@ -45,10 +45,10 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
         return RedirectResponse(f"/?added={added}", 303)
 
     async def entry(id_: str) -> Response:
-        return await _packed(lambda folder: _write_entry(lab, id_, folder), id_)
+        return await _packed(lambda folder: write_entry(lab, id_, folder), id_)
 
     async def kept(id_: str) -> Response:
-        return await _packed(lambda folder: _write_kept(lab, id_, folder), id_)
+        return await _packed(lambda folder: write_kept(lab, id_, folder), id_)
 
     app.add_api_route(IMPORT, take_in, methods=["POST"], response_model=None)
     app.add_api_route("/export/entry/{id_}.zip", entry, response_model=None)
@@ -90,13 +90,15 @@ def _zip(write: Writing) -> bytes:
     return packed.getvalue()
 
 
-def _write_entry(lab: Lab, id_: str, folder: Path) -> None:
+def write_entry(lab: Lab, id_: str, folder: Path) -> None:
+    """Write a campaign that is being entered into a new folder."""
     entries = Journals(lab.store).entries(required_id(id_))
     folder.mkdir()
     write_campaign(grown(entries), folder)
 
 
-def _write_kept(lab: Lab, id_: str, folder: Path) -> None:
+def write_kept(lab: Lab, id_: str, folder: Path) -> None:
+    """Write a kept campaign into a new folder."""
     lab.store.export(required_id(id_), folder)
 
 

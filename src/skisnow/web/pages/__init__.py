@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-PAGES: Final = ("campaigns", "skis", "carve", "replay")
+PAGES: Final = ("campaigns", "skis", "carve", "simulate", "replay")
 """Modules of this folder, in the order of the navigation."""
 
 INNER: Final = ("describe", "enter", "analysis")

@@ -1,0 +1,185 @@
+"""Simulations: a form made from the scenario's keys, snow from a campaign, the queue with progress, the history."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import app, background_tasks, run, ui
+
+from ...errors import ParameterError, SkisnowError
+from ...estimate.results_text import results_json
+from ...field.store import Journals
+from ...files import write_file
+from ..analysing import Choice, Refusal, numbers_of
+from ..desk import Desk
+from ..fields import button, choice, field, link
+from ..layout import framed, heading, sentence
+from ..replay.addresses import show_address
+from ..runs import Job, Runs
+from ..transfer import write_entry, write_kept
+from ..trouble import told
+
+if TYPE_CHECKING:
+    from ..settings import Lab
+
+PATH: Final = "/simulate"
+TITLE: Final = "Simulate"
+GIVEN: Final = "as in the scenario"
+EVERY_S: Final = 1.0
+
+
+def add_page(lab: Lab) -> None:
+    """Add the page to the application, and begin to work through the queue with it."""
+    runs = Runs(lab.runs)
+    app.on_startup(lambda: background_tasks.create(runs.work(), name="runs"))
+    app.on_shutdown(runs.end)
+
+    @ui.page(PATH)
+    def simulate() -> None:
+        with framed("Simulate", here=PATH):
+            status = ui.label("").classes("status").props("role=status")
+            form = _Form(lab, runs, status)
+            button("Simulate", form.ask, "main")
+            history = _History(runs)
+        ui.timer(EVERY_S, history.show)
+
+
+class _Form:
+    """The keys of a scenario by their sections; what differs from the scenario's own value is handed on."""
+
+    def __init__(self, lab: Lab, runs: Runs, status: ui.label) -> None:
+        from ...simulate.scenario import scenario_names
+
+        self._lab, self._runs, self._status = lab, runs, status
+        names = list(scenario_names())
+        with ui.element("div").classes("fields"):
+            self._scenario = choice("Scenario", names, names[0])
+            self._snow = choice("Snow", {GIVEN: GIVEN, **_snows(lab)}, GIVEN)
+        self._place = ui.element("div")
+        self._fields: dict[str, ui.input] = {}
+        self._before: dict[str, str] = {}
+        self._scenario.on_value_change(self._draw)
+        self._draw()
+
+    def _draw(self) -> None:
+        from ...simulate.scenario import scenario_file
+        from ...simulate.scenario.keys import SCENARIO_KEYS, SECTIONS
+
+        values = scenario_file(str(self._scenario.value)).values
+        self._place.clear()
+        self._fields, self._before = {}, {}
+        with self._place:
+            for section in SECTIONS:
+                with ui.element("details"):
+                    with ui.element("summary"):
+                        ui.label(section.capitalize())
+                    with ui.element("div").classes("keys"):
+                        for name, key in SCENARIO_KEYS.items():
+                            if name.startswith(f"{section}."):
+                                self._key(name, values.get(name), f"{key.meaning}; {key.allowed}")
+
+    def _key(self, name: str, value: Any, words: str) -> None:
+        self._before[name] = _written(value)
+        self._fields[name] = field(name.split(".", 1)[1], self._before[name])
+        self._fields[name].props(f'aria-label="{name}"')
+        sentence(words, "quiet")
+
+    async def ask(self) -> None:
+        """Put the simulation into the queue, when its values can be read."""
+        from ...simulate.scenario import scenario_file
+        from ...simulate.scenario.given import change_of
+
+        typed = {name: str(each.value or "").strip() for name, each in self._fields.items()}
+        changes = {name: text for name, text in typed.items() if text and text != self._before[name]}
+        scenario = str(self._scenario.value)
+        try:
+            scenario_file(scenario, changes=dict(change_of(f"{name}={text}") for name, text in changes.items()))
+            job = await self._asked(scenario, changes)
+        except SkisnowError as error:
+            self._status.set_text(f"Not begun: {told(error)}")
+            self._status.classes(add="bad")
+            return
+        self._status.set_text(f"{job.name} is in the queue.")
+        self._status.classes(remove="bad")
+
+    async def _asked(self, scenario: str, changes: dict[str, str]) -> Job:
+        if self._snow.value == GIVEN:
+            return self._runs.ask(scenario, changes)
+        results = await run.io_bound(self._results, str(self._snow.value))
+        place = self._runs.folder / "snow" / f"{self._snow.value}.json"
+        await run.io_bound(write_file, place, results or b"")
+        return self._runs.ask(scenario, {**changes, "snow.results": str(place)})
+
+    def _results(self, key: str) -> bytes:
+        """results.json of a campaign, whose means and intervals the run then carries."""
+        kind, id_ = key.split("-", 1)
+        with TemporaryDirectory(prefix="skisnow-snow-") as name:
+            folder = Path(name) / "campaign"
+            (write_kept if kind == "kept" else write_entry)(self._lab, id_, folder)
+            found = numbers_of(str(folder), Choice())
+        if isinstance(found, Refusal):
+            raise ParameterError(f"this campaign gives no snow yet. {found.said}")
+        return results_json(found.results)
+
+
+def _snows(lab: Lab) -> dict[str, str]:
+    """Campaigns that can give the snow, by kind and id."""
+    entered = {f"entry-{head.id}": Desk(lab, head.id).described.name or head.id for head in Journals(lab.store).list()}
+    return entered | {f"kept-{stored.id}": f"{stored.name} ({stored.id})" for stored in lab.store.list()}
+
+
+def _written(value: Any) -> str:
+    """A value as the command line takes it."""
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, tuple | list):
+        return f"[{', '.join(_written(each) for each in value)}]"
+    return f"{value:.12g}" if isinstance(value, float) else str(value)
+
+
+class _History:
+    """The queue and what was simulated, drawn again only when something changed."""
+
+    def __init__(self, runs: Runs) -> None:
+        self._runs = runs
+        self._shown: object = None
+        heading("Queue and history")
+        self._place = ui.element("div").props("aria-live=polite")
+        self.show()
+
+    def show(self) -> None:
+        """Draw what is so now."""
+        jobs = self._runs.jobs()
+        now = (jobs, self._runs.progress)
+        if now == self._shown:
+            return
+        self._shown = now
+        self._place.clear()
+        with self._place:
+            if not jobs:
+                sentence("Nothing was simulated yet.", "quiet")
+            for job in jobs:
+                self._job(job)
+
+    def _job(self, job: Job) -> None:
+        with ui.element("section").classes("card"):
+            heading(job.name, 3)
+            state = f"running: {self._runs.progress}" if job.state == "running" else job.state
+            changed = ", ".join(f"{key} = {value}" for key, value in job.changes.items())
+            sentence(" · ".join(filter(None, (job.scenario, changed, state, job.said))), "quiet")
+            with ui.element("div").classes("acts"):
+                if job.state in ("waiting", "running"):
+                    button("Cancel", lambda: self._cancel(job.name)).props(f'aria-label="Cancel {job.name}"')
+                if job.state == "done":
+                    link("Watch", show_address(job.name), "main").props(f'aria-label="Watch {job.name}"')
+
+    def _cancel(self, name: str) -> None:
+        try:
+            self._runs.cancel(name)
+        except ParameterError as error:
+            ui.notify(str(error))
+        self.show()

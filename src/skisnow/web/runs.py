@@ -1,0 +1,140 @@
+"""Simulated runs, one after another, each in a process and a folder of its own. The folders are queue and history.
+
+A run is the folder ``NAME`` with ``job.json``: what was asked, and how it stands. What was running when the server
+ended is begun again when it starts; what was waiting goes on waiting.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import re
+import secrets
+import sys
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
+from ..errors import ParameterError
+from ..files import write_file
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+State: TypeAlias = Literal["waiting", "running", "done", "failed", "cancelled"]
+
+JOB: Final = "job.json"
+LAST_WORDS: Final = 600
+_PAUSE_S: Final = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """One simulation: its folder's name, the scenario, changed keys, when it was asked for (UTC), how it stands."""
+
+    name: str
+    scenario: str
+    changes: Mapping[str, str]
+    asked_at: str
+    state: State = "waiting"
+    said: str = ""
+
+
+class Runs:
+    """The queue and the history."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.progress = ""
+        self._process: asyncio.subprocess.Process | None = None
+        self._running = ""
+        self._ended = False
+
+    def jobs(self) -> list[Job]:
+        """All jobs, the newest first."""
+        found = []
+        for place in self.folder.glob(f"*/{JOB}"):
+            with contextlib.suppress(OSError):  # its folder is being taken away
+                found.append(Job(**json.loads(place.read_text(encoding="utf-8"))))
+        return sorted(found, key=lambda job: job.asked_at, reverse=True)
+
+    def ask(self, scenario: str, changes: Mapping[str, str]) -> Job:
+        """Put a simulation at the end of the queue; it is on the disk when this returns."""
+        now = datetime.now(UTC)
+        plain = re.sub(r"[^A-Za-z0-9-]", "-", scenario)
+        name = f"{now:%Y-%m-%d-%H%M%S}-{plain}-{secrets.token_hex(2)}"
+        job = Job(name, scenario, dict(changes), now.isoformat())
+        self._keep(job)
+        return job
+
+    def cancel(self, name: str) -> None:
+        """Take a waiting job out of the queue, or end the running one; what it has computed is kept.
+
+        Raises
+        ------
+        ParameterError
+            It neither waits nor runs.
+        """
+        job = next((job for job in self.jobs() if job.name == name), None)
+        if job is not None and job.state == "waiting":
+            self._keep(replace(job, state="cancelled"))
+        elif job is not None and name == self._running and self._process is not None:
+            self._process.terminate()
+        else:
+            raise ParameterError("this run is over already; there is nothing to cancel")
+
+    async def work(self) -> None:
+        """Work through the queue until `end`."""
+        for job in self.jobs():
+            if job.state == "running":  # the server ended meanwhile
+                self._keep(replace(job, state="waiting"))
+        while not self._ended:
+            waiting = [job for job in self.jobs() if job.state == "waiting"]
+            if waiting:
+                await self._run(waiting[-1])
+            else:
+                await asyncio.sleep(_PAUSE_S)
+
+    def end(self) -> None:
+        """End the running process with the server; its job is begun again next time."""
+        self._ended = True
+        if self._process is not None and self._process.returncode is None:
+            self._process.kill()
+
+    async def _run(self, job: Job) -> None:
+        self._keep(replace(job, state="running"))
+        self._running, self.progress = job.name, "starting"
+        changes = [word for key, value in job.changes.items() for word in ("--set", f"{key}={value}")]
+        command = (sys.executable, "-m", "skisnow", "simulate", job.scenario, *changes)
+        self._process = await asyncio.create_subprocess_exec(
+            *command,
+            "--out",
+            str(self.folder / job.name),
+            stdout=asyncio.subprocess.DEVNULL,
+            stderr=asyncio.subprocess.PIPE,
+        )
+        last = await self._listen(self._process)
+        status = await self._process.wait()
+        self._process, self._running, self.progress = None, "", ""
+        if not self._ended:
+            self._keep(self._over(job, status, last))
+
+    async def _listen(self, process: asyncio.subprocess.Process) -> str:
+        last = ""
+        assert process.stderr is not None
+        while line := await process.stderr.readline():
+            self.progress = last = line.decode("utf-8", "replace").strip()
+        return last[-LAST_WORDS:]
+
+    def _over(self, job: Job, status: int, last: str) -> Job:
+        summary = self.folder / job.name / "summary.json"
+        if not summary.is_file():
+            return replace(job, state="cancelled" if status < 0 or status == 143 else "failed", said=last)
+        found = json.loads(summary.read_text(encoding="utf-8"))
+        words = f"{found['outcome']}: {found['run_length_m']:.1f} m in {found['simulated_s']:.2f} s".replace("_", " ")
+        return replace(job, state="done", said=f"{words}. {found['remedy']}".strip())
+
+    def _keep(self, job: Job) -> None:
+        write_file(self.folder / job.name / JOB, json.dumps(asdict(job), ensure_ascii=False, indent=1))
