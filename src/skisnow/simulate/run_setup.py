@@ -202,7 +202,7 @@ def set_up(scenario: Scenario) -> Setup:
     solver = scenario.solver
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])
     elements = solver.elements or max(ELEMENTS, math.ceil(2.0 * length / wavelength))
-    spacing = solver.line_spacing or min(LINE_SPACING, wavelength / 4.0)
+    spacing = solver.line_spacing or min(LINE_SPACING, wavelength / 8.0)
     tangent = math.tan(max(abs(scenario.sledge.edge_angle), 1e-3))
     across = min(depth / tangent, float(scenario.ski.width.max()))
     cell = solver.cell or min(max(across / CELLS_ACROSS, SMALLEST_CELL), LARGEST_CELL)
