@@ -108,6 +108,9 @@ def take(page: Page, address: str) -> None:
     page.goto(f"{address}carve")
     page.get_by_text("equilibrium").first.wait_for(timeout=180_000)
     both_sizes(page, "carve")
+    page.goto(f"{address}simulate")
+    page.get_by_text("Snow", exact=True).last.click()
+    picture(page, "simulate")
 
 
 def main() -> None:
