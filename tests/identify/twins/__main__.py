@@ -7,6 +7,7 @@ and the same command goes on with those that are missing.
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import Final
 
@@ -37,10 +38,14 @@ def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
         "turns": (one_turn, [(scenario, seed) for seed in seeds for scenario in SCENARIOS]),
     }
     seconds = None if options.minutes is None else 60.0 * options.minutes
-    for kind in options.kinds:
-        twin, cases = asked[kind]
-        kept = KeptTwins.opened(folder / f"{kind}.csv")
-        run_twins(twin, cases, kept, workers=options.workers, seconds=seconds)
+    try:
+        for kind in options.kinds:
+            twin, cases = asked[kind]
+            kept = KeptTwins.opened(folder / f"{kind}.csv")
+            run_twins(twin, cases, kept, workers=options.workers, seconds=seconds)
+    except KeyboardInterrupt:
+        print(f"interrupted; finished twins are kept in {folder}, the page is as it was", file=sys.stderr)
+        raise SystemExit(130) from None
     rows = {kind: KeptTwins.opened(folder / f"{kind}.csv") for kind in KINDS}
     tables.write(docs / "identification.md", rows["turns"], rows["glides"], rows["grooves"])
 

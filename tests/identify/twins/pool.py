@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import signal
 import sys
 import time
@@ -20,7 +21,7 @@ def run_twins(
 ) -> int:
     """Compute what is missing, in the order asked, and say how many were computed.
 
-    After `seconds` no twin is begun any more. Ctrl-C keeps those that are finished.
+    After `seconds` no twin is begun any more. Ctrl-C ends those under way and keeps those that are finished.
     """
     missing = [each for each in asked if each not in kept.rows]
     if workers == 1 or not missing:
@@ -59,8 +60,8 @@ def _side_by_side(
                     for each in asked:
                         each.cancel()
         except KeyboardInterrupt:
-            pool.shutdown(wait=False, cancel_futures=True)
-            print(f"interrupted; {done} twins of this start are kept in {kept.path}", file=sys.stderr, flush=True)
+            for process in multiprocessing.active_children():  # a twin takes minutes; half of one is none
+                process.terminate()
             raise
     return done
 

@@ -57,10 +57,11 @@ def deviations(turns: KeptTwins) -> str:
                 below = f"{int(np.sum(share < ALLOWED))} of {len(twins)}"
                 numbers = (centimetres(nearest), centimetres(at_time), f"{100.0 * share.max():.2f}")
                 residual = f"{np.median(column(twins, 'rms_residual')):.2f}"
-                rows.append((scenario, error or NO_ERROR, str(len(twins)), *numbers, below, residual))
+                off = (biased(twins, key) for key in FREE[:2])
+                rows.append((scenario, error or NO_ERROR, str(len(twins)), *numbers, below, residual, *off))
     head = (
         "scenario", "model error", "twins", "nearest place: median, largest (cm)", "equal time: median, largest (cm)",
-        "largest share of the length (%)", "below 1 %", "rms residual (sd)",
+        "largest share of the length (%)", "below 1 %", "rms residual (sd)", "error of mu_0", "error of drag_area (m²)",
     )  # fmt: skip
     return table(head, rows, words=2)
 
@@ -96,13 +97,15 @@ def elastic(turns: KeptTwins) -> str:
         for words, case in (("hypoplastic", scenario), ("elastic", scenario + ELASTIC)):
             twins = [row for row in turns.of(case) if row["seed"] in alike]
             if twins:
+                converged = f"{sum(row['outcome'] == 'converged' for row in twins)} of {len(twins)}"
                 off = (biased(twins, key) for key in FREE)
                 apart = (centimetres(column(twins, name)) for name in ("largest_nearest_m", "largest_at_time_m"))
                 residual = f"{np.median(column(twins, 'rms_residual')):.2f}"
-                rows.append((scenario, words, str(len(twins)), *apart, residual, *off))
+                rows.append((scenario, words, converged, *apart, residual, *off))
     head = (
-        "scenario", "identified as", "twins", "nearest place: median, largest (cm)", "equal time: median, largest (cm)",
-        "rms residual (sd)", "error of mu_0", "error of drag_area (m²)", "error of heading (°)",
+        "scenario", "identified as", "converged", "nearest place: median, largest (cm)",
+        "equal time: median, largest (cm)", "rms residual (sd)", "error of mu_0", "error of drag_area (m²)",
+        "error of heading (°)",
     )  # fmt: skip
     return table(head, rows, words=2)
 
@@ -115,6 +118,10 @@ def snow_from_marks(marks: KeptTwins) -> str:
         twins = [row for row in every if low <= float(row[f"{HARDNESS} true"]) < high]
         rows.append((f"{low:g} to {high:g}", *_marks_row(twins)))
     rows.append(("all", *_marks_row(every)))
+    if every:
+        slid = [row for row in every if row["slid"] == row["said to have slid"] == "1"]
+        shares = (binomial_words(every, HARDNESS), binomial_words(slid, STRENGTH))
+        rows.append(("99 % interval of that share", "", "", "", shares[0], "", "", "", "", "", shares[1], ""))
     head = (
         "H_V (N/mm³)", "twins", "depth (mm)", "error of H_V (%)", "H_V covered", "slid", "seen", "held", "seen",
         "error of S_f (%)", "S_f covered (slid)", "bound below S_f (held)",
@@ -177,6 +184,12 @@ def covered_words(twins: Rows, key: str) -> str:
     return f"{k} of {n}" if n else ""
 
 
+def binomial_words(twins: Rows, key: str) -> str:
+    """Such as 88.3 to 97.5 %."""
+    low, high = binomial(*covered(twins, key))
+    return f"{100.0 * low:.1f} to {100.0 * high:.1f} %"
+
+
 def rms_factor(twins: Rows, key: str) -> str:
     """Rms of the logarithm, in per cent."""
     if not twins:
@@ -186,9 +199,9 @@ def rms_factor(twins: Rows, key: str) -> str:
 
 
 def biased(twins: Rows, key: str) -> str:
-    """Mean error ± standard deviation of one."""
+    """Mean error ± standard deviation of one, which a single one does not have."""
     error = column(twins, f"{key} found") - column(twins, f"{key} true")
-    return f"{error.mean():+.2g} ± {error.std(ddof=min(1, len(error) - 1)):.1g}"
+    return f"{error.mean():+.2g}" + (f" ± {error.std(ddof=1):.1g}" if len(error) > 1 else "")
 
 
 def centimetres(lengths: np.ndarray) -> str:
