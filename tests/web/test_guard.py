@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import pytest
@@ -75,7 +76,8 @@ class Client:
         async def send(message: Message) -> None:
             sent.append(message)
 
-        asyncio.run(self._app(scope, receive, send))
+        with ThreadPoolExecutor(1) as beside:  # in this thread a loop may run: the one that drives a browser
+            beside.submit(lambda: asyncio.run(self._app(scope, receive, send))).result()
         return sent
 
 
