@@ -38,6 +38,7 @@ demo: $(VENV)/.skisnow
 	$(BIN)/skisnow reference $(DEMO)/campaign --seed $(SEED)
 	$(BIN)/skisnow analyse $(DEMO)/campaign --out $(DEMO)/results
 	$(BIN)/python examples/campaign_to_turn.py $(DEMO)/results/results.json $(DEMO)/turn
+	@echo "To enter tests and look at turns in a browser: $(BIN)/pip install -e '.[web]', then $(BIN)/skisnow serve"
 	@echo
 	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser."
 
