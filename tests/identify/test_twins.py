@@ -76,13 +76,26 @@ def test_rows_are_kept_one_by_one_and_not_computed_again(tmp_path: Path) -> None
     assert [row["value"] for row in KeptTwins.opened(path).of("a")] == ["0", "1", "2", "3"]
 
 
-def test_after_the_time_no_twin_is_begun(tmp_path: Path) -> None:
-    def twin(case: str, seed: int) -> list[tuple[str, Row]]:
-        return [(case, {"value": str(seed)})]
+def half(case: str, seed: int) -> list[tuple[str, Row]]:
+    return [(case, {"value": f"{seed / 2:g}"})]
 
-    kept = KeptTwins.opened(tmp_path / "twins.csv")
-    assert run_twins(twin, [("a", 0), ("a", 1)], kept, workers=1, seconds=-1.0) == 0
-    assert not kept.rows
+
+def test_two_processes_keep_the_rows_of_one(tmp_path: Path) -> None:
+    asked = [("a", seed) for seed in range(5)]
+    texts = []
+    for workers in (1, 2):
+        kept = KeptTwins.opened(tmp_path / f"{workers}.csv")
+        assert run_twins(half, asked, kept, workers=workers) == 5
+        texts.append(kept.path.read_text(encoding="utf-8"))
+    assert texts[0] == texts[1]
+    assert texts[0].splitlines()[-1] == "a,4,2"
+
+
+def test_after_the_time_no_twin_is_begun(tmp_path: Path) -> None:
+    for workers in (1, 2):
+        kept = KeptTwins.opened(tmp_path / "twins.csv")
+        assert run_twins(half, [("a", 0), ("a", 1)], kept, workers=workers, seconds=-1.0) == 0
+        assert not kept.rows
 
 
 def test_the_file_does_not_depend_on_the_order(tmp_path: Path) -> None:

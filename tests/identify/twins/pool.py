@@ -7,7 +7,8 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from itertools import islice
 from typing import TypeAlias
 
 from .kept import KeptTwins, Row
@@ -43,27 +44,25 @@ def _one_by_one(twin: Twin, missing: Sequence[tuple[str, int]], kept: KeptTwins,
 def _side_by_side(
     twin: Twin, missing: Sequence[tuple[str, int]], kept: KeptTwins, workers: int, seconds: float | None
 ) -> int:
-    begun, done = time.monotonic(), 0
+    begun, done, waiting = time.monotonic(), 0, iter(missing)
+    under_way: dict[Future[list[tuple[str, Row]]], tuple[str, int]] = {}
     with ProcessPoolExecutor(workers, initializer=_ignore_interrupts) as pool:
-        asked: dict[Future[list[tuple[str, Row]]], tuple[str, int]] = {
-            pool.submit(twin, case, seed): (case, seed) for case, seed in missing
-        }
         try:
-            for future in as_completed(asked):
-                if future.cancelled():
-                    continue
-                case, seed = asked[future]
-                _keep(kept, seed, future.result())
-                done += 1
-                _told(case, done, len(missing), begun)
-                if seconds is not None and time.monotonic() - begun > seconds:
-                    for each in asked:
-                        each.cancel()
+            while True:
+                late = seconds is not None and time.monotonic() - begun > seconds
+                for case, seed in islice(waiting, 0 if late else workers - len(under_way)):
+                    under_way[pool.submit(twin, case, seed)] = (case, seed)
+                if not under_way:
+                    return done
+                for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+                    case, seed = under_way.pop(future)
+                    _keep(kept, seed, future.result())
+                    done += 1
+                    _told(case, done, len(missing), begun)
         except KeyboardInterrupt:
             for process in multiprocessing.active_children():  # a twin takes minutes; half of one is none
                 process.terminate()
             raise
-    return done
 
 
 def _keep(kept: KeptTwins, seed: int, rows: Sequence[tuple[str, Row]]) -> None:
