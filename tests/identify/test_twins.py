@@ -12,7 +12,7 @@ import pytest
 from skisnow import read_scenario, simulated_run
 
 from .twins import grooves, tables
-from .twins.__main__ import DOCS, main
+from .twins.__main__ import DOCS, KINDS, main
 from .twins.glides import one_glide
 from .twins.kept import KeptTwins, Row
 from .twins.pool import run_twins
@@ -120,6 +120,11 @@ def test_intervals_that_hold_the_truth_are_counted() -> None:
     assert tables.covered(twins, "k") == (3, 5)
 
 
+def test_an_error_of_half_an_interval_is_1_96_standard_errors() -> None:
+    row = {"k true": "1", "k found": "3", "k low": "1", "k high": "5"}
+    assert tables.in_standard_errors(row, "k") == pytest.approx(1.959964)
+
+
 def test_a_twin_of_photo_cells_has_the_standard_errors_of_the_closed_form() -> None:
     """As in test_photo_cell_times, 10⁻⁴ leaves room for the step of integration."""
     ((case, row),) = one_glide("photo cells, three free", 4)
@@ -164,8 +169,7 @@ def test_the_page_holds_what_the_kept_twins_say(tmp_path: Path) -> None:
     """The committed tables are those of the committed rows."""
     page = tmp_path / "identification.md"
     page.write_text((DOCS / "identification.md").read_text(encoding="utf-8"), encoding="utf-8")
-    turns, cells, marks = (KeptTwins.opened(DOCS / "twins" / f"{name}.csv") for name in ("turns", "glides", "grooves"))
-    tables.write(page, turns, cells, marks)
+    tables.write(page, {kind: KeptTwins.opened(DOCS / "twins" / f"{kind}.csv") for kind in KINDS})
     assert page.read_text(encoding="utf-8") == (DOCS / "identification.md").read_text(encoding="utf-8")
 
 

@@ -15,10 +15,10 @@ from . import glides, grooves, tables
 from .kept import KeptTwins
 from .pool import run_twins
 from .truth import SCENARIOS, SEEDS
-from .turns import one_turn
+from .turns import NOISELESS, one_noiseless, one_turn
 
 DOCS: Final = Path(__file__).parents[3] / "docs" / "validation"
-KINDS: Final = ("glides", "grooves", "turns")
+KINDS: Final = ("glides", "grooves", "noiseless", "turns")
 
 
 def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
@@ -35,6 +35,7 @@ def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
     asked = {
         "glides": (glides.one_glide, [(case, seed) for case in glides.CASES for seed in seeds]),
         "grooves": (grooves.one_groove, [(case, seed) for case in grooves.CASES for seed in seeds]),
+        "noiseless": (one_noiseless, [(scenario + NOISELESS, 0) for scenario in SCENARIOS]),
         "turns": (one_turn, [(scenario, seed) for seed in seeds for scenario in SCENARIOS]),
     }
     seconds = None if options.minutes is None else 60.0 * options.minutes
@@ -47,7 +48,7 @@ def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
         print(f"interrupted; finished twins are kept in {folder}, the page is as it was", file=sys.stderr)
         raise SystemExit(130) from None
     rows = {kind: KeptTwins.opened(folder / f"{kind}.csv") for kind in KINDS}
-    tables.write(docs / "identification.md", rows["turns"], rows["glides"], rows["grooves"])
+    tables.write(docs / "identification.md", rows)
 
 
 if __name__ == "__main__":

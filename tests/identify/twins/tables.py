@@ -16,7 +16,7 @@ from skisnow.files import write_file
 from . import glides, grooves
 from .kept import KeptTwins
 from .truth import ERRORS, FREE, SCENARIOS
-from .turns import ELASTIC
+from .turns import ELASTIC, NOISELESS
 
 Rows = Sequence[Mapping[str, str]]
 NO_ERROR: Final = "none"
@@ -28,15 +28,16 @@ HARDNESS, STRENGTH = "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2"
 UNITS: Final = {"friction.mu_0": "", "drag.drag_area_m2": " m²", "start.heading_deg": "°"}
 
 
-def write(page: Path, turns: KeptTwins, cells: KeptTwins, marks: KeptTwins) -> None:
+def write(page: Path, kept: Mapping[str, KeptTwins]) -> None:
     """Put each table between its marks on the page."""
     text = page.read_text(encoding="utf-8")
     filled = {
-        "deviations": deviations(turns),
-        "coverage": coverage_of_turns(turns),
-        "photo cells": photo_cells(cells),
-        "elastic": elastic(turns),
-        "marks": snow_from_marks(marks),
+        "deviations": deviations(kept["turns"]),
+        "coverage": coverage_of_turns(kept["turns"]),
+        "without noise": without_noise(kept["noiseless"]),
+        "elastic": elastic(kept["turns"]),
+        "photo cells": photo_cells(kept["glides"]),
+        "marks": snow_from_marks(kept["grooves"]),
     }
     for name, table_of in filled.items():
         before, rest = text.split(f"<!-- {name} -->")
@@ -73,6 +74,25 @@ def coverage_of_turns(turns: KeptTwins) -> str:
         twins = [row for row in turns.of(scenario) if not row["error"]]
         rows += [(scenario, *coverage(twins, key)) for key in FREE if twins]
     return table(("scenario", *COVERAGE), rows, words=2)
+
+
+def without_noise(noiseless: KeptTwins) -> str:
+    """How far the answer is off because the truth has finer numbers, and that over its standard error."""
+    rows = []
+    for scenario in SCENARIOS:
+        for row in noiseless.of(scenario + NOISELESS):
+            off = (f"{float(row[f'{key} found']) - float(row[f'{key} true']):+.1e}{UNITS[key]}" for key in FREE)
+            share = (f"{in_standard_errors(row, key):+.2f}" for key in FREE)
+            words = (f"{one} ({other})" for one, other in zip(off, share, strict=True))
+            rows.append((scenario, f"{100.0 * float(row['largest_at_time_m']):.2f}", *words))
+    names = (key.partition(".")[2] for key in FREE)
+    return table(("scenario", "largest at equal time (cm)", *names), rows, words=1)
+
+
+def in_standard_errors(row: Mapping[str, str], key: str) -> float:
+    """The error over a standard error; the interval is 2 × 1.96 of these wide."""
+    value, true, low, high = (float(row[f"{key} {name}"]) for name in ("found", "true", "low", "high"))
+    return (value - true) / ((high - low) / (2.0 * 1.959964))
 
 
 def photo_cells(cells: KeptTwins) -> str:

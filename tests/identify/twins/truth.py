@@ -75,11 +75,11 @@ def finer(asked: Scenario) -> Scenario:
     return replace(asked, solver=solver)
 
 
-def track_of(run: Run, truth: Truth, seed: int) -> Track:
+def track_of(run: Run, truth: Truth, seed: int, *, noise: float = NOISE) -> Track:
     """White noise at 10 Hz, and the drift where there is one; the receiver states its noise, not its drift."""
     rng = np.random.default_rng([seed, 7])
     time, place = run.time[::EVERY], run.place[::EVERY].copy()
-    place += NOISE * rng.standard_normal(place.shape)
+    place += noise * rng.standard_normal(place.shape)
     if truth.error == "drift":
         azimuth = rng.uniform(0.0, 2.0 * math.pi)
         place[:, :2] += DRIFT * time[:, None] * [math.cos(azimuth), math.sin(azimuth)]

@@ -21,6 +21,10 @@ ELASTIC: Final = ", elastic"
 """Behind a scenario's name: the same truth, identified with snow that springs back."""
 
 
+NOISELESS: Final = ", without noise"
+"""Behind a scenario's name: what the finer numbers of the truth alone do to the answer."""
+
+
 def one_turn(scenario: str, seed: int) -> list[tuple[str, Row]]:
     """Rows by case: the scenario, and for seeds without model error the same identified with elastic snow."""
     truth = truth_of(scenario, seed)
@@ -30,6 +34,14 @@ def one_turn(scenario: str, seed: int) -> list[tuple[str, Row]]:
     if not truth.error:
         rows.append((scenario + ELASTIC, identified(scenario, track, run, truth, {"snow.penetration": "elastic"})))
     return rows
+
+
+def one_noiseless(case: str, seed: int) -> list[tuple[str, Row]]:
+    """The truth of an even seed with the stated accuracy, but without noise."""
+    scenario = case.removesuffix(NOISELESS)
+    truth = truth_of(scenario, seed)
+    run = true_run(scenario, truth)
+    return [(case, identified(scenario, track_of(run, truth, seed, noise=0.0), run, truth, {}))]
 
 
 def identified(scenario: str, track: Track, run: Run, truth: Truth, changes: dict[str, object]) -> Row:
