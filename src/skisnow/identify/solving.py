@@ -189,7 +189,7 @@ class _Solver:
             best = search.best if search.best is not None else found
             return replace(best, jacobian=found.jacobian, second=found.second, state="interrupted")
         self.methods.append(
-            "searched with fixed steps of 1 ms (fast mode); the last steps and the answer with the scenario's own solver"
+            "searched with fixed steps of 1 ms (fast mode); last steps and answer with the scenario's own solver"
         )
         return polished
 
