@@ -82,13 +82,15 @@ def cancel(page: Page) -> None:
 def enter_shear(page: Page) -> None:
     page.get_by_role("link", name="Shear").press("Enter")
     page.get_by_role("heading", name="New test").wait_for()
+    page.locator("input:focus").wait_for()  # the server sets it once the page is connected
     fill(page, {"Site": "A", "Edge angle (°)": "90", "Depth (mm)": "6", "Lever arm (mm)": "250", "Moment (N m)": "30"})
-    page.keyboard.press("Enter")
+    page.get_by_label("Moment (N m)").press("Enter")
     page.get_by_text("Stored: test 1.").wait_for()
     page.get_by_text("S_f = 0.200 N/mm²").wait_for()  # 30 N m / 0.25 m / (100 mm × 6 mm), by hand
     page.get_by_label("Depth (mm)", exact=True).and_(page.locator(":focus")).wait_for()
     page.keyboard.type("8")
     page.keyboard.press("Enter")
+    page.get_by_label("Moment (N m)").and_(page.locator(":focus")).wait_for()  # the server moves it
     page.keyboard.type("36")
     page.keyboard.press("Enter")
     page.get_by_text("Stored: test 2.").wait_for()
