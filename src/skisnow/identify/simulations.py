@@ -5,13 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import multiprocessing
-import os
-import signal
-import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from types import TracebackType
@@ -20,6 +16,7 @@ from typing import Self
 from ..errors import SkisnowError
 from ..simulate.batch import available_cores, require_workers
 from ..simulate.batch_file import KeptRows, Row, row_text
+from ..simulate.worker_process import begin_worker, interrupts_ignored
 from .run_simulation import RunSimulation, RunTask
 
 
@@ -103,7 +100,7 @@ class Simulations:
             return
         try:
             numbers: dict[Future[Row], int] = {}
-            with _interrupts_ignored():  # a process that starts inherits this: Ctrl-C is for the parent alone
+            with interrupts_ignored():  # a process that starts inherits this: Ctrl-C is for the parent alone
                 pool = self._started()
                 for number, task in missing.items():
                     numbers[pool.submit(_one, task)] = number
@@ -142,31 +139,11 @@ class _Worker:
 
 
 def _begin(simulate: RunSimulation, alive: Connection) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, args=(alive,), daemon=True).start()
+    begin_worker(alive)
     _Worker.simulate = simulate
-
-
-def _end_with_parent(alive: Connection) -> None:
-    try:
-        alive.recv()
-    except (EOFError, OSError):
-        os._exit(1)
 
 
 def _one(task: RunTask) -> Row:
     if _Worker.simulate is None:
         raise SkisnowError("a worker was not started by Simulations")
     return _Worker.simulate(task)
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)

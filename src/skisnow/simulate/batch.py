@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import signal
-import threading
 import time
 from collections import deque
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing, contextmanager
+from contextlib import closing
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Any, Final, TypeAlias
 
 from ..errors import ParameterError, SkisnowError
 from .batch_file import KeptRows, NumberedText, Row, row_text
+from .worker_process import begin_worker, interrupts_ignored
 
 PointFunction: TypeAlias = Callable[[Any], Row]
 Told: TypeAlias = Callable[[int, int], None]
@@ -119,7 +118,7 @@ def _shared(
     size = 1
     pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin, initargs=(function, alive))
     try:
-        with _interrupts_ignored():  # a worker that starts inherits this: Ctrl-C is for the parent alone
+        with interrupts_ignored():  # a worker that starts inherits this: Ctrl-C is for the parent alone
             running = {pool.submit(_chunk, _taken(points, waiting, 1)) for _ in range(min(2 * workers, len(waiting)))}
         while running:
             ended, running = wait(running, return_when=FIRST_COMPLETED)
@@ -148,18 +147,6 @@ def _taken(points: Sequence[Any], waiting: deque[int], size: int) -> list[tuple[
     return [(number, points[number]) for number in numbers]
 
 
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
 class _Worker:
     """What a worker process knows; in every other process it stays empty."""
 
@@ -168,16 +155,8 @@ class _Worker:
 
 def _begin(function: PointFunction, alive: Connection) -> None:
     """Start a worker: it ends with its parent, however that ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, args=(alive,), daemon=True).start()
+    begin_worker(alive)
     _Worker.function = function
-
-
-def _end_with_parent(alive: Connection) -> None:
-    try:
-        alive.recv()
-    except (EOFError, OSError):
-        os._exit(1)
 
 
 def _chunk(numbered: list[tuple[int, Any]]) -> _Done:
