@@ -84,6 +84,21 @@ class TestStraight:
         wanted = np.sqrt(np.diag(np.linalg.inv(design.T @ design)))
         assert [each.standard_error for each in found_from(known).parameters] == pytest.approx(wanted, rel=1e-6)
 
+    def test_a_speed_over_the_ground_is_not_taken_for_that_along_the_slope(self) -> None:
+        """It is cos 10° of it, 0.08 m/s too small here; the velocity beside it has the vertical part, and counts."""
+        one = track()
+        along = TRUE_SPEED + 9.81 * (math.sin(SLOPE) - TRUE_FRICTION * math.cos(SLOPE)) * one.time
+        ground = replace(
+            one, speed=along * math.cos(SLOPE), speed_sd=np.full(len(one), 0.01), speed_kind="over the ground"
+        )
+        known = replace(ground, velocity=np.column_stack([along, 0.0 * along, 0.0 * along]))
+        for each in (ground, known):
+            assert found_from(each)["speed"].value == pytest.approx(TRUE_SPEED, abs=1e-4)
+        errors = [found_from(each)["speed"].standard_error for each in (ground, known)]
+        assert errors[0] is not None
+        assert errors[1] is not None
+        assert errors[1] < 0.7 * errors[0]
+
     def test_a_parameter_without_effect_is_named(self) -> None:
         """A straight run does not feel the snow's strength."""
         found = found_from(track(seed=4), "mu_0,speed,S_f")

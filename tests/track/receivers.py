@@ -14,6 +14,7 @@ FIT_FIELDS = {  # number, size, base type, struct code, value that means invalid
     "altitude": (2, 2, 0x84, "H", 0xFFFF),
     "distance": (5, 4, 0x86, "I", 0xFFFFFFFF),
     "speed": (6, 2, 0x84, "H", 0xFFFF),
+    "gps_accuracy": (31, 1, 0x02, "B", 0xFF),
 }
 
 
@@ -63,18 +64,51 @@ def nav_pvt(
     height: int = 1_500_123,
     accuracies: tuple[int, int, int] = (50, 80, 30),
     velocity: tuple[int, int, int] = (3000, -4000, 1200),
+    carrier: int = 0,
+    time_of_week: int = 229_892_000,
+    invalid_place: int = 0,
 ) -> bytes:
     """UBX-NAV-PVT at 2022-12-27T15:51 UTC; raw numbers: 1e-7 degrees, mm, mm/s north east down."""
     north, east, down = velocity
     horizontal, vertical, speed = accuracies
-    payload = struct.pack("<IHBBBBB", 229_892_000, 2022, 12, 27, 15, 51, second)
-    payload += struct.pack("<BIiBBBB", valid, 25, nano, fix, fix_ok, 0, 12)
+    payload = struct.pack("<IHBBBBB", time_of_week, 2022, 12, 27, 15, 51, second)
+    payload += struct.pack("<BIiBBBB", valid, 25, nano, fix, fix_ok | carrier << 6, 0, 12)
     payload += struct.pack("<iiii", lon, lat, height, height - 48_000)
     payload += struct.pack("<II", horizontal, vertical)
     payload += struct.pack("<iiiii", north, east, down, round((north**2 + east**2) ** 0.5), 0)
-    payload += struct.pack("<IIHHIihH", speed, 100, 150, 0, 0, 0, 0, 0)
+    payload += struct.pack("<IIHHIihH", speed, 100, 150, invalid_place, 0, 0, 0, 0)
     assert len(payload) == 92
     return ubx_frame(b"\x01\x07", payload)
+
+
+def nav_hpposllh(
+    *,
+    time_of_week: int = 229_892_000,
+    lat: tuple[int, int] = (472345678, 45),
+    lon: tuple[int, int] = (111234567, -67),
+    height: tuple[int, int] = (1_500_123, -4),
+    accuracies: tuple[int, int] = (123, 201),
+    invalid: int = 0,
+) -> bytes:
+    """UBX-NAV-HPPOSLLH; raw numbers: 1e-7 degrees and 1e-9 to add, mm and 0.1 mm to add, accuracies in 0.1 mm."""
+    payload = struct.pack("<BBBBI", 0, 0, 0, invalid, time_of_week)
+    payload += struct.pack("<iiii", lon[0], lat[0], height[0], height[0] - 48_000)
+    payload += struct.pack("<bbbbII", lon[1], lat[1], height[1], 0, *accuracies)
+    assert len(payload) == 36
+    return ubx_frame(b"\x01\x14", payload)
+
+
+def nav_cov(
+    place: Sequence[float],
+    velocity: Sequence[float],
+    *,
+    time_of_week: int = 229_892_000,
+    valid: tuple[int, int] = (1, 1),
+) -> bytes:
+    """UBX-NAV-COV; each NN, NE, ND, EE, ED, DD in m² and m²/s²."""
+    payload = struct.pack("<IBBB9x", time_of_week, 0, *valid) + struct.pack("<12f", *place, *velocity)
+    assert len(payload) == 64
+    return ubx_frame(b"\x01\x36", payload)
 
 
 def sentence(content: str) -> bytes:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -19,7 +21,7 @@ def run() -> tuple[FloatArray, FloatArray]:
     return time, np.column_stack([np.zeros(N), 15.0 * time, -3.0 * time])
 
 
-def marked(time: FloatArray, place: FloatArray, **named: float) -> dict[str, list[int]]:
+def marked(time: FloatArray, place: FloatArray, **named: Any) -> dict[str, list[int]]:
     fix, negative = np.ones(len(time), bool), np.zeros(len(time), bool)
     marks = point_marks(time, place, fix, negative, **named)
     assert set(marks) == set(MARKS)

@@ -49,6 +49,16 @@ def test_records_without_a_date_are_counted(tmp_path: Path) -> None:
     assert track.left_out == {"records without a date": 1}
 
 
+def test_accuracy_in_whole_metres(tmp_path: Path) -> None:
+    """Horizontal, half of the variance to the east and to the north; 0 and what is invalid say nothing."""
+    records = [RECORDS[0] | {"gps_accuracy": 3}, RECORDS[1] | {"gps_accuracy": 0}, RECORDS[2]]
+    track = read(tmp_path, fit_file(records), "a.fit")
+    each = 3.0 / np.sqrt(2.0)
+    assert track.place_sd is not None
+    np.testing.assert_allclose(track.place_sd, [[each, each, np.nan], [np.nan] * 3, [np.nan] * 3], rtol=1e-12)
+    assert read(tmp_path, fit_file(RECORDS), "b.fit").place_sd is None
+
+
 def test_refused(tmp_path: Path) -> None:
     whole = fit_file(RECORDS)
     assert "ends too early, after 2 records" in refused(tmp_path, whole[:-10], "a.fit")

@@ -85,6 +85,26 @@ def test_date_of_zda_comes_later(tmp_path: Path) -> None:
     assert read(tmp_path, data, "a.nmea").start == datetime(2022, 12, 31, 23, 59, 59, tzinfo=UTC)
 
 
+def test_carrier_phase_of_gga(tmp_path: Path) -> None:
+    """Quality 4 is RTK with whole cycles, 5 float, 1 and 2 by the code, 6 dead reckoning."""
+    track = read(tmp_path, b"".join(gga(f"15511{i}.00", quality=i) for i in (1, 2, 4, 5, 6)), "a.nmea")
+    assert track.solution is not None
+    assert track.solution.tolist() == ["code", "code", "fixed", "float", ""]
+    assert track.marked == {"float_solution": 1, "code_solution": 2}
+    assert read(tmp_path, gga(quality=1), "b.nmea").marked == {}
+
+
+def test_carrier_phase_of_gns(tmp_path: Path) -> None:
+    """A letter for each system; of several the least exact."""
+    lines = [
+        sentence(f"GNGNS,15511{i}.00,4714.0,N,01107.4,E,{modes},12,0.6,1452.3,47.9,,")
+        for i, modes in enumerate(("RR", "RF", "RA", "AN", "NN"))
+    ]
+    track = read(tmp_path, b"".join(lines), "a.nmea")
+    assert track.solution is not None
+    assert track.solution.tolist() == ["fixed", "float", "code", "code", ""]
+
+
 def test_no_fix(tmp_path: Path) -> None:
     empty = sentence("GNGGA,155113.00,,,,,0,00,99.99,,,,,,")
     track = read(tmp_path, empty + rmc("155113.00", "", "", ok="V") + gga() + rmc("155115.00", ok="V"), "a.nmea")

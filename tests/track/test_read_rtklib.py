@@ -52,6 +52,26 @@ def test_latitude_longitude_height(tmp_path: Path) -> None:
         assert "above the ellipsoid" in track.frame
 
 
+def test_carrier_phase(tmp_path: Path) -> None:
+    """Q: 1 fix, 2 float, 3 SBAS, 4 DGPS, 5 single, 6 PPP."""
+    rows = [f"2022/12/27 15:51:1{q}.000 47.0 11.0 1500.0 {q}{TAIL[1:]}" for q in range(1, 7)]
+    track = read(tmp_path, "\n".join([*LLH.splitlines()[:3], *rows]), "a.pos")
+    assert track.solution is not None
+    assert track.solution.tolist() == ["fixed", "float", "code", "code", "code", "float"]
+    assert track.marked == {"float_solution": 2, "code_solution": 3}
+
+
+def test_standard_deviation_of_the_speed(tmp_path: Path) -> None:
+    """Along the velocity (0.6 north, -0.8 east), with the covariance as RTKLIB writes it: its root with its sign."""
+    names = "    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    sdvne    sdveu    sdvun"
+    lines = LLH.splitlines()
+    rows = [f"{lines[3]} 3 -4 0 .03 .04 .5 .02 .1 .1", f"{lines[4]} 0 0 0 .03 .04 .5 -.02 0 0"]
+    track = read(tmp_path, "\n".join([*lines[:2], lines[2] + names, *rows]), "a.pos")
+    assert track.speed_sd is not None
+    wanted = math.sqrt((0.6 * 0.03) ** 2 + (0.8 * 0.04) ** 2 - 2.0 * 0.48 * 0.02**2)
+    np.testing.assert_allclose(track.speed_sd, [wanted, 0.5], rtol=1e-9)
+
+
 def test_velocities(tmp_path: Path) -> None:
     names = "    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    sdvne    sdveu    sdvun"
     lines = LLH.splitlines()

@@ -12,7 +12,7 @@ import pytest
 from skisnow.track.projection import GeodeticPoint
 
 from . import metres_per_degree
-from .receivers import nav_pvt, sentence, ubx_frame
+from .receivers import nav_cov, nav_hpposllh, nav_pvt, sentence, ubx_frame
 from .test_read_table import read, refused
 
 
@@ -56,6 +56,68 @@ def test_accuracies(tmp_path: Path) -> None:
     assert up == pytest.approx(0.080)
     assert track.speed_sd is not None
     np.testing.assert_allclose(track.speed_sd, [0.030])
+
+
+def test_high_precision_places(tmp_path: Path) -> None:
+    """1e-9 degrees and 0.1 mm are added with their signs; before or behind the NAV-PVT, with equal time of week."""
+    precise = nav_hpposllh(), nav_hpposllh(time_of_week=229_892_100, lat=(472345678, 55))
+    points = nav_pvt(), nav_pvt(nano=100_000_000, time_of_week=229_892_100)
+    later = nav_pvt(nano=200_000_000, time_of_week=229_892_200)
+    for data in (points[0] + precise[0] + points[1] + precise[1], precise[0] + points[0] + precise[1] + points[1]):
+        track = read(tmp_path, data + later, "a.ubx")
+        assert track.origin is not None
+        assert track.origin.latitude_deg == pytest.approx(47.234567845, abs=1e-11)
+        assert track.origin.longitude_deg == pytest.approx(11.123456633, abs=1e-11)
+        assert track.origin.height == pytest.approx(1500.1226, abs=1e-7)
+        north = 1e-8 * metres_per_degree.north(47.2345678) * (1 + 1500 / 6.37e6)
+        np.testing.assert_allclose(track.place[1], [0.0, north, 0.0], atol=2e-6)
+        assert track.place_sd is not None
+        east_north = 0.0123 / math.sqrt(2.0)
+        np.testing.assert_allclose(track.place_sd[:2], [[east_north, east_north, 0.0201]] * 2, rtol=1e-12)
+        assert track.place_sd[2, 2] == pytest.approx(0.080)  # of the NAV-PVT that has no other message beside it
+
+
+def test_a_high_precision_place_that_is_not_valid_does_not_count(tmp_path: Path) -> None:
+    track = read(tmp_path, nav_pvt() + nav_hpposllh(invalid=1), "a.ubx")
+    assert track.origin is not None
+    assert track.origin.height == 1500.123
+    assert read(tmp_path, nav_pvt() + nav_pvt(second=15, invalid_place=1), "b.ubx").marked == {"no_fix": 1}
+
+
+def test_covariances(tmp_path: Path) -> None:
+    """North and east are not mixed up, and of the velocity counts what lies along it: 0.6 north, -0.8 east, no down."""
+    place, velocity = (4e-4, 1e-4, 0.0, 9e-4, 0.0, 25e-4), (4e-4, 1e-4, 7e-4, 1e-4, 7e-4, 1.0)
+    data = nav_pvt(velocity=(3000, -4000, 0)) + nav_hpposllh() + nav_cov(place, velocity)
+    track = read(tmp_path, data, "a.ubx")
+    assert track.place_sd is not None
+    np.testing.assert_allclose(track.place_sd, [[0.03, 0.02, 0.05]], rtol=1e-6)  # of 32 bit
+    assert track.speed_sd is not None
+    wanted = math.sqrt(0.36 * 4e-4 + 0.64 * 1e-4 - 2.0 * 0.48 * 1e-4)
+    assert track.speed_sd[0] == pytest.approx(wanted, rel=1e-6)
+    steep = read(tmp_path, nav_pvt(velocity=(3000, 0, 4000)) + nav_cov(place, velocity), "b.ubx")
+    assert steep.speed_sd is not None
+    assert steep.speed_sd[0] == pytest.approx(math.sqrt(0.36 * 4e-4 + 0.64 + 2.0 * 0.48 * 7e-4), rel=1e-6)
+
+
+def test_covariances_that_are_not_valid_do_not_count(tmp_path: Path) -> None:
+    wide = (1.0, 0.0, 0.0, 1.0, 0.0, 1.0)
+    for valid, place_sd, speed_sd in (((0, 1), 0.080, 1.0), ((1, 0), 1.0, 0.030), ((0, 0), 0.080, 0.030)):
+        track = read(tmp_path, nav_pvt() + nav_cov(wide, wide, valid=valid), "a.ubx")
+        assert track.place_sd is not None
+        assert track.speed_sd is not None
+        assert track.place_sd[0, 2] == pytest.approx(place_sd)
+        assert track.speed_sd[0] == pytest.approx(speed_sd)
+
+
+def test_carrier_phase(tmp_path: Path) -> None:
+    """Bits 6 and 7 of the flags: 0 none, 1 float, 2 fixed."""
+    data = b"".join(nav_pvt(second=10 + i, carrier=carrier) for i, carrier in enumerate((2, 1, 0)))
+    track = read(tmp_path, data + nav_pvt(second=13, fix=0, carrier=2), "a.ubx")
+    assert track.solution is not None
+    assert track.solution.tolist() == ["fixed", "float", "code", ""]
+    assert track.marked == {"no_fix": 1, "float_solution": 1, "code_solution": 1}
+    assert track.usable.tolist() == [True, True, True, False]
+    assert read(tmp_path, nav_pvt(), "b.ubx").marked == {}
 
 
 def test_negative_fraction_of_a_second(tmp_path: Path) -> None:

@@ -45,6 +45,14 @@ def test_recorded_day_has_the_devices_distance_and_top_speed(real_day: TrackSumm
     assert sum(values["marked"].values()) >= 13  # repeated time stamps
 
 
+def test_points_by_carrier_phase_are_counted() -> None:
+    one = track(circle(12.0, 9.0))
+    assert checked(track_summary(one))["solutions"] is None
+    mixed = np.where(np.arange(len(one)) < 3, "float", "fixed")
+    assert checked(track_summary(replace(one, solution=mixed)))["solutions"] == {"fixed": len(one) - 3, "float": 3}
+    assert checked(track_summary(replace(one, solution=np.full(len(one), "code"))))["solutions"] is None
+
+
 def test_recorded_day_has_nine_lifts_and_nine_runs(real_day: TrackSummary) -> None:
     """The heights show nine ascents from 306 to 436 m and as many descents; the last ends on the way, at 317 m."""
     values = checked(real_day)

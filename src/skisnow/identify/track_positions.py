@@ -52,7 +52,7 @@ class Measured:
     time, place, sd
         (m,) s from its first point, (m, 2) m and their standard deviations (m).
     speed, speed_sd
-        (m,) m/s, NaN where not recorded with an accuracy.
+        (m,) m/s along the path, NaN where not recorded with an accuracy, or over the ground alone.
     stated
         Whether all of `sd` is what the receiver states.
     left_out
@@ -91,9 +91,17 @@ def measured(track: Track) -> Measured:
     sd = given if stated and given is not None else np.full_like(place, estimated_noise(time, place))
     speed, speed_sd = np.full(len(time), np.nan), np.full(len(time), np.nan)
     if stated and track.speed_sd is not None:
-        known = np.isfinite(track.speed[use]) & (track.speed_sd[use] > 0.0)
-        speed[known], speed_sd[known] = track.speed[use][known], track.speed_sd[use][known]
+        along = path_speed(track)[use]
+        known = np.isfinite(along) & (track.speed_sd[use] > 0.0)
+        speed[known], speed_sd[known] = along[known], track.speed_sd[use][known]
     return Measured(track.name, time, place, sd, speed, speed_sd, stated, int(np.sum(~use)))
+
+
+def path_speed(track: Track) -> FloatArray:
+    """Speed along the path (n,): a receiver's speed over the ground lacks the vertical part, its velocity has it."""
+    if track.velocity is not None:
+        return np.asarray(np.linalg.norm(track.velocity, axis=1))
+    return np.full(len(track), np.nan) if "over the ground" in track.speed_kind else track.speed
 
 
 def estimated_noise(time: FloatArray, place: FloatArray) -> float:

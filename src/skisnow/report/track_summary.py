@@ -62,6 +62,11 @@ def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "points", f"{values['points']} in {_plain(values['duration_s'], 4)} s, time scale {values['time_scale']}"
     if values["start"]:
         yield "start", values["start"]
+    if values.get("solutions"):
+        yield (
+            "carrier phase",
+            ", ".join(f"{count} {_SOLUTION_WORDS[name]}" for name, count in values["solutions"].items()),
+        )
     yield "frame", values["frame"]
     yield "distance", f"{_plain(values['distance_m'], 5)} m, {_DISTANCE_WORDS[values['distance_source']]}"
     yield "highest speed", f"{_plain(values['max_speed_m_per_s'], 4)} m/s, {_SPEED_WORDS[values['speed_source']]}"
@@ -75,6 +80,9 @@ _DISTANCE_WORDS: Final = {
     "recorded_speed": "the integral of the recorded speed",
     "places": "the length of the smoothed track",
 }
+_SOLUTION_WORDS: Final = {
+    "fixed": "points fixed to whole cycles", "float": "float", "code": "by the code alone",
+}  # fmt: skip
 _SPEED_WORDS: Final = {"recorded": "as recorded", "fitted": "of the smoothed track: no speeds are recorded"}
 
 

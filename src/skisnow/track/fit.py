@@ -1,6 +1,8 @@
 """Tracks in FIT, the files of sports watches, read with fitdecode: the messages ``record``.
 
-Heights of FIT are above mean sea level as the watch has it, often barometric.
+Heights of FIT are above mean sea level as the watch has it, often barometric. ``gps_accuracy``, in whole metres, is
+taken as √(σ_east² + σ_north²), each with half of the variance (Choice; the profile names it and its unit and says no
+more); 0 says nothing.
 """
 
 from __future__ import annotations
@@ -40,6 +42,7 @@ class _Records:
                 _number(message, "enhanced_altitude", "altitude"),
                 _number(message, "enhanced_speed", "speed"),
                 _number(message, "distance"),
+                _number(message, "gps_accuracy"),
             )
         )
 
@@ -54,7 +57,9 @@ def read_fit(data: bytes, name: str) -> Recording:
     """
     records = _Records()
     _decode(data, name, records)
-    table = np.array(records.numbers, dtype=float).reshape(-1, 5)
+    table = np.array(records.numbers, dtype=float).reshape(-1, 6)
+    accuracy = np.where(table[:, 5] > 0.0, table[:, 5], np.nan) / math.sqrt(2.0)
+    place_sd = np.column_stack([accuracy, accuracy, np.full(len(table), np.nan)])
     start = records.times[0] if records.times else None
     return Recording(
         name=name,
@@ -66,6 +71,7 @@ def read_fit(data: bytes, name: str) -> Recording:
         start=start,
         speed=table[:, 3],
         speed_kind="as the device gives it",
+        place_sd=None if np.isnan(accuracy).all() else place_sd,
         odometer=None if np.isnan(table[:, 4]).all() else table[:, 4],
         heights="above mean sea level, as the watch has them",
         left_out={"records without a date": records.without_time},

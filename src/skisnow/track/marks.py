@@ -11,10 +11,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .solution import solution_marks
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import numpy.typing as npt
+
+    from .solution import SolutionArray
 
     BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]
@@ -42,6 +46,10 @@ _ALL: Final = (
     PointMark("jump", "A single point far off: the speed out to it and back again is impossible.", True),
     PointMark("impossible_step", "The speed to this point is impossible, and no single point explains it.", False),
     PointMark("negative_speed", "The speed is below zero, as devices write that have none; it counts as none.", False),
+    PointMark(
+        "float_solution", "By the carrier's phase, but not fixed to whole cycles: decimetres that wander.", False
+    ),
+    PointMark("code_solution", "By the code alone, in a track that has the carrier's phase elsewhere: metres.", False),
 )
 MARKS: Final[Mapping[str, PointMark]] = MappingProxyType({mark.code: mark for mark in _ALL})
 """Every mark by its code, in the order in which they are listed."""
@@ -55,6 +63,7 @@ def point_marks(
     *,
     fastest: float = FASTEST,
     gap_factor: float = GAP_FACTOR,
+    solution: SolutionArray | None = None,
 ) -> dict[str, BoolArray]:
     """Marks of every code, each (n,) bool.
 
@@ -72,6 +81,8 @@ def point_marks(
         Horizontal speed above which a step is impossible.
     gap_factor
         A time step longer than this many medians of the steps above zero is a gap; the point after it is marked.
+    solution : (n,) or None
+        How the receiver came to each place, as in `Track`.
     """
     placed = fix & np.isfinite(place[:, :2]).all(axis=1)
     repeated = np.zeros(len(time), bool)
@@ -89,6 +100,7 @@ def point_marks(
         "jump": jump,
         "impossible_step": impossible,
         "negative_speed": negative_speed,
+        **solution_marks(solution, len(time)),
     }
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..units import DEGREE
 from .recording import Recording
+from .solution import Solution, solution_array
 from .trouble import refusal
 
 KNOT: Final = 1852.0 / 3600.0
@@ -24,6 +25,10 @@ KNOT: Final = 1852.0 / 3600.0
 KM_PER_H: Final = 1.0 / 3.6
 """m/s in a km/h."""
 SENTENCE: Final = re.compile(rb"\$[A-Z]{2}(GGA|GNS|RMC|VTG|GST|ZDA),")
+QUALITIES: Final[dict[float, Solution]] = {1.0: "code", 2.0: "code", 3.0: "code", 4.0: "fixed", 5.0: "float"}
+"""Of GGA; others are dead reckoning, typed in, or simulated."""
+MODES: Final[dict[str, Solution]] = {"A": "code", "D": "code", "P": "code", "R": "fixed", "F": "float"}
+"""Of GNS, a letter for each satellite system."""
 _DAY, _HALF_A_DAY = 86400.0, 43200.0
 
 
@@ -42,6 +47,7 @@ class _Epoch:
     course: float = math.nan
     sd: tuple[float, float, float] = (math.nan, math.nan, math.nan)
     fix: bool = True
+    solution: Solution = ""
 
     @property
     def second_of_day(self) -> float:
@@ -56,6 +62,7 @@ class _Epoch:
             self._take_place(message)
             self.height, self.separation = _number(message, "alt"), _number(message, "sep")
             self.fix = self.fix and _has_fix(message)
+            self.solution = self.solution or _solution(message)
         elif kind == "RMC":
             if not self.seen & {"GGA", "GNS"}:
                 self._take_place(message)
@@ -119,6 +126,7 @@ def read_nmea(data: bytes, name: str) -> Recording:
         velocity=None if np.isnan(course).all() else velocity,
         place_sd=None if np.isnan(sd).all() else sd,
         fix=np.array([epoch.fix for epoch in epochs]),
+        solution=solution_array([epoch.solution for epoch in epochs]),
         heights=heights,
         left_out=counts,
     )
@@ -196,6 +204,14 @@ def _has_fix(message: Any) -> bool:
     if message.msgID == "GGA":
         return _number(message, "quality") > 0.0
     return bool(set(getattr(message, "posMode", "")) - {"N"})
+
+
+def _solution(message: Any) -> Solution:
+    """Of GGA by its quality; of GNS by its modes, of several systems the least exact."""
+    if message.msgID == "GGA":
+        return QUALITIES.get(_number(message, "quality"), "")
+    modes = {MODES[mode] for mode in str(getattr(message, "posMode", "")) if mode in MODES}
+    return next((each for each in ("code", "float", "fixed") if each in modes), "")
 
 
 def _number(message: Any, name: str) -> float:

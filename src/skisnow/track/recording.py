@@ -17,6 +17,8 @@ from .trouble import refusal
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from .solution import SolutionArray
+
     BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]
 
@@ -46,6 +48,8 @@ class Recording:
         East, north, up at the point itself, or along x, y, z.
     fix : (n,) bool or None
         Whether the receiver had a fix, where the file says so.
+    solution : (n,) or None
+        As in `Track`; what it says of points without a fix does not count.
     axes_in_words
         Of places that are not geodetic.
     heights
@@ -71,6 +75,7 @@ class Recording:
     speed_sd: FloatArray | None = None
     odometer: FloatArray | None = None
     fix: BoolArray | None = None
+    solution: SolutionArray | None = None
     axes: Axes = "file"
     axes_in_words: str = "x, y, z of the file, in m"
     heights: str = "as in the file"
@@ -102,6 +107,7 @@ def track_of(
     speed = np.full(len(recording.time), np.nan) if recording.speed is None else recording.speed
     negative = np.isfinite(speed) & (speed < 0.0)
     time = recording.time - recording.time[0]
+    solution = None if recording.solution is None else np.where(fix, recording.solution, "")
     return Track(
         name=recording.name,
         time=time,
@@ -112,9 +118,10 @@ def track_of(
         velocity=velocity,
         place_sd=recording.place_sd,
         speed_sd=recording.speed_sd,
+        solution=solution,
         odometer=recording.odometer,
         start=recording.start,
-        marks=point_marks(time, place, fix, negative, fastest=fastest, gap_factor=gap_factor),
+        marks=point_marks(time, place, fix, negative, fastest=fastest, gap_factor=gap_factor, solution=solution),
         axes="east_north_up" if recording.is_geodetic else recording.axes,
         origin=at,
         first_time=recording.first_time,

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from .projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
 from .recording import FARTHEST, Recording
 from .rtklib_header import PLACES, Header, header_of
+from .solution import Solution, solution_array
 from .text import number
 from .trouble import refusal
 
@@ -30,6 +31,17 @@ DEVIATIONS: Final = {
     "earth_centred": ("sdx", "sdy", "sdz"),
     "baseline": ("sde", "sdn", "sdu"),
 }
+QUALITIES: Final[dict[float, Solution]] = {
+    1.0: "fixed", 2.0: "float", 3.0: "code", 4.0: "code", 5.0: "code", 6.0: "float",
+}  # fmt: skip
+"""Of the column Q: fix, float, SBAS, DGPS, single, PPP (by the phase, without whole cycles)."""
+SPEED_DEVIATIONS: Final = {
+    "geodetic": (("sdve", "sdvn", "sdvu"), ("sdvne", "sdvun", "sdveu")),
+    "earth_centred": (("sdvx", "sdvy", "sdvz"), ("sdvxy", "sdvyz", "sdvzx")),
+    "baseline": (("sdve", "sdvn", "sdvu"), ("sdvne", "sdvun", "sdveu")),
+}
+"""Of the velocity's parts, and roots of covariances, with their signs: first and second part, second and third, third
+and first."""
 VELOCITIES: Final = {
     "geodetic": ("ve", "vn", "vu"),
     "earth_centred": ("vx", "vy", "vz"),
@@ -74,7 +86,9 @@ def read_rtklib(text: str, name: str) -> Recording:
         speed_kind="along the path (length of the recorded velocity)",
         velocity=velocity,
         place_sd=place_sd,
+        speed_sd=None if velocity is None else _speed_sd(columns, header),
         fix=None if quality is None else quality > 0.0,
+        solution=None if quality is None else solution_array([QUALITIES.get(each, "") for each in quality.tolist()]),
         axes="east_north_up",
         axes_in_words="east, north, up in m from the base station of the solution",
         heights="above the ellipsoid" if is_ellipsoidal else "above the geoid",
@@ -208,3 +222,18 @@ def _deviations(columns: dict[str, FloatArray], header: Header, place: FloatArra
         covariance[:, one, other] = covariance[:, other, one] = np.sign(root) * root**2  # RTKLIB's way to keep the sign
     axes = east_north_up_axes(place[:, 0], place[:, 1])
     return np.asarray(np.sqrt(np.maximum(np.einsum("nij,njk,nik->ni", axes, covariance, axes), 0.0)))
+
+
+def _speed_sd(columns: dict[str, FloatArray], header: Header) -> FloatArray | None:
+    """Of the component along the velocity; at rest the largest of the three."""
+    names, roots = SPEED_DEVIATIONS[header.kind]
+    velocity, deviations = _vectors(columns, VELOCITIES[header.kind]), _vectors(columns, names)
+    if velocity is None or deviations is None:
+        return None
+    speed = np.linalg.norm(velocity, axis=1)
+    along = velocity / np.where(speed > 0.0, speed, 1.0)[:, None]
+    variance = np.sum((along * deviations) ** 2, axis=1)
+    for name, one, other in zip(roots, (0, 1, 2), (1, 2, 0), strict=True):
+        root = columns.get(name, np.zeros(len(speed)))
+        variance += 2.0 * along[:, one] * along[:, other] * np.sign(root) * root**2
+    return np.where(speed > 0.0, np.sqrt(np.maximum(variance, 0.0)), deviations.max(axis=1))

@@ -13,6 +13,7 @@ from ..errors import ParameterError
 from ..units import DEGREE
 from .curvature import TrackMotion, integrated_way, places_way, track_motion
 from .runs import Day, Stretch, max_speed, split_day
+from .solution import solution_counts
 from .track import Track
 from .turns import Turn, turns_of
 
@@ -117,6 +118,7 @@ def summary_dict(summary: TrackSummary) -> Json:
         "file": summary.track.name,
         "points": len(summary.track),
         "marked": summary.track.marked,
+        "solutions": solution_counts(summary.track.solution),
         "duration_s": _finite(float(summary.track.time[-1] - summary.track.time[0])),
         "distance_m": _finite(summary.distances[summary.motion.way_source]),
         "distance_source": summary.motion.way_source.replace(" ", "_"),

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from .marks import MARKS
 from .projection import GeodeticPoint
+from .solution import SolutionArray
 
 FloatArray = npt.NDArray[np.float64]
 Axes: TypeAlias = Literal["file", "east_north_up", "slope"]
@@ -37,6 +38,8 @@ class Track:
         Standard deviation of each coordinate as the receiver states it, NaN where it does not.
     speed_sd : (n,) m/s or None
         Standard deviation of the speed as the receiver states it.
+    solution : (n,) of "fixed", "float", "code", "", or None
+        How the receiver came to each place, see `skisnow.track.solution`; None where the file does not say.
     odometer : (n,) m or None
         The device's own distance.
     start : datetime or None
@@ -70,6 +73,7 @@ class Track:
     velocity: FloatArray | None = None
     place_sd: FloatArray | None = None
     speed_sd: FloatArray | None = None
+    solution: SolutionArray | None = None
     odometer: FloatArray | None = None
     start: datetime | None = None
     marks: Mapping[str, npt.NDArray[np.bool_]] = field(default_factory=dict)

@@ -1,14 +1,17 @@
-"""Tracks in UBX, the binary messages of u-blox receivers: NAV-PVT, decoded with pyubx2.
+"""Tracks in UBX, the binary messages of u-blox receivers: NAV-PVT, NAV-HPPOSLLH, NAV-COV, decoded with pyubx2.
 
-Frames are found by their two sync bytes and their checksum, so that a damaged one costs itself alone. Heights are those
-above the ellipsoid. ``hAcc`` is taken as √(σ_east² + σ_north²), each with half of the variance (Choice; u-blox's manual
-calls it an estimate of the horizontal accuracy and says no more).
+NAV-PVT makes a point. Where NAV-HPPOSLLH of the same time of week is there, the place is that: to 0.1 mm, not 1 cm.
+Where NAV-COV is there, the standard deviations are the roots of its variances. Frames are found by their two sync bytes
+and their checksum, so that a damaged one costs itself alone. Heights are those above the ellipsoid. ``hAcc`` is taken
+as √(σ_east² + σ_north²), each with half of the variance (Choice; u-blox's manual calls it an estimate of the horizontal
+accuracy and says no more).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
@@ -16,14 +19,27 @@ import numpy as np
 
 from ..units import MM
 from .recording import Recording
+from .solution import Solution, solution_array
 from .trouble import refusal
 
 SYNC: Final = b"\xb5\x62"
-NAV_PVT: Final = b"\x01\x07"
-LENGTHS: Final = (84, 92)
-"""Of NAV-PVT in bytes: of u-blox 7, and of all later receivers; a request for the message has none."""
+LENGTHS: Final = {b"\x01\x07": (84, 92), b"\x01\x14": (36,), b"\x01\x36": (64,)}
+"""Of NAV-PVT, NAV-HPPOSLLH, NAV-COV in bytes; NAV-PVT has 84 of u-blox 7, 92 of all later; a request has none."""
 _HEAD, _CHECKSUM = 6, 2
 _NO_FIX: Final = (0, 5)  # none; time only
+CARRIER_SOLUTIONS: Final[dict[int, Solution]] = {0: "code", 1: "float", 2: "fixed"}
+"""Of ``carrSoln``."""
+
+
+@dataclass(eq=False)
+class _Epoch:
+    """A NAV-PVT, and what belongs to it."""
+
+    offset: int
+    moment: datetime
+    message: Any
+    precise: Any = None
+    covariance: Any = None
 
 
 def read_ubx(data: bytes, name: str) -> Recording:
@@ -35,18 +51,8 @@ def read_ubx(data: bytes, name: str) -> Recording:
         No message NAV-PVT with a right checksum and a valid time is in the file.
     """
     counts = {"messages with a wrong checksum or cut short": 0, "messages without a valid time": 0}
-    offsets: list[str] = []
-    moments: list[datetime] = []
-    rows: list[tuple[float, ...]] = []
-    for offset, message in _messages(data, counts):
-        moment = _moment(message)
-        if moment is None:
-            counts["messages without a valid time"] += 1
-            continue
-        offsets.append(f"byte {offset + 1}")
-        moments.append(moment)
-        rows.append(_row(message))
-    if not rows:
+    epochs = _epochs(data, counts)
+    if not epochs:
         told = ", ".join(f"{count} {words}" for words, count in counts.items())
         raise refusal(
             "empty_file",
@@ -55,28 +61,51 @@ def read_ubx(data: bytes, name: str) -> Recording:
             allowed="messages NAV-PVT with right checksums and valid times",
             action="Switch NAV-PVT on in the receiver, or copy the file again.",
         )
-    table = np.array(rows)
+    table = np.array([_row(epoch) for epoch in epochs])
+    start = epochs[0].moment
     return Recording(
         name=name,
-        places_in_file=offsets,
-        time=np.array([(moment - moments[0]).total_seconds() for moment in moments]),
+        places_in_file=[f"byte {epoch.offset + 1}" for epoch in epochs],
+        time=np.array([(epoch.moment - start).total_seconds() for epoch in epochs]),
         place=table[:, 0:3],
         is_geodetic=True,
         time_scale="UTC",
-        start=moments[0],
+        start=start,
         speed=table[:, 3],
         speed_kind="over the ground (horizontal)",
         velocity=table[:, 4:7],
         place_sd=table[:, 7:10],
         speed_sd=table[:, 10],
         fix=table[:, 11] > 0.0,
+        solution=solution_array([_solution(epoch.message) for epoch in epochs]),
         heights="above the ellipsoid",
         left_out=counts,
     )
 
 
+def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
+    """Every NAV-PVT with a valid time, and the other messages of its time of week."""
+    epochs: list[_Epoch] = []
+    precise: dict[int, Any] = {}
+    covariances: dict[int, Any] = {}
+    for offset, message in _messages(data, counts):
+        if message.identity == "NAV-HPPOSLLH":
+            if not message.invalidLlh:
+                precise[message.iTOW] = message
+        elif message.identity == "NAV-COV":
+            covariances[message.iTOW] = message
+        elif (moment := _moment(message)) is not None:
+            epochs.append(_Epoch(offset, moment, message))
+        else:
+            counts["messages without a valid time"] += 1
+    for epoch in epochs:
+        epoch.precise = precise.get(epoch.message.iTOW)
+        epoch.covariance = covariances.get(epoch.message.iTOW)
+    return epochs
+
+
 def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
-    """Every NAV-PVT with its offset; counts frames that are damaged."""
+    """Every message that is read with its offset; counts frames that are damaged."""
     from pyubx2 import VALNONE, UBXReader, calc_checksum
 
     at = data.find(SYNC)
@@ -87,7 +116,7 @@ def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
         if end > len(data) or calc_checksum(body) != data[end - _CHECKSUM : end]:
             counts["messages with a wrong checksum or cut short"] += 1
             end = at + len(SYNC)
-        elif body[:2] == NAV_PVT and length in LENGTHS:
+        elif length in LENGTHS.get(body[:2], ()):
             yield at, UBXReader.parse(data[at:end], validate=VALNONE)
         at = data.find(SYNC, end)
 
@@ -103,19 +132,46 @@ def _moment(message: Any) -> datetime | None:
     return whole + timedelta(seconds=message.second, microseconds=message.nano / 1000.0)
 
 
-def _row(message: Any) -> tuple[float, ...]:
-    horizontal = message.hAcc * MM / math.sqrt(2.0)
+def _solution(message: Any) -> Solution:
+    """u-blox 7 has no word for it: all its places are by the code."""
+    return CARRIER_SOLUTIONS.get(int(getattr(message, "carrSoln", 0)), "")
+
+
+def _row(epoch: _Epoch) -> tuple[float, ...]:
+    """Place, speed, velocity, their standard deviations, and 1 for a fix."""
+    message, place = epoch.message, epoch.precise or epoch.message
+    velocity = (message.velE * MM, message.velN * MM, -message.velD * MM)
+    has_fix = bool(message.gnssFixOk) and message.fixType not in _NO_FIX and not getattr(message, "invalidLlh", 0)
     return (
-        message.lat,
-        message.lon,
-        message.height * MM,
+        place.lat,
+        place.lon,
+        place.height * MM,
         message.gSpeed * MM,
-        message.velE * MM,
-        message.velN * MM,
-        -message.velD * MM,
-        horizontal,
-        horizontal,
-        message.vAcc * MM,
-        message.sAcc * MM,
-        float(bool(message.gnssFixOk) and message.fixType not in _NO_FIX),
+        *velocity,
+        *_place_sd(place, epoch.covariance),
+        _speed_sd(message, epoch.covariance, velocity),
+        float(has_fix),
     )
+
+
+def _place_sd(place: Any, covariance: Any) -> tuple[float, float, float]:
+    """East, north, up (m)."""
+    if covariance is not None and covariance.posCovValid:
+        variances = (covariance.posCovEE, covariance.posCovNN, covariance.posCovDD)
+        if min(variances) > 0.0:
+            east, north, up = map(math.sqrt, variances)
+            return east, north, up
+    horizontal = place.hAcc * MM / math.sqrt(2.0)
+    return horizontal, horizontal, place.vAcc * MM
+
+
+def _speed_sd(message: Any, covariance: Any, velocity: tuple[float, float, float]) -> float:
+    """Of the component along the velocity (m/s); at rest, and without NAV-COV, the receiver's ``sAcc``."""
+    speed = math.hypot(*velocity)
+    if covariance is None or not covariance.velCovValid or speed == 0.0:
+        return float(message.sAcc * MM)
+    east, north, up = (part / speed for part in velocity)
+    c, down = covariance, -up
+    variance = north * north * c.velCovNN + east * east * c.velCovEE + down * down * c.velCovDD
+    variance += 2.0 * (north * east * c.velCovNE + north * down * c.velCovND + east * down * c.velCovED)
+    return math.sqrt(variance) if variance > 0.0 else float(message.sAcc * MM)

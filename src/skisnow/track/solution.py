@@ -1,0 +1,56 @@
+"""How a receiver came to a place: by the carrier's phase with whole cycles, without them, or by the code alone.
+
+Real-time and post-processed kinematics (RTK, PPK) count cycles of the carrier. Once their number is fixed to whole ones
+a place is right to centimetres; while it is not ("float") to decimetres, and it wanders; by the code to metres.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, Literal, TypeAlias, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+Solution: TypeAlias = Literal["", "fixed", "float", "code"]
+"""Of a point; empty where the file does not say, or there is no fix."""
+SOLUTIONS: Final[tuple[Solution, ...]] = get_args(Solution)[1:]
+"""From the most exact to the least."""
+SolutionArray: TypeAlias = npt.NDArray[np.str_]
+
+
+def solution_array(solutions: Sequence[Solution]) -> SolutionArray | None:
+    """One entry for each point; None where the file says of none.
+
+    >>> solution_array(["fixed", ""]), solution_array(["", ""])
+    (array(['fixed', ''], dtype='<U5'), None)
+    """
+    return np.array(solutions, dtype="<U5") if any(solutions) else None
+
+
+def solution_counts(solution: SolutionArray | None) -> dict[str, int] | None:
+    """How many points have each; None where nothing is known, or all are by the code.
+
+    >>> solution_counts(np.array(["fixed", "float", "fixed"]))
+    {'fixed': 2, 'float': 1}
+    """
+    if solution is None or not _by_phase(solution):
+        return None
+    counts = {name: int(np.sum(solution == name)) for name in SOLUTIONS}
+    return {name: count for name, count in counts.items() if count}
+
+
+def solution_marks(solution: SolutionArray | None, count: int) -> dict[str, npt.NDArray[np.bool_]]:
+    """The marks ``float_solution`` and ``code_solution``, each (count,) bool.
+
+    The second only where other points are by the phase: a receiver that never is says nothing by it.
+    """
+    none = np.zeros(count, bool)
+    if solution is None:
+        return {"float_solution": none, "code_solution": none.copy()}
+    by_code = solution == "code" if _by_phase(solution) else none
+    return {"float_solution": np.asarray(solution == "float"), "code_solution": np.asarray(by_code)}
+
+
+def _by_phase(solution: SolutionArray) -> bool:
+    return bool(np.isin(solution, ("fixed", "float")).any())
