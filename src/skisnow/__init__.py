@@ -22,6 +22,8 @@ The public names, loaded when first used:
     A sledge on two flexible skis: a scenario from its file or a built-in one, and the run that comes out of it.
 ``read_track``, ``Track``, ``GeodeticPoint``, ``in_slope_frame``
     Where something was on a slope, and when: from the files of receivers and watches, into the slope's frame.
+``track_summary``, ``TrackSummary``
+    What a track says: distance, speed, runs and lifts, turns with their radii.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 """
@@ -44,6 +46,7 @@ if TYPE_CHECKING:
     from .track.projection import GeodeticPoint
     from .track.read import read_track
     from .track.slope_frame import in_slope_frame
+    from .track.summary import TrackSummary, track_summary
     from .track.track import Track
 
 __all__ = [
@@ -57,6 +60,7 @@ __all__ = [
     "SnowProperties",
     "Store",
     "Track",
+    "TrackSummary",
     "analyse",
     "carve",
     "check_campaign",
@@ -74,6 +78,7 @@ __all__ = [
     "simulated_run",
     "ski_names",
     "snow_from_results",
+    "track_summary",
     "write_reference",
     "write_report",
 ]
@@ -91,6 +96,7 @@ _ROOMS = {
     "track.projection": ("GeodeticPoint",),
     "track.read": ("read_track",),
     "track.slope_frame": ("in_slope_frame",),
+    "track.summary": ("TrackSummary", "track_summary"),
     "track.track": ("Track",),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
