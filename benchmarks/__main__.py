@@ -1,7 +1,7 @@
 """Run every benchmark, print one table: what, seconds, goal, and the ratio to a peer measured in the same run.
 
 ``python -m benchmarks turns`` runs those of simulated turns alone and prints them as Markdown, ``identify`` those of
-identifications.
+identifications, ``web`` those of the web lab in a browser.
 """
 
 from __future__ import annotations
@@ -13,25 +13,29 @@ import subprocess
 import sys
 import tempfile
 
-TURNS, IDENTIFY = "turns", "identify"
+TURNS, IDENTIFY, WEB = "turns", "identify", "web"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("part", nargs="?", choices=[TURNS, IDENTIFY], help="these alone; left out: everything")
+    parser.add_argument("part", nargs="?", choices=[TURNS, IDENTIFY, WEB], help="these alone; left out: everything")
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
     parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds of a turn")
     parser.add_argument("--repeats", type=int, default=5, help="of each turn; the shortest time counts")
     parser.add_argument("--runs", type=int, default=64, help="turns at a time on all cores")
+    parser.add_argument("--readings", type=int, default=10_000, help="in the store of the web lab")
+    parser.add_argument("--tries", type=int, default=5, help="to open each page of the web lab")
     options = parser.parse_args()
     if options.part == TURNS:
         _turns(options)
     elif options.part == IDENTIFY:
         _identify(options)
+    elif options.part == WEB:
+        _web(options)
     else:
         _everything_else(options.rows)
         print(flush=True)
-        for part in (TURNS, IDENTIFY):
+        for part in (TURNS, IDENTIFY, WEB):
             subprocess.run([sys.executable, "-m", "benchmarks", part, *_said(options)], check=True)
 
 
@@ -51,8 +55,15 @@ def _identify(options: argparse.Namespace) -> None:
     print_tables(options.duration)
 
 
+def _web(options: argparse.Namespace) -> None:
+    from .web.table import print_tables
+
+    print_tables(options.readings, options.tries)
+
+
 def _said(options: argparse.Namespace) -> list[str]:
-    return ["--duration", str(options.duration), "--repeats", str(options.repeats), "--runs", str(options.runs)]
+    names = ("duration", "repeats", "runs", "readings", "tries")
+    return [word for name in names for word in (f"--{name}", str(getattr(options, name)))]
 
 
 def _everything_else(rows: int) -> None:

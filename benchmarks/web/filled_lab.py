@@ -1,0 +1,91 @@
+"""A lab as it is late in a season: 10,000 readings in its store, a kept campaign, a run; served as a person does it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from skisnow.field import write_reference
+from skisnow.field.store import Journals, NewEntry, Store
+from skisnow.field.store.description import Description, description_text
+
+LOADS_N = (12, 32, 72, 132, 212, 332, 492)
+SITES, SAMPLE_SEED = 20, 1
+RUN = "carved-46m"
+TOOL = {"name": "ski piece", "shape": "ski", "length_mm": 200.0, "width_mm": 62.0}
+PLATE = {"name": "plate", "length_mm": 100.0}
+
+
+@dataclass(frozen=True, slots=True)
+class FilledLab:
+    """Address of the server, ids of the campaign in entry and of the kept one, how many readings the first has."""
+
+    address: str
+    entry: str
+    kept: str
+    readings: int
+
+
+@contextmanager
+def filled_lab(readings: int) -> Iterator[FilledLab]:
+    """Fill a store in a folder that goes away, and serve it."""
+    with TemporaryDirectory(prefix="skisnow-benchmark-") as name:
+        folder = Path(name)
+        place = folder / "store.sqlite3"
+        with Store.open(place) as store:
+            entry = _entered(store, readings)
+            write_reference(folder / "reference", seed=SAMPLE_SEED)
+            kept = store.add(folder / "reference").id
+        _simulated(folder / "lab" / RUN)
+        with _served(place) as address:
+            yield FilledLab(address, entry, kept, readings)
+
+
+def _entered(store: Store, readings: int) -> str:
+    """Series of seven loads on snow of lognormal hardness, at 20 sites: F = H_V V with a scatter of 2 %."""
+    rng = np.random.default_rng(SAMPLE_SEED)
+    journals = Journals(store)
+    values = {"name": "a season", "load_steps_N": LOADS_N, "gauge_resolution_mm": 0.01, "observers": ("Ada",)}
+    id_ = journals.begin(description_text(Description(values, (TOOL,), (PLATE,))))
+    for number in range(readings // len(LOADS_N)):
+        last = 0
+        for position, cells in enumerate(_series(number, rng)):
+            row = NewEntry(
+                action="add", file="penetration.csv", test=str(number + 1), cells=cells, position=position, who="Ada"
+            )
+            last = journals.append(id_, row, seen=last).sequence
+    return id_
+
+
+def _series(number: int, rng: np.random.Generator) -> Iterator[dict[str, str]]:
+    hardness, angle = float(np.exp(rng.normal(-1.0, 0.8))), (30, 45, 60)[number % 3]
+    tangent = float(np.tan(np.radians(angle)))
+    head = {"experiment": str(number + 1), "site": f"site {number % SITES}", "spot": "", "tool": "ski piece"}
+    for load in LOADS_N:
+        depth = np.sqrt(2.0 * load * tangent / (hardness * 200.0)) * np.exp(rng.normal(0.0, 0.02))
+        yield {**head, "edge_angle_deg": str(angle), "load_N": str(load), "depth_mm": f"{depth:.2f}"}
+
+
+def _simulated(folder: Path) -> None:
+    folder.parent.mkdir()
+    command = [sys.executable, "-m", "skisnow", "simulate", RUN, "--out", str(folder)]
+    subprocess.run(command, check=True, capture_output=True)
+
+
+@contextmanager
+def _served(store: Path) -> Iterator[str]:
+    command = [sys.executable, "-m", "skisnow", "serve", "--port", "0", "--store", str(store)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    try:
+        yield process.stdout.readline().strip().rstrip("/")
+    finally:
+        process.terminate()
+        process.wait(30)
