@@ -12,7 +12,7 @@ from nicegui import ui
 from starlette.responses import FileResponse
 
 from .guard import Access, Guard
-from .layout import STYLES
+from .layout import SCRIPT, STYLES
 from .pages import INNER, PAGES
 from .transfer import add_transfer
 from .trouble import add_error_pages, log_to
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .settings import Lab
 
 LOG_FILE: Final = "lab.log"
-_STYLESHEET: Final = Path(__file__).with_name("lab.css")
+_HERE: Final = Path(__file__).parent
 
 
 def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
@@ -40,7 +40,8 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     """
     log_to(lab.runs / LOG_FILE)
     outer = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)
-    outer.add_api_route(STYLES, _styles, include_in_schema=False)
+    outer.add_api_route(STYLES, lambda: _own("lab.css", "text/css"), include_in_schema=False)
+    outer.add_api_route(SCRIPT, lambda: _own("lab.js", "text/javascript"), include_in_schema=False)
     add_transfer(outer, lab)
     for name in (*PAGES, *INNER):
         import_module(f".pages.{name}", __package__).add_page(lab)
@@ -50,5 +51,5 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     return Guard(outer, Access(host, token, lab.limits.upload_bytes))
 
 
-def _styles() -> FileResponse:
-    return FileResponse(_STYLESHEET, media_type="text/css", headers={"cache-control": "no-cache"})
+def _own(name: str, kind: str) -> FileResponse:
+    return FileResponse(_HERE / name, media_type=kind, headers={"cache-control": "no-cache"})

@@ -10,12 +10,16 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
-def field(label: str, value: str = "", *, numeric: bool = False, wide: bool = False) -> ui.input:
-    """A field with its name above it. Numeric fields take what is typed as it is: a comma or a point."""
+def field(
+    label: str, value: str = "", *, numeric: bool = False, wide: bool = False, optional: bool = False
+) -> ui.input:
+    """A field with its name above it. Numeric fields take what is typed as it is; Enter passes by an optional one."""
     made = ui.input(label, value=value).props("outlined stack-label autocomplete=off")
     made.classes("field wide" if wide else "field")
     if numeric:
         made.props("inputmode=decimal")
+    if optional:
+        made.props("data-optional")
     return made
 
 
@@ -25,7 +29,7 @@ def choice(label: str, options: Sequence[str] | dict[str, str], value: str | Non
     return made.props("outlined stack-label").classes("field")
 
 
-def button(text: str, act: Callable[..., Any], kind: str = "") -> ui.button:
+def button(text: str, act: Callable[..., Any] | None, kind: str = "") -> ui.button:
     """A button; ``kind``: main or quiet."""
     made = ui.button(text, on_click=act, color=None).props("no-caps unelevated")
     return made.classes(f"act {kind}".strip())

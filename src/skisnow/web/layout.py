@@ -14,11 +14,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 STYLES = "/lab.css"
+SCRIPT = "/lab.js"
+CONNECTED = "lab.connected()"
+CONNECTING = "Connecting to the lab. The fields open as soon as it answers."
 
 
 @contextmanager
-def framed(title: str, *, here: str = "") -> Iterator[None]:
-    """Put what follows into the frame of the lab.
+def framed(title: str, *, here: str = "", ahead: bool = False) -> Iterator[None]:
+    """Put what follows into the frame of the lab. Fields and buttons are open while the browser is connected.
 
     Parameters
     ----------
@@ -26,9 +29,15 @@ def framed(title: str, *, here: str = "") -> Iterator[None]:
         Heading of the page, and with the lab's name the title of its window.
     here
         ``PATH`` of the page in the navigation that this one belongs to.
+    ahead
+        What is typed before the page is connected goes into the field that the page then puts the focus in.
     """
     ui.page_title(f"{title} · skisnow")
     ui.add_head_html(f'<link rel="stylesheet" href="{STYLES}">')
+    ui.add_head_html(f'<script src="{SCRIPT}"{" data-ahead" if ahead else ""}></script>')
+    client = ui.context.client
+    client.run_javascript(CONNECTED)  # before all else that the page has to say: no focus goes into a closed field
+    client.on_connect(lambda: client.run_javascript(CONNECTED))
     with ui.element("a").props('href="#content"').classes("skip"):
         ui.label("Skip to the content")
     with ui.element("header").classes("lab-head"):
@@ -36,9 +45,17 @@ def framed(title: str, *, here: str = "") -> Iterator[None]:
         with ui.element("nav").props('aria-label="Pages"'):
             for name in PAGES:
                 _link(name, here)
-    with ui.element("main").classes("lab").props('id="content"'):
+    with (
+        ui.element("main").props('id="content"'),
+        ui.element("fieldset").classes("lab").props("disabled role=none"),
+    ):
         heading(title, 1)
         yield
+    with ui.element("div").classes("lab-says"):
+        ui.label(CONNECTING).classes("connection").props("role=status")
+        ui.label("").classes("unused").props("role=status")
+    if ahead:
+        client.run_javascript("lab.answered(0, true)")
 
 
 def _link(name: str, here: str) -> None:

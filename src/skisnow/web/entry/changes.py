@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ..answering import asking_button, form
 from ..fields import button, field
 from ..layout import sentence
 from ..words import label
@@ -38,10 +39,11 @@ class Places:
 def ask_reason(
     place: ui.element,
     words: str,
-    act: tuple[str, Callable[[str], object]],
+    act: tuple[str, Callable[[str], bool]],
     *,
     usual: str = "",
     leave: Callable[[], object],
+    focus: bool = True,
 ) -> None:
     """Ask in a place of the page, not in a window over it: what is to happen, why, and the way back.
 
@@ -52,31 +54,33 @@ def ask_reason(
     words
         What is about to happen.
     act
-        The word on the button, and what is called with the reason.
+        The word on the button, and what is called with the reason; False where it was refused.
     usual
         Reason that stands there already.
     leave
         Called when it is left as it was.
+    focus
+        Whether the reason is typed next; not where somebody is on the way to another field.
     """
     place.clear()
-    with place, ui.element("div").classes("card ask"):
+
+    def done() -> bool:
+        return act[1](reason.value or "")
+
+    def left() -> None:
+        place.clear()
+        leave()
+
+    with place, form("card ask", sends=done):
         sentence(words)
         reason = field("Why", usual, wide=True)
-
-        def done() -> None:
-            act[1](reason.value or "")
-
-        def left() -> None:
-            place.clear()
-            leave()
-
-        reason.on("keydown.enter", done)
         reason.on("keydown.esc", left)
         with ui.element("div").classes("acts"):
-            button(act[0], done, "main")
+            asking_button(act[0], done, "main")
             button("Leave it as it was", left)
-    reason.run_method("focus")
-    if usual:
+    if focus:
+        reason.run_method("focus")
+    if focus and usual:
         reason.run_method("select")
 
 
@@ -87,9 +91,11 @@ def changes(sheet: Sheet, test: GrownTest, ask: ui.element, changed: Callable[[]
         sheet.undo(test)
         changed()
 
-    def cancel(why: str) -> None:
-        if sheet.cancel(test, why):
-            changed()
+    def cancel(why: str) -> bool:
+        if not sheet.cancel(test, why):
+            return False
+        changed()
+        return True
 
     def ask_cancel() -> None:
         words = f"Cancel {test.name}? Its readings are kept and take no part."
@@ -97,9 +103,9 @@ def changes(sheet: Sheet, test: GrownTest, ask: ui.element, changed: Callable[[]
 
     with ui.element("div").classes("acts"):
         if test.undoable is not None:
-            button(f"Undo: {_done(test.undoable)}", undo)
+            asking_button(f"Undo: {_done(test.undoable)}", undo)
         if not test.cancelled and test.rows:
-            button("Cancel this test", ask_cancel)
+            asking_button("Cancel this test", ask_cancel)
     _history(test)
 
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...errors import ParameterError
-from ...field.store.cells import checked_cell
-from ..fields import button, choice, field
+from ..answering import answering, asking_button, form
+from ..fields import choice, field
 from ..layout import heading, sentence
 from ..names import entering
 from ..words import label
 from .changes import USUAL_REASON, Places, ask_reason, changes
+from .checking import Field, checked_fields, faults, refuse
 
 if TYPE_CHECKING:
     from ...field.store import GrownTest
@@ -20,13 +20,7 @@ if TYPE_CHECKING:
     from .sheet import Sheet
 
 HEAD: Final = ("experiment", "site", "spot", "tool", "edge_angle_deg")
-ON_TO_THE_NEXT: Final = """(event) => {
-  const fields = [...event.target.closest('.readings').querySelectorAll('input')];
-  const next = fields.slice(fields.indexOf(event.target) + 1).find((field) => !field.value);
-  emit();
-  if (next) next.focus();
-}"""
-"""In the browser, so that what is typed on at once goes into the next field and never into none."""
+TOLD: Final = "(event) => lab.reading(event, emit)"
 
 
 class SeriesForm:
@@ -39,45 +33,45 @@ class SeriesForm:
         self._head: dict[str, str] = {}
         self._fields: list[ui.input] = []
         self._stored: list[ui.label] = []
+        self._rows: list[ui.element] = []
         self._asking: tuple[int, str] | None = None
+        self._shown = ""
 
     # The head of a series
 
     def begin(self) -> None:
         """Ask for what a series has once."""
         ui.navigate.history.replace(entering(self._sheet.desk.id, table=self._sheet.file))
+        self._shown = ""
         described = self._sheet.desk.described
         before = self._sheet.tests()[-1].rows[0].cells if self._sheet.tests() else {}
         self._places.clear()
         with self._places.form:
             heading("New series")
-            with ui.element("div").classes("fields"):
+            with form(sends=lambda: self._begun(typed)):
                 name = field(label("experiment"), self._sheet.next_name())
                 site = field(label("site"), before.get("site", ""))
                 tools = sorted(described.tools)
                 tool = choice(label("tool"), tools, before.get("tool", tools[0] if tools else None))
                 angle = field(label("edge_angle_deg"), before.get("edge_angle_deg", ""), numeric=True)
-                spot = field(label("spot") + ", if shear is tested there too")
-            typed = {"experiment": name, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": angle}
+                spot = field(label("spot") + ", if shear is tested there too", optional=True)
+            typed: dict[str, Field] = dict(zip(HEAD, (name, site, spot, tool, angle), strict=True))
+            asking_button("Begin the series", lambda: self._begun(typed), "main")
+        first = angle if site.value else site
+        first.run_method("focus")
+        first.run_method("select")  # what stands there from the last series is written over
 
-            def done() -> None:
-                self._begun({column: str(each.value or "") for column, each in typed.items()})
-
-            for each in (name, site, angle, spot):
-                each.on("keydown.enter", done)
-            button("Begin the series", done, "main")
-        (angle if site.value else site).run_method("focus")
-
-    def _begun(self, typed: dict[str, str]) -> None:
-        try:
-            head = {column: checked_cell(self._sheet.form, column, typed[column]) for column in HEAD}
-            if self._sheet.test(head["experiment"]).history:
-                raise ParameterError(f"there is a test {head['experiment']} already; give this one another name")
-        except ParameterError as error:
-            self._sheet.say(f"{error}.", "bad")
-            return
+    def _begun(self, typed: dict[str, Field]) -> bool:
+        head = checked_fields(self._sheet.form, typed)
+        if head is not None and self._sheet.test(head["experiment"]).history:
+            refuse(typed["experiment"], f"there is a test {head['experiment']} already; give this one another name")
+            head = None
+        if head is None:
+            self._sheet.say(f"Not begun: {'; '.join(faults(typed.values()))}.", "bad")
+            return False
         self._sheet.say(f"Series {head['experiment']}: enter the depth under each load.")
         self.show(head["experiment"], head)
+        return True
 
     # The readings
 
@@ -89,35 +83,62 @@ class SeriesForm:
         self._head = head
         ui.navigate.history.replace(entering(self._sheet.desk.id, table=self._sheet.file, test=name))
         self._draw(test)
-        empty = [each for each in self._fields if not each.value]
-        if empty and not test.cancelled:
-            empty[0].run_method("focus")
+        self._focus_next(test)
         if test.rows:
             self._beside.follow(name, head["site"])
 
+    def _focus_next(self, test: GrownTest) -> None:
+        empty = [each for each in self._fields if not each.value]
+        if empty and not test.cancelled:
+            empty[0].run_method("focus")
+        else:
+            self._then.client.run_javascript(f"getHtmlElement({self._then.id}).focus()")  # a button knows no method
+
     def _draw(self, test: GrownTest) -> None:
-        head = self._head
-        loads = self._loads(test)
-        self._fields, self._stored, self._asking = [], [], None
+        """Draw the series; what is typed and not stored stays."""
+        unstored = self._unstored() if self._shown == test.name else {}
+        self._shown = test.name
+        self._fields, self._stored, self._rows, self._asking = [], [], [], None
         self._places.clear()
+        loads = self._loads(test)
         with self._places.form:
             heading(f"Series {test.name}")
-            sentence(f"{head['site']} · {head['tool']} · {head['edge_angle_deg']}°", "quiet")
+            sentence(f"{self._head['site']} · {self._head['tool']} · {self._head['edge_angle_deg']}°", "quiet")
             if test.cancelled:
                 sentence(f"Cancelled: {test.cancelled}", "bad")
             with ui.element("div").classes("readings"):
                 for position, load in enumerate(loads):
-                    self._reading(test, position, load)
+                    self._reading(test, position, load, unstored.get(position, ""))
             self._ask = ui.element("div")
-            button("Next series", self.begin, "main")
+            self._then = asking_button("Next series", self._next, "main then")
         with self._places.below:
             self._changes = ui.element("div")
             self._further(test, len(loads))
         self._show_changes()
 
+    def _unstored(self) -> dict[int, str]:
+        """What is typed in fields whose reading is not stored, by position."""
+        shown = zip(self._fields, self._stored, strict=True)
+        return {place: each.value for place, (each, stored) in enumerate(shown) if each.value and not stored.text}
+
+    def _next(self) -> bool:
+        """Begin the next series, where all that is typed in this one is stored."""
+        missing = self._unstored()
+        if missing:
+            loads = ", ".join(f"{self._loads(self._test)[position]} N" for position in missing)
+            self._sheet.say(f"Not stored yet: {loads}. Put it right or empty the field, then go on.", "bad")
+            self._fields[min(missing)].run_method("focus")
+            return False
+        self.begin()
+        return True
+
+    @property
+    def _test(self) -> GrownTest:
+        return self._sheet.test(self._head["experiment"])
+
     def _show_changes(self) -> None:
         """Undo, cancel and history as they are now; the fields of the readings stay as they are."""
-        test = self._sheet.test(self._head["experiment"])
+        test = self._test
         self._changes.clear()
         with self._changes:
             changes(self._sheet, test, self._ask, lambda: self.show(test.name, self._head))
@@ -131,93 +152,101 @@ class SeriesForm:
             loads[position] = row.cells["load_N"]
         return loads
 
-    def _reading(self, test: GrownTest, position: int, load: str) -> None:
+    def _reading(self, test: GrownTest, position: int, load: str, typed: str) -> None:
         row = test.row_at(position)
-        with ui.element("div").classes("reading"):
+        with ui.element("div").classes("reading") as made:
             ui.label(f"{load} N").classes("load")
-            depth = field(label("depth_mm"), row.cells["depth_mm"] if row else "", numeric=True)
+            depth = field(label("depth_mm"), row.cells["depth_mm"] if row else typed, numeric=True)
             depth.props(f'aria-label="Depth under {load} N (mm)"')
             depth.props("readonly" if test.cancelled else "")
             stored = ui.label("stored" if row else "").classes("stored")
+            if row is not None:
+                made.props["data-stored"] = row.cells["depth_mm"]
             if row is not None and row.corrections:
                 stored.set_text(f"corrected from {row.entered.cells['depth_mm']}")
         self._fields.append(depth)
         self._stored.append(stored)
-        depth.on("keydown.enter", lambda: self._entered(position, load), js_handler=ON_TO_THE_NEXT)
-        depth.on("blur", lambda: self._entered(position, load))
+        self._rows.append(made)
+        depth.on("keydown.enter", answering(lambda: self._entered(position, load)), js_handler=TOLD)
+        depth.on("blur", lambda: self._entered(position, load, left=True))
 
     def _further(self, test: GrownTest, position: int) -> None:
         if test.cancelled:
             return
+
+        def done() -> bool:
+            if not self._add(position, load, depth):
+                return False
+            self.show(self._head["experiment"], self._head)
+            return True
+
         with ui.element("details"):
             with ui.element("summary"):
                 ui.label("A load that is not in the disc set")
-            with ui.element("div").classes("fields"):
+            with form(sends=done):
                 load = field("Further load (N)", numeric=True)
                 depth = field("Its depth (mm)", numeric=True)
+                asking_button("Store it", done)
 
-                def done() -> None:
-                    if self._add(position, str(load.value or ""), str(depth.value or "")):
-                        self.show(self._head["experiment"], self._head)
-
-                depth.on("keydown.enter", done)
-                button("Store it", done)
-
-    def _entered(self, position: int, load: str) -> None:
-        """Take a depth: the first one is stored, another one is a correction."""
-        test = self._sheet.test(self._head["experiment"])
-        row, typed = test.row_at(position), str(self._fields[position].value or "").strip()
+    def _entered(self, position: int, load: str, *, left: bool = False) -> bool:
+        """Take a depth: the first one is stored, another one is a correction; ``left``: its field is left already."""
+        test, made = self._test, self._fields[position]
+        row, typed = test.row_at(position), str(made.value or "").strip()
         if typed == (row.cells["depth_mm"] if row is not None else ""):
-            return
+            self._rows[position].classes(remove="refused")
+            return True
         if row is not None:
-            self._ask_correction(test, position, typed)
-        elif self._add(position, load, typed):
+            return self._ask_correction(test, position, focus=not left)
+        stored = self._add(position, load, made)
+        if stored:
+            cell = self._test.rows[-1].cells["depth_mm"]
             self._stored[position].set_text("stored")
-            self._fields[position].set_value(self._sheet.test(test.name).rows[-1].cells["depth_mm"])
+            self._rows[position].props["data-stored"] = cell
+            self._rows[position].classes(remove="refused")
+            made.set_value(cell)
+        elif self._fields[position] is made:  # the series was not drawn anew meanwhile
+            self._rows[position].classes("refused")
+        return stored
 
-    def _add(self, position: int, load: str, typed: str) -> bool:
-        test = self._sheet.test(self._head["experiment"])
-        try:
-            form = self._sheet.form
-            cells = {**self._head, "load_N": checked_cell(form, "load_N", load)}
-            cells["depth_mm"] = checked_cell(form, "depth_mm", typed)
-        except ParameterError as error:
-            self._sheet.say(f"Not stored: {error}.", "bad")
+    def _add(self, position: int, load: ui.input | str, depth: ui.input) -> bool:
+        """Store a reading; what cannot be is said at its field, and stays there."""
+        test = self._test
+        given = {"depth_mm": depth} if isinstance(load, str) else {"load_N": load, "depth_mm": depth}
+        cells = checked_fields(self._sheet.form, given)
+        if cells is None:
+            self._sheet.say(f"Not stored: {'; '.join(faults(given.values()))}.", "bad")
             return False
+        cells = {**self._head, **({"load_N": load} if isinstance(load, str) else {}), **cells}
         said = f"Stored: {cells['depth_mm']} mm under {cells['load_N']} N."
         stored = self._sheet.add(test.name, cells, position=position, seen=test.last, said=said)
         if stored:
             self._show_changes()
             self._beside.follow(test.name, self._head["site"])
         else:
-            self.show_again()
+            self._draw(self._test)
         return stored
 
-    def show_again(self) -> None:
-        """Draw the series as it is now, keeping what is typed but not yet stored."""
-        typed = [each.value for each in self._fields]
-        test = self._sheet.test(self._head["experiment"])
-        self._draw(test)
-        for position, (each, value) in enumerate(zip(self._fields, typed, strict=False)):
-            if value and test.row_at(position) is None:
-                each.set_value(value)
-
-    def _ask_correction(self, test: GrownTest, position: int, typed: str) -> None:
+    def _ask_correction(self, test: GrownTest, position: int, *, focus: bool) -> bool:
         row = test.row_at(position)
         assert row is not None
         entered = row.entered
-        try:
-            new = checked_cell(self._sheet.form, "depth_mm", typed)
-        except ParameterError as error:
-            self._sheet.say(f"Not stored: {error}.", "bad")
-            return
+        cells = checked_fields(self._sheet.form, {"depth_mm": self._fields[position]})
+        if cells is None:
+            self._sheet.say(f"Not corrected: {'; '.join(faults([self._fields[position]]))}.", "bad")
+            return False
 
-        def correct(why: str) -> None:
-            if self._sheet.correct(test, entered.sequence, {"depth_mm": new}, why):
-                self.show(test.name, self._head)
+        def correct(why: str) -> bool:
+            if not self._sheet.correct(test, entered.sequence, cells, why):
+                return False
+            self.show(test.name, self._head)
+            return True
 
-        if self._asking == (position, new):  # Enter, and then the field was left: one question is enough
-            return
-        self._asking = (position, new)
-        words = f"{row.cells['load_N']} N: {row.cells['depth_mm']} mm becomes {new} mm."
-        ask_reason(self._ask, words, ("Correct it", correct), usual=USUAL_REASON, leave=self.show_again)
+        if self._asking == (position, cells["depth_mm"]):  # Enter, and then the field was left: one question is enough
+            return True
+        self._asking = (position, cells["depth_mm"])
+        words = f"{row.cells['load_N']} N: {row.cells['depth_mm']} mm becomes {cells['depth_mm']} mm."
+        act = ("Correct it", correct)
+        ask_reason(
+            self._ask, words, act, usual=USUAL_REASON, leave=lambda: self.show(test.name, self._head), focus=focus
+        )
+        return True

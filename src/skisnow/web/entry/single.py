@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...errors import ParameterError
-from ...field.store.cells import checked_cell
-from ..fields import button, choice, field
+from ..answering import asking_button, form
+from ..fields import choice, field
 from ..layout import heading, sentence
 from ..words import label
 from .changes import USUAL_REASON, Places, ask_reason, changes
+from .checking import checked_fields, faults, refuse
 
 if TYPE_CHECKING:
     from ...field.store import GrownRow, GrownTest
@@ -30,10 +30,10 @@ class SingleForm:
         self._sheet = sheet
         self._beside = beside
         self._places = places
-        form = sheet.form
-        required = [column.name for column in form.numbers if column.required]
-        self._columns = (*form.names, *OPTIONAL.get(form.file, ()), *required)
-        self._numeric = {column.name for column in form.numbers}
+        table = sheet.form
+        required = [column.name for column in table.numbers if column.required]
+        self._columns = (*table.names, *OPTIONAL.get(table.file, ()), *required)
+        self._numeric = {column.name for column in table.numbers}
         self._fields: dict[str, ui.input | ui.select] = {}
 
     def begin(self) -> None:
@@ -65,15 +65,14 @@ class SingleForm:
             heading("Correct a test" if correcting else "New test")
             if correcting and correcting[0].cancelled:
                 sentence(f"Cancelled: {correcting[0].cancelled}", "bad")
-            with ui.element("div").classes("fields"):
+            sends = self._store if correcting is None else lambda: self._ask_correction(*correcting)
+            with form(sends=sends):
                 self._fields = {column: self._field(column, cells, fixed=bool(correcting)) for column in self._columns}
             self._ask = ui.element("div")
             with ui.element("div").classes("acts"):
-                if correcting is None:
-                    button("Store", self._store, "main")
-                else:
-                    button("Correct", lambda: self._ask_correction(*correcting), "main")
-                    button("New test", self.begin)
+                asking_button("Store" if correcting is None else "Correct", sends, "main")
+                if correcting is not None:
+                    asking_button("New test", self.begin)
         with self._places.below:
             if correcting is not None:
                 changes(self._sheet, correcting[0], self._ask, lambda: self.show(correcting[0].name))
@@ -84,10 +83,10 @@ class SingleForm:
         if column == "plate":
             plates = sorted(self._sheet.desk.described.plates)
             return choice(label(column), plates, cells.get(column) or (plates[0] if plates else None))
-        made = field(label(column), cells.get(column, ""), numeric=column in self._numeric)
+        optional = column in OPTIONAL.get(self._sheet.file, ())
+        made = field(label(column), cells.get(column, ""), numeric=column in self._numeric, optional=optional)
         if fixed and column == self._sheet.form.key:
             made.props("readonly")
-        made.on("keydown.enter", lambda: self._enter(column))
         return made
 
     def _focus_first(self) -> None:
@@ -96,36 +95,28 @@ class SingleForm:
         if wanted:
             wanted[0].run_method("focus")
 
-    def _enter(self, column: str) -> None:
-        """Enter goes to the next empty field, and from the last one stores."""
-        columns = list(self._columns)
-        behind = columns[columns.index(column) + 1 :]
-        empty = [self._fields[each] for each in behind if not self._fields[each].value and each != "spot"]
-        if empty:
-            empty[0].run_method("focus")
-        else:
-            self._store()
-
     def _cells(self) -> dict[str, str] | None:
-        try:
-            typed = {column: str(each.value or "") for column, each in self._fields.items()}
-            return {column: checked_cell(self._sheet.form, column, text) for column, text in typed.items()}
-        except ParameterError as error:
-            self._sheet.say(f"Not stored: {error}.", "bad")
-            return None
+        cells = checked_fields(self._sheet.form, self._fields)
+        if cells is None:
+            self._sheet.say(f"Not stored: {'; '.join(faults(self._fields.values()))}.", "bad")
+        return cells
 
-    def _store(self) -> None:
+    def _store(self) -> bool:
         cells = self._cells()
         if cells is None:
-            return
-        test = self._sheet.test(cells[self._sheet.form.key])
+            return False
+        key = self._sheet.form.key
+        test = self._sheet.test(cells[key])
         if test.history and (fault := self._second_row_fault(test, cells)):
+            refuse(self._fields[key], fault)
             self._sheet.say(f"Not stored: {fault}.", "bad")
-            return
+            return False
         said = f"Stored: test {test.name}."
-        if self._sheet.add(test.name, cells, position=len(test.rows), seen=test.last, said=said):
-            self._beside.follow(test.name, cells["site"])
-            self.begin()
+        if not self._sheet.add(test.name, cells, position=len(test.rows), seen=test.last, said=said):
+            return False
+        self._beside.follow(test.name, cells["site"])
+        self.begin()
+        return True
 
     def _second_row_fault(self, test: GrownTest, cells: dict[str, str]) -> str:
         if "repeat" not in cells:
@@ -136,22 +127,25 @@ class SingleForm:
             return f"test {test.name} is at the site {test.rows[0].cells['site']}"
         return ""
 
-    def _ask_correction(self, test: GrownTest, row: GrownRow) -> None:
+    def _ask_correction(self, test: GrownTest, row: GrownRow) -> bool:
         cells = self._cells()
         if cells is None:
-            return
+            return False
         now = row.cells
         changed = {column: text for column, text in cells.items() if text != now.get(column, "")}
         if not changed:
             self._sheet.say("Nothing is different.")
-            return
+            return True
 
-        def correct(why: str) -> None:
-            if self._sheet.correct(test, row.entered.sequence, changed, why):
-                self.show(test.name)
+        def correct(why: str) -> bool:
+            if not self._sheet.correct(test, row.entered.sequence, changed, why):
+                return False
+            self.show(test.name)
+            return True
 
         words = "; ".join(f"{label(column)}: {now.get(column, '')} becomes {new}" for column, new in changed.items())
         ask_reason(self._ask, f"{words}.", ("Correct it", correct), usual=USUAL_REASON, leave=lambda: None)
+        return True
 
     def _list(self) -> None:
         tests = self._sheet.tests()
@@ -167,6 +161,6 @@ class SingleForm:
     def _so_far(self, test: GrownTest, row: GrownRow) -> None:
         words = [f"{label(column)} {row.cells[column]}" for column in self._columns if row.cells.get(column)]
         ui.label(" · ".join(words) + (f" · cancelled: {test.cancelled}" if test.cancelled else ""))
-        button("Correct", lambda: self._draw(row.cells, (test, row)), "small").props(
+        asking_button("Correct", lambda: self._draw(row.cells, (test, row)), "small").props(
             f'aria-label="Correct {" ".join(test.name.split())}"'.replace("'", "")
         )

@@ -12,6 +12,7 @@ from ...field.reading.tool_shapes import SHAPES
 from ...field.store import Journals, NewEntry
 from ...field.store.description import Description, description_text
 from ...field.store.journal import DESCRIPTION
+from ..answering import form
 from ..desk import Desk
 from ..fields import button, choice, field
 from ..layout import framed, heading, sentence
@@ -38,13 +39,14 @@ def add_page(lab: Lab) -> None:
     @ui.page("/describe")
     def describe(entry: str = "") -> None:
         desk = Desk(lab, required_id(entry)) if entry else None
-        with framed("Campaign" if desk else "New campaign", here=HERE):
+        with framed("Campaign" if desk else "New campaign", here=HERE, ahead=True):
             status = ui.label("").classes("status").props("role=status")
-            form = DescriptionForm(tomllib.loads(desk.campaign.description) if desk else {})
+            with form(""):
+                described = DescriptionForm(tomllib.loads(desk.campaign.description) if desk else {})
 
             def done() -> None:
                 try:
-                    id_ = _stored(lab, desk, form.text())
+                    id_ = _stored(lab, desk, described.text())
                 except SkisnowError as error:
                     status.set_text(f"Not stored: {error}")
                     status.classes(add="bad")
@@ -74,6 +76,8 @@ class DescriptionForm:
             self._name = field("Name of the campaign", given.get("name", ""), wide=True)
             self._place = field("Place", given.get("place", ""), wide=True)
             self._observers = field("Observers, with commas between", ", ".join(given.get("observers", ())), wide=True)
+        if not given:
+            self._name.run_method("focus")
         heading("Discs and gauges")
         sentence("What is left empty counts as 0, and the report says so.", "quiet")
         loads = " ".join(f"{load:g}" for load in given.get("load_steps_N", ()))

@@ -32,7 +32,7 @@ def add_page(lab: Lab) -> None:
         if table not in TABLES:
             raise ParameterError("this address names no table of a campaign")
         desk = Desk(lab, required_id(id_))
-        with framed(desk.described.name or "Campaign", here=HERE):
+        with framed(desk.described.name or "Campaign", here=HERE, ahead=True):
             _tables(id_, table)
             who = _who(desk)
             status = ui.label("").classes("status").props("role=status aria-live=polite")

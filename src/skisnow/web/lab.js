@@ -1,0 +1,187 @@
+// The browser's side of every page. Fields are open only while the lab answers, Enter moves the focus here and not by way
+// of the server, and what is typed while an answer is on its way is held and then goes where the answer put the focus.
+(() => {
+  "use strict";
+
+  const HELD = ["Enter", "Backspace", "Tab"]; // besides all keys that write a letter
+  const PATIENCE_MS = 15000; // an answer that has not come by then is not coming
+  const PAUSE_MS = 250; // a hand that types on is quicker, one that has seen a refusal is slower
+  const LOST = "The lab does not answer. What is shown as stored is stored. The fields open again by themselves.";
+  const held = []; // keys typed while an answer is on its way
+  let waiting = "ahead" in document.currentScript.dataset; // the page itself is the first answer, number 0
+  let refused = false; // what was asked last
+  let writing = false; // held keys are being written, or after a refusal let run out
+  let own = false; // this very letter is written here
+  let asked = 0; // number of the last question
+  let timer = 0;
+  let watched = false;
+  let left = null; // the field in which the connection was lost
+
+  const fieldsets = () => document.querySelectorAll("fieldset.lab");
+  const isOpen = () => [...fieldsets()].some((each) => !each.disabled);
+
+  // The connection
+
+  function connected() {
+    fieldsets().forEach((each) => (each.disabled = false));
+    document.documentElement.classList.remove("not-connected");
+    if (left?.isConnected) left.focus();
+    left = null;
+    if (!watched) window.socket.on("disconnect", lost);
+    watched = true;
+  }
+
+  function lost() {
+    left = document.activeElement;
+    fieldsets().forEach((each) => (each.disabled = true));
+    document.documentElement.classList.add("not-connected");
+    say("connection", LOST);
+  }
+
+  function say(place, words) {
+    const line = document.querySelector(`.lab-says .${place}`);
+    if (line) line.textContent = words;
+  }
+
+  // What is typed on while an answer is on its way
+
+  function isHeld(event) {
+    if (!(waiting || writing) || !event.isTrusted || event.target.closest?.("a, summary")) return false;
+    return isOpen() || !watched; // where the connection was lost nothing is held: it may take long
+  }
+
+  function keyPressed(event) {
+    const writes = event.key.length === 1 || HELD.includes(event.key);
+    if (!writes || event.ctrlKey || event.metaKey || event.altKey || !isHeld(event)) return;
+    if (event.key === "Tab" && !held.length && !watched) return; // no way out of a page that never opens else
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    held.push(event.key === "Tab" && event.shiftKey ? "Back" : event.key);
+  }
+
+  function textComes(event) {
+    // keyboards on glass tell no key
+    if (own || !isHeld(event)) return;
+    event.preventDefault();
+    if (event.data) held.push(...event.data);
+  }
+
+  function ask(emit) {
+    if (waiting) return; // pressed twice
+    waiting = true;
+    tellHolding();
+    asked += 1;
+    say("unused", "");
+    const number = asked;
+    timer = setTimeout(() => answered(number, false), PATIENCE_MS);
+    emit(number);
+  }
+
+  function answered(number, fine) {
+    if (number !== asked) return; // nobody waits for it any more
+    clearTimeout(timer);
+    waiting = false;
+    refused = !fine;
+    if (!writing) writeHeld();
+  }
+
+  async function writeHeld() {
+    writing = true;
+    while (held.length && !waiting && !refused) {
+      refused = !write(held[0]);
+      if (!refused) held.shift();
+      await pause(0); // the field tells its text before the next key comes
+    }
+    if (refused && !waiting) await letRunOut();
+    writing = false;
+    tellHolding();
+  }
+
+  const tellHolding = () => document.documentElement.classList.toggle("holding", waiting || writing);
+
+  // What was meant for after a thing that was refused must not go into the field that is to be put right.
+  async function letRunOut() {
+    let before = -1;
+    while (before < held.length) {
+      before = held.length;
+      await pause(PAUSE_MS);
+    }
+    if (held.length) say("unused", `Typed meanwhile and not used: ${held.splice(0).map(inWords).join("")}`);
+  }
+
+  const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+  const inWords = (key) => ({ Enter: " ⏎ ", Tab: " ⇥ ", Back: " ⇤ ", Backspace: "⌫" })[key] ?? key;
+
+  // Write one key where the focus is; whether there was a place for it.
+  function write(key) {
+    const here = document.activeElement;
+    if (key === "Tab" || key === "Back") return step(here, key === "Tab" ? 1 : -1);
+    if (here.matches("button, a") && (key === "Enter" || key === " ")) {
+      here.click();
+      return true;
+    }
+    if (!here.matches("input, textarea")) return false;
+    if (key === "Enter") {
+      here.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+      return true;
+    }
+    own = true; // written as a hand would: undo knows it, and every listener hears of it
+    const done = key === "Backspace" ? document.execCommand("delete") : document.execCommand("insertText", false, key);
+    own = false;
+    return done || key === "Backspace";
+  }
+
+  function step(here, by) {
+    const places = [...document.querySelectorAll("a[href], button, input, textarea, summary")];
+    const isReached = (each) => each.tabIndex >= 0 && !each.matches(":disabled") && each.checkVisibility();
+    const reached = places.filter((each) => each === here || isReached(each));
+    reached[reached.indexOf(here) + by]?.focus();
+    return true;
+  }
+
+  // Enter
+
+  const fieldsOf = (place) => [...place.querySelectorAll("input:not([readonly]):not([type=file])")];
+  const behind = (field, place) => fieldsOf(place).slice(fieldsOf(place).indexOf(field) + 1);
+  const isField = (event) => event.target.matches("input:not([role=combobox])");
+
+  // In a form: on to the next field that is empty and must not be; from the last one the form is sent.
+  function enter(event, emit) {
+    if (!isField(event)) return;
+    event.preventDefault();
+    const isMissing = (field) => !field.value && !("optional" in field.dataset);
+    const next = behind(event.target, event.currentTarget).find(isMissing);
+    if (next) next.focus();
+    else ask(emit);
+  }
+
+  // In a form that only the button sends: on to the next field.
+  function onward(event) {
+    if (!isField(event)) return;
+    event.preventDefault();
+    const next = behind(event.target, event.currentTarget).find((field) => field.checkVisibility());
+    next?.focus();
+  }
+
+  // In a reading: it is told to the lab, and the next one is typed meanwhile. Where there was another one before, the
+  // lab asks why.
+  function reading(event, emit) {
+    event.preventDefault(); // else it would press the button that the focus goes to
+    const field = event.target;
+    const row = field.closest(".reading");
+    const typed = field.value.trim();
+    const before = row.dataset.stored ?? (row.classList.contains("refused") ? undefined : row.dataset.sent);
+    if (before !== undefined && typed !== before) return ask(emit);
+    if (typed) row.dataset.sent = typed;
+    emit();
+    const next = behind(field, row.parentElement).find((each) => !each.value);
+    const button = field.closest(".lab").querySelector(".then");
+    (next ?? (typed ? button : null))?.focus();
+  }
+
+  window.addEventListener("keydown", keyPressed, true);
+  window.addEventListener("beforeinput", textComes, true);
+  document.documentElement.classList.add("not-connected");
+  tellHolding();
+  window.lab = { ask, answered, connected, enter, onward, reading };
+})();

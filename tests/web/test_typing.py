@@ -1,0 +1,137 @@
+"""A hand that never waits: keys come without delay, from before the page is connected on, and each finds its field."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from skisnow.field.store import Journals, Store, grown
+from skisnow.field.store.description import Description, description_text
+
+from .conftest import Served
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page, WebSocketRoute
+
+LOADS = (20.0, 40.0, 60.0)
+TOOL: dict[str, str | float] = {"name": "ski piece", "shape": "ski", "length_mm": 200.0, "width_mm": 62.0}
+
+
+def begun(served: Served) -> str:
+    """The address of a campaign in which nothing is entered."""
+    plates: list[dict[str, str | float]] = [{"name": "plate", "length_mm": 100.0}]
+    text = description_text(Description({"name": "Quick", "load_steps_N": LOADS}, [TOOL], plates))
+    with Store.open(served.store) as store:
+        return f"{served.address}enter/{Journals(store).begin(text)}"
+
+
+def depths(served: Served) -> dict[str, list[str]]:
+    """What the store holds: the depths of each series in the order of their loads."""
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        tests = grown(Journals(store).entries(head.id)).of_file("penetration.csv")
+    return {test.name: [row.cells["depth_mm"] for row in test.rows] for test in tests}
+
+
+def test_a_whole_series_and_the_next_without_a_pause(page: Page, served: Served) -> None:
+    page.goto(begun(served), wait_until="commit")
+    page.locator("fieldset.lab").wait_for(state="attached")
+    page.keyboard.type("A\n30\n1.5\n2.15\n2,6\n\n45\n1.9\n2.7\n3.3\n")
+    page.get_by_text("Stored: 3.3 mm under 60 N.").wait_for()
+    assert depths(served) == {"1": ["1.5", "2.15", "2.6"], "2": ["1.9", "2.7", "3.3"]}
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        rows = grown(Journals(store).entries(head.id)).test("penetration.csv", "2").rows
+    assert [row.cells["edge_angle_deg"] for row in rows] == ["45"] * 3
+
+
+def test_a_correction_and_its_reason_without_a_pause(page: Page, served: Served) -> None:
+    page.goto(begun(served))
+    page.get_by_label("Site", exact=True).and_(page.locator(":focus")).wait_for()
+    page.keyboard.type("A\n30\n1.5\n22.5\n2.6\n")
+    page.get_by_text("Stored: 2.6 mm under 60 N.").wait_for()
+    page.get_by_label("Depth under 40 N (mm)").select_text()
+    page.keyboard.type("2.25\nthe point\n\n")
+    page.get_by_text("corrected from 22.5").wait_for()
+    page.get_by_role("heading", name="New series").wait_for()  # the last Enter
+    assert depths(served) == {"1": ["1.5", "2.25", "2.6"]}
+
+
+def test_shear_tests_without_a_pause(page: Page, served: Served) -> None:
+    page.goto(begun(served) + "?table=shear.csv", wait_until="commit")
+    page.locator("fieldset.lab").wait_for(state="attached")
+    page.keyboard.type("A\n90\n6\n250\n30\n8\n36\n7\n33\n")
+    page.get_by_text("Stored: test 3.").wait_for()
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        tests = grown(Journals(store).entries(head.id)).of_file("shear.csv")
+    found = [[test.rows[0].cells[column] for column in ("depth_mm", "lever_arm_mm", "moment_Nm")] for test in tests]
+    assert found == [["6", "250", "30"], ["8", "250", "36"], ["7", "250", "33"]]
+
+
+def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, served: Served) -> None:
+    page.goto(begun(served))
+    page.get_by_label("Site", exact=True).and_(page.locator(":focus")).wait_for()
+    page.keyboard.type("A\n95\n1.5\n2.6\n")
+    page.get_by_text("Typed meanwhile and not used: 1.5 ⏎ 2.6 ⏎").wait_for()
+    page.get_by_role("alert").get_by_text("edge_angle_deg is a number of at least 0 and below 90; '95'").wait_for()
+    angle = page.get_by_label("Edge angle (°)", exact=True).and_(page.locator(":focus"))
+    assert angle.input_value() == "95"
+    page.locator("html:not(.holding)").wait_for()
+    angle.select_text()
+    page.keyboard.type("30\n1.5\n2.1.5\n2.6\n\n")
+    page.get_by_text("Not stored yet: 40 N.").wait_for()  # the last Enter asked for the next series
+    field = page.get_by_label("Depth under 40 N (mm)").and_(page.locator(":focus"))
+    field.wait_for()
+    page.locator("html:not(.holding)").wait_for()
+    assert field.input_value() == "2.1.5"
+    page.locator(".reading.refused").get_by_text("depth_mm is a number of at least 0; '2.1.5' stands there").wait_for()
+    assert depths(served) == {"1": ["1.5", "2.6"]}
+    field.select_text()
+    page.keyboard.type("2.15\n")
+    page.get_by_text("Stored: 2.15 mm under 40 N.").wait_for()
+    page.locator(".reading.refused").wait_for(state="detached")
+    assert depths(served) == {"1": ["1.5", "2.15", "2.6"]}
+
+
+def test_fields_are_open_while_the_lab_answers_and_only_then(page: Page, served: Served) -> None:
+    held: list[WebSocketRoute] = []
+
+    def hold(socket: WebSocketRoute) -> None:  # accepted, and never answered
+        held.append(socket)
+
+    page.route_web_socket("**/*", hold)
+    page.goto(begun(served))
+    site = page.get_by_label("Site", exact=True)
+    site.wait_for()
+    assert site.is_disabled()
+    page.get_by_text("Connecting to the lab.").wait_for()
+    assert len(held) == 1
+    assert depths(served) == {}
+
+
+def test_a_connection_that_is_lost_closes_the_fields_and_gives_them_back(page: Page, served: Served) -> None:
+    open_sockets: list[WebSocketRoute] = []
+
+    def passed_on(socket: WebSocketRoute) -> None:
+        socket.connect_to_server()
+        open_sockets.append(socket)
+
+    page.route_web_socket("**/*", passed_on)
+    page.goto(begun(served))
+    site = page.get_by_label("Site", exact=True)
+    site.and_(page.locator(":focus")).wait_for()
+    page.keyboard.type("the upper slo")
+    page.evaluate(NOTE_WHAT_IS_LOST)
+    open_sockets[-1].close()
+    page.wait_for_function("window.wasClosed")
+    site.and_(page.locator(":focus:enabled")).wait_for()  # it came back by itself
+    assert page.locator(".connection").is_hidden()
+    page.keyboard.type("pe\n30\n1.5\n")
+    page.get_by_text("Stored: 1.5 mm under 20 N.").wait_for()
+    page.get_by_text("the upper slope · ski piece · 30°").wait_for()
+
+
+NOTE_WHAT_IS_LOST = """() => new MutationObserver(() => {
+  window.wasClosed ||= document.querySelector('fieldset').disabled
+    && /does not answer/.test(document.querySelector('.connection').innerText);
+}).observe(document, { subtree: true, attributes: true, characterData: true, childList: true })"""
