@@ -45,6 +45,38 @@ def test_nearest_of_a_tangled_path_with_pieces_of_every_length(dimensions: int, 
     assert np.linalg.norm(points - found.foot, axis=1) == pytest.approx(found.distance, rel=1e-12)
 
 
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_nearest_of_dense_paths_seen_aslant_from_far(dimensions: int) -> None:
+    """Arcs about one centre, with 2 cm of noise in the second half and a standstill in the middle: 3000 pieces."""
+    random = np.random.default_rng(3)
+    angle = np.concatenate([np.linspace(0.0, 0.4, 1000), np.full(1000, 0.4), np.linspace(0.4, 0.8, 1001)])
+    arc = np.zeros((3001, dimensions))
+    arc[:, 0], arc[:, 1] = np.cos(angle), np.sin(angle)
+    path = 1000.0 * arc
+    path[1000:] += 0.02 * random.standard_normal((2001, dimensions))
+    points = 500.0 * arc[random.integers(0, 3001, 60)]
+    found = Path(path).nearest(points)
+    # both lose digits in differences of squares of numbers around 10³ m
+    assert found.distance == pytest.approx([by_hand(point, path) for point in points], rel=1e-10)
+    assert np.linalg.norm(points - found.foot, axis=1) == pytest.approx(found.distance, rel=1e-12)
+
+
+@pytest.mark.parametrize("ends", [2, 3, 5, 17, 33])
+def test_nearest_of_few_pieces(ends: int) -> None:
+    random = np.random.default_rng(ends)
+    path = np.cumsum(random.normal(size=(ends, 2)), axis=0)
+    points = 3.0 * random.normal(size=(50, 2))
+    assert Path(path).nearest(points).distance == pytest.approx([by_hand(point, path) for point in points], rel=1e-9)
+
+
+def test_many_points_in_one_place_among_many_pieces() -> None:
+    """Every piece is as near as every other: more than can be looked at at once, for one point and for all."""
+    angle = np.linspace(0.0, math.tau, 2001)
+    circle = 10.0 * np.column_stack([np.cos(angle), np.sin(angle)])
+    found = Path(circle).nearest(np.zeros((2000, 2)))
+    assert found.distance == pytest.approx(np.full(2000, 10.0 * math.cos(math.pi / 2000)), rel=1e-12)
+
+
 def test_centre_of_a_circle_where_everything_is_equally_near() -> None:
     angle = np.linspace(0.0, math.tau, 5001)
     circle = 10.0 * np.column_stack([np.cos(angle), np.sin(angle)])

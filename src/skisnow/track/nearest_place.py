@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import KDTree
 
 from ..errors import ParameterError
+from .piece_tree import PieceTree
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -21,11 +21,6 @@ ABREAST: Final = 0.01
 The last straight piece of a path is never quite the path's direction at its end; the distance is larger by at most
 5 parts in 100 000 for it.
 """
-_FIRST_CANDIDATES: Final = 4
-_MOST_AT_ONCE: Final = 1 << 20
-_LONGEST_OF_MEAN: Final = 2.0
-_NO_NEARER: Final = 1.0 - 1e-8
-"""A piece that could be nearer by less than this share is not looked for: near a circle's centre all of them could."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,13 +69,12 @@ class Path:
         places = points[np.concatenate([[True], np.any(np.diff(points, axis=0) != 0.0, axis=1)])]
         if len(places) < 2:
             raise ParameterError("a path needs two points in different places; all of these are in one")
-        places = _split(places)
         self._start = places[:-1]
         self._along = np.diff(places, axis=0)
         self._squared = (self._along**2).sum(axis=1)
         self._piece = np.sqrt(self._squared)
         self._way = np.concatenate([[0.0], np.cumsum(self._piece)])
-        self._tree = KDTree(places)
+        self._tree = PieceTree(places)
 
     @property
     def first(self) -> FloatArray:
@@ -94,7 +88,7 @@ class Path:
 
     def nearest(self, points: FloatArray) -> NearestPlaces:
         """The nearest places to points (n, d): the true ones, on the pieces and not only among their ends."""
-        piece = self._nearest_pieces(points)
+        piece = self._tree.nearest(points)
         start, along = self._start[piece], self._along[piece]
         raw = ((points - start) * along).sum(axis=1) / self._squared[piece]
         share = np.clip(raw, 0.0, 1.0)
@@ -110,50 +104,6 @@ class Path:
             where=2 * piece + np.sign(raw - share).astype(np.intp),
             beyond=ahead > np.maximum(ABREAST * distance, 1e-9 * self.length),
         )
-
-    def _nearest_pieces(self, points: FloatArray) -> IntArray:
-        found = np.empty(len(points), dtype=np.intp)
-        todo, candidates = np.arange(len(points)), _FIRST_CANDIDATES
-        while todo.size:
-            candidates = min(candidates, len(self._piece) + 1)
-            sure = np.empty(len(todo), dtype=np.bool_)
-            at_once = max(1, _MOST_AT_ONCE // candidates)
-            for first in range(0, len(todo), at_once):
-                part = slice(first, first + at_once)
-                found[todo[part]], sure[part] = self._among(points[todo[part]], candidates)
-            todo, candidates = todo[~sure], 4 * candidates
-        return found
-
-    def _among(self, points: FloatArray, candidates: int) -> tuple[IntArray, BoolArray]:
-        """The nearest piece at the nearest points of the path, and whether no other piece can be nearer.
-
-        A nearest place within a piece is the foot of a perpendicular; an end of that piece is then no farther than
-        the root of distance² + (length of the piece / 2)². Once the path's points are followed out to there, no
-        piece is missed.
-        """
-        reach, near = (np.asarray(values) for values in self._tree.query(points, k=candidates, workers=-1))
-        pieces = np.concatenate([np.maximum(near - 1, 0), np.minimum(near, len(self._piece) - 1)], axis=1)
-        apart = points[:, None, :] - self._start[pieces]
-        along, squared = self._along[pieces], self._squared[pieces]
-        share = np.clip(np.einsum("nkd,nkd->nk", apart, along) / squared, 0.0, 1.0)
-        apart -= share[..., None] * along
-        square = np.einsum("nkd,nkd->nk", apart, apart)
-        best = np.argmin(square, axis=1)
-        rows = np.arange(len(points))
-        enough = _NO_NEARER * np.sqrt(square[rows, best] + self._piece.max() ** 2 / 4.0)
-        return pieces[rows, best], (reach[:, -1] >= enough) | (candidates > len(self._piece))
-
-
-def _split(places: FloatArray) -> FloatArray:
-    """Further points on long pieces, so that none is much longer than the mean: the path itself stays what it is."""
-    length = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    parts = np.maximum(1, np.ceil(length / (_LONGEST_OF_MEAN * length.mean()))).astype(np.intp)
-    if parts.max() == 1:
-        return places
-    piece = np.repeat(np.arange(len(length)), parts)
-    share = (np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[piece]
-    inner = places[piece] + share[:, None] * np.diff(places, axis=0)[piece]
-    return np.concatenate([inner, places[-1:]])
 
 
 def distance_beside(points: FloatArray, path: FloatArray) -> FloatArray:
