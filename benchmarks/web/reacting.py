@@ -23,11 +23,14 @@ WATCH = """([kind, conditions]) => {
   const values = () => ({cell: document.querySelector('td')?.textContent,
                          value: document.querySelector('.beside .value')?.textContent});
   const before = values();
+  const charts = () => [...document.querySelectorAll('[data-drawn]')]
+    .reduce((sum, each) => sum + Number(each.dataset.drawn), 0);
+  const drawnBefore = charts();
   let drawn = 0, begun = null;
   const times = tests.map(() => null);
   window.reaction = new Promise((done) => {
     const look = () => tests.forEach((test, i) => {
-      if (begun === null || times[i] !== null || !test(before, drawn)) return;
+      if (begun === null || times[i] !== null || !test(before, drawn + charts() - drawnBefore)) return;
       times[i] = -1;
       requestAnimationFrame((now) => {
         times[i] = performance.now() - begun;

@@ -28,7 +28,7 @@ def print_tables(readings: int, tries: int) -> None:
         print(ABSENT)
         return
     busy = os.getloadavg()[0]
-    with filled_lab(readings) as lab, sync_playwright() as playwright:
+    with filled_lab(readings, tries) as lab, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=place, args=["--no-sandbox"])
         print(
             f"{datetime.now(UTC):%Y-%m-%d}, Python {platform.python_version()}, Chromium {browser.version}, "

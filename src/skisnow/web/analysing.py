@@ -13,7 +13,9 @@ from ..estimate import analyse, results_dict
 from ..field import MARKS, read_campaign
 from ..field.marks import ALWAYS_EXCLUDE
 from ..report import write_report
-from ..report.figures import figures_of
+from ..report.figures import DRAWERS
+from ..report.figures.drawing import Drawing, pictured
+from ..report.figures.style import journal_style, site_styles
 from ..report.material import Material
 from ..report.table_html import table_html
 from ..report.tables import tables_of
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from ..field.records import Campaign, PenetrationTests, ShearTests
 
 LEFT_OUT: Final = "left out by choice in the lab"
+N_FIGURES: Final = len(DRAWERS)
 SHOWN_TABLES: Final = ("sites", "models", "model_tests", "regressions", "penetration_experiments", "shear_experiments")
 
 
@@ -43,11 +46,16 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """Results as results.json has them, the tables as HTML by name, and which marks leave out."""
+    """The campaign as chosen, results as results.json has them, the tables as HTML by name."""
 
+    campaign: Campaign
     results: dict[str, Any]
     tables: dict[str, str]
-    excluding: frozenset[str]
+
+    @property
+    def excluding(self) -> frozenset[str]:
+        """Codes of the marks that leave an experiment out."""
+        return self.campaign.excluding
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,18 +85,27 @@ def numbers_of(folder: str, choice: Choice) -> Numbers | Refusal:
     tables = tables_of(Material(campaign, results))
     present = [tables[name] for name in SHOWN_TABLES if name in tables and tables[name].rows]
     html = {table.name: str(table_html(table, number=number)) for number, table in enumerate(present, start=1)}
-    return Numbers(results, html, campaign.excluding)
+    return Numbers(campaign, results, html)
 
 
-def figures(folder: str, choice: Choice, results: dict[str, Any]) -> list[Shown]:
-    """Draw the report's figures of what `numbers_of` gave for the same folder and choice."""
-    pictures, _ = figures_of(Material(_chosen(read_campaign(folder), choice), results))
-    return [Shown(each.name, each.alt, str(each.caption), each.svg) for each in pictures]
+def figure(campaign: Campaign, results: dict[str, Any], number: int) -> Shown | None:
+    """Draw one of the report's figures, counted from 0, of what `numbers_of` gave; None: there are no data for it."""
+    material = Material(campaign, results)
+    with journal_style():
+        drawn = DRAWERS[number](material, site_styles(material))
+        if not isinstance(drawn, Drawing):
+            return None
+        picture = pictured(drawn)
+    return Shown(picture.name, picture.alt, str(picture.caption), picture.svg)
 
 
-def write_whole_report(folder: str, choice: Choice, results: dict[str, Any], out: str) -> None:
+def ready() -> None:
+    """Draw nothing: a process that was asked for this has what it needs to draw."""
+
+
+def write_whole_report(campaign: Campaign, results: dict[str, Any], out: str) -> None:
     """Write the report with its tables, figures and results.json."""
-    write_report(_chosen(read_campaign(folder), choice), results, Path(out))
+    write_report(campaign, results, Path(out))
 
 
 def choosable_marks() -> dict[str, str]:

@@ -34,9 +34,9 @@ class Worker:
         return await asyncio.get_running_loop().run_in_executor(self._pool, work, *args)
 
     def end(self) -> None:
-        """End the process; what it was doing is given up."""
+        """End the process when what it is doing is done; all else is given up."""
         if self._pool is not None:
-            self._pool.shutdown(wait=False, cancel_futures=True)
+            self._pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _end_with_the_server() -> None:

@@ -11,9 +11,9 @@ from nicegui import background_tasks, run, ui
 from ...errors import SkisnowError
 from ...report.numerals import significant
 from ...ski import ski_names
-from ..charts import axis, chart, line
 from ..fields import choice
 from ..layout import framed
+from ..line_chart import ChartLine, LineChart
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,9 +69,7 @@ def add_page(_: Lab) -> None:
     @ui.page(PATH)
     async def carve() -> None:
         with framed("Carve", here=PATH):
-            page = _Carve(solver)
-        await ui.context.client.connected()
-        page.ask()
+            _Carve(solver).ask()  # answered while the browser builds the page
 
 
 class _Solver:
@@ -114,8 +112,10 @@ class _Carve:
         self._status = ui.label("Computing … On a machine's first run the solver is compiled, once.").classes("status")
         self._status.props("role=status")
         self._facts = ui.element("div").classes("table")
+        self._named: list[str] = []
+        self._cells: dict[str, list[ui.label]] = {}
         with ui.element("div").classes("two"):
-            self._plots = {key: self._plot(title) for key, title in PANELS.items()}
+            self._charts = {key: LineChart(ALONG, title, f"{title} along the ski") for key, title in PANELS.items()}
         for each in (self._ski, self._other, self._ratio):
             each.on_value_change(self.ask)
 
@@ -134,10 +134,6 @@ class _Carve:
             made.props(f'aria-valuetext="{start}"')
             made.props["^value"] = str(stops.index(start))  # as an attribute, which a later drawing does not put back
             made.on("input", moved, js_handler=MOVED.replace("STOPS", json.dumps(stops)))
-
-    def _plot(self, title: str) -> ui.plotly:
-        words = f"{title} along the ski"
-        return ui.plotly(chart([], axis(ALONG), axis(title))).props(f'role=img aria-label="{words}"').classes("plot")
 
     def ask(self) -> None:
         """Ask for the answer to where the sliders stand now."""
@@ -165,18 +161,26 @@ class _Carve:
 
     def _show(self, answers: list[dict[str, Any]]) -> None:
         self._status.set_text(" ".join(_told(answer) for answer in answers))
-        self._facts.clear()
-        with self._facts:
-            _table(answers)
-        for key, title in PANELS.items():
-            lines = [line(a["station_m"], a[key], number) for number, a in enumerate(answers) if a[key] is not None]
-            self._plots[key].update_figure(chart(lines, axis(ALONG), axis(title, **_range(key, answers))))
+        names = [answer["ski"]["name"] for answer in answers]
+        if names != self._named:
+            self._named = names
+            self._facts.clear()
+            with self._facts:
+                self._cells = _table(names)
+        for key, (_, unit) in FACTS.items():
+            for cell, answer in zip(self._cells[key], answers, strict=True):
+                cell.set_text(f"{significant(answer[key])} {unit}")
+        for key, each in self._charts.items():
+            lines = [
+                ChartLine(a["station_m"], a[key], number) for number, a in enumerate(answers) if a[key] is not None
+            ]
+            each.show(lines, range_=_range(key, answers))
 
 
-def _range(key: str, answers: list[dict[str, Any]]) -> dict[str, Any]:
+def _range(key: str, answers: list[dict[str, Any]]) -> tuple[float, float] | None:
     """Depth counts downwards, and the shovel high above the snow would leave no room for what is in it."""
     depths = [depth for answer in answers for depth in (answer[key] or ()) if depth is not None]
-    return {"range": [1.1 * max(depths), -ABOVE_MM]} if key == "edge_depth_mm" and depths else {}
+    return (1.1 * max(depths), -ABOVE_MM) if key == "edge_depth_mm" and depths else None
 
 
 def _told(answer: dict[str, Any]) -> str:
@@ -186,17 +190,21 @@ def _told(answer: dict[str, Any]) -> str:
     return f"{words}{remedy}.{warned}"
 
 
-def _table(answers: list[dict[str, Any]]) -> None:
+def _table(names: list[str]) -> dict[str, list[ui.label]]:
+    """A row for each fact, a column for each ski; gives the labels of the cells."""
+    cells: dict[str, list[ui.label]] = {}
     with ui.element("table"):
         with ui.element("thead"), ui.element("tr"):
-            for text in ("", *(answer["ski"]["name"] for answer in answers)):
+            for text in ("", *names):
                 with ui.element("th").props("scope=col"):
                     ui.label(text)
         with ui.element("tbody"):
-            for key, (words, unit) in FACTS.items():
+            for key, (words, _) in FACTS.items():
                 with ui.element("tr"):
                     with ui.element("th").props("scope=row"):
                         ui.label(words)
-                    for answer in answers:
+                    cells[key] = []
+                    for _ in names:
                         with ui.element("td").classes("n"):
-                            ui.label(f"{significant(answer[key])} {unit}")
+                            cells[key].append(ui.label(""))
+    return cells

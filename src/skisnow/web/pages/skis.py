@@ -13,11 +13,14 @@ from nicegui import run, ui
 from ...errors import RangeWarning, SkisnowError
 from ...report.ski_drawing import SkiDrawing, ski_drawing
 from ...ski import read_ski, ski_names
-from ..charts import COLOURS, axis, chart, line
+from ..charts import COLOURS
 from ..fields import button, choice
 from ..layout import framed, heading, sentence
+from ..line_chart import ChartLine, LineChart
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ..settings import Lab
 
 PATH: Final = "/skis"
@@ -29,6 +32,7 @@ PANELS: Final = {
     "EI_N_m2": "EI (N m²)",
     "GJ_N_m2": "GJ (N m²)",
 }
+STIFFNESSES: Final = ("EI_N_m2", "GJ_N_m2")
 EDITED: Final = "edited below"
 
 
@@ -39,7 +43,6 @@ def add_page(_: Lab) -> None:
     async def skis() -> None:
         with framed("Skis", here=PATH):
             page = _Skis()
-        await ui.context.client.connected()
         await page.draw()
 
 
@@ -53,11 +56,8 @@ class _Skis:
             self._second = choice("Compared with", ["nothing", *names, EDITED], "nothing")
         self._status = ui.label("").classes("status").props("role=status")
         self._facts = ui.element("div").classes("table")
-        self._plots = {}
-        for key, title in PANELS.items():
-            words = f"{title} along the ski"
-            self._plots[key] = ui.plotly(chart([], axis(ALONG), axis(title)))
-            self._plots[key].props(f'role=img aria-label="{words}"').classes("plot")
+        with ui.element("div").classes("two"):
+            self._charts = {key: LineChart(ALONG, title, f"{title} along the ski") for key, title in PANELS.items()}
         self._editor()
         self._first.on_value_change(self.draw)
         self._second.on_value_change(self.draw)
@@ -97,15 +97,16 @@ class _Skis:
         self._facts.clear()
         with self._facts:
             _table(drawn)
-        for key, title in PANELS.items():
-            lines = []
-            for number, each in enumerate(drawn):
-                values = getattr(each, key)
-                lines.append(line(each.station_m, values, number))
-                if key == "half_width_mm":
-                    lines.append(line(each.station_m, [-value for value in values], number))
-            low = {} if key in ("half_width_mm", "base_height_mm") else {"rangemode": "tozero"}
-            self._plots[key].update_figure(chart(lines, axis(ALONG), axis(title, **low)))
+        for key, chart in self._charts.items():
+            chart.show(list(_lines(key, drawn)), from_zero=key in STIFFNESSES)
+
+
+def _lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
+    for number, each in enumerate(drawn):
+        values = getattr(each, key)
+        yield ChartLine(each.station_m, values, number)
+        if key == "half_width_mm":
+            yield ChartLine(each.station_m, [-value for value in values], number)
 
 
 def _table(drawn: list[SkiDrawing]) -> None:

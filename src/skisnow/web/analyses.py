@@ -1,0 +1,135 @@
+"""Analyses that pages have asked for, kept as long as nothing changed: a page that is opened again is there at once."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import shutil
+import weakref
+from collections import OrderedDict
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import TYPE_CHECKING, Final
+
+from nicegui import run
+
+from ..errors import StoreError
+from ..field.store import Journals
+from .analysing import N_FIGURES, Choice, Numbers, Refusal, figure, numbers_of
+from .transfer import write_entry, write_kept
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+    from .analysing import Shown
+    from .settings import Lab
+    from .worker import Worker
+
+MOST_CAMPAIGNS: Final = 6
+MOST_CHOICES: Final = 4
+"""How many are kept in memory (Choice): those of a day's work, not of a season's."""
+
+
+@dataclass(eq=False)
+class Analysed:
+    """Numbers of one choice under a key of their own, figures as far as drawn; None: there are no data for that one."""
+
+    key: str
+    numbers: Numbers
+    figures: list[Shown | None] = field(default_factory=list)
+    drawing: asyncio.Lock = field(default_factory=asyncio.Lock)
+
+
+class Subject:
+    """A campaign as it stands: its folder, which goes when nobody holds it any more, and what was computed of it."""
+
+    def __init__(self, lab: Lab, kind: str, id_: str) -> None:
+        place = mkdtemp(prefix="skisnow-analysis-")
+        weakref.finalize(self, shutil.rmtree, place, ignore_errors=True)
+        self.place = Path(place)
+        self.folder = self.place / "campaign"
+        self._computed = OrderedDict[Choice, Analysed]()
+        self._computing = asyncio.Lock()
+        (write_kept if kind == "kept" else write_entry)(lab, id_, self.folder)
+
+    def known(self, choice: Choice) -> Analysed | None:
+        """What was computed of a choice before."""
+        return self._computed.get(choice)
+
+    async def analysed(self, choice: Choice) -> Analysed | Refusal:
+        """The numbers of a choice, computed where they are not known."""
+        async with self._computing:
+            if (known := self.known(choice)) is not None:
+                return known
+            found = await run.io_bound(numbers_of, str(self.folder), choice)
+            if not isinstance(found, Numbers):
+                return found or Refusal("The lab is about to end.")
+            self._computed[choice] = made = Analysed(secrets.token_hex(8), found)
+            while len(self._computed) > MOST_CHOICES:
+                self._computed.popitem(last=False)
+            return made
+
+
+class Analyses:
+    """The campaigns that were looked at last, each in its last state."""
+
+    def __init__(self, lab: Lab, worker: Worker) -> None:
+        self._lab = lab
+        self._worker = worker
+        self._subjects = OrderedDict[tuple[str, str], tuple[int, Subject]]()
+        self._opening = asyncio.Lock()
+
+    def known(self, kind: str, id_: str) -> Subject | None:
+        """The campaign, where it was looked at before and nothing was entered since.
+
+        Raises
+        ------
+        StoreError
+            The store has no such campaign.
+        """
+        found = self._subjects.get((kind, id_))
+        return found[1] if found is not None and found[0] == self._state(kind, id_) else None
+
+    async def subject(self, kind: str, id_: str) -> Subject:
+        """The campaign in the state that the store has it in.
+
+        Raises
+        ------
+        StoreError
+            The store has no such campaign.
+        """
+        async with self._opening:
+            if (known := self.known(kind, id_)) is not None:
+                self._subjects.move_to_end((kind, id_))
+                return known
+            state = self._state(kind, id_)  # before it is read: what comes meanwhile is looked at again
+            made = await run.io_bound(Subject, self._lab, kind, id_)
+            if made is None:
+                raise StoreError("The lab is about to end.")
+            self._subjects[(kind, id_)] = (state, made)
+            self._subjects.move_to_end((kind, id_))
+            while len(self._subjects) > MOST_CAMPAIGNS:
+                self._subjects.popitem(last=False)
+            return made
+
+    def _state(self, kind: str, id_: str) -> int:
+        """A number that rises with each entry; a kept campaign never changes."""
+        if kind != "entry":
+            self._lab.store.show(id_)
+            return 0
+        counts = {head.id: head.n_entries for head in Journals(self._lab.store).list()}
+        if id_ not in counts:
+            raise StoreError(f"The store has no campaign with the id {id_!r}; the list of campaigns names all.")
+        return counts[id_]
+
+    async def figures(self, analysed: Analysed) -> AsyncIterator[Shown]:
+        """The figures one after another, each as soon as it is drawn, whoever had it drawn."""
+        numbers = analysed.numbers
+        for number in range(N_FIGURES):
+            async with analysed.drawing:
+                if number == len(analysed.figures):
+                    analysed.figures.append(await self._worker.do(figure, numbers.campaign, numbers.results, number))
+            shown = analysed.figures[number]
+            if shown is not None:
+                yield shown

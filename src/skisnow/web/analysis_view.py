@@ -1,0 +1,210 @@
+"""Tables and figures of an analysis as a page shows them, and the choice of what takes part."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import ui
+
+from ..report.numerals import counted
+from .analysing import Choice, Numbers, Refusal, choosable_marks
+from .layout import heading, sentence
+from .trouble import told
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+    from typing import TypeAlias
+
+    from nicegui.events import ValueChangeEventArguments
+
+    from .analyses import Analysed, Analyses, Subject
+    from .analysing import Shown
+
+    Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
+
+LONG_TABLES: Final = {
+    "penetration_experiments": "Every penetration experiment",
+    "shear_experiments": "Every shear experiment",
+}
+MOST_LISTED: Final = 400
+
+
+class OpenAnalysis:
+    """One open page: which campaign, as it was when the page was opened, what was chosen last, what came of it."""
+
+    def __init__(self, kind: str, id_: str, subject: Subject | None) -> None:
+        self.kind = kind
+        self.id = id_
+        self.subject = subject
+        self.choice = Choice()
+        self.analysed: Analysed | None = None
+        self.closed = False
+
+
+class AnalysisView:
+    """Tables and figures that follow the choice."""
+
+    def __init__(self, page: OpenAnalysis, analyses: Analyses) -> None:
+        self._page = page
+        self._analyses = analyses
+        self._asked = 0
+        self._status = ui.label("Computing …").classes("status").props("role=status aria-live=polite")
+        self._choices = ui.element("section").props('aria-label="What takes part"')
+        self._tables = ui.element("section").props('aria-label="Tables"')
+        self._figures = ui.element("section").props('aria-label="Figures"')
+
+    def show_known(self) -> None:
+        """Show at once what was computed before."""
+        subject = self._page.subject
+        known = subject.known(self._page.choice) if subject is not None else None
+        if known is not None:
+            self._show(known)
+
+    async def compute(self) -> None:
+        """Compute the numbers, then draw figure by figure; an older question's answer is dropped."""
+        self._asked += 1
+        asked, page = self._asked, self._page
+        try:
+            page.subject = page.subject or await self._analyses.subject(page.kind, page.id)
+            found = await page.subject.analysed(page.choice)
+            if self._is_old(asked):
+                return
+            if isinstance(found, Refusal):
+                self._refuse(found)
+                return
+            if found is not page.analysed:
+                self._show(found)
+            await self._draw(found, asked)
+        except Exception as error:
+            if not self._is_old(asked):
+                self._status.set_text(told(error))
+
+    def _is_old(self, asked: int) -> bool:
+        return asked != self._asked or self._page.closed
+
+    def _refuse(self, refusal: Refusal) -> None:
+        """Say why there is nothing; what was shown before belongs to another choice."""
+        self._page.analysed = None
+        self._tables.clear()
+        self._figures.clear()
+        self._status.set_text(f"This campaign cannot be analysed yet. {refusal.said}")
+
+    def _show(self, found: Analysed) -> None:
+        first, self._page.analysed = not self._choices.default_slot.children, found
+        if first:
+            self._show_choices(found.numbers)
+        self._show_tables(found.numbers)
+        self._status.set_text(f"{_counts(found.numbers)} Drawing the figures …")
+
+    async def _draw(self, found: Analysed, asked: int) -> None:
+        """Show each figure as it comes; those of another choice stay until then."""
+        begun = False
+        async for shown in self._analyses.figures(found):
+            if self._is_old(asked):
+                return
+            if not begun:
+                self._figures.clear()
+                with self._figures:
+                    heading("Figures")
+                begun = True
+            with self._figures:
+                _figure(shown)
+        if not self._is_old(asked):
+            self._status.set_text(_counts(found.numbers))
+
+    def _show_tables(self, found: Numbers) -> None:
+        self._tables.clear()
+        with self._tables:
+            heading(found.results["campaign"]["name"])
+            if (selected := found.results["penetration"]["selected"]) is not None:
+                sentence(f"Law: {selected['id']}. {selected['reason']}")
+            for name, html in found.tables.items():
+                if name in LONG_TABLES:
+                    _behind(LONG_TABLES[name], partial(_table, html))
+                else:
+                    _table(html)
+
+    def _show_choices(self, found: Numbers) -> None:
+        with self._choices:
+            heading("What takes part")
+            _behind("Leave out experiments with these marks", lambda: self._list_marks(found))
+            _behind("Experiments that take part", lambda: self._list_experiments(found))
+
+    def _list_marks(self, found: Numbers) -> None:
+        for code, words in choosable_marks().items():
+            ui.checkbox(words, value=code in found.excluding, on_change=self._mark_chooser(code, found.excluding))
+
+    def _list_experiments(self, found: Numbers) -> None:
+        for file, kind in (("penetration.csv", "penetration"), ("shear.csv", "shear")):
+            rows = found.results[kind]["experiments"]
+            for row in rows[:MOST_LISTED]:
+                self._experiment(file, kind, row)
+            if len(rows) > MOST_LISTED:
+                sentence(f"The first {MOST_LISTED} of {len(rows)} {kind} experiments.", "quiet")
+
+    def _experiment(self, file: str, kind: str, row: dict[str, Any]) -> None:
+        cancelled = "cancelled" in row["flags"]
+        words = f"{kind.capitalize()} {row['experiment']}, {row['site']}, {row['edge_angle_deg']:g}°"
+        words += " (cancelled)" if cancelled else ""
+        box = ui.checkbox(words, value=not cancelled, on_change=self._test_chooser((file, str(row["experiment"]))))
+        if cancelled:
+            box.disable()
+
+    def _mark_chooser(self, code: str, of_campaign: frozenset[str]) -> Chooser:
+        async def chosen(event: ValueChangeEventArguments[bool | None]) -> None:
+            chosen_before = self._page.choice.excluding
+            now = of_campaign if chosen_before is None else chosen_before
+            await self._choose(replace(self._page.choice, excluding=now | {code} if event.value else now - {code}))
+
+        return chosen
+
+    def _test_chooser(self, test: tuple[str, str]) -> Chooser:
+        async def chosen(event: ValueChangeEventArguments[bool | None]) -> None:
+            out = self._page.choice.left_out
+            await self._choose(replace(self._page.choice, left_out=out - {test} if event.value else out | {test}))
+
+        return chosen
+
+    async def _choose(self, choice: Choice) -> None:
+        self._page.choice = choice
+        self._status.set_text("Computing …")
+        await self.compute()
+
+
+def _behind(words: str, fill: Callable[[], None]) -> None:
+    """Let what is long be opened by who wants it; until then it costs nothing."""
+    with ui.element("details") as details, ui.element("summary"):
+        ui.label(words)
+
+    def opened() -> None:
+        if len(details.default_slot.children) == 1:
+            with details:
+                fill()
+
+    details.on("toggle", opened)
+
+
+def _table(html: str) -> None:
+    ui.html(html, sanitize=False)  # the report's own table, in which all that users wrote is escaped
+
+
+def _counts(found: Numbers) -> str:
+    pressed, sheared = (found.results[kind]["experiments"] for kind in ("penetration", "shear"))
+    used = [sum(row["used"] for row in rows) for rows in (pressed, sheared)]
+    return (
+        f"{counted(len(pressed), 'penetration experiment')}, {used[0]} used; "
+        f"{counted(len(sheared), 'shear experiment')}, {used[1]} used."
+    )
+
+
+def _figure(shown: Shown) -> None:
+    data = b64encode(shown.svg.encode()).decode("ascii")
+    with ui.element("figure"):
+        image = ui.element("img")
+        image.props["src"] = f"data:image/svg+xml;base64,{data}"
+        image.props["alt"] = shown.alt
+        with ui.element("figcaption"):
+            ui.html(shown.caption, sanitize=False)  # the report's own words, in which all that users wrote is escaped

@@ -1,0 +1,130 @@
+// Lines over one quantity, as SVG: small, so that a page with several is there at once and follows the hand.
+const LEFT = 70, RIGHT = 12, TOP = 10, BOTTOM = 48, TICK = 6;
+const LOOKS = [["#0b4f8a", ""], ["#b3450b", "7 5"], ["#48525c", "2 4"]];
+const INK = "#14181c", GRID = "#d8dee4", ZERO = "#8b96a1";
+
+function made(kind, attributes, text) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", kind);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  if (text !== undefined) element.textContent = text;
+  return element;
+}
+
+// 1, 2 or 5 times a power of ten, so that at most `most` steps lie between the ends.
+function stepOf(span, most) {
+  const power = 10 ** Math.floor(Math.log10(span / most));
+  return [1, 2, 5, 10].map((factor) => factor * power).find((step) => span / step <= most);
+}
+
+function extent(values, fromZero) {
+  const found = values.filter(Number.isFinite);
+  let low = Math.min(...found), high = Math.max(...found);
+  if (!found.length) [low, high] = [0, 1];
+  if (fromZero) low = Math.min(low, 0);
+  const margin = 0.05 * (high - low) || Math.abs(high) * 0.1 || 1;
+  return [fromZero && low === 0 ? 0 : low - margin, high + margin];
+}
+
+function ticks([first, second], length, apart) {
+  const low = Math.min(first, second), high = Math.max(first, second);
+  const step = stepOf(high - low, Math.max(2, length / apart));
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const found = [];
+  for (let i = Math.ceil(low / step - 1e-9); i <= high / step + 1e-9; i += 1) {
+    found.push([i * step, (i * step).toFixed(digits).replace("-", "−").replace(/^−(0(\.0+)?)$/, "$1")]);
+  }
+  return found;
+}
+
+const scale = ([from, to], low, high) => (value) => low + ((value - from) / (to - from)) * (high - low);
+
+function pathOf(line, across, up) {
+  let text = "", pen = "M";
+  line.x.forEach((x, i) => {
+    const y = line.y[i];
+    if (x === null || y === null || y === undefined) { pen = "M"; return; }
+    text += `${pen}${across(x).toFixed(1)} ${up(y).toFixed(1)}`;
+    pen = "L";
+  });
+  return text;
+}
+
+export default {
+  template: '<div><svg role="img" style="display: block; width: 100%; touch-action: pan-y"></svg></div>',
+  props: { panel: Object, height: Number },
+  mounted() {
+    this.svg = this.$el.firstChild;
+    this.observer = new ResizeObserver(() => this.draw());
+    this.observer.observe(this.$el);
+    this.svg.addEventListener("pointermove", (event) => this.read(event));
+    this.svg.addEventListener("pointerleave", () => this.reading?.remove());
+    this.draw();
+  },
+  unmounted() { this.observer.disconnect(); },
+  watch: { panel() { this.draw(); } },
+  methods: {
+    draw() {
+      const panel = this.panel, width = this.$el.clientWidth;
+      if (!width) return;
+      const lines = panel.lines;
+      const xRange = extent(lines.flatMap((line) => line.x), false);
+      const yRange = panel.range || extent(lines.flatMap((line) => line.y), panel.from_zero);
+      const right = width - RIGHT, bottom = this.height - BOTTOM;
+      this.across = scale(xRange, LEFT, right);
+      this.up = scale(yRange, bottom, TOP);
+      const children = [];
+      for (const [value, text] of ticks(xRange, right - LEFT, 70)) {
+        const x = this.across(value);
+        children.push(made("path", { d: `M${x} ${TOP}V${bottom + TICK}`, stroke: value === 0 ? ZERO : GRID }));
+        children.push(made("text", { x, y: bottom + 20, "text-anchor": "middle" }, text));
+      }
+      for (const [value, text] of ticks(yRange, bottom - TOP, 38)) {
+        const y = this.up(value);
+        children.push(made("path", { d: `M${LEFT - TICK} ${y}H${right}`, stroke: value === 0 ? ZERO : GRID }));
+        children.push(made("text", { x: LEFT - 10, y: y + 5, "text-anchor": "end" }, text));
+      }
+      children.push(made("text", { x: (LEFT + right) / 2, y: this.height - 8, "text-anchor": "middle" }, panel.x));
+      const middle = (TOP + bottom) / 2;
+      children.push(made("text", { x: 16, y: middle, "text-anchor": "middle", transform: `rotate(-90 16 ${middle})` }, panel.y));
+      // a window of its own: what is beyond the range is cut off
+      const inside = made("svg", { x: LEFT, y: TOP, width: Math.max(0, right - LEFT), height: bottom - TOP,
+                                   viewBox: `${LEFT} ${TOP} ${Math.max(1, right - LEFT)} ${bottom - TOP}` });
+      for (const line of lines) {
+        const [stroke, dash] = LOOKS[line.look];
+        const look = { stroke, "stroke-dasharray": dash, "stroke-width": 2.5, fill: "none", class: "line" };
+        inside.append(made("path", { d: pathOf(line, this.across, this.up), ...look }));
+        if (line.points) line.x.forEach((x, i) => inside.append(
+          made("circle", { cx: this.across(x), cy: this.up(line.y[i]), r: 5, fill: stroke })));
+      }
+      this.svg.setAttribute("viewBox", `0 0 ${width} ${this.height}`);
+      this.svg.setAttribute("height", this.height);
+      this.svg.setAttribute("aria-label", panel.label);
+      this.svg.style.font = "14px system-ui, sans-serif";
+      this.svg.style.fill = INK;
+      this.svg.replaceChildren(...children, inside);
+      this.$el.dataset.drawn = Number(this.$el.dataset.drawn || 0) + 1;
+    },
+    // What stands under the finger or the mouse, in numbers.
+    read(event) {
+      this.reading?.remove();
+      const x = (event.clientX - this.svg.getBoundingClientRect().left);
+      const nearest = this.panel.lines.map((line) => {
+        let best = -1;
+        line.x.forEach((value, i) => {
+          if (best < 0 || Math.abs(this.across(value) - x) < Math.abs(this.across(line.x[best]) - x)) best = i;
+        });
+        return best < 0 ? null : [line.x[best], line.y[best]];
+      }).filter((pair) => pair && pair[1] !== null && pair[1] !== undefined);
+      if (!nearest.length) return;
+      const at = this.across(nearest[0][0]), text = nearest.map((pair) => pair[1].toPrecision(3)).join(" · ");
+      this.reading = made("g", { "aria-hidden": "true" });
+      this.reading.append(
+        made("path", { d: `M${at} ${TOP}V${this.height - BOTTOM}`, stroke: INK }),
+        made("text", { x: at > this.svg.clientWidth / 2 ? at - 6 : at + 6, y: TOP + 14, "font-weight": 700,
+                       "text-anchor": at > this.svg.clientWidth / 2 ? "end" : "start",
+                       stroke: "#fff", "stroke-width": 4, "paint-order": "stroke" },
+             `${nearest[0][0].toFixed(3).replace("-", "−")}: ${text.replaceAll("-", "−")}`));
+      this.svg.append(this.reading);
+    },
+  },
+};

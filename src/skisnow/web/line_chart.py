@@ -1,0 +1,81 @@
+"""A chart of lines that is light enough to follow a slider: drawn as SVG by a few lines of our own in the browser.
+
+The large drawing library takes half a second of a laptop's browser to be loaded and 20 ms for each chart that changes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui.element import Element
+
+from ..report.numerals import significant
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+DIGITS: Final = 5
+
+
+@dataclass(frozen=True, slots=True)
+class ChartLine:
+    """Values over places, None where there is none; ``look`` 0, 1 or 2: the first, second or a further thing."""
+
+    x: Sequence[float]
+    y: Sequence[float | None]
+    look: int = 0
+    points: bool = False
+
+
+class LineChart(Element, component="line_chart.js"):
+    """A panel of lines over one quantity.
+
+    Parameters
+    ----------
+    x, y
+        What is along the axes, with the unit.
+    words
+        What it shows, for who cannot see it; the extent of the values is added.
+    height
+        In pixels of the page.
+    """
+
+    def __init__(self, x: str, y: str, words: str, *, height: int = 240) -> None:
+        super().__init__()
+        self._titles = {"x": x, "y": y}
+        self._words = words
+        self._props["height"] = height
+        self.show([])
+
+    def show(
+        self, lines: Sequence[ChartLine], *, range_: tuple[float, float] | None = None, from_zero: bool = False
+    ) -> None:
+        """Draw these lines; ``range_``: values at the lower and the upper end of the axis, else all of them."""
+        self._props["panel"] = {
+            **self._titles,
+            "label": self._label(lines),
+            "range": range_,
+            "from_zero": from_zero,
+            "lines": [_plain(line) for line in lines],
+        }
+        self.update()
+
+    def _label(self, lines: Sequence[ChartLine]) -> str:
+        found = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]
+        extent = f": {significant(min(found))} to {significant(max(found))}" if found else ": nothing yet"
+        return self._words + extent
+
+
+def _plain(line: ChartLine) -> dict[str, Any]:
+    return {"x": _short(line.x), "y": _short(line.y), "look": line.look, "points": line.points}
+
+
+def _short(values: Sequence[float | None]) -> list[float | None]:
+    """To a hundredth of what a screen can show, and a third of the letters on the way to it."""
+    known = [abs(value) for value in values if value is not None and math.isfinite(value)]
+    if not known or max(known) == 0.0:
+        return [None if value is None or not math.isfinite(value) else value for value in values]
+    digits = DIGITS - 1 - math.floor(math.log10(max(known)))
+    return [None if value is None or not math.isfinite(value) else round(value, digits) for value in values]

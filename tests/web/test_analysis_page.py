@@ -1,0 +1,119 @@
+"""The analysis page follows what is chosen, and computes nothing again while nothing was entered."""
+
+from __future__ import annotations
+
+import io
+import json
+import urllib.request
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from skisnow.estimate import analyse, results_dict
+from skisnow.field import read_campaign, write_reference
+from skisnow.field.store import Journals, NewEntry, Store
+from skisnow.web.analyses import MOST_CAMPAIGNS
+
+from .conftest import Served
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+SEED = 3
+DRAWING_MS = 120_000  # ten figures on a busy machine
+DESCRIPTION = """name = "growing"
+load_steps_N = [20, 40, 60]
+gauge_resolution_mm = 0.01
+[[tool]]
+name = "ski piece"
+shape = "ski"
+length_mm = 200
+width_mm = 62
+"""
+
+
+def kept_campaign(served: Served, folder: Path) -> str:
+    write_reference(folder, seed=SEED)
+    with Store.open(served.store) as store:
+        return store.add(folder).id
+
+
+def used(results: dict[str, object]) -> tuple[int, int]:
+    counts = []
+    for kind in ("penetration", "shear"):
+        part = results[kind]
+        assert isinstance(part, dict)
+        counts.append(sum(row["used"] for row in part["experiments"]))
+    return counts[0], counts[1]
+
+
+def html(served: Served, path: str) -> str:
+    """What the server sends before a browser has asked anything further."""
+    with urllib.request.urlopen(served.address.rstrip("/") + path) as answer:
+        return str(answer.read().decode())
+
+
+def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Path) -> None:
+    id_ = kept_campaign(served, tmp_path / "reference")
+    results = results_dict(analyse(read_campaign(tmp_path / "reference")))
+    pressed, sheared = used(results)
+    of_pressed, of_sheared = (len(results[kind]["experiments"]) for kind in ("penetration", "shear"))
+
+    def told(n: int) -> str:
+        return f"{of_pressed} penetration experiments, {n} used; {of_sheared} shear experiments, {sheared} used."
+
+    page.goto(f"{served.address}analysis/kept/{id_}")
+    page.get_by_text(told(pressed), exact=True).wait_for(timeout=DRAWING_MS)
+    drawn = page.locator("figure img").count()
+    assert drawn >= 8
+    page.locator("summary", has_text="Experiments that take part").press("Enter")
+    first = next(row for row in results["penetration"]["experiments"] if row["used"])
+    words = f"Penetration {first['experiment']}, {first['site']}, {first['edge_angle_deg']:g}°"
+    page.get_by_role("checkbox", name=words, exact=True).press("Space")
+    page.get_by_text(told(pressed - 1), exact=True).wait_for(timeout=DRAWING_MS)
+    assert page.locator("figure img").count() == drawn
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Download everything").press("Enter")
+    with zipfile.ZipFile(io.BytesIO(Path(download.value.path()).read_bytes())) as packed:
+        given = json.loads(packed.read("analysis/results.json"))
+    row = next(row for row in given["penetration"]["experiments"] if row["experiment"] == first["experiment"])
+    assert not row["used"] and "cancelled" in row["flags"]
+    page.locator("summary", has_text="Every penetration experiment").press("Enter")
+    page.locator("details[open] table").get_by_text(str(first["experiment"]), exact=True).wait_for()
+
+
+def test_the_numbers_are_there_with_the_page_until_something_is_entered(page: Page, served: Served) -> None:
+    with Store.open(served.store) as store:
+        journals = Journals(store)
+        id_ = journals.begin(DESCRIPTION)
+        last = 0
+        for position, (load, depth) in enumerate((("20", "1.5"), ("40", "2.15"), ("60", "2.6"))):
+            cells = {"experiment": "1", "site": "A", "spot": "", "tool": "ski piece", "edge_angle_deg": "30"}
+            row = NewEntry(
+                action="add", file="penetration.csv", test="1", position=position,
+                cells={**cells, "load_N": load, "depth_mm": depth},
+            )  # fmt: skip
+            last = journals.append(id_, row, seen=last).sequence
+    path = f"/analysis/entry/{id_}"
+    assert "Computing" in html(served, path)
+    page.goto(served.address.rstrip("/") + path)
+    page.get_by_text("1 penetration experiment, 1 used; 0 shear experiments, 0 used.").first.wait_for()
+    assert "1 penetration experiment, 1 used" in html(served, path)
+    with Store.open(served.store) as store:
+        cancelled = NewEntry(action="cancel", file="penetration.csv", test="1", why="the tool slipped")
+        Journals(store).append(id_, cancelled, seen=last)
+    assert "1 penetration experiment" not in html(served, path)
+    page.reload()
+    page.get_by_text("1 penetration experiment, 0 used").first.wait_for()
+
+
+@pytest.mark.slow
+def test_a_campaign_that_was_forgotten_is_computed_again(page: Page, served: Served) -> None:
+    with Store.open(served.store) as store:
+        ids = [Journals(store).begin(DESCRIPTION) for _ in range(MOST_CAMPAIGNS + 1)]
+    for id_ in ids:
+        page.goto(f"{served.address}analysis/entry/{id_}")
+        page.locator(".status", has_text="used.").or_(page.locator(".status", has_text="cannot")).wait_for()
+    assert "Computing" in html(served, f"/analysis/entry/{ids[0]}")
