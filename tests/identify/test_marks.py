@@ -81,6 +81,24 @@ def test_an_edge_that_holds_bounds_the_strength_from_below() -> None:
     assert found["H_V"].value == pytest.approx(0.25, rel=0.01)
 
 
+def test_profile_and_bootstrap_of_what_a_holding_edge_tells() -> None:
+    """Depth goes with 1/√H_V, which is linear in logarithms nearly: both intervals go with that by curvature."""
+    groove = grooves().groove({"snow.H_V_N_per_mm3": 0.25})
+    assert groove is not None
+    data = marks(groove.depth, groove.width, groove.turn_radius, seed=2)
+    found = identify("carved-46m", data, "H_V,S_f", changes=CHANGES, profile=True, bootstrap=60)
+    hardness = found["H_V"]
+    assert hardness.interval is not None
+    assert hardness.profile_interval == pytest.approx(hardness.interval, rel=0.02)
+    assert hardness.bootstrap_interval is not None
+    assert found.bootstrap is not None
+    assert np.isnan(found.bootstrap[:, 1]).all()
+    low, high = hardness.bootstrap_interval
+    assert low is not None
+    assert high is not None
+    assert low < 0.25 < high
+
+
 def test_an_edge_that_slides_gives_the_strength() -> None:
     """The radius that S_f = 0.03 N/mm² holds at 7 m/s, wider than the ski carves."""
     own = grooves()

@@ -49,8 +49,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def _add_ways(parser: argparse.ArgumentParser) -> None:
     profile = "also intervals by fitting all others anew along each parameter"
     parser.add_argument("--profile", action="store_true", help=profile)
-    bootstrap = "also intervals by N resamples of the residuals"
+    bootstrap = "also intervals by N resamples of the residuals, 40 or more"
     parser.add_argument("--bootstrap", type=whole_number, default=0, metavar="N", help=bootstrap)
+    by = "each resample is fitted anew, with simulations of its own (left out), or by the linearised model"
+    parser.add_argument("--bootstrap-by", choices=("refit", "linear"), default="refit", help=by)
     posterior = "also about N samples of the posterior (needs emcee)"
     parser.add_argument("--posterior", type=whole_number, default=0, metavar="N", help=posterior)
     parser.add_argument("--starts", type=whole_number, default=1, metavar="N", help="searches from N places")
@@ -111,6 +113,7 @@ def _identified(options: argparse.Namespace) -> Identification:
             starts=options.starts,
             profile=options.profile,
             bootstrap=options.bootstrap,
+            bootstrap_by=options.bootstrap_by,
             posterior=options.posterior,
             clock_is_free=None if options.clock is None else options.clock == "free",
             rng=np.random.default_rng(options.seed),

@@ -1,4 +1,4 @@
-"""Intervals by other ways than curvature: profile, bootstrap, posterior."""
+"""Intervals by other ways than curvature: profile and posterior."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
 from ..statistics import percentile_interval
+from .from_the_best import residuals_from_the_best, samples_in_values
 from .identification import Identification, Identified, Interval, Profile
 from .parameter import Parameter, bounds_of
 from .result import Solution
@@ -51,18 +52,6 @@ def profiled(found: Identification, solution: Solution, told: Told) -> Identific
     return replace(found, profiles=tuple(profiles), parameters=tuple(parameters), methods=(*found.methods, told_how))
 
 
-def _residuals(solution: Solution) -> Callable[[list[FloatArray]], list[FloatArray | None]]:
-    """Those of the search, moved so that at the best place they are those of the answer."""
-    problem, found = solution.problem, solution.found
-    quick = problem.residuals([found.place])[0]
-    apart = np.zeros_like(found.residuals) if quick is None else found.residuals - quick
-
-    def residuals(places: list[FloatArray]) -> list[FloatArray | None]:
-        return [None if each is None else each + apart for each in problem.residuals(places)]
-
-    return residuals
-
-
 def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatArray]:
     """Places of parameter j in sizes, rising, and the rise of the sum of squares; the best one among them."""
     problem, found = solution.problem, solution.found
@@ -70,7 +59,7 @@ def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatA
     centre = found.place
     ends = np.unique(np.clip(centre[j] + error * np.array(PLACES), lower[j], upper[j]))
     ends = ends[np.abs(ends - centre[j]) > 1e-9]
-    ask = _residuals(solution)
+    ask = residuals_from_the_best(solution)
     begun = [_moved(solution, j, float(end)) for end in ends]
     costs = np.full(len(ends), np.inf)
     for _ in range(REFITS):
@@ -129,57 +118,6 @@ def _as_values(parameter: Parameter, ends: tuple[float | None, float | None]) ->
     return low, high
 
 
-def bootstrapped(found: Identification, solution: Solution, resamples: int, rng: np.random.Generator) -> Identification:
-    """Resample stretches of residuals and fit each sample by the model linearised at the best values.
-
-    Notes
-    -----
-    Stretches have the length of the cube root of a series, 3 at least: noise that wanders keeps its nature. Refitting
-    by simulation would take hundreds of searches; what is nonlinear shows in the profile.
-    """
-    jacobian = solution.found.jacobian
-    if jacobian is None or solution.degrees_of_freedom < 1:
-        return found
-    inverse = np.linalg.pinv(jacobian, rcond=1e-9)
-    data = sum(solution.problem.lengths)
-    series = [length for each in solution.problem.observations for length in each.series]
-    inflated = np.sqrt(data / max(solution.degrees_of_freedom, 1))
-    places = np.empty((resamples, len(solution.found.place)))
-    fitted = solution.found.residuals
-    lower, upper = bounds_of(solution.problem.parameters)
-    for b in range(resamples):
-        drawn = np.zeros_like(fitted)
-        drawn[:data] = inflated * _resampled(fitted[:data], series, rng)
-        drawn[data:] = rng.standard_normal(len(fitted) - data)
-        places[b] = np.clip(solution.found.place + inverse @ drawn, lower, upper)
-    samples = _in_values(solution, places)
-    intervals = percentile_interval(samples)
-    parameters = tuple(
-        replace(each, bootstrap_interval=(float(low), float(high)))
-        for each, (low, high) in zip(found.parameters, intervals, strict=True)
-    )
-    told = f"bootstrap: {resamples} resamples of stretches of residuals, each fitted by the linearised model"
-    return replace(found, bootstrap=samples, parameters=parameters, methods=(*found.methods, told))
-
-
-def _resampled(residuals: FloatArray, series: list[int], rng: np.random.Generator) -> FloatArray:
-    """Each series put together anew from stretches of it, its mean taken away."""
-    parts, first = [], 0
-    for length in series:
-        part = residuals[first : first + length] - float(np.mean(residuals[first : first + length]))
-        first += length
-        stretch = min(length, max(3, round(length ** (1.0 / 3.0))))
-        begin = rng.integers(0, length, size=-(-length // stretch))
-        places = (begin[:, None] + np.arange(stretch)).ravel()[:length] % length  # circular: all points equally often
-        parts.append(part[places])
-    return np.concatenate(parts)
-
-
-def _in_values(solution: Solution, places: FloatArray) -> FloatArray:
-    parameters = solution.problem.parameters
-    return np.array([[each.value(float(u)) for each, u in zip(parameters, row, strict=True)] for row in places])
-
-
 def with_posterior(
     found: Identification, solution: Solution, samples: int, rng: np.random.Generator, told: Told
 ) -> Identification:
@@ -189,7 +127,7 @@ def with_posterior(
     places, how = posterior_places(solution, samples, rng, told)
     if places is None:
         return replace(found, warnings=(*found.warnings, how))
-    values = _in_values(solution, places)
+    values = samples_in_values(solution, places)
     intervals = percentile_interval(values)
     parameters: list[Identified] = [
         replace(each, posterior_interval=(float(low), float(high)))

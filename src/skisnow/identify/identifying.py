@@ -17,6 +17,7 @@ from ..simulate.scenario import ScenarioFile
 from ..simulate.scenario.given import GivenScenario, given_scenario
 from ..simulate.scenario.reading import resolved
 from .assembling import Collected, collected, values_to_begin_with
+from .bootstrap import BootstrapBy, require_bootstrap
 from .data import Data
 from .fingerprint import fingerprint
 from .free_keys import free_keys
@@ -47,6 +48,7 @@ def identify(
     starts: int = 1,
     profile: bool = False,
     bootstrap: int = 0,
+    bootstrap_by: BootstrapBy = "refit",
     posterior: int = 0,
     clock_is_free: bool | None = None,
     rng: np.random.Generator | None = None,
@@ -72,6 +74,9 @@ def identify(
         Whether intervals are also found by fitting all others anew along each parameter.
     bootstrap, posterior
         Numbers of resamples, and of samples of the posterior; 0: none.
+    bootstrap_by
+        "refit": each resample is fitted anew, with one to four simulated runs of each track; "linear": by the model
+        linearised at the best values, in no time.
     clock_is_free
         Whether each photo-cell run's clock has an offset of its own; None: as ``[identify] clock`` says, else not.
     rng
@@ -101,6 +106,7 @@ def identify(
     with the scenario's own solver.
     """
     begun = time.monotonic()
+    require_bootstrap(bootstrap, bootstrap_by)
     given = (scenario if isinstance(scenario, GivenScenario) else given_scenario(scenario)).changed(changes)
     asked = resolved(given)
     own = given_parameters(given.identify)
@@ -121,6 +127,7 @@ def identify(
             starts=starts,
             profile=profile,
             bootstrap=bootstrap,
+            bootstrap_by=bootstrap_by,
             posterior=posterior,
             rng=np.random.default_rng(0) if rng is None else rng,
             told=counted.about,

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 from scipy.stats import chi2, norm
 
 from .identification import REASONS, Identification, Identified, Outcome
@@ -15,7 +16,9 @@ from .mark_grooves import STRENGTH, MarkGrooves
 from .parameter import Parameter
 from .problem import problem_of
 from .result import identification_of, too_few
-from .solving import Asked, solution_of, solved
+from .solving import Asked, solution_of, solved, with_further_intervals
+
+FloatArray = npt.NDArray[np.float64]
 
 SLID: Final = 0.01
 """Probability below which marks are not those of an edge that held (Choice)."""
@@ -89,6 +92,7 @@ def _holding(
     problem = problem_of(others, (marks,))
     solution = solution_of(problem, plan)
     found = identification_of(solution, plan.title, plan.warnings, plan.methods)
+    found = with_further_intervals(found, solution, plan)
     values = {key: value for key, value in found.values.items() if value is not None}
     bound, low = _bound(marks, values, found)
     needed = "says nothing" if bound is None or low is None else f"needed {bound:.3g} N/mm² (95 %: at least {low:.3g})"
@@ -111,8 +115,19 @@ def _holding(
         parameters=tuple(entries[each.key] for each in parameters),
         correlation=correlation,
         covariance=covariance,
+        bootstrap=_with_gaps(found.bootstrap, places, p),
+        posterior=_with_gaps(found.posterior, places, p),
         warnings=(told, *found.warnings),
     )
+
+
+def _with_gaps(samples: FloatArray | None, places: Sequence[int], count: int) -> FloatArray | None:
+    """Samples of some parameters as samples of all, NaN where there is no value."""
+    if samples is None:
+        return None
+    found = np.full((len(samples), count), np.nan)
+    found[:, places] = samples
+    return found
 
 
 def _bound(marks: MarkGrooves, values: dict[str, float], found: Identification) -> tuple[float | None, float | None]:

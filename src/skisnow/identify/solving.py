@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import FitError, ParameterError
-from .further import bootstrapped, profiled, with_posterior
+from .bootstrap import BootstrapBy, bootstrapped
+from .further import profiled, with_posterior
 from .identification import Identification
 from .parameter import bounds_of
 from .problem import Problem
@@ -42,6 +43,8 @@ class Asked:
         Searches.
     profile, bootstrap, posterior
         Further intervals.
+    bootstrap_by
+        Whether each resample is fitted anew, or by the linearised model.
     rng
         Source of random numbers.
     told
@@ -57,6 +60,7 @@ class Asked:
     posterior: int
     rng: np.random.Generator
     told: Told
+    bootstrap_by: BootstrapBy = "refit"
     warnings: tuple[str, ...] = ()
     methods: tuple[str, ...] = ()
 
@@ -72,14 +76,18 @@ def solved(problem: Problem, plan: Asked) -> Identification:
     if plan.starts < 1:
         raise ParameterError(f"starts is {plan.starts}; at least 1 is needed")
     solution = solution_of(problem, plan)
-    found = identification_of(solution, plan.title, plan.warnings, plan.methods)
+    return with_further_intervals(identification_of(solution, plan.title, plan.warnings, plan.methods), solution, plan)
+
+
+def with_further_intervals(found: Identification, solution: Solution, plan: Asked) -> Identification:
+    """Profile, bootstrap and posterior, where they were asked for; Ctrl-C keeps those that are complete."""
     if found.outcome == "interrupted":
         return found
     try:
         if plan.profile:
             found = profiled(found, solution, plan.told)
         if plan.bootstrap:
-            found = bootstrapped(found, solution, plan.bootstrap, plan.rng)
+            found = bootstrapped(found, solution, plan.bootstrap, plan.bootstrap_by, plan.rng, plan.told)
         if plan.posterior:
             found = with_posterior(found, solution, plan.posterior, plan.rng, plan.told)
     except KeyboardInterrupt:

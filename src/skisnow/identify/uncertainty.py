@@ -37,6 +37,8 @@ class Uncertainty:
         (p,) whether the data leave it open.
     groups
         Parameters of which only a combination is known, by number; one alone has no effect at all.
+    alone
+        (p,) standard errors if all others were known; infinite without effect.
     """
 
     covariance: FloatArray
@@ -44,6 +46,11 @@ class Uncertainty:
     factor: float
     unknown: npt.NDArray[np.bool_]
     groups: tuple[tuple[int, ...], ...]
+    alone: FloatArray
+
+    def would_be_known(self, j: int) -> bool:
+        """Whether the data tell parameter j once all others are known."""
+        return bool(self.factor * self.alone[j] <= WIDEST)
 
     @property
     def standard_errors(self) -> FloatArray:
@@ -87,9 +94,10 @@ def uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None) -> Un
     covariance[lost, lost] = np.inf
     tail = 0.5 * (1.0 + CONFIDENCE)
     factor = float(norm.ppf(tail) if degrees_of_freedom is None else t.ppf(tail, max(degrees_of_freedom, 1.0)))
+    alone = np.where(length > 0.0, 1.0 / unit, np.inf)
     with np.errstate(invalid="ignore"):
         unknown = lost | (factor * np.sqrt(np.diag(covariance)) > WIDEST)
-    return Uncertainty(covariance, correlation, factor, unknown, _groups(open_directions, length))
+    return Uncertainty(covariance, correlation, factor, unknown, _groups(open_directions, length), alone)
 
 
 def _groups(directions: FloatArray, length: FloatArray) -> tuple[tuple[int, ...], ...]:

@@ -30,6 +30,10 @@ _HELPS: Final = {
     frozenset({"drag.drag_area_m2", "drag.air_density_kg_per_m3"}): "only their product acts. Fix the air's density",
     frozenset({"snow.S_f_N_per_mm2", "snow.H_V_N_per_mm3"}): "grip is S_f times the depth, and H_V sets the depth. "
     "Depth and width of the marks left in the snow, or a field test, give H_V",
+    frozenset(
+        {"snow.H_V_N_per_mm3", "sledge.edge_angle_deg"}
+    ): "a ski that cuts deeper bends more and turns tighter, as "
+    "one on a larger edge angle does. Measure the edge angle, or the depth of the marks",
     frozenset({"start.heading_deg", "sledge.edge_angle_deg"}): "a turn begun further round looks like a tighter one. A "
     "longer track tells them apart",
 }
@@ -72,7 +76,7 @@ def unknown_warnings(parameters: Sequence[Parameter], known: Uncertainty) -> Ite
         if j not in told:
             yield (
                 f"{parameters[j].name} is left open by these data: its interval is as wide as all values it could "
-                f"have. {_alone(parameters[j])}"
+                f"have. {_why_open(parameters, known, j)}"
             )
 
 
@@ -110,6 +114,17 @@ def model_warning(correlation: float) -> str:
         f"neighbouring residuals are alike (correlation {correlation:.2f}): the model misses something, or the noise "
         "wanders, and the intervals by curvature are too narrow; --bootstrap resamples stretches of residuals"
     )
+
+
+def _why_open(parameters: Sequence[Parameter], known: Uncertainty, j: int) -> str:
+    """It has little effect, or others take its effect up."""
+    if not known.would_be_known(j):
+        return _alone(parameters[j])
+    close = [i for i, r in enumerate(known.correlation[j]) if i != j and abs(r) > CLOSE]
+    if not close:
+        return "It would be known if the others were: fix some of them, or give them priors from elsewhere"
+    names = " and ".join(parameters[i].name for i in close)
+    return f"It would be known if {names} were: what one does the other can do"
 
 
 def _help(one: Parameter, other: Parameter) -> str:
