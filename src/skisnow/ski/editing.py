@@ -1,0 +1,141 @@
+"""A ski changed by hand: whole curves scaled, and given values at some stations that the curves then pass through."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from .file_keys import COLUMNS
+from .station_table import StationTable
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from .ski import Ski
+
+FloatArray = npt.NDArray[np.float64]
+
+EDITED_COLUMNS: Final = {
+    "width_mm": "width",
+    "base_height_mm": "base_height",
+    "EI_N_m2": "bending_stiffness",
+    "GJ_N_m2": "torsional_stiffness",
+}
+"""Columns of a ski's table that can be edited, and what they are called in `Ski`."""
+_LARGEST_FACTOR: Final = 100.0
+_END: Final = 0.005  # m between two stations at least (Choice)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SkiEdit:
+    """What is changed of a ski.
+
+    Attributes
+    ----------
+    station
+        Places (m from the boot, falling) at which values may be given. Shape (k,).
+    factors
+        By column of `EDITED_COLUMNS` and for ``mass_per_length_kg_per_m``; left out: 1.
+    values
+        By column, in SI, shape (k,): the value wanted there; NaN: as it is but for the factor.
+    """
+
+    station: FloatArray
+    factors: Mapping[str, float] = field(default_factory=dict)
+    values: Mapping[str, FloatArray] = field(default_factory=dict)
+
+
+def edit_stations(ski: Ski, *, count: int = 9) -> FloatArray:
+    """Places for an edit (m): tip and tail, and between them evenly over the sidecut length. Shape (count,).
+
+    Where the sidecut reaches to tip or tail, as on a piece of ski, they are spread evenly over all of it.
+    """
+    half = ski.sidecut_length / 2.0
+    if ski.sidecut_middle + half > ski.station[0] - _END or ski.sidecut_middle - half < ski.station[-1] + _END:
+        return np.linspace(ski.station[0], ski.station[-1], count)
+    inner = np.linspace(ski.sidecut_middle + half, ski.sidecut_middle - half, count - 2)
+    return np.concatenate([ski.station[:1], inner, ski.station[-1:]])
+
+
+def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
+    """The ski with an edit.
+
+    Parameters
+    ----------
+    ski
+        To begin with; it is not changed.
+    edit
+        Factors act on the whole of a curve. Where a value is given the curve passes through it: width and stiffness
+        are multiplied by the ratio of new to old value, to the base's height the difference is added. Between
+        stations ratio and difference follow a shape-preserving cubic (`StationTable`), so that where nothing is given
+        at two neighbouring stations nothing changes between them. Mass changes by its factor alone.
+    name, source
+        Of the edited ski.
+
+    Raises
+    ------
+    ParameterError
+        A factor or value is not allowed, or the ski breaks a rule of `Ski`.
+
+    Examples
+    --------
+    >>> from skisnow.ski import ski_named
+    >>> slalom = ski_named("slalom")
+    >>> stiffer = edited_ski(slalom, SkiEdit(edit_stations(slalom), {"EI_N_m2": 1.2}), name="stiffer", source="1.2 EI")
+    >>> round(float(stiffer.bending_stiffness.max() / slalom.bending_stiffness.max()), 9)
+    1.2
+    """
+    _require(edit)
+    changed = {attribute: _curve(ski, edit, column) for column, attribute in EDITED_COLUMNS.items()}
+    height = changed["base_height"]
+    changed["base_height"] = height - np.interp(0.0, ski.station[::-1], height[::-1])  # it counts from the boot
+    mass = ski.mass_per_length * edit.factors.get("mass_per_length_kg_per_m", 1.0)
+    return replace(
+        ski,
+        name=name,
+        source=source,
+        mass_per_length=mass,
+        width=changed["width"],
+        base_height=changed["base_height"],
+        bending_stiffness=changed["bending_stiffness"],
+        torsional_stiffness=changed["torsional_stiffness"],
+    )
+
+
+def values_at(ski: Ski, station: FloatArray, *, factors: Mapping[str, float] | None = None) -> dict[str, FloatArray]:
+    """What the columns of `EDITED_COLUMNS` are at stations (m), in SI, times their factors. Each of shape (k,)."""
+    return {
+        column: (factors or {}).get(column, 1.0)
+        * np.interp(station, ski.station[::-1], np.asarray(getattr(ski, attribute))[::-1])
+        for column, attribute in EDITED_COLUMNS.items()
+    }
+
+
+def _curve(ski: Ski, edit: SkiEdit, column: str) -> FloatArray:
+    factor = edit.factors.get(column, 1.0)
+    curve = factor * np.asarray(getattr(ski, EDITED_COLUMNS[column]))
+    if column not in edit.values:
+        return curve
+    before = values_at(ski, edit.station, factors=edit.factors)[column]
+    wanted = np.where(np.isnan(edit.values[column]), before, edit.values[column])
+    if column == "base_height_mm":
+        return np.asarray(curve + StationTable(edit.station, wanted - before).at(ski.station))
+    return np.asarray(curve * StationTable(edit.station, wanted / before).at(ski.station))
+
+
+def _require(edit: SkiEdit) -> None:
+    for column, factor in edit.factors.items():
+        if not 1.0 / _LARGEST_FACTOR <= factor <= _LARGEST_FACTOR:
+            allowed = f"{1.0 / _LARGEST_FACTOR:g} to {_LARGEST_FACTOR:g}"
+            raise ParameterError(f"the factor of {column} is {factor:g}; allowed is {allowed}. Correct it")
+    for column, values in edit.values.items():
+        key = COLUMNS[column]
+        for station, value in zip(edit.station, values / key.unit, strict=True):
+            if not (np.isnan(value) or key.lowest <= value <= key.highest):
+                raise ParameterError(
+                    f"{column} at station {station:.3f} m is {value:g}; allowed is {key.allowed}. Correct it"
+                )

@@ -1,0 +1,80 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.ski import Ski, ski_named, ski_names
+from skisnow.ski.editing import EDITED_COLUMNS, SkiEdit, edit_stations, edited_ski, values_at
+from skisnow.units import MM
+
+NAN = math.nan
+
+
+def edited(ski: Ski, **how: dict[str, object]) -> Ski:
+    return edited_ski(ski, SkiEdit(edit_stations(ski), **how), name="new", source="by hand")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ski_names())
+def test_nothing_given_changes_nothing(name: str) -> None:
+    ski = ski_named(name)
+    nothing = {column: np.full(9, NAN) for column in EDITED_COLUMNS}
+    same = edited(ski, values=nothing)  # type: ignore[arg-type]
+    for attribute in EDITED_COLUMNS.values():
+        # factors and ratios of exactly one, differences of exactly zero
+        assert np.array_equal(getattr(same, attribute), getattr(ski, attribute)), attribute
+    assert (same.name, same.source, same.mass) == ("new", "by hand", ski.mass)
+
+
+def test_factors_scale_whole_curves_and_the_radius_follows() -> None:
+    ski = ski_named("slalom")
+    new = edited(ski, factors={"width_mm": 1.1, "EI_N_m2": 2.0, "base_height_mm": 0.5, "mass_per_length_kg_per_m": 1.5})
+    assert new.width == pytest.approx(1.1 * ski.width)
+    assert new.bending_stiffness == pytest.approx(2.0 * ski.bending_stiffness)
+    assert np.array_equal(new.torsional_stiffness, ski.torsional_stiffness)
+    assert new.base_height == pytest.approx(0.5 * ski.base_height, abs=1e-15)
+    assert new.mass == pytest.approx(1.5 * ski.mass)
+    # three widths: R = L² / (2 (tip + tail - 2 waist)) + small terms, so 1.1 times the widths is R / 1.1; the term that
+    # is left out, half the sidecut's depth, is 17 mm of 13 m
+    assert new.sidecut_radius_of_three_widths == pytest.approx(ski.sidecut_radius_of_three_widths / 1.1, rel=2e-3)
+
+
+def test_a_value_given_at_a_station_is_met_and_the_far_side_is_untouched() -> None:
+    ski = ski_named("carver")
+    station = edit_stations(ski)
+    wanted = {column: np.full(9, NAN) for column in EDITED_COLUMNS}
+    wanted["EI_N_m2"][2] = 400.0
+    wanted["base_height_mm"][3] = -2.0 * MM
+    new = edited(ski, values=wanted)  # type: ignore[arg-type]
+    at = values_at(new, station)
+    before = values_at(ski, station)
+    # the tables are 2.5 mm apart and read by straight lines: a hundredth of a percent beside a smooth curve
+    assert at["EI_N_m2"][2] == pytest.approx(400.0, rel=1e-4)
+    assert np.delete(at["EI_N_m2"], 2) == pytest.approx(np.delete(before["EI_N_m2"], 2), rel=1e-4)
+    assert at["base_height_mm"][3] == pytest.approx(-2.0 * MM, abs=1e-6)
+    behind = ski.station < station[4]
+    assert np.array_equal(new.bending_stiffness[behind], ski.bending_stiffness[behind])
+    assert np.array_equal(new.base_height[behind], ski.base_height[behind])
+
+
+def test_the_base_counts_from_the_boot_still() -> None:
+    ski = ski_named("carver")
+    wanted = np.full(9, NAN)
+    wanted[4] = 3.0 * MM  # the station nearest to the boot
+    new = edited(ski, values={"base_height_mm": wanted})
+    assert float(np.interp(0.0, new.station[::-1], new.base_height[::-1])) == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("how", "said"),
+    [
+        ({"factors": {"EI_N_m2": -1.0}}, "factor of EI_N_m2 is -1; allowed is 0.01 to 100"),
+        ({"values": {"GJ_N_m2": np.full(9, 0.0)}}, "GJ_N_m2 at station .* is 0; allowed is 0.001"),
+        ({"values": {"width_mm": np.full(9, 0.6)}}, "width_mm at station .* is 600; allowed is 1 to 500"),
+    ],
+)
+def test_what_cannot_be_is_refused(how: dict[str, object], said: str) -> None:
+    with pytest.raises(ParameterError, match=said):
+        edited(ski_named("slalom"), **how)  # type: ignore[arg-type]
