@@ -10,6 +10,7 @@ import pytest
 
 from skisnow.errors import ParameterError
 from skisnow.identify import Identification, PhotoCellRun, PhotoCells, identify, read_photo_cells
+from skisnow.identify.data import read_data
 from skisnow.simulate.scenario import scenario_file
 
 from . import glide_in_closed_form as exact
@@ -204,9 +205,23 @@ class TestFile:
         assert sd is not None
         assert sd.tolist() == [0.02]
 
+    @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])
+    @pytest.mark.parametrize("first", ["", "sep=;\n"])
+    def test_tables_of_any_spreadsheet_program_are_read(self, tmp_path: Path, encoding: str, first: str) -> None:
+        path = tmp_path / "cells.csv"
+        path.write_text(f"{first}run;station_m;time_s\nfrüh;10;2,5\nfrüh;20,5;3\n", encoding=encoding)
+        read = read_data(path)
+        assert isinstance(read, PhotoCells)
+        (run,) = read.runs
+        assert run.name == "früh"
+        assert run.station.tolist() == [10.0, 20.5]
+        assert run.time.tolist() == [2.5, 3.0]
+
     @pytest.mark.parametrize(
         ("text", "told"),
         [
+            ("run;station_m;time_s\na;10,5;2,5\na;20,5;3.5\n", r"row 3, column time_s: '3\.5'.*decimal comma"),
+            ("run,station_m,time_s\na,10,1_0\n", r"row 2, column time_s: '1_0'"),
             ("run,station_m,time_s\na,10,3.5\na,20,2.5\n", r"time 2\.5 s follows 3\.5 s"),
             ("run,station_m,time_s\na,20,2.5\na,10,3.5\n", r"station 10 m follows 20 m"),
             ("run,station_m\na,10\n", "no column time_s"),

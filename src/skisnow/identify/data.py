@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from ..errors import ParameterError
+from ..spreadsheet_text import encoding_of, most_frequent_separator, named_separator
 from ..track.track import Track
 from .marks import COLUMNS as MARK_COLUMNS
 from .marks import Marks, marks_of
@@ -13,6 +14,7 @@ from .photo_cells import COLUMNS as CELL_COLUMNS
 from .photo_cells import PhotoCells, photo_cells_of
 from .table_file import read_table
 
+_HEAD: Final = 4096
 Data: TypeAlias = Track | PhotoCells | Marks
 
 
@@ -39,7 +41,11 @@ def read_data(path: str | Path) -> Data:
 
 
 def _head(path: Path) -> set[str]:
+    """Names of the columns; the rest of the file, and what is wrong with it, is for its reader."""
     with path.open("rb") as stream:
-        first = stream.readline(4096).decode("utf-8-sig", errors="replace")
-    separator = max(",;\t", key=first.count)
-    return {cell.strip() for cell in first.split(separator)}
+        head = stream.read(_HEAD)
+    text = head.decode(encoding_of(head)[0], errors="replace").lstrip("\ufeff")
+    named = named_separator(text)
+    lines = [line for line in text.splitlines()[1 if named else 0 :] if line.strip(" ,;\t")]
+    separator = named or most_frequent_separator(text)
+    return {cell.strip(' "') for cell in lines[0].split(separator)} if lines else set()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..spreadsheet_text import number
+from ..track.text import cells_of, mark_of, text_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -24,22 +25,28 @@ class TableFile:
     name
         The file's, for messages.
     columns
-        Names of the first line.
+        Names in the header.
     rows
         Line number and cells of each line that is not blank.
+    header_row
+        Line number of the header.
+    mark
+        Decimal point or comma.
     """
 
     name: str
     columns: tuple[str, ...]
     rows: tuple[tuple[int, tuple[str, ...]], ...]
+    header_row: int = 1
+    mark: str = "."
 
     def require(self, columns: tuple[str, ...]) -> None:
         """Refuse a table without these columns, or without rows."""
         missing = [name for name in columns if name not in self.columns]
         if missing:
             raise ParameterError(
-                f"{self.name}, row 1: there is no column {missing[0]} among {', '.join(self.columns)}; needed are "
-                f"{', '.join(columns)}"
+                f"{self.name}, row {self.header_row}: there is no column {missing[0]} among {', '.join(self.columns)}; "
+                f"needed are {', '.join(columns)}"
             )
         if not self.rows:
             raise ParameterError(f"{self.name} has no rows below its header")
@@ -64,42 +71,28 @@ class TableFile:
             if not text and may_be_empty:
                 found.append(math.nan)
                 continue
-            try:
-                number = float(text)
-            except ValueError:
-                number = math.nan
-            if not math.isfinite(number):
+            value = number(text, self.mark)
+            if not math.isfinite(value):
                 raise ParameterError(
                     f"{self.name}, row {row}, column {column}: {text!r} is no finite number; write one with a decimal "
-                    "point, without its unit"
+                    f"{'comma, as others in the file' if self.mark == ',' else 'point'}, without its unit"
                 )
-            found.append(number)
+            found.append(value)
         return np.array(found)
 
 
 def read_table(path: Path) -> TableFile:
-    """Read a table separated by commas, semicolons or tabs.
+    """Read a table as spreadsheet programs write it: commas, semicolons or tabs, decimal points or commas.
 
     Raises
     ------
-    ParameterError
+    ParameterError, FieldDataError
         The file cannot be read, is no text, or is empty.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        data = path.read_bytes()
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"{path} is not UTF-8 text ({error.reason}). Save it as CSV in UTF-8") from error
-    lines = text.splitlines()
-    if not lines or not lines[0].strip():
-        raise ParameterError(f"{path} is empty, or its first line is; a header with the columns' names is needed")
-    separator = max(",;\t", key=lines[0].count)
-    cells = list(csv.reader(lines, delimiter=separator))
-    columns = tuple(cell.strip() for cell in cells[0])
-    rows = tuple(
-        (number, tuple(cell.strip() for cell in line))
-        for number, line in enumerate(cells[1:], start=2)
-        if any(cell.strip() for cell in line)
-    )
-    return TableFile(str(path), columns, rows)
+    cells = cells_of(text_of(data, str(path)), str(path))
+    mark = mark_of((cell for row in cells.rows for cell in row), cells.separator)
+    return TableFile(str(path), cells.header, tuple(zip(cells.lines, cells.rows, strict=True)), cells.header_line, mark)

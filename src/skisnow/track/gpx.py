@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..spreadsheet_text import number
 from .recording import Recording
-from .text import number
 from .trouble import refusal
 
 if TYPE_CHECKING:

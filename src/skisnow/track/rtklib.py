@@ -14,11 +14,11 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from ..spreadsheet_text import number
 from .projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
 from .recording import FARTHEST, Recording
 from .rtklib_header import PLACES, Header, header_of
 from .solution import Solution, solution_array
-from .text import number
 from .trouble import refusal
 
 FloatArray = npt.NDArray[np.float64]

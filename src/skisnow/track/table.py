@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..spreadsheet_text import number
 from .recording import FARTHEST, Recording
-from .text import Cells, cells_of, decimal_mark, moment, number
+from .text import Cells, cells_of, mark_of, moment
 from .trouble import refusal
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ class _Table:
                 )
         rows = tuple((row + ("",) * (width - len(row)))[:width] for row in cells.rows)
         known = [place for place, column in enumerate(cells.header) if column in COLUMNS]
-        mark = decimal_mark((row[place] for place in known for row in rows), cells.separator)
+        mark = mark_of((row[place] for place in known for row in rows), cells.separator)
         return cls(dataclasses.replace(cells, rows=rows), name, mark, set())
 
     @property

@@ -1,24 +1,27 @@
-"""Bytes of a file to text, and cells of text to numbers and times."""
+"""Bytes of a file to text, a table's cells, and cells to times."""
 
 from __future__ import annotations
 
 import csv
-import math
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final
 
+from ..spreadsheet_text import (
+    SEPARATOR_NAMES,
+    NoTextError,
+    decimal_mark,
+    decoded,
+    most_frequent_separator,
+    named_separator,
+)
 from .trouble import refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-SEPARATORS: Final = (",", ";", "\t")
-_NUMBER: Final = {
-    ".": re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"),
-    ",": re.compile(r"[+-]?(?:[0-9]+,?[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"),
-}
+_HEAD: Final = 1 << 16
 
 
 def text_of(data: bytes, name: str) -> str:
@@ -29,21 +32,10 @@ def text_of(data: bytes, name: str) -> str:
     FieldDataError
         The bytes are no text.
     """
-    marked = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     try:
-        for codec in ("utf-16",) if marked else ("utf-8-sig", "cp1252"):
-            try:
-                text = data.decode(codec)
-                break
-            except UnicodeDecodeError as error:
-                trouble = error
-        else:
-            raise trouble
-    except UnicodeDecodeError as error:
-        raise _no_text(name, f"byte {error.start + 1}") from error
-    if "\0" in text:
-        raise _no_text(name, "a NUL character")
-    return text
+        return decoded(data).text
+    except NoTextError as error:
+        raise _no_text(name, error.place) from error
 
 
 def _no_text(name: str, found: str) -> Exception:
@@ -76,12 +68,11 @@ def cells_of(text: str, name: str) -> Cells:
         There is no header, or a quote is never closed.
     """
     lines = re.split(r"\r\n|\r|\n", text)
-    named = re.fullmatch(r'"?sep=([,;\t])"?', lines[0].strip(" "), re.IGNORECASE)
-    first = 1 if named else 0
-    header_line = next((line for line in lines[first:] if re.sub('[,;"]', "", line).strip()), None)
-    if header_line is None:
+    named = named_separator(lines[0])
+    first = 1 if named in SEPARATOR_NAMES else 0
+    if not any(re.sub('[,;"]', "", line).strip() for line in lines[first:]):
         raise refusal("empty_file", name, allowed="a header and rows", action="The file is empty.")
-    separator = named[1] if named else max(SEPARATORS, key=header_line.count)
+    separator = named if first and named else most_frequent_separator(text[:_HEAD])
     reader = csv.reader(lines[first:], delimiter=separator, skipinitialspace=True, strict=True)
     numbers: list[int] = []
     rows: list[tuple[str, ...]] = []
@@ -105,31 +96,13 @@ def cells_of(text: str, name: str) -> Cells:
     return Cells(rows[0], numbers[0], tuple(numbers[1:]), tuple(rows[1:]), separator)
 
 
-def decimal_mark(cells: Iterable[str], separator: str) -> str:
+def mark_of(cells: Iterable[str], separator: str) -> str:
     """The decimal mark of a file: a comma where it does not separate and as many numbers have one as have a point.
 
-    >>> decimal_mark(["1", "2,5", "1.5"], ";"), decimal_mark(["1", "2"], ";")
+    >>> mark_of(["1", "2,5", "1.5"], ";"), mark_of(["1", "2"], ";")
     (',', '.')
     """
-    if separator == ",":
-        return "."
-    commas = points = 0
-    for cell in cells:
-        commas += "," in cell and _NUMBER[","].fullmatch(cell) is not None
-        points += "." in cell and _NUMBER["."].fullmatch(cell) is not None
-    return "," if commas and commas >= points else "."
-
-
-def number(cell: str, mark: str = ".") -> float:
-    """The number in a cell; NaN where it is none: no ``nan``, no ``1_000``, no digits of other scripts.
-
-    >>> number("2,5", ","), number("1_000")
-    (2.5, nan)
-    """
-    if _NUMBER[mark].fullmatch(cell) is None:
-        return math.nan
-    value = float(cell.replace(",", "."))
-    return value if math.isfinite(value) else math.nan
+    return "." if separator == "," else decimal_mark([cells], separator=separator)
 
 
 def moment(cell: str) -> datetime | None:

@@ -14,14 +14,24 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from ...spreadsheet_text import (
+    SEPARATOR_NAMES,
+    DecodedText,
+    NoTextError,
+    decoded,
+    most_frequent_separator,
+    named_separator,
+)
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+__all__ = ["RECORDS_AT_ONCE", "SEPARATOR_NAMES", "CsvText", "Records", "UnreadableTextError", "decode", "look_at_csv"]
 
 Records: TypeAlias = tuple[list[int], list[list[str]]]
 """File lines at which records begin, and the records' cells."""
 
 RECORDS_AT_ONCE: Final = 4096  # more at once is slower: the garbage collector walks them
-SEPARATOR_NAMES: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
 
 _CONTROL_BYTES: Final = bytes(code for code in range(32) if code not in b"\t\n\v\f\r") + b"\x7f"
 _CONTROL_SHARE: Final = 0.01  # text has none; random bytes have a tenth
@@ -37,15 +47,6 @@ class UnreadableTextError(Exception):
         self.row, self.value, self.allowed, self.action = row, value, allowed, action
 
 
-@dataclass(frozen=True, slots=True)
-class DecodedText:
-    """Text and how it was encoded: the codec's name, and a name for people where it is not UTF-8."""
-
-    text: str
-    codec: str
-    foreign_encoding: str | None
-
-
 def decode(data: bytes) -> DecodedText:
     """Decode a text file.
 
@@ -59,31 +60,15 @@ def decode(data: bytes) -> DecodedText:
     UnreadableTextError
         Where the bytes are no text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
     """
-    codec, foreign = _encoding(data)
     try:
-        text = data.decode(codec)
-    except UnicodeDecodeError as error:
-        raise _binary(f"byte {error.start + 1} is no {foreign or 'UTF-8'} text") from None
-    plain = data if codec != "utf-16" else text.encode()
-    _refuse_control_characters(plain)
-    return DecodedText(text.lstrip("\ufeff"), codec, foreign)
-
-
-def _encoding(data: bytes) -> tuple[str, str | None]:
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16", "UTF-16"
-    if data.startswith(b"\xef\xbb\xbf"):
-        return "utf-8-sig", None
-    try:
-        data.decode("utf-8")
-    except UnicodeDecodeError:
-        return "cp1252", "Windows-1252"
-    return "utf-8", None
+        found = decoded(data)
+    except NoTextError as error:
+        raise _binary(str(error) if error.place.startswith("byte") else error.place) from None
+    _refuse_control_characters(data if found.codec != "utf-16" else found.text.encode())
+    return found
 
 
 def _refuse_control_characters(data: bytes) -> None:
-    if b"\0" in data:
-        raise _binary("a NUL character")
     control = len(data) - len(data.translate(None, _CONTROL_BYTES))
     if control > _CONTROL_SHARE * len(data):
         raise _binary(f"{control} control characters among {len(data)} bytes")
@@ -174,23 +159,15 @@ def look_at_csv(data: bytes) -> CsvText:
     UnreadableTextError
         Where the bytes are no text, or the first line names another separator.
     """
-    decoded = decode(data)
-    head = decoded.text[:_HEAD]
-    first_line = re.split(r"[\r\n]", head, maxsplit=1)[0].strip(' "')
-    named = re.fullmatch(r"sep=(.)\1*", first_line, re.IGNORECASE)
-    separator = named[1] if named else _most_frequent_separator(head)
+    found = decode(data)
+    head = found.text[:_HEAD]
+    named = named_separator(head)
+    separator = named or most_frequent_separator(head)
     if separator not in SEPARATOR_NAMES:
         raise UnreadableTextError(
             row=1,
-            value=first_line,
+            value=re.split(r"[\r\n]", head, maxsplit=1)[0].strip(' "'),
             allowed="comma, semicolon or tab between cells",
             action="Save the file with one of these separators.",
         )
-    return CsvText(data, decoded.codec, decoded.foreign_encoding, separator, named is not None)
-
-
-def _most_frequent_separator(head: str) -> str:
-    outside_quotes = re.sub(r'"[^"]*("|\Z)', "x", head)
-    lines = (line for line in re.split(r"[\r\n]+", outside_quotes) if line.strip(" ,;\t"))
-    header = next(lines, "")
-    return max(SEPARATOR_NAMES, key=header.count)  # the first of equals: the comma
+    return CsvText(data, found.codec, found.foreign_encoding, separator, named is not None)

@@ -1,0 +1,139 @@
+"""Text as spreadsheet programs of any European laptop write it: encoding, separator, numbers and their decimal mark.
+
+UTF-8 with or without byte order mark, UTF-16, Windows-1252; comma, semicolon or tab; decimal points or decimal commas.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+SEPARATOR_NAMES: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
+_FORMS: Final = {
+    mark: re.compile(rf"[+-]?([0-9]+{escaped}?[0-9]*|{escaped}[0-9]+)([eE][+-]?[0-9]+)?")
+    for mark, escaped in ((".", r"\."), (",", ","))
+}
+
+
+class NoTextError(ValueError):
+    """Bytes are no text: ``place`` is ``"byte 12"`` or ``"a NUL character"``, ``encoding`` what it was read as."""
+
+    def __init__(self, place: str, encoding: str) -> None:
+        super().__init__(f"{place} is no {encoding} text")
+        self.place, self.encoding = place, encoding
+
+
+@dataclass(frozen=True, slots=True)
+class DecodedText:
+    """Text and how it was encoded: the codec's name, and a name for people where it is not UTF-8."""
+
+    text: str
+    codec: str
+    foreign_encoding: str | None
+
+
+def encoding_of(data: bytes) -> tuple[str, str | None]:
+    """The codec of a text file, and a name for people where it is not UTF-8.
+
+    >>> encoding_of("Höhe".encode()), encoding_of("Höhe".encode("cp1252"))
+    (('utf-8', None), ('cp1252', 'Windows-1252'))
+    """
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16", "UTF-16"
+    if data.startswith(b"\xef\xbb\xbf"):
+        return "utf-8-sig", None
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return "cp1252", "Windows-1252"
+    return "utf-8", None
+
+
+def decoded(data: bytes) -> DecodedText:
+    """Decode a text file, without byte order marks.
+
+    Raises
+    ------
+    NoTextError
+        The bytes are no text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
+    """
+    codec, foreign = encoding_of(data)
+    try:
+        text = data.decode(codec)
+    except UnicodeDecodeError as error:
+        raise NoTextError(f"byte {error.start + 1}", foreign or "UTF-8") from None
+    if "\0" in text:
+        raise NoTextError("a NUL character", foreign or "UTF-8")
+    return DecodedText(text.lstrip("\ufeff"), codec, foreign)
+
+
+def named_separator(head: str) -> str | None:
+    r"""The separator that a first line like ``sep=;`` names, whatever character it is.
+
+    >>> named_separator('"sep=;"\na;b'), named_separator("a;b")
+    (';', None)
+    """
+    first_line = re.split(r"[\r\n]", head, maxsplit=1)[0].strip(' "')
+    named = re.fullmatch(r"sep=(.)\1*", first_line, re.IGNORECASE)
+    return named[1] if named else None
+
+
+def most_frequent_separator(head: str) -> str:
+    r"""The separator found most often in the header, outside quotes; the comma where none is.
+
+    >>> most_frequent_separator('"a,b,c";d\n1;2')
+    ';'
+    """
+    outside_quotes = re.sub(r'"[^"]*("|\Z)', "x", head)
+    lines = (line for line in re.split(r"[\r\n]+", outside_quotes) if line.strip(" ,;\t"))
+    header = next(lines, "")
+    return max(SEPARATOR_NAMES, key=header.count)  # the first of equals: the comma
+
+
+def is_number(cell: str, mark: str) -> bool:
+    """Tell whether a stripped cell is written as a number with this decimal mark.
+
+    >>> is_number("-1.5e3", "."), is_number("1_000", "."), is_number("nan", "."), is_number("1.5", ",")
+    (True, False, False, False)
+    """
+    return _FORMS[mark].fullmatch(cell) is not None
+
+
+def number(cell: str, mark: str = ".") -> float:
+    """Read one cell; NaN where it is no finite number.
+
+    >>> number(" 2,5", ","), number("1e999", "."), number("1_000")
+    (2.5, nan, nan)
+    """
+    stripped = cell.strip()
+    if not is_number(stripped, mark):
+        return math.nan
+    value = float(stripped.replace(",", "."))
+    return value if math.isfinite(value) else math.nan
+
+
+def decimal_mark(groups: Iterable[Iterable[str]], *, separator: str) -> str:
+    """Tell whether numbers are written with a decimal point or a decimal comma.
+
+    The first group of cells with a fraction decides, by its majority; where both are equally many, a file separated by
+    commas has points and any other has commas. Without any fraction it is the point.
+
+    >>> decimal_mark([["1", "2"], ["0,5", "1,5", "2.5"]], separator=";")
+    ','
+    """
+    for cells in groups:
+        written = list(cells)
+        points, commas = _count(written, "."), _count(written, ",")
+        if points or commas:
+            tie_is_comma = separator != ","
+            return "," if commas > points or (commas == points and tie_is_comma) else "."
+    return "."
+
+
+def _count(cells: Iterable[str], mark: str) -> int:
+    return sum(mark in cell and is_number(cell.strip(), mark) for cell in cells)
