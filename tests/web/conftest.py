@@ -111,6 +111,11 @@ def page(chromium: Browser, watched: Watched) -> Iterator[Page]:
     assert watched.errors == []
 
 
+def ready(page: Page) -> None:
+    """Wait until the page is connected and waits for no answer: keys pressed before go nowhere, or are held."""
+    page.locator("html:not(.not-connected):not(.holding)").wait_for()
+
+
 def fill(page: Page, values: dict[str, Any]) -> None:
     """Fill fields by their accessible names."""
     for label, value in values.items():

@@ -114,10 +114,10 @@ class Analyses:
             return made
 
     def _state(self, kind: str, id_: str) -> int:
-        """A number that rises with each entry; a kept campaign never changes."""
+        """A number that rises with each entry; the files of a kept campaign stay, but it can be corrected."""
         if kind != "entry":
-            self._lab.store.show(id_)
-            return 0
+            stored = self._lab.store.show(id_)
+            return len(Journals(self._lab.store).corrections(stored.id))
         counts = {head.id: head.n_entries for head in Journals(self._lab.store).list()}
         if id_ not in counts:
             raise StoreError(f"The store has no campaign with the id {id_!r}; the list of campaigns names all.")

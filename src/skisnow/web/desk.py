@@ -15,6 +15,7 @@ from ..field.store import Journals, grown, write_campaign
 from ..report.curves import SeriesCurve, series_curves
 
 if TYPE_CHECKING:
+    from ..field import Campaign
     from ..field.problems import Problem
     from ..field.reading.campaign_file import CampaignFile
     from ..field.store import GrownCampaign, GrownTest, JournalEntry, NewEntry
@@ -68,6 +69,10 @@ class Desk:
         self.refresh()
         return written
 
+    def test(self, file: str, name: str) -> GrownTest:
+        """A test as it was at the last look; an empty one where there is none yet."""
+        return self.campaign.test(file, name)
+
     def tests_of_site(self, site: str) -> list[GrownTest]:
         """Every test made at a site, and the snow data of that site."""
         return [test for test in self.campaign.tests.values() if test.rows and test.rows[0].cells["site"] == site]
@@ -76,16 +81,23 @@ class Desk:
         """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
         with TemporaryDirectory(prefix="skisnow-desk-") as folder:
             write_campaign(self.campaign, Path(folder), of=self.tests_of_site(site))
-            campaign = read_campaign(folder)
-        found = experiments_at_once(campaign)
-        penetration, shear = found["penetration"]["experiments"], found["shear"]["experiments"]
-        curves = series_curves(campaign, penetration)
-        return AtOnce(
-            penetration={row["experiment"]: row for row in penetration},
-            shear={row["experiment"]: row for row in shear},
-            curves={curve.experiment: curve for curve in curves},
-            marks=_in_words(marks_of(campaign)),
-        )
+            return said_at_once(read_campaign(folder), site)
+
+
+def said_at_once(campaign: Campaign, site: str) -> AtOnce:
+    """What the tests of a site say, of a campaign that may have other sites too."""
+    found = experiments_at_once(campaign)
+    here = {
+        kind: {row["experiment"]: row for row in found[kind]["experiments"] if row["site"] == site}
+        for kind in ("penetration", "shear")
+    }
+    curves = series_curves(campaign, found["penetration"]["experiments"])
+    return AtOnce(
+        penetration=here["penetration"],
+        shear=here["shear"],
+        curves={curve.experiment: curve for curve in curves if curve.experiment in here["penetration"]},
+        marks=_in_words(marks_of(campaign)),
+    )
 
 
 def _in_words(problems: list[Problem]) -> dict[str, tuple[str, ...]]:

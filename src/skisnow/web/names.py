@@ -13,8 +13,17 @@ _ID: Final = re.compile(r"[0-9a-f]{4,64}")
 
 def entering(id_: str, *, table: str = "", test: str = "") -> str:
     """Where a campaign is entered; with a table and a test: where that test is."""
+    return f"/enter/{id_}" + _asking(table, test)
+
+
+def correcting(id_: str, *, table: str = "", test: str = "") -> str:
+    """Where a kept campaign is corrected; with a table and a test: where that test is."""
+    return f"/correct/{id_}" + _asking(table, test)
+
+
+def _asking(table: str, test: str) -> str:
     words = [f"{key}={quote(value, safe='')}" for key, value in (("table", table), ("test", test)) if value]
-    return f"/enter/{id_}" + ("?" + "&".join(words) if words else "")
+    return "?" + "&".join(words) if words else ""
 
 
 def analysis(kind: str, id_: str) -> str:

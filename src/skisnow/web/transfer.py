@@ -14,7 +14,7 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from ..errors import ParameterError, SkisnowError, StoreError
-from ..field.store import Journals, grown, write_campaign
+from ..field.store import Journals, export_corrected, grown, write_campaign
 from .names import required_id
 from .trouble import plain_page, told
 from .unpacking import Unpacking, campaign_folder, files_below, write_zip
@@ -98,8 +98,8 @@ def write_entry(lab: Lab, id_: str, folder: Path) -> None:
 
 
 def write_kept(lab: Lab, id_: str, folder: Path) -> None:
-    """Write a kept campaign into a new folder."""
-    lab.store.export(required_id(id_), folder)
+    """Write a kept campaign into a new folder: its files as they came in, and what was corrected since."""
+    export_corrected(lab.store, required_id(id_), folder)
 
 
 if TYPE_CHECKING:

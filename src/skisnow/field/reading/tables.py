@@ -131,7 +131,7 @@ class _TableReading:
         self._form = form
         self._found = found
         self._file_header = header
-        mark = _decimal_mark(form, header, text)
+        mark = decimal_mark_of(form, header, text)
         found.extend(_not_plain(form.file, text.separator, mark))
         found.extend(check_header(form, header))
         self._header = header_with_status(form, header, corrections)
@@ -215,8 +215,8 @@ def _transposed(rows: list[list[str]], width: int) -> list[tuple[str, ...]]:
     return list(zip(*rows, strict=True))
 
 
-def _decimal_mark(form: TableForm, header: Header, text: CsvText) -> str:
-    """Look ahead for the first numbers with a fraction."""
+def decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
+    """How a table writes decimals: a look ahead for the first numbers with a fraction."""
     asked = {column.name for column in form.numbers}
     positions = [index for index, name in enumerate(header.columns) if name in asked]
 

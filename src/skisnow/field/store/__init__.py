@@ -3,6 +3,8 @@
 from .grown import GrownCampaign, GrownRow, GrownTest, grown
 from .grown_files import campaign_files, write_campaign
 from .journal import JournalEntry, JournalHead, Journals, NewEntry, OvertakenError
+from .kept import add_corrections, export_corrected
+from .kept_tables import KeptTable, kept_tables
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
 
 __all__ = [
@@ -14,13 +16,17 @@ __all__ = [
     "JournalEntry",
     "JournalHead",
     "Journals",
+    "KeptTable",
     "NewEntry",
     "OvertakenError",
     "Store",
     "StoredCampaign",
     "StoredFile",
+    "add_corrections",
     "campaign_files",
     "default_path",
+    "export_corrected",
     "grown",
+    "kept_tables",
     "write_campaign",
 ]

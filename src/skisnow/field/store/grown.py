@@ -52,8 +52,8 @@ class GrownTest:
 
     @property
     def undoable(self) -> JournalEntry | None:
-        """The last entry that still counts, which is the one that can be undone."""
-        counting = (each for each in reversed(self.history) if each.action != "undo")
+        """The last entry that still counts, which is the one that can be undone; not what a file said."""
+        counting = (each for each in reversed(self.history) if each.action != "undo" and not each.is_from_file)
         return next((each for each in counting if each.sequence not in self.undone), None)
 
     def row_at(self, position: int) -> GrownRow | None:

@@ -2,13 +2,16 @@
 
 A journal is a list of entries that only grows. A reading is an entry; so is its correction, a cancelling, an undoing:
 nothing is overwritten, and what the campaign holds now follows from all of them (`grown`).
+
+What is corrected in a campaign that is kept byte for byte stands in a journal too, which has that campaign's id. Its
+first entry about a test says what the file says.
 """
 
 from __future__ import annotations
 
 import json
 import secrets
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
@@ -17,7 +20,7 @@ from sqlalchemy import ColumnElement, Connection, RowMapping, and_, func, insert
 from ...errors import StoreError
 from .engine import database_told, reading, writing
 from .rows import TIME
-from .schema import journal, journal_entry
+from .schema import campaign, journal, journal_entry
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -71,6 +74,11 @@ class JournalEntry(NewEntry):
     sequence: int
     at: str
 
+    @property
+    def is_from_file(self) -> bool:
+        """Whether it says what a kept file says, and nobody entered it."""
+        return self.action == "add" and self.position is None
+
 
 @dataclass(frozen=True, slots=True)
 class JournalHead:
@@ -99,7 +107,7 @@ class Journals:
         return id_
 
     def list(self) -> tuple[JournalHead, ...]:
-        """Give all journals, oldest first."""
+        """Give the journals of all campaigns that are being entered, oldest first."""
         asked = (
             select(
                 journal.c.id,
@@ -108,6 +116,7 @@ class Journals:
                 func.coalesce(func.max(journal_entry.c.at), journal.c.begun_at),
             )
             .join_from(journal, journal_entry, isouter=True)
+            .where(journal.c.id.not_in(select(campaign.c.id)))
             .group_by(journal.c.id)
             .order_by(journal.c.begun_at, journal.c.id)
         )
@@ -122,14 +131,21 @@ class Journals:
         StoreError
             There is no such journal.
         """
-        asked = (
-            select(journal_entry)
-            .where(journal_entry.c.journal_id == id, journal_entry.c.sequence > after)
-            .order_by(journal_entry.c.sequence)
-        )
         with database_told(self._path, "could not be read"), reading(self._engine) as connection:
             _require(connection, id)
-            return tuple(_entry(row) for row in connection.execute(asked).mappings())
+            return _entries(connection, id, after)
+
+    def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
+        """Give the entries about a campaign that is kept byte for byte, oldest first, from behind a sequence on.
+
+        Raises
+        ------
+        StoreError
+            There is no such campaign.
+        """
+        with database_told(self._path, "could not be read"), reading(self._engine) as connection:
+            _require_kept(connection, id)
+            return _entries(connection, id, after)
 
     def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
         """Write an entry down; when this returns it is on the disk.
@@ -156,6 +172,38 @@ class Journals:
             _require_subject(connection, id, entry)
             return _write(connection, id, entry)
 
+    def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:  # noqa: A002
+        """Write down what is to be different in a campaign that is kept byte for byte.
+
+        Parameters
+        ----------
+        id
+            The campaign, with all digits.
+        entry
+            A correction, a cancelling or an undoing of one test; ``about`` of a correction is filled in.
+        seen
+            As in `append`.
+        standing
+            Every cell of the test as the files say it, which is written down before the first entry about it.
+
+        Raises
+        ------
+        OvertakenError
+            There is a later entry about the same test.
+        StoreError
+            There is no such campaign, or no such entry to undo.
+        """
+        with database_told(self._path, "could not be written"), writing(self._engine) as connection:
+            _require_kept(connection, id)
+            _refuse_overtaken(connection, id, entry, seen)
+            if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
+                connection.execute(insert(journal).values(id=id, begun_at=_now()))
+            base = _base(connection, id, entry, standing)
+            if entry.action == "correct":
+                entry = replace(entry, about=base)
+            _require_subject(connection, id, entry)
+            return _write(connection, id, entry)
+
 
 def _now() -> str:
     return datetime.now(UTC).strftime(TIME)
@@ -164,6 +212,30 @@ def _now() -> str:
 def _require(connection: Connection, id_: str) -> None:
     if connection.execute(select(journal.c.id).where(journal.c.id == id_)).first() is None:
         raise StoreError(f"The store has no campaign in entry with the id {id_!r}; the list of campaigns names all.")
+
+
+def _require_kept(connection: Connection, id_: str) -> None:
+    if connection.execute(select(campaign.c.id).where(campaign.c.id == id_)).first() is None:
+        raise StoreError(f"The store keeps no campaign with the id {id_!r}; the list of campaigns names all.")
+
+
+def _base(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[str, str]) -> int:
+    """The sequence of the entry that says what the file says about a test; it is written where there is none."""
+    found = select(journal_entry.c.sequence).where(_of_test(id_, entry), journal_entry.c.action == "add")
+    row = connection.execute(found).first()
+    if row is not None:
+        return int(row[0])
+    said = NewEntry(action="add", file=entry.file, test=entry.test, cells=standing, why="as the file has it")
+    return _write(connection, id_, said).sequence
+
+
+def _entries(connection: Connection, id_: str, after: int) -> tuple[JournalEntry, ...]:
+    asked = (
+        select(journal_entry)
+        .where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
+        .order_by(journal_entry.c.sequence)
+    )
+    return tuple(_entry(row) for row in connection.execute(asked).mappings())
 
 
 def _of_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:

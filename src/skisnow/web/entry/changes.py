@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ...field.store.kept_tables import cell_of
 from ..answering import asking_button, form
 from ..fields import button, field
 from ..layout import sentence
@@ -84,8 +85,22 @@ def ask_reason(
         reason.run_method("select")
 
 
-def changes(sheet: Sheet, test: GrownTest, ask: ui.element, changed: Callable[[], object]) -> None:
-    """The buttons and the history of a test; ``ask``: where a reason is asked for."""
+def changes(
+    sheet: Sheet, test: GrownTest, ask: ui.element, changed: Callable[[], object], *, cancelled: bool = False
+) -> None:
+    """The buttons and the history of a test.
+
+    Parameters
+    ----------
+    sheet, test
+        Which one.
+    ask
+        Where a reason is asked for.
+    changed
+        Called after something was stored.
+    cancelled
+        Whether the test is cancelled by something that is not in its history.
+    """
 
     def undo() -> None:
         sheet.undo(test)
@@ -104,7 +119,7 @@ def changes(sheet: Sheet, test: GrownTest, ask: ui.element, changed: Callable[[]
     with ui.element("div").classes("acts"):
         if test.undoable is not None:
             asking_button(f"Undo: {_done(test.undoable)}", undo)
-        if not test.cancelled and test.rows:
+        if not test.cancelled and not cancelled and test.rows:
             asking_button("Cancel this test", ask_cancel)
     _history(test)
 
@@ -123,9 +138,18 @@ def _history(test: GrownTest) -> None:
                     ui.label(f"{entry.at}{who} · {_done(entry)}{undone}")
 
 
+def _cell_words(key: str, text: str) -> str:
+    line, column = cell_of(key)
+    return f"{label(column)} in row {line} to {text or 'nothing'}"
+
+
 def _done(entry: JournalEntry) -> str:
     cells = entry.cells
-    if entry.action == "add" and "load_N" in cells:
+    if entry.is_from_file:
+        return entry.why
+    if entry.action == "correct" and all("/" in key for key in cells):
+        what = ", ".join(_cell_words(key, text) for key, text in cells.items())
+    elif entry.action == "add" and "load_N" in cells:
         what = f"{cells['depth_mm']} mm under {cells['load_N']} N"
     else:
         what = ", ".join(f"{label(column)} {text}" for column, text in cells.items() if text and column not in _SAME)

@@ -32,7 +32,7 @@ class Sheet:
 
     def test(self, name: str) -> GrownTest:
         """A test as it was at the last look."""
-        return self.desk.campaign.test(self.file, name)
+        return self.desk.test(self.file, name)
 
     def tests(self) -> list[GrownTest]:
         """All tests of the table, in the order of entry."""

@@ -11,5 +11,5 @@ from typing import Final
 PAGES: Final = ("campaigns", "skis", "carve", "simulate", "replay")
 """Modules of this folder, in the order of the navigation."""
 
-INNER: Final = ("describe", "enter", "analysis")
+INNER: Final = ("describe", "enter", "correct", "analysis")
 """Modules of pages that are reached from another page."""

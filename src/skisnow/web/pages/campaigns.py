@@ -11,7 +11,7 @@ from ...report.numerals import counted
 from ..desk import Desk
 from ..fields import link
 from ..layout import framed, heading, sentence
-from ..names import analysis, entering, export
+from ..names import analysis, correcting, entering, export
 from ..transfer import IMPORT
 
 if TYPE_CHECKING:
@@ -64,6 +64,7 @@ def _kept(lab: Lab) -> None:
             heading(campaign.name, 3)
             sentence(f"{campaign.id} · added {campaign.added_at:%Y-%m-%d %H:%M} UTC · {_checked(campaign)}", "quiet")
             with ui.element("div").classes("acts"):
+                link("Correct", correcting(campaign.id))
                 link("Analysis", analysis("kept", campaign.id))
                 link("Export", export("kept", campaign.id))
 
@@ -81,7 +82,7 @@ def _minute(at: str) -> str:
 def _import_form(lab: Lab) -> None:
     heading("Import")
     sentence(
-        "A campaign's folder, its files, or a zip of it. It is kept byte for byte and never changed. "
+        "A campaign's folder, its files, or a zip of it. It is kept byte for byte; corrections stand beside it. "
         f"At most {counted(lab.limits.files, 'file')}.",
         "quiet",
     )

@@ -34,7 +34,7 @@ def add_page(lab: Lab) -> None:
         desk = Desk(lab, required_id(id_))
         with framed(desk.described.name or "Campaign", here=HERE, ahead=True):
             _tables(id_, table)
-            who = _who(desk)
+            who = who_field(desk)
             status = ui.label("").classes("status").props("role=status aria-live=polite")
             sheet = Sheet(desk, table, who, status)
             with ui.element("div").classes("two"):
@@ -61,7 +61,8 @@ def _tables(id_: str, here: str) -> None:
         ui.link("Campaign", f"/describe?entry={id_}")
 
 
-def _who(desk: Desk) -> ui.select | ui.input:
+def who_field(desk: Desk) -> ui.select | ui.input:
+    """Who writes: one of the campaign's observers, or a name."""
     observers = list(desk.described.observers)
     return choice(WHO, observers, observers[0]) if observers else field(WHO)
 

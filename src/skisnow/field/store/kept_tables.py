@@ -1,0 +1,109 @@
+"""The tables of a kept campaign cell by cell, as its files say it: what is there to be corrected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..reading.corrections import Corrector, corrections_by_file, header_with_status
+from ..reading.header import Header
+from ..reading.raw_files import RawFiles
+from ..reading.table_forms import CORRECTIONS, TABLES
+from ..reading.tables import decimal_mark_of, read_table
+from ..reading.text import UnreadableTextError, look_at_csv
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from ..reading.corrections import RowCorrections
+    from ..reading.table_forms import TableForm
+    from ..reading.text import CsvText
+
+
+@dataclass(frozen=True, slots=True)
+class KeptTable:
+    """A table of a kept campaign.
+
+    Attributes
+    ----------
+    form
+        What the table must and may have.
+    columns
+        Those that the file has, and ``status``, which a correction may add.
+    tests
+        Cells by the test's name, file line and column, corrections of the campaign's own corrections.csv applied.
+    """
+
+    form: TableForm
+    columns: tuple[str, ...]
+    tests: Mapping[str, Mapping[int, Mapping[str, str]]]
+
+
+def kept_tables(folder: Path) -> dict[str, KeptTable]:
+    """Every table in a campaign's folder that can be read, by its file."""
+    files = RawFiles(folder)
+    corrections = _corrections(files)
+    found = {form.file: _kept_table(files, form, corrections.get(form.file, {})) for form in TABLES}
+    return {file: table for file, table in found.items() if table is not None}
+
+
+def cell_key(line: int, column: str) -> str:
+    """How an entry about a kept test names a cell.
+
+    >>> cell_key(12, "depth_mm")
+    '12/depth_mm'
+    """
+    return f"{line}/{column}"
+
+
+def cell_of(key: str) -> tuple[int, str]:
+    """The file line and the column that a key names.
+
+    >>> cell_of("12/depth_mm")
+    (12, 'depth_mm')
+    """
+    line, column = key.split("/", 1)
+    return int(line), column
+
+
+def _looked_at(files: RawFiles, form: TableForm) -> CsvText | None:
+    data = files.read(form.file)
+    try:
+        return look_at_csv(data) if data is not None else None
+    except UnreadableTextError as trouble:
+        files.say_unreadable(form.file, trouble)
+        return None
+
+
+def _corrections(files: RawFiles) -> Mapping[str, RowCorrections]:
+    text = _looked_at(files, CORRECTIONS)
+    table = read_table(CORRECTIONS, text, corrections={}, files=files) if text is not None else None
+    return corrections_by_file(table, files.found) if table is not None and not table.absent else {}
+
+
+def _kept_table(files: RawFiles, form: TableForm, corrections: RowCorrections) -> KeptTable | None:
+    text = _looked_at(files, form)
+    if text is None:
+        return None
+    header: Header | None = None
+    corrector: Corrector | None = None
+    tests: dict[str, dict[int, dict[str, str]]] = {}
+    try:
+        for lines, rows in text.records():
+            if header is None and rows:
+                header = header_with_status(form, Header.from_cells(rows.pop(0), lines.pop(0)), corrections)
+                mark = decimal_mark_of(form, header, text)
+                corrector = Corrector(form, header, corrections, mark=mark, found=files.found)
+            if header is None or corrector is None or form.key not in header.position:
+                return None
+            corrector.apply(lines, rows)
+            for line, row in zip(lines, rows, strict=True):
+                cells = {name: row[at].strip() if at < len(row) else "" for name, at in header.position.items()}
+                tests.setdefault(cells[form.key], {})[line] = cells
+    except UnreadableTextError as trouble:
+        files.say_unreadable(form.file, trouble)
+    if header is None:
+        return None
+    columns = tuple(dict.fromkeys((*header.position, "status")))
+    return KeptTable(form, columns, tests)

@@ -1,0 +1,94 @@
+"""A kept campaign on the desk: its files stay as they came in, and what is corrected stands beside them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from ..errors import FieldDataError, StoreError
+from ..field import read_campaign
+from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
+from ..field.reading.table_forms import CORRECTIONS
+from ..field.reading.text import UnreadableTextError, decode
+from ..field.store import add_corrections, grown, kept_tables
+from ..field.store.grown import GrownRow, GrownTest
+from ..field.store.journal import JournalEntry
+from ..field.store.kept_tables import cell_key
+from .desk import AtOnce, Desk, said_at_once
+
+if TYPE_CHECKING:
+    from ..field.problems import Problem
+    from ..field.reading.campaign_file import CampaignFile
+    from ..field.store import KeptTable, NewEntry
+    from .settings import Lab
+
+
+class KeptDesk(Desk):
+    """A kept campaign as one page sees it; its files lie in a folder of their own until `close`."""
+
+    def __init__(self, lab: Lab, id_: str) -> None:
+        self._temporary = TemporaryDirectory(prefix="skisnow-kept-", ignore_cleanup_errors=True)
+        self.folder = Path(self._temporary.name) / "campaign"
+        self.stored = lab.store.export(id_, self.folder)
+        corrections = self.folder / CORRECTIONS.file
+        self._before = corrections.read_bytes() if corrections.is_file() else b""
+        self._entries: tuple[JournalEntry, ...] = ()
+        self.tables: dict[str, KeptTable] = kept_tables(self.folder)
+        super().__init__(lab, self.stored.id)
+
+    def close(self) -> None:
+        """Let go of the folder."""
+        self._temporary.cleanup()
+
+    @property
+    def described(self) -> CampaignFile:
+        """What its campaign.toml says.
+
+        Raises
+        ------
+        FieldDataError, StoreError
+            It cannot be read.
+        """
+        found: list[Problem] = []
+        try:
+            text = decode((self.folder / CAMPAIGN_FILE).read_bytes()).text
+        except (OSError, UnreadableTextError) as error:
+            raise StoreError(f"{CAMPAIGN_FILE} of this campaign cannot be read, so nothing in it can be.") from error
+        described = read_campaign_file(text, found)
+        if described is None:
+            raise FieldDataError(found)
+        return described
+
+    def refresh(self) -> None:
+        """Look at what was written since."""
+        new = self._journals.corrections(self.id, after=self._last)
+        if new or self._campaign is None:
+            self._entries += new
+            self._last = new[-1].sequence if new else self._last
+            self._campaign = grown(new, before=self._campaign)
+
+    def test(self, file: str, name: str) -> GrownTest:
+        """A test with its cells by line and column as they are now, whether or not it was ever spoken of."""
+        corrected = self.campaign.test(file, name)
+        if corrected.rows or name not in self.tables[file].tests:
+            return corrected
+        said = JournalEntry(action="add", file=file, test=name, cells=self.standing(file, name), sequence=0, at="")
+        return GrownTest(file, name, rows=[GrownRow(said)])
+
+    def standing(self, file: str, name: str) -> dict[str, str]:
+        """Every cell of a test as the files say it."""
+        rows = self.tables[file].tests.get(name, {})
+        return {cell_key(line, column): text for line, cells in rows.items() for column, text in cells.items()}
+
+    def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
+        """Store a correction, a cancelling or an undoing; see `Journals.correct`."""
+        standing = self.standing(entry.file, entry.test)
+        written = self._journals.correct(self.id, entry, seen=seen, standing=standing)
+        self.refresh()
+        return written
+
+    def at_once(self, site: str) -> AtOnce:
+        """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
+        add_corrections(self.folder, self._entries, before=self._before)
+        return said_at_once(read_campaign(self.folder), site)

@@ -1,0 +1,170 @@
+"""A campaign that was imported is corrected: with reasons, undo and history; its files stay, its export says all."""
+
+from __future__ import annotations
+
+import io
+import json
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .conftest import Served, ready
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+FILES = {
+    "campaign.toml": """name = "From <a> drawer"
+observers = ["Ada", "Bo"]
+[[tool]]
+name = "ski piece"
+shape = "ski"
+length_mm = 200
+width_mm = 62
+[[plate]]
+name = "plate"
+length_mm = 100
+""",
+    "penetration.csv": """experiment;site;tool;edge_angle_deg;load_N;depth_mm
+1;A;ski piece;30;20;1,5
+1;A;ski piece;30;40;22,5
+1;A;ski piece;30;60;2,6
+2;A;ski piece;30;20;1,4
+2;A;ski piece;30;40;2,0
+2;A;ski piece;30;60;2,5
+3;B;ski piece;30;20;1,9
+3;B;ski piece;30;40;2,7
+3;B;ski piece;30;60;3,3
+""",
+    "shear.csv": "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\n1,A,plate,90,6,250,30\n",
+}
+
+
+def imported(page: Page, served: Served) -> None:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for name, text in FILES.items():
+            archive.writestr(f"drawer/{name}", text)
+    page.goto(served.address)
+    page.get_by_label("Files or zip").set_input_files(
+        {"name": "drawer.zip", "mimeType": "application/zip", "buffer": packed.getvalue()}
+    )
+    ready(page)
+    page.get_by_role("button", name="Import files or zip").press("Enter")
+    page.get_by_text("The campaign is kept, byte for byte.").wait_for()
+
+
+def exported(page: Page, served: Served, place: Path) -> Path:
+    page.goto(served.address)
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Export").press("Enter")
+    with zipfile.ZipFile(download.value.path()) as packed:
+        packed.extractall(place)
+    return place / "campaign"
+
+
+def analysed(folder: Path) -> dict[str, Any]:
+    command = [sys.executable, "-m", "skisnow", "analyse", str(folder), "--json"]
+    answer: dict[str, Any] = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    return answer
+
+
+def correct(page: Page, field: str, text: str, why: str) -> None:
+    page.get_by_label(field, exact=True).fill(text)
+    page.keyboard.press("Enter")
+    page.get_by_label("Why", exact=True).and_(page.locator(":focus")).wait_for()
+    ready(page)
+    page.keyboard.type(f"{why}\n")
+    page.get_by_text("Corrected; the first reading is kept.").wait_for()
+
+
+def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path: Path) -> None:
+    imported(page, served)
+    page.get_by_role("link", name="Analysis").press("Enter")
+    page.get_by_text("3 penetration experiments, 2 used; 1 shear experiment, 1 used.").wait_for()  # 1 is marked
+    page.goto(served.address)
+    page.get_by_role("link", name="Correct").press("Enter")
+    page.get_by_role("link", name="Penetration").wait_for()
+    page.get_by_text("A: 2").click()
+    page.get_by_role("link", name="1", exact=True).press("Enter")
+    page.get_by_role("heading", name="Test 1").wait_for()
+    page.get_by_text("below the one before it").wait_for()
+    correct(page, "Depth (mm), row 3", "2,15", "the point")
+    page.get_by_text("below the one before it").wait_for(state="detached")
+    assert page.get_by_label("Depth (mm), row 3").input_value() == "2.15"
+    correct(page, "Depth (mm), row 4", "2.7", "misheard")
+    page.get_by_role("button", name="Undo: corrected Depth (mm) in row 4 to 2.7 (misheard)").press("Enter")
+    page.get_by_text("Undone.").wait_for()
+    assert page.get_by_label("Depth (mm), row 4").input_value() == "2,6"
+    page.get_by_label("Depth (mm), row 4").fill("two")
+    page.keyboard.press("Enter")
+    page.get_by_text("Not corrected: depth_mm is a number of at least 0; 'two' stands there.").wait_for()
+
+    served.again()  # what was shown as stored is stored
+    page.reload()
+    page.get_by_text("History of 1", exact=True).click()
+    page.get_by_text("· Ada · corrected Depth (mm) in row 3 to 2.15 (the point)").wait_for()
+    page.get_by_text("corrected Depth (mm) in row 4 to 2.7 (misheard) (undone)").wait_for()
+    page.get_by_role("link", name="Another test").press("Enter")
+    page.get_by_text("B: 1").click()
+    page.get_by_role("link", name="3", exact=True).press("Enter")
+    page.get_by_role("heading", name="Test 3").wait_for()
+    ready(page)
+    page.get_by_role("button", name="Cancel this test").press("Enter")
+    page.get_by_label("Why", exact=True).and_(page.locator(":focus")).wait_for()
+    page.keyboard.type("the tool slipped\n")
+    page.get_by_text("Cancelled: the tool slipped").wait_for()
+
+    folder = exported(page, served, tmp_path / "export")
+    for name, text in FILES.items():
+        assert (folder / name).read_bytes() == text.encode(), name
+    results = analysed(folder)
+    rows = {row["experiment"]: row for row in results["penetration"]["experiments"]}
+    assert [rows[name]["used"] for name in "123"] == [True, True, False]
+    # by hand, Eqn 2 of a wedge: V = L e² / (2 tan ϑ) at e = 2.6 mm, ϑ = 30°: H_V = 60 N / V
+    assert abs(rows["1"]["H_V_N_per_mm3"] * 200.0 * 2.6**2 / (2.0 * 3.0**-0.5) / 60.0 - 1.0) < 1e-9
+    assert [(each["row"], each["column"], each["new"]) for each in results["campaign"]["corrections"]] == [
+        (3, "depth_mm", "2.15"),
+        (8, "status", "the tool slipped"),
+    ]
+    page.get_by_role("link", name="Analysis").press("Enter")
+    page.get_by_text("3 penetration experiments, 2 used; 1 shear experiment, 1 used.").wait_for()  # 3 is cancelled
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Download everything").press("Enter")
+    with zipfile.ZipFile(download.value.path()) as packed:
+        by_lab = json.loads(packed.read("analysis/results.json"))
+    for each in (by_lab, results):
+        each["provenance"].pop("time")
+    assert by_lab == results
+
+
+def test_what_a_test_has_once_is_corrected_in_every_row(page: Page, served: Served, tmp_path: Path) -> None:
+    imported(page, served)
+    page.get_by_role("link", name="Correct").press("Enter")
+    page.get_by_text("B: 1").click()
+    page.get_by_role("link", name="3", exact=True).press("Enter")
+    correct(page, "Site", "A", "was at A")
+    correct(page, "Edge angle (°)", "45", "misheard")
+    page.get_by_role("link", name="Shear").press("Enter")
+    page.get_by_role("link", name="1", exact=True).press("Enter")
+    page.get_by_text("S_f = 0.200 N/mm²").wait_for()  # 30 N m / 0.25 m / (100 mm × 6 mm), by hand
+    correct(page, "Moment (N m)", "36", "misread")
+    page.get_by_text("S_f = 0.240 N/mm²").wait_for()
+    results = analysed(exported(page, served, tmp_path / "export"))
+    row = results["penetration"]["experiments"][2]
+    assert (row["site"], row["edge_angle_deg"]) == ("A", 45.0)
+    assert abs(results["shear"]["experiments"][0]["S_f_N_per_mm2"] - 0.24) < 1e-12
+
+
+def test_the_pages_fit_a_phone(page: Page, served: Served) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
+    imported(page, served)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.get_by_role("link", name="Correct").press("Enter")
+    page.get_by_text("A: 2").click()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.get_by_role("link", name="1", exact=True).press("Enter")
+    page.get_by_text("below the one before it").wait_for()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
