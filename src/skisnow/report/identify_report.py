@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ..files import require_writable, write_file
-from .figures.drawing import Drawing, pictured
+from .figures.drawing import Drawing
 from .figures.identify_fits import residuals_along, tracks_above
 from .figures.identify_profiles import profiles_drawn
-from .figures.style import journal_style
 from .numerals import counted
-from .run_report import write_pictures
+from .pictures import write_pictures
 from .sheet import Header, Section, sheet
 from .symbols import html, prose
 from .tables.identified import correlation_table, parameters_table
@@ -64,12 +63,7 @@ def write_identify_report(
     say = progress or _silent
     write_file(folder / "identification.json", json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1) + "\n")
     write_file(folder / "fits.csv", fits_csv(found))
-    pictures = []
-    with journal_style():
-        for drawing in _drawings(found):
-            say(f"figure {drawing.name}")
-            pictures.append(pictured(drawing))
-    write_pictures(pictures, folder / "figures", every=FIGURES)
+    pictures = write_pictures(_drawings(found), folder / "figures", every=FIGURES, progress=say)
     say("report.html")
     write_file(folder / "report.html", identify_page(found, pictures))
     return folder / "report.html"

@@ -12,9 +12,8 @@ from markupsafe import Markup
 from ..files import require_writable, write_file
 from ..simulate.carve_dict import finite
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
-from .figures.drawing import pictured
-from .figures.style import journal_style
 from .numerals import counted, significant, whole
+from .pictures import write_pictures
 from .run_drawings import run_drawings
 from .run_file import write_run_file
 from .sheet import Header, Section, sheet
@@ -63,25 +62,10 @@ def write_run_report(
     say = progress or _silent
     say("run.nc")
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
-    pictures = []
-    with journal_style():
-        for drawing in run_drawings(run):
-            say(f"figure {drawing.name}")
-            pictures.append(pictured(drawing))
-    write_pictures(pictures, folder / "figures", every=FIGURES)
+    pictures = write_pictures(run_drawings(run), folder / "figures", every=FIGURES, progress=say)
     say("report.html")
     write_file(folder / "report.html", run_page(run, summary, pictures))
     return folder / "report.html"
-
-
-def write_pictures(pictures: Sequence[Picture], folder: Path, *, every: Sequence[str]) -> None:
-    """Write each picture as PNG and SVG; those among ``every`` that are not drawn now are removed."""
-    for picture in pictures:
-        write_file(folder / f"{picture.name}.svg", picture.svg)
-        write_file(folder / f"{picture.name}.png", picture.png)
-    for name in set(every) - {picture.name for picture in pictures}:
-        for ending in (".svg", ".png"):
-            (folder / f"{name}{ending}").unlink(missing_ok=True)
 
 
 def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture]) -> str:

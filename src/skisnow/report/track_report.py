@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ..files import require_writable, write_file
 from ..track.summary import summary_dict
-from .figures.drawing import Drawing, pictured
-from .figures.style import journal_style
+from .figures.drawing import Drawing
 from .figures.track_along import track_along
 from .figures.track_map import track_map
-from .run_report import write_pictures
+from .pictures import write_pictures
 from .symbols import prose
 
 if TYPE_CHECKING:
@@ -56,13 +55,7 @@ def write_track_report(
     """
     folder = Path(folder)
     require_writable(folder)
-    pictures = []
-    with journal_style():
-        for drawing in track_drawings(summary):
-            if progress:
-                progress(f"figure {drawing.name}")
-            pictures.append(pictured(drawing))
-    write_pictures(pictures, folder / "figures", every=FIGURES)
+    write_pictures(track_drawings(summary), folder / "figures", every=FIGURES, progress=progress)
     text = json.dumps(
         summary_dict(summary) if values is None else values, ensure_ascii=False, allow_nan=False, indent=1
     )

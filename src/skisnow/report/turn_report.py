@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Final
 from ..errors import ParameterError
 from ..files import require_writable, write_file
 from ..simulate.scenario.values import scenario_values
-from .figures.drawing import Drawing, pictured
+from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
 from .figures.run_grip import run_grip
 from .figures.runs_compared import runs_compared
-from .figures.style import journal_style
 from .figures.track_band import FEWEST, TimedTrack, track_band
 from .numerals import significant
-from .run_report import write_pictures
+from .pictures import write_pictures
 from .sheet import Header, Section, sheet
 from .symbols import html, prose
 from .tables.run import scenario_table
@@ -113,9 +112,7 @@ def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:
         )
     folder = Path(folder)
     require_writable(folder)
-    with journal_style():
-        pictures = [pictured(drawing) for drawing in _drawings(chain)]
-    write_pictures(pictures, folder / "figures", every=FIGURES)
+    pictures = write_pictures(_drawings(chain), folder / "figures", every=FIGURES)
     write_file(folder / "report.html", sheet(_header(chain), _sections(chain, pictures)))
     return folder / "report.html"
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import multiprocessing
-import signal
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from itertools import islice
 from typing import TypeAlias
+
+from skisnow.simulate.worker_process import begin_worker, interrupts_ignored
 
 from .kept import KeptTwins, Row
 
@@ -46,12 +47,15 @@ def _side_by_side(
 ) -> int:
     begun, done, waiting = time.monotonic(), 0, iter(missing)
     under_way: dict[Future[list[tuple[str, Row]]], tuple[str, int]] = {}
-    with ProcessPoolExecutor(workers, initializer=_ignore_interrupts) as pool:
+    context = multiprocessing.get_context("spawn")
+    alive, leash = context.Pipe(duplex=False)
+    with leash, ProcessPoolExecutor(workers, mp_context=context, initializer=begin_worker, initargs=(alive,)) as pool:
         try:
             while True:
                 late = seconds is not None and time.monotonic() - begun > seconds
-                for case, seed in islice(waiting, 0 if late else workers - len(under_way)):
-                    under_way[pool.submit(twin, case, seed)] = (case, seed)
+                with interrupts_ignored():
+                    for case, seed in islice(waiting, 0 if late else workers - len(under_way)):
+                        under_way[pool.submit(twin, case, seed)] = (case, seed)
                 if not under_way:
                     return done
                 for future in wait(under_way, return_when=FIRST_COMPLETED).done:
@@ -60,18 +64,13 @@ def _side_by_side(
                     done += 1
                     _told(case, done, len(missing), begun)
         except KeyboardInterrupt:
-            for process in multiprocessing.active_children():  # a twin takes minutes; half of one is none
-                process.terminate()
+            leash.close()  # a twin takes minutes; half of one is none
             raise
 
 
 def _keep(kept: KeptTwins, seed: int, rows: Sequence[tuple[str, Row]]) -> None:
     for case, row in reversed(rows):
         kept.add(case, seed, row)
-
-
-def _ignore_interrupts() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _told(case: str, done: int, of: int, begun: float) -> None:

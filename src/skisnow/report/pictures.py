@@ -1,0 +1,60 @@
+"""The figures of a report as files, PNG and SVG, and for its page."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..files import write_file
+from .figures.drawing import pictured
+from .figures.style import journal_style
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
+
+    from .figures.drawing import Drawing, Picture
+
+
+def write_pictures(
+    drawings: Iterator[Drawing],
+    folder: Path,
+    *,
+    every: Sequence[str],
+    progress: Callable[[str], None] | None = None,
+) -> list[Picture]:
+    """Draw one after the other in the house style, and write each as PNG and SVG.
+
+    Parameters
+    ----------
+    drawings
+        Made as they are asked for: a figure takes its style when it is made.
+    folder
+        Of the files; it is made where it is missing.
+    every
+        Names that such a report may have; files of those that are not drawn now are removed.
+    progress
+        Called with the name of each figure.
+
+    Returns
+    -------
+    list of Picture
+        For a page.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    """
+    pictures = []
+    with journal_style():
+        for drawing in drawings:
+            if progress is not None:
+                progress(f"figure {drawing.name}")
+            pictures.append(pictured(drawing))
+    for picture in pictures:
+        write_file(folder / f"{picture.name}.svg", picture.svg)
+        write_file(folder / f"{picture.name}.png", picture.png)
+    for name in set(every) - {picture.name for picture in pictures}:
+        for ending in (".svg", ".png"):
+            (folder / f"{name}{ending}").unlink(missing_ok=True)
+    return pictures
