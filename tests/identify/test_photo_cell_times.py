@@ -100,7 +100,7 @@ def test_unstated_noise_is_estimated_from_the_residuals() -> None:
     assert found["mu_0"].standard_error == pytest.approx(fisher_errors([0, 1])[0], rel=0.5)
 
 
-def test_one_slope_hardly_tells_friction_from_drag_and_two_slopes_do() -> None:
+def test_one_slope_hardly_tells_friction_from_drag() -> None:
     one = found_from(cells(truth()))
     assert one.correlation[0, 1] < -0.9
     assert any("mu_0 and drag_area are hardly told apart" in text and "inclination" in text for text in one.warnings)

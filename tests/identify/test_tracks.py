@@ -136,6 +136,10 @@ class TestStraight:
         assert found.outcome == "too_few_points"
         assert found["mu_0"].value is None
 
+    def test_five_points_are_never_taken_silently(self) -> None:
+        found = found_from(track(points=5, seed=1))
+        assert any("5 points for 2 parameters are few" in text for text in found.warnings)
+
     def test_simulations_are_kept_and_found_again(self, tmp_path: Path) -> None:
         kept = tmp_path / "simulations.partial"
         first = found_from(track(seed=5), kept=kept)
@@ -203,6 +207,13 @@ def test_east_north_up_is_turned_into_the_slope(tmp_path: Path, monkeypatch: pyt
     far.write_text(scenario_text("carved-46m") + section + "latitude_deg = 11\nlongitude_deg = 47\n", encoding="utf-8")
     with pytest.raises(ParameterError, match="latitude and longitude are the wrong way round"):
         identify(far, there, "mu_0,speed", changes=SCENARIO, workers=1)
+    other = path.with_name("other.toml")  # Norway: 13.1° of latitude are 1459 km, straight through the earth 1456
+    text = scenario_text("carved-46m") + section + "latitude_deg = 60.1\nlongitude_deg = 11\n"
+    other.write_text(text, encoding="utf-8")
+    with pytest.raises(
+        ParameterError, match=r"is 14\d\d km from the site of \[identify.site\]: it is of another place"
+    ):
+        identify(other, there, "mu_0,speed", changes=SCENARIO, workers=1)
 
 
 def test_times_that_run_backwards_are_refused(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -14,7 +14,7 @@ from ..simulate.scenario.given import GivenScenario
 from ..simulate.scenario.keys import SCENARIO_KEYS
 from ..track.track import Track
 from .data import Data, read_data
-from .free_keys import free_key
+from .free_keys import EACH, free_key
 from .marks import Marks
 from .observations import START
 from .photo_cells import PhotoCells
@@ -33,7 +33,7 @@ class Collected:
     tracks, cells, marks
         What was measured.
     starts
-        Values of ``start.…`` keys by run, from ``[identify.runs."NAME"]``.
+        Values of keys that a run has for itself, by run, from ``[identify.runs."NAME"]``.
     fixed
         Values of keys in every simulated run.
     first_motions
@@ -84,13 +84,16 @@ def collected(
     )
     runs = [each.name for each in tracks] + [run.name for each in cells for run in each.runs]
     starts = _starts(given.identify.get("runs", {}), runs)
-    warnings = [_near(track, asked, starts, keys) for track in tracks]
+    _require_not_free(starts, keys)
+    own = {key.partition("@")[0] for key in keys}
+    warnings = [_near(track, asked, starts, own) for track in tracks]
+    snow = set(SNOW_NUMBERS) & own.union(*starts.values())
     return Collected(
         tracks=tuple(tracks),
         cells=cells,
         marks=tuple(each for each in read if isinstance(each, Marks)),
         starts=starts,
-        fixed={key: float(asked.values[key]) for key in SNOW_NUMBERS} if set(keys) & set(SNOW_NUMBERS) else {},
+        fixed={key: float(asked.values[key]) for key in SNOW_NUMBERS} if snow else {},
         first_motions={track.name: first_motion(track) for track in tracks} if len(runs) > 1 else {},
         warnings=tuple(text for text in warnings if text),
         methods=tuple(dict.fromkeys(methods)),
@@ -127,19 +130,22 @@ class _Names:
 
 def _starts(table: object, runs: Sequence[str]) -> dict[str, dict[str, float]]:
     if not isinstance(table, dict):
-        raise ParameterError(f'identify.runs is {table!r}; write [identify.runs."NAME"] with start keys below it')
+        raise ParameterError(f'identify.runs is {table!r}; write [identify.runs."NAME"] with keys below it')
     found = {}
     for run, entries in table.items():
         if run not in runs:
             raise ParameterError(f'[identify.runs."{run}"]: there is no such run. {nearest(run, runs)}')
         if not isinstance(entries, dict):
-            raise ParameterError(f'identify.runs."{run}" is {entries!r}; it must be a table of start keys')
-        found[run] = dict(_start(run, word, value) for word, value in entries.items())
+            raise ParameterError(f'identify.runs."{run}" is {entries!r}; it must be a table of keys')
+        found[run] = dict(_own(run, word, value) for word, value in entries.items())
     return found
 
 
-def _start(run: str, word: str, value: object) -> tuple[str, float]:
-    key = free_key(word if word.startswith(START) else f"{START}{word}")
+def _own(run: str, word: str, value: object) -> tuple[str, float]:
+    try:
+        key = free_key(word)
+    except ParameterError as error:
+        raise ParameterError(f'[identify.runs."{run}"]: {str(error).removeprefix("--free: ")}') from None
     number = SCENARIO_KEYS[key].in_range(value)
     if not isinstance(number, float):
         raise ParameterError(f'[identify.runs."{run}"]: {word} is {value!r}; it must be a number')
@@ -147,8 +153,19 @@ def _start(run: str, word: str, value: object) -> tuple[str, float]:
 
 
 def _near(
-    track: Measured, asked: ScenarioFile, starts: Mapping[str, Mapping[str, float]], keys: Sequence[str]
+    track: Measured, asked: ScenarioFile, starts: Mapping[str, Mapping[str, float]], keys: Set[str]
 ) -> str | None:
     own = {**asked.values, **starts.get(track.name, {})}
-    free = {"start.x_m", "start.y_m"} <= set(keys)
+    free = {"start.x_m", "start.y_m"} <= keys
     return require_near(track, (float(own["start.x_m"]), float(own["start.y_m"])), start_is_free=free)
+
+
+def _require_not_free(own: Mapping[str, Mapping[str, float]], keys: Sequence[str]) -> None:
+    """A value of one run cannot be known while one for all runs is looked for."""
+    for run, values in own.items():
+        for key in values:
+            if key in keys and not key.startswith(START):
+                raise ParameterError(
+                    f'[identify.runs."{run}"] gives {key}, which is looked for in all runs alike. Look for '
+                    f"{key}@{EACH}, or take it out of the table"
+                )

@@ -13,6 +13,8 @@ from ..simulate.scenario.keys import SCENARIO_KEYS
 _UNIT: Final = re.compile(r"_(N_per_mm3|N_per_mm2|kg_per_m3|m_per_s2|m_per_s|s_per_m|kg_m2|deg|mm|ms|m2|kg|m|s)$")
 _HOW_IT_IS_COMPUTED: Final = ("run.", "solver.")
 
+EACH: Final = "each"
+"""Behind an ``@``: a value of its own for each run."""
 FREE_KEYS: Final = tuple(
     name for name, key in SCENARIO_KEYS.items() if key.kind == "number" and not name.startswith(_HOW_IT_IS_COMPUTED)
 )
@@ -73,13 +75,28 @@ def free_key(word: str) -> str:
 
 
 def free_keys(words: str | Iterable[str]) -> tuple[str, ...]:
-    """The keys of a list, or of a text with commas; one that is named twice is refused."""
+    """The keys of a list, or of a text with commas; one that is named twice is refused.
+
+    A word may end in ``@RUN`` for one run of several, or ``@each`` for one value of each run.
+
+    >>> free_keys("mu_0, drag_area@each, mu_1@second")
+    ('friction.mu_0', 'drag.drag_area_m2@each', 'friction.mu_1_s_per_m@second')
+    """
     listed = words.split(",") if isinstance(words, str) else list(words)
-    keys = [free_key(word) for word in listed if word.strip()]
+    keys = [_key_of_run(word) for word in listed if word.strip()]
     for key in keys:
         if keys.count(key) > 1:
             raise ParameterError(f"--free: {key} is named twice. Remove one of them")
     return tuple(keys)
+
+
+def _key_of_run(word: str) -> str:
+    own, at, run = word.partition("@")
+    if at and not run.strip():
+        raise ParameterError(
+            f"--free: behind the @ of {word!r} a run is missing. Name one, or write {own.strip()}@{EACH}"
+        )
+    return free_key(own) + at + run.strip()
 
 
 def _why_not(key: str) -> str:

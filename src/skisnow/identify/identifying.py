@@ -65,7 +65,8 @@ def identify(
     data
         Tracks, photo-cell times, marks left in the snow, or paths of files with these; several together.
     free
-        Keys that are looked for, with or without section and unit; left out: those with a table ``[identify."KEY"]``.
+        Keys that are looked for, with or without section and unit; ``KEY@RUN`` in one run of several, ``KEY@each`` in
+        each a value of its own, as keys of the start always. Left out: those with a table ``[identify."KEY"]``.
     changes
         Other values of the scenario, as `skisnow.read_scenario` takes them.
     starts
@@ -177,7 +178,7 @@ def _clock(given: GivenScenario, asked: bool | None) -> bool:
 
 
 def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> None:
-    for key in keys:
+    for key in (key.partition("@")[0] for key in keys):
         if not any(each.depends_on(key) for each in observations):
             kinds = " and ".join(dict.fromkeys(each.kind.replace("_", " ") for each in observations))
             raise ParameterError(f"--free: {key} plays no part in {kinds}. Leave it out, or add data that depend on it")

@@ -9,6 +9,10 @@ from typing import Final, Literal, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..errors import ParameterError
+from ..simulate.input_keys import nearest
+from .free_keys import EACH
+
 FloatArray = npt.NDArray[np.float64]
 Values: TypeAlias = Mapping[str, float]
 """Parameters by key, in the units that the keys name."""
@@ -92,15 +96,34 @@ class Observations(Protocol):
 
 
 def keys_of_runs(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
-    """The keys with those of the start once for each run where there are several.
+    """The keys, those of the start and those that end in ``@each`` once for each run where there are several.
 
+    Raises
+    ------
+    ParameterError
+        A run is named that is not there, or a key is looked for twice in one run.
+
+    Examples
+    --------
     >>> keys_of_runs(["friction.mu_0", "start.speed_m_per_s"], ["a", "b"])
     ('friction.mu_0', 'start.speed_m_per_s@a', 'start.speed_m_per_s@b')
+    >>> keys_of_runs(["drag.drag_area_m2@each", "friction.mu_0@b"], ["a", "b"])
+    ('drag.drag_area_m2@a', 'drag.drag_area_m2@b', 'friction.mu_0@b')
     """
     found: list[str] = []
     for key in keys:
-        each_has_its_own = key.startswith(START) and len(runs) > 1
-        found += [f"{key}@{run}" for run in runs] if each_has_its_own else [key]
+        own, at, run = key.partition("@")
+        if at and run != EACH and run not in runs:
+            raise ParameterError(f"--free: {key}: there is no run {run!r}. {nearest(run, runs)}")
+        if len(runs) < 2:
+            found.append(own)
+        elif run == EACH or (own.startswith(START) and not at):
+            found += [f"{own}@{each}" for each in runs]
+        else:
+            found.append(key)
+    for key in found:
+        if found.count(key) > 1:
+            raise ParameterError(f"--free: {key} is looked for twice. Remove one of them")
     return tuple(found)
 
 
