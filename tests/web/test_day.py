@@ -1,20 +1,30 @@
-"""A campaign's day as a person does it, with the keyboard, and then the same numbers from the command line."""
+"""A campaign's day as a person does it, from the first field to the replay; the command line gives the same numbers."""
 
 from __future__ import annotations
 
+import io
 import json
 import subprocess
 import sys
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from skisnow.field.store import Journals, Store, grown
+import numpy as np
+from PIL import Image
 
-from .conftest import Served, fill
+from skisnow.report.numerals import significant
+from skisnow.simulate.carve_answer import answered
+from skisnow.simulate.carve_dict import answer_dict
+from skisnow.simulate.carve_question import carve_question
+
+from .conftest import Served, fill, ready
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    import numpy.typing as npt
+    from playwright.sync_api import Download, Locator, Page
+
+COMPILING_MS = 240_000  # on a machine's first run
 
 SERIES = {
     "1": ("30", ("1.5", "22.5", "2.6", "3.0")),  # the second one is a typing error for 2.15
@@ -53,47 +63,89 @@ def enter_series(page: Page, name: str) -> None:
     angle, depths = SERIES[name]
     fill(page, {"Name of the test": name, "Site": "A", "Edge angle (°)": angle})
     page.keyboard.press("Enter")
+    page.keyboard.type("".join(f"{depth}\n" for depth in depths))
     page.get_by_role("heading", name=f"Series {name}").wait_for()
-    page.locator("input:focus").wait_for()
-    page.get_by_label("Depth under 20 N (mm)").and_(page.locator(":focus")).wait_for()
-    for depth, load in zip(depths, LOADS, strict=True):
-        page.keyboard.type(depth)
-        page.keyboard.press("Enter")
-        page.get_by_text(f"Stored: {depth.replace(',', '.')} mm under {load} N.").wait_for()
+    page.get_by_text(f"Stored: {depths[-1].replace(',', '.')} mm under {LOADS[-1]} N.").wait_for()
 
 
 def correct_the_typing_error(page: Page) -> None:
     page.get_by_label("Depth under 40 N (mm)").fill("2.15")
-    page.keyboard.press("Enter")
-    page.get_by_label("Why", exact=True).and_(page.locator(":focus")).wait_for()
-    page.keyboard.press("Enter")
+    page.keyboard.type("\n\n")  # and the usual reason
     page.get_by_text("Corrected; the first reading is kept.").wait_for()
     page.get_by_text("corrected from 22.5").wait_for()
 
 
 def cancel(page: Page) -> None:
+    ready(page)
     page.get_by_role("button", name="Cancel this test").press("Enter")
-    page.get_by_label("Why", exact=True).and_(page.locator(":focus")).wait_for()
-    page.keyboard.type("the tool slipped")
-    page.keyboard.press("Enter")
+    page.keyboard.type("the tool slipped\n")
     page.get_by_text("Cancelled: the tool slipped").wait_for()
+
+
+def next_series(page: Page) -> None:
+    ready(page)
+    page.get_by_role("button", name="Next series").press("Enter")
+    page.get_by_role("heading", name="New series").wait_for()
+    ready(page)
 
 
 def enter_shear(page: Page) -> None:
     page.get_by_role("link", name="Shear").press("Enter")
     page.get_by_role("heading", name="New test").wait_for()
-    page.locator("input:focus").wait_for()  # the server sets it once the page is connected
-    fill(page, {"Site": "A", "Edge angle (°)": "90", "Depth (mm)": "6", "Lever arm (mm)": "250", "Moment (N m)": "30"})
-    page.get_by_label("Moment (N m)").press("Enter")
-    page.get_by_text("Stored: test 1.").wait_for()
+    page.keyboard.type("A\n90\n6\n250\n30\n")
     page.get_by_text("S_f = 0.200 N/mm²").wait_for()  # 30 N m / 0.25 m / (100 mm × 6 mm), by hand
-    page.get_by_label("Depth (mm)", exact=True).and_(page.locator(":focus")).wait_for()
-    page.keyboard.type("8")
-    page.keyboard.press("Enter")
-    page.get_by_label("Moment (N m)").and_(page.locator(":focus")).wait_for()  # the server moves it
-    page.keyboard.type("36")
-    page.keyboard.press("Enter")
+    page.keyboard.type("8\n36\n")
     page.get_by_text("Stored: test 2.").wait_for()
+
+
+def carve(page: Page, served: Served) -> None:
+    """The radius beside the sliders is the library's."""
+    page.goto(f"{served.address}carve")
+    page.get_by_role("row", name="Turn radius at the boot").get_by_role("cell").wait_for(timeout=COMPILING_MS)
+    slider = page.get_by_role("slider", name="Edge angle (°)")
+    slider.focus()
+    page.keyboard.press("ArrowRight")
+    asked = {"ski": "carver", "edge_angle_deg": 46.0, "load_N": 800.0, "H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
+    answer = answer_dict(answered(carve_question({**asked, "unloading_ratio": 10.0})))
+    page.get_by_role("cell", name=f"{significant(answer['turn_radius_boot_m'])} m", exact=True).wait_for()
+
+
+def simulate(page: Page, served: Served) -> dict[str, Any]:
+    """A tenth of a second on the snow of the campaign; the run's summary."""
+    page.goto(f"{served.address}simulate")
+    ready(page)
+    page.get_by_label("Snow", exact=True).press("Space")
+    page.get_by_role("option", name='The day <b>"of" & tests</b>').click()
+    page.get_by_text("Run", exact=True).click()
+    page.get_by_label("run.duration_s", exact=True).fill("0.1")
+    page.get_by_role("button", name="Simulate").press("Enter")
+    page.get_by_role("link", name="Watch").wait_for(timeout=COMPILING_MS)
+    (place,) = (served.store.parent / "lab").glob("*/summary.json")
+    summary: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
+    return summary
+
+
+def watch(page: Page) -> None:
+    """The replay's canvas shows something, and something else while it plays."""
+    page.get_by_role("link", name="Watch").press("Enter")
+    page.wait_for_function("window.skisnowReplay")
+    canvas = page.locator("canvas.replay-canvas")
+    before = picture(canvas)
+    assert len(np.unique(before.reshape(-1, 3), axis=0)) > 50  # snow alone has shades, a blank canvas has one
+    page.get_by_role("button", name="Play").press("Enter")
+    page.wait_for_function("window.skisnowReplay.time > 0.05")
+    assert np.any(picture(canvas) != before, axis=-1).mean() > 0.01
+
+
+def picture(canvas: Locator) -> npt.NDArray[np.uint8]:
+    with Image.open(io.BytesIO(canvas.screenshot())) as image:
+        return np.asarray(image.convert("RGB"))
+
+
+def unpacked(download: Download, place: Path) -> Path:
+    with zipfile.ZipFile(download.path()) as packed:
+        packed.extractall(place)
+    return place
 
 
 def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
@@ -102,15 +154,13 @@ def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
     page.get_by_text("below the one before it").wait_for()  # the mark in words, while the error stands
     correct_the_typing_error(page)
     page.get_by_text("below the one before it").wait_for(state="detached")
-    page.get_by_role("button", name="Next series").press("Enter")
-    page.get_by_role("heading", name="New series").wait_for()
+    next_series(page)
     enter_series(page, "2")
     served.again()  # killed and started again, with the page open
     page.reload()
     page.get_by_role("heading", name="Series 2").wait_for()
     assert page.get_by_label("Depth under 80 N (mm)").input_value() == "2.9"
-    page.get_by_role("button", name="Next series").press("Enter")
-    page.get_by_role("heading", name="New series").wait_for()
+    next_series(page)
     enter_series(page, "3")
     cancel(page)
     enter_shear(page)
@@ -120,96 +170,40 @@ def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
     page.get_by_text("3 penetration experiments, 2 used; 2 shear experiments, 2 used.").wait_for()
     with page.expect_download() as download:
         page.get_by_role("link", name="Download everything").press("Enter")
-    with zipfile.ZipFile(download.value.path()) as packed:
-        packed.extractall(tmp_path / "everything")
+    everything = unpacked(download.value, tmp_path / "everything")
+    by_lab = json.loads((everything / "analysis" / "results.json").read_text(encoding="utf-8"))
+
+    carve(page, served)
+    summary = simulate(page, served)
+    watch(page)
+
     page.goto(served.address)
     with page.expect_download() as download:
         page.get_by_role("link", name="Export").press("Enter")
-    with zipfile.ZipFile(download.value.path()) as packed:
-        packed.extractall(tmp_path / "export")
-
-    folder = tmp_path / "export" / "campaign"
+    folder = unpacked(download.value, tmp_path / "export") / "campaign"
     command = [sys.executable, "-m", "skisnow", "analyse", str(folder), "--json"]
     by_command = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    by_lab = json.loads((tmp_path / "everything" / "analysis" / "results.json").read_text(encoding="utf-8"))
     for results in (by_command, by_lab):
         results["provenance"].pop("time")
     assert by_command == by_lab
-    rows = {row["experiment"]: row for row in by_command["penetration"]["experiments"]}
+    check_numbers(by_command, summary)
+
+
+def check_numbers(results: dict[str, Any], summary: dict[str, Any]) -> None:
+    """The analysis is what a hand computes, and the run was on this snow."""
+    rows = {row["experiment"]: row for row in results["penetration"]["experiments"]}
     assert [rows[name]["used"] for name in "123"] == [True, True, False]
-    # by hand, Eqn 2 of a wedge: V = L e² / (2 tan ϑ) at e = 3 mm, ϑ = 30°: H_V = 80 N / V
-    volume = 200.0 * 3.0**2 / (2.0 * 3.0**-0.5)
-    assert abs(rows["1"]["H_V_N_per_mm3"] / (80.0 / volume) - 1.0) < 1e-9
-    corrections = by_command["campaign"]["corrections"]
+    # by hand, Eqn 2 of a wedge: V = L e² / (2 tan ϑ) at ϑ = 30°, e = 3 mm and 2.9 mm: H_V = 80 N / V
+    by_hand = [80.0 / (200.0 * e**2 / (2.0 * 3.0**-0.5)) for e in (3.0, 2.9)]
+    for name, hardness in zip("12", by_hand, strict=True):
+        assert abs(rows[name]["H_V_N_per_mm3"] / hardness - 1.0) < 1e-9
+    corrections = results["campaign"]["corrections"]
     assert [(each["column"], each["old"], each["new"]) for each in corrections] == [
         ("depth_mm", "22.5", "2.15"),
         ("status", "", "the tool slipped"),
     ]
-
-
-def test_undo_and_a_second_look(page: Page, served: Served) -> None:
-    create(page, served)
-    enter_series(page, "1")
-    page.get_by_role("button", name="Undo: entered 3.0 mm under 80 N").press("Enter")
-    page.get_by_text("Undone.").wait_for()
-    assert page.get_by_label("Depth under 80 N (mm)").input_value() == ""
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        test = grown(Journals(store).entries(head.id)).test("penetration.csv", "1")
-    assert [row.cells["depth_mm"] for row in test.rows] == ["1.5", "22.5", "2.6"]
-    assert [entry.action for entry in test.history] == ["add"] * 4 + ["undo"]
-
-
-def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:
-    create(page, served)
-    fill(page, {"Site": "A", "Edge angle (°)": "95"})
-    page.keyboard.press("Enter")
-    page.get_by_text("Not begun: edge_angle_deg is a number of at least 0 and below 90").wait_for()
-    fill(page, {"Edge angle (°)": "30"})
-    page.keyboard.press("Enter")
-    page.get_by_label("Depth under 20 N (mm)").and_(page.locator(":focus")).wait_for()
-    page.keyboard.type("1.5.2")
-    page.keyboard.press("Enter")
-    page.get_by_text("Not stored: depth_mm is a number of at least 0").wait_for()
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        assert head.n_entries == 1
-
-
-def test_two_browsers_on_one_series(page: Page, served: Served) -> None:
-    create(page, served)
-    enter_series(page, "1")
-    other = page.context.new_page()
-    other.goto(page.url)
-    other.get_by_role("heading", name="Series 1").wait_for()
-    correct_the_typing_error(page)
-    other.get_by_label("Depth under 60 N (mm)").fill("9.9")
-    other.keyboard.press("Enter")
-    other.get_by_label("Why", exact=True).wait_for()
-    other.get_by_role("button", name="Correct it").click()
-    other.get_by_text("Nothing was stored: Ada wrote about penetration.csv, 1 meanwhile").wait_for()
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        rows = grown(Journals(store).entries(head.id)).test("penetration.csv", "1").rows
-    assert [row.cells["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6", "3.0"]
-
-
-def test_a_phone_and_the_names_of_all_fields(page: Page, served: Served) -> None:
-    create(page, served)
-    enter_series(page, "1")
-    page.set_viewport_size({"width": 390, "height": 844})
-    here = page.url
-    places = [served.address, f"{served.address}describe", here, here.split("?")[0] + "?table=shear.csv"]
-    places += [here.split("?")[0] + f"?table={file}" for file in ("density.csv", "drop_cone.csv")]
-    for place in (*places, here.split("?")[0].replace("/enter/", "/analysis/entry/")):
-        page.goto(place)
-        page.get_by_role("heading", level=1).wait_for()
-        page.locator(".status, h2").first.wait_for()
-        assert page.evaluate("document.documentElement.scrollWidth") <= 390, place
-        fields = page.locator("input:visible, select:visible, button:visible")
-        nameless = [each for each in fields.all() if not each.evaluate(NAME_OF)]
-        assert nameless == [], place
-
-
-NAME_OF = """element => element.getAttribute('aria-label') || element.innerText?.trim()
-  || [...(element.labels || [])].map(label => label.innerText.trim()).join(' ')"""
+    assert summary["outcome"] == "finished"
+    snow = summary["scenario"]["snow"]
+    # geometric mean of the used H_V; mean of the S_f 30/(0.25 × 0.1 × 0.006) and 36/(0.25 × 0.1 × 0.008) Pa
+    assert abs(snow["H_V_N_per_mm3"] / (by_hand[0] * by_hand[1]) ** 0.5 - 1.0) < 1e-9
+    assert abs(snow["S_f_N_per_mm2"] / ((0.2 + 0.18) / 2.0) - 1.0) < 1e-9

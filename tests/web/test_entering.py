@@ -1,0 +1,148 @@
+"""Entering tests: undo, what is refused, two people at once, a phone, and the keyboard alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from skisnow.field.store import Journals, Store, grown
+
+from .conftest import Served, fill, ready
+from .test_day import correct_the_typing_error, create, enter_series
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+
+def test_undo_and_a_second_look(page: Page, served: Served) -> None:
+    create(page, served)
+    enter_series(page, "1")
+    ready(page)
+    page.get_by_role("button", name="Undo: entered 3.0 mm under 80 N").press("Enter")
+    page.get_by_text("Undone.").wait_for()
+    assert page.get_by_label("Depth under 80 N (mm)").input_value() == ""
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        test = grown(Journals(store).entries(head.id)).test("penetration.csv", "1")
+    assert [row.cells["depth_mm"] for row in test.rows] == ["1.5", "22.5", "2.6"]
+    assert [entry.action for entry in test.history] == ["add"] * 4 + ["undo"]
+
+
+def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:
+    create(page, served)
+    fill(page, {"Site": "A", "Edge angle (°)": "95"})
+    page.keyboard.press("Enter")
+    page.get_by_text("Not begun: edge_angle_deg is a number of at least 0 and below 90").wait_for()
+    fill(page, {"Edge angle (°)": "30"})
+    page.keyboard.press("Enter")
+    page.get_by_label("Depth under 20 N (mm)").and_(page.locator(":focus")).wait_for()
+    page.keyboard.type("1.5.2")
+    page.keyboard.press("Enter")
+    page.get_by_text("Not stored: depth_mm is a number of at least 0").wait_for()
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        assert head.n_entries == 1
+
+
+def test_two_browsers_on_one_series(page: Page, served: Served) -> None:
+    create(page, served)
+    enter_series(page, "1")
+    other = page.context.new_page()
+    other.goto(page.url)
+    other.get_by_role("heading", name="Series 1").wait_for()
+    correct_the_typing_error(page)
+    other.get_by_label("Depth under 60 N (mm)").fill("9.9")
+    other.keyboard.press("Enter")
+    other.get_by_label("Why", exact=True).wait_for()
+    other.get_by_role("button", name="Correct it").click()
+    other.get_by_text("Nothing was stored: Ada wrote about penetration.csv, 1 meanwhile").wait_for()
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        rows = grown(Journals(store).entries(head.id)).test("penetration.csv", "1").rows
+    assert [row.cells["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6", "3.0"]
+
+
+def test_a_phone_and_the_names_of_all_fields(page: Page, served: Served) -> None:
+    create(page, served)
+    enter_series(page, "1")
+    page.set_viewport_size({"width": 390, "height": 844})
+    here = page.url
+    places = [served.address, f"{served.address}describe", here, here.split("?")[0] + "?table=shear.csv"]
+    places += [here.split("?")[0] + f"?table={file}" for file in ("density.csv", "drop_cone.csv")]
+    for place in (*places, here.split("?")[0].replace("/enter/", "/analysis/entry/")):
+        page.goto(place)
+        page.get_by_role("heading", level=1).wait_for()
+        page.locator(".status, h2").first.wait_for()
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390, place
+        fields = page.locator("input:visible, select:visible, button:visible")
+        nameless = [each for each in fields.all() if not each.evaluate(NAME_OF)]
+        assert nameless == [], place
+
+
+NAME_OF = """element => element.getAttribute('aria-label') || element.innerText?.trim()
+  || [...(element.labels || [])].map(label => label.innerText.trim()).join(' ')"""
+
+
+def tab_to(page: Page, place: Locator) -> None:
+    """Go there by the tabulator; it is further than any page is long where it cannot be reached."""
+    place.wait_for()
+    for _ in range(150):
+        if place.evaluate("element => element === document.activeElement"):
+            return
+        page.keyboard.press("Tab")
+    raise AssertionError(f"{place} is not reached by the tabulator")
+
+
+def press(page: Page, role: Literal["link", "button"], name: str, *, key: str = "Enter") -> None:
+    ready(page)
+    tab_to(page, page.get_by_role(role, name=name, exact=True))
+    page.keyboard.press(key)
+
+
+def fits(page: Page) -> None:
+    ready(page)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390, page.url
+
+
+def test_the_keyboard_alone_on_a_phone(page: Page, served: Served) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.goto(served.address)
+    fits(page)
+    press(page, "link", "New campaign")
+    page.get_by_label("Name of the campaign").and_(page.locator(":focus")).wait_for()
+    fits(page)
+    page.keyboard.type("By keys\na slope\nAda\n20 40 60\n0.01")
+    for name, text in (
+        ("Name of tool 1", "ski piece"),
+        ("Length (mm) of tool 1", "200"),
+        ("Width (mm) of tool 1", "62"),
+    ):
+        tab_to(page, page.get_by_label(name))
+        page.keyboard.type(text)
+    tab_to(page, page.get_by_label("Name of plate 1"))
+    page.keyboard.type("plate\n100")
+    press(page, "button", "Store and enter tests", key="Space")
+    page.get_by_role("heading", name="New series").wait_for()
+    page.keyboard.type("A\n30\n1.5\n22.5\n2.6\n")
+    page.get_by_text("Stored: 2.6 mm under 60 N.").wait_for()
+    fits(page)
+    page.keyboard.press("Shift+Tab")  # from Next series back to the last reading, and to the one before it
+    page.keyboard.press("Shift+Tab")
+    assert page.get_by_label("Depth under 40 N (mm)").and_(page.locator(":focus")).input_value() == "22.5"
+    page.keyboard.type("2.15\n\n")  # the tabulator marked what stood there; the usual reason is taken
+    page.get_by_text("corrected from 22.5").wait_for()
+    press(page, "button", "Cancel this test", key="Space")
+    page.keyboard.type("the tool slipped\n")
+    page.get_by_text("Cancelled: the tool slipped").wait_for()
+    press(page, "button", "Undo: cancelled (the tool slipped)")
+    page.get_by_text("Undone.").wait_for()
+    press(page, "link", "Shear")
+    page.get_by_role("heading", name="New test").wait_for()
+    page.keyboard.type("A\n90\n6\n250\n30\n")
+    page.get_by_text("S_f = 0.200 N/mm²").wait_for()  # 30 N m / 0.25 m / (100 mm × 6 mm), by hand
+    fits(page)
+    press(page, "link", "Analysis")
+    page.get_by_text("1 penetration experiment, 1 used; 1 shear experiment, 1 used.").wait_for()
+    with Store.open(served.store) as store:
+        (found,) = Journals(store).list()
+        rows = grown(Journals(store).entries(found.id)).test("penetration.csv", "1").rows
+    assert [row.cells["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6"]
