@@ -70,6 +70,9 @@ def test_standard_deviation_of_the_speed(tmp_path: Path) -> None:
     assert track.speed_sd is not None
     wanted = math.sqrt((0.6 * 0.03) ** 2 + (0.8 * 0.04) ** 2 - 2.0 * 0.48 * 0.02**2)
     np.testing.assert_allclose(track.speed_sd, [wanted, 0.5], rtol=1e-9)
+    unknown = read(tmp_path, "\n".join([*lines[:2], lines[2] + names, f"{lines[3]} 3 -4 0 9e9 9e9 9e9 0 0 0"]), "b.pos")
+    assert unknown.speed_sd is not None
+    assert np.isnan(unknown.speed_sd).all()
 
 
 def test_velocities(tmp_path: Path) -> None:

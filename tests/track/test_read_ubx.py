@@ -101,6 +101,10 @@ def test_covariances(tmp_path: Path) -> None:
 
 def test_covariances_that_are_not_valid_do_not_count(tmp_path: Path) -> None:
     wide = (1.0, 0.0, 0.0, 1.0, 0.0, 1.0)
+    far = read(tmp_path, nav_pvt() + nav_cov((math.inf,) * 6, (math.nan,) * 6), "b.ubx")
+    assert far.place_sd is not None
+    assert far.speed_sd is not None
+    assert (far.place_sd[0, 2], far.speed_sd[0]) == pytest.approx((0.080, 0.030))
     for valid, place_sd, speed_sd in (((0, 1), 0.080, 1.0), ((1, 0), 1.0, 0.030), ((0, 0), 0.080, 0.030)):
         track = read(tmp_path, nav_pvt() + nav_cov(wide, wide, valid=valid), "a.ubx")
         assert track.place_sd is not None

@@ -22,7 +22,10 @@ IntArray = npt.NDArray[np.intp]
 
 _SMALLEST_GROUP: Final = 4
 _FIRST_GROUPS: Final = 8
+_POINTS_AT_ONCE: Final = 1 << 12
+"""So that what is looked at for them stays near the processor."""
 _MOST_AT_ONCE: Final = 1 << 20
+"""Groups."""
 _ROUNDING: Final = 1e-12
 """Share by which squares may be wrong: a group is left out only where it is farther by more."""
 
@@ -106,11 +109,11 @@ class PieceTree:
     def nearest(self, points: FloatArray) -> IntArray:
         """Number of the nearest piece for each of the points (n, d)."""
         found = np.empty(len(points), dtype=np.intp)
-        todo = [(0, len(points))]
+        todo = [(first, first + _POINTS_AT_ONCE) for first in range(0, len(points), _POINTS_AT_ONCE)]
         while todo:
             first, last = todo.pop()
-            few = last - first <= _MOST_AT_ONCE // _FIRST_GROUPS
-            some = self._among(points[first:last]) if few else None
+            last = min(last, len(points))
+            some = self._among(points[first:last])
             if some is not None:
                 found[first:last] = some
             else:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..spreadsheet_text import number
 from .projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
-from .recording import FARTHEST, Recording
+from .recording import FARTHEST, FASTEST_NUMBER, Recording
 from .rtklib_header import PLACES, Header, header_of
 from .solution import Solution, solution_array
 from .trouble import refusal
@@ -225,7 +225,7 @@ def _deviations(columns: dict[str, FloatArray], header: Header, place: FloatArra
 
 
 def _speed_sd(columns: dict[str, FloatArray], header: Header) -> FloatArray | None:
-    """Of the component along the velocity; at rest the largest of the three."""
+    """Of the component along the velocity; at rest the largest of the three; NaN where it is no speed's."""
     names, roots = SPEED_DEVIATIONS[header.kind]
     velocity, deviations = _vectors(columns, VELOCITIES[header.kind]), _vectors(columns, names)
     if velocity is None or deviations is None:
@@ -236,4 +236,5 @@ def _speed_sd(columns: dict[str, FloatArray], header: Header) -> FloatArray | No
     for name, one, other in zip(roots, (0, 1, 2), (1, 2, 0), strict=True):
         root = columns.get(name, np.zeros(len(speed)))
         variance += 2.0 * along[:, one] * along[:, other] * np.sign(root) * root**2
-    return np.where(speed > 0.0, np.sqrt(np.maximum(variance, 0.0)), deviations.max(axis=1))
+    deviation = np.where(speed > 0.0, np.sqrt(np.maximum(variance, 0.0)), deviations.max(axis=1))
+    return np.where(np.abs(deviation) <= FASTEST_NUMBER, deviation, np.nan)

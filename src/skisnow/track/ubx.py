@@ -158,7 +158,7 @@ def _place_sd(place: Any, covariance: Any) -> tuple[float, float, float]:
     """East, north, up (m)."""
     if covariance is not None and covariance.posCovValid:
         variances = (covariance.posCovEE, covariance.posCovNN, covariance.posCovDD)
-        if min(variances) > 0.0:
+        if min(variances) > 0.0 and math.isfinite(sum(variances)):
             east, north, up = map(math.sqrt, variances)
             return east, north, up
     horizontal = place.hAcc * MM / math.sqrt(2.0)
@@ -174,4 +174,4 @@ def _speed_sd(message: Any, covariance: Any, velocity: tuple[float, float, float
     c, down = covariance, -up
     variance = north * north * c.velCovNN + east * east * c.velCovEE + down * down * c.velCovDD
     variance += 2.0 * (north * east * c.velCovNE + north * down * c.velCovND + east * down * c.velCovED)
-    return math.sqrt(variance) if variance > 0.0 else float(message.sAcc * MM)
+    return math.sqrt(variance) if 0.0 < variance < math.inf else float(message.sAcc * MM)
