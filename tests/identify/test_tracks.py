@@ -136,6 +136,12 @@ class TestStraight:
         assert found.outcome == "too_few_points"
         assert found["mu_0"].value is None
 
+    def test_points_that_are_float_among_fixed_ones_are_told(self) -> None:
+        one = track()
+        solution = np.where(np.arange(len(one)) < 3, "float", "fixed")
+        told = "one: of 41 points 3 float (decimetres off); the others are fixed"
+        assert told in found_from(replace(one, solution=solution)).warnings
+
     def test_five_points_are_never_taken_silently(self) -> None:
         found = found_from(track(points=5, seed=1))
         assert any("5 points for 2 parameters are few" in text for text in found.warnings)

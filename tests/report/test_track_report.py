@@ -101,5 +101,8 @@ def test_text_counts_and_defines() -> None:
     assert "marked repeated time: 2. Twice the same." in text
     assert re.search(r"\n4 turns\nA turn is", text)
     assert len(re.findall(r"^ +\d+\.\d +\d+\.\d +(left|right)", text, flags=re.MULTILINE)) == 4
+    assert "carrier phase" not in text
+    mixed = track_text(values | {"solutions": {"fixed": 90, "float": 8, "code": 2}})
+    assert re.search(r"\ncarrier phase +90 points fixed to whole cycles, 8 float, 2 by the code alone\n", mixed)
     many = values | {"turns": values["turns"] * 20}
     assert "and 40 more" in track_text(many)

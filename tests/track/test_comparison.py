@@ -1,6 +1,7 @@
 """Distances between tracks whose distances are known by hand."""
 
 import math
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from skisnow.errors import ParameterError
 from skisnow.track.apart import Numbers
 from skisnow.track.comparison import Comparison, Distances, compared
+from skisnow.track.track import Track
 
 from .made_tracks import FloatArray, arc, slalom, track_of, turned
 
@@ -236,3 +238,13 @@ def test_the_fit_says_by_how_much_and_keeps_what_was_before() -> None:
     assert plain.fitted is None
     assert every(found.fitted.before) == pytest.approx(every(plain))
     assert numbers(plain.nearest).max > 2.0
+
+
+def test_points_that_are_float_among_fixed_ones_are_told() -> None:
+    one = Track(
+        "a", np.arange(4.0), np.arange(12.0).reshape(4, 3), np.full(4, np.nan), "local", "made",
+        solution=np.array(["fixed", "float", "code", "fixed"]),
+    )  # fmt: skip
+    told = "a: of 4 points 1 float (decimetres off) and 1 by the code alone (metres off); the others are fixed"
+    assert told in compared(one, one).warnings
+    assert not compared(*[replace(one, solution=np.full(4, "float"))] * 2).warnings

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..simulate.batch_file import Row
+from ..track.solution import inexact_sentence
 from ..track.track import Track
 from .observations import Fit, Kind, Values, values_of_run
 from .run_simulation import RunTask
@@ -57,6 +58,8 @@ class Measured:
         Whether all of `sd` is what the receiver states.
     left_out
         How many points are not used.
+    inexact
+        A warning where not all points are as exact as most.
     """
 
     name: str
@@ -67,6 +70,7 @@ class Measured:
     speed_sd: FloatArray
     stated: bool
     left_out: int
+    inexact: str | None = None
 
     @property
     def length(self) -> float:
@@ -94,7 +98,8 @@ def measured(track: Track) -> Measured:
         along = path_speed(track)[use]
         known = np.isfinite(along) & (track.speed_sd[use] > 0.0)
         speed[known], speed_sd[known] = along[known], track.speed_sd[use][known]
-    return Measured(track.name, time, place, sd, speed, speed_sd, stated, int(np.sum(~use)))
+    inexact = None if track.solution is None else inexact_sentence(track.name, track.solution[use])
+    return Measured(track.name, time, place, sd, speed, speed_sd, stated, int(np.sum(~use)), inexact)
 
 
 def path_speed(track: Track) -> FloatArray:
@@ -224,6 +229,8 @@ class TrackPositions:
         for track, row in zip(self.tracks, rows, strict=True):
             if track.left_out:
                 found.append(f"{track.name}: {track.left_out} points are marked as unusable and were left out")
+            if track.inexact:
+                found.append(track.inexact)
             found += _warned(track, row)
         return tuple(found)
 

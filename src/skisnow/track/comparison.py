@@ -14,6 +14,7 @@ from .apart import Apart, Numbers, numbers_of
 from .common_clock import FIRST_POINTS, Clock, TimeFrom, common_clock, lacking_time
 from .nearest_place import Path
 from .polyline import Polyline, compared_points, polyline_of
+from .solution import inexact_sentence
 from .three_distances import arc_length_apart, nearest_apart, time_apart
 from .track import Axes, Track
 
@@ -260,6 +261,9 @@ def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
         if without:
             marks = ", ".join(f"{count} {code}" for code, count in track.marked.items()) or "without a place"
             told.append(f"{track.name}: {without} of {len(track)} points are left out; marked are {marks}")
+        inexact = inexact_sentence(track.name, track.solution)
+        if inexact:
+            told.append(inexact)
     compass = [track.axes == "east_north_up" for track in (simulated, measured)]
     origins = {track.origin for track in (simulated, measured)} - {None}
     if compass[0] != compass[1] or len(origins) > 1:

@@ -52,5 +52,19 @@ def solution_marks(solution: SolutionArray | None, count: int) -> dict[str, npt.
     return {"float_solution": np.asarray(solution == "float"), "code_solution": np.asarray(by_code)}
 
 
+def inexact_sentence(name: str, solution: SolutionArray | None) -> str | None:
+    """A warning where a track has exact points and others; None where it has not.
+
+    >>> inexact_sentence("a.ubx", np.array(["fixed", "float", "code", "fixed"]))
+    'a.ubx: of 4 points 1 float (decimetres off) and 1 by the code alone (metres off); the others are fixed'
+    """
+    counts = solution_counts(solution) or {}
+    words = {"float": "float (decimetres off)", "code": "by the code alone (metres off)"}
+    told = [f"{counts[kind]} {text}" for kind, text in words.items() if counts.get(kind)]
+    if not told or not counts.get("fixed"):
+        return None
+    return f"{name}: of {sum(counts.values())} points {' and '.join(told)}; the others are fixed"
+
+
 def _by_phase(solution: SolutionArray) -> bool:
     return bool(np.isin(solution, ("fixed", "float")).any())
