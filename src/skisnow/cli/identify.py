@@ -76,9 +76,11 @@ def run(options: argparse.Namespace) -> int:
 def _prepared(options: argparse.Namespace) -> ScenarioFile:
     """What can be refused is refused before the work."""
     with announced("loading and, on a machine's first run, compiling the simulator, once"):
+        from ..identify.bootstrap import require_bootstrap
         from ..identify.posterior import require_emcee
         from ..simulate.scenario import scenario_file
 
+        require_bootstrap(options.bootstrap, options.bootstrap_by)
         if options.posterior:
             require_emcee()
         asked = scenario_file(options.scenario, changes=_changes(options))
