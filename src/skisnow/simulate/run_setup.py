@@ -21,7 +21,7 @@ from .motion.advance import (
 )
 from .motion.along import shares
 from .motion.archive import Archive, grown, new_archive
-from .motion.lines import KEPT, TOUCHED, WINDOW, Lines, new_lines
+from .motion.lines import CELL, DEEPEST, FROM, KEPT, SLOPE, TO, TOUCHED, WINDOW, Lines, new_lines
 from .motion.model import Model, Snow, World, sledge_model
 from .motion.path import AHEAD, follow
 from .motion.settle import settle
@@ -139,7 +139,7 @@ class Setup:
 
     def _keep_room(self) -> None:
         """Let the archive grow before it is full."""
-        rows, cells = self.lines.cells.shape[:2]
+        rows, _, cells = self.lines.cells.shape
         pieces, places = (int(n) for n in self.archive.used)
         most_pieces, most_places = len(self.archive.cell), len(self.archive.pool)
         if most_pieces - pieces < 2 * rows or most_places - places < rows * cells:
@@ -179,20 +179,20 @@ def _archived(archive: Archive) -> list[_Piece]:
 
 def _under_skis(lines: Lines) -> list[_Piece]:
     found = []
-    rows, cells = lines.cells.shape[:2]
+    rows, _, cells = lines.cells.shape
     ring = rows // 2
     for k in range(2):
         for c in range(int(lines.count[k])):
             row = k * ring + (int(lines.first[k]) + c) % ring
             about = lines.cells[row]
-            covered = about[:, 2] > about[:, 1]
+            covered = about[TO] > about[FROM]
             if lines.flag[row, KEPT] == 0 or not covered.any():
                 continue
-            number = lines.flag[row, WINDOW] + (np.arange(cells) - lines.flag[row, WINDOW]) % cells
-            middle = (number[covered] + 0.5) * lines.value[row, 0]
-            reach = np.maximum(about[covered, 2] - middle, middle - about[covered, 1])
-            depth = about[covered, 0] + abs(lines.value[row, 1]) * reach
-            found.append((lines.frame[row], about[covered, 1].min(), about[covered, 2].max(), float(depth.max())))
+            number = lines.flag[row, WINDOW] + np.arange(cells)
+            middle = (number[covered] + 0.5) * lines.value[row, CELL]
+            reach = np.maximum(about[TO, covered] - middle, middle - about[FROM, covered])
+            depth = about[DEEPEST, covered] + abs(lines.value[row, SLOPE]) * reach
+            found.append((lines.frame[row], about[FROM, covered].min(), about[TO, covered].max(), float(depth.max())))
     return found
 
 

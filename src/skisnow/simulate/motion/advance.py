@@ -86,7 +86,7 @@ def observe(
     """Look at the snow at the state reached: forces, powers, and what the snow remembers of it."""
     state, start, clock = memory.state, memory.start, memory.clock
     follow(model, snow, world, lines, archive, state)
-    feel(model, snow, lines, state, tangent, True, start)
+    feel(model, snow, lines, state, tangent, clock.time[0] >= 0.0, start)
     press(snow, lines, archive)
     scratch = memory.scratch
     scratch.rigid[:] = 0.0
@@ -218,7 +218,7 @@ def _try_pair(model: Model, snow: Snow, world: World, lines: Lines, memory: Memo
     )  # fmt: skip
     if not (_is_finite(memory.half) and _is_finite(memory.trial)):
         return np.nan
-    feel(model, snow, lines, memory.half, False, False, memory.half_start)
+    feel(model, snow, lines, memory.half, h < 0.0, h < 0.0, memory.half_start)
     ros2_step(
         model, snow, world, lines, memory.half, memory.half_start, memory.stage, memory.system, 0.5 * h, memory.room,
         memory.next,

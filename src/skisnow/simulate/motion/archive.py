@@ -88,15 +88,15 @@ def _bucket(a: int, b: int) -> int:
 def put_away(archive: Archive, lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> None:
     """Archive the cells first ≤ j < last of a line where a base has been, and count the energy lost there."""
     archive.lost[0] += energy_left(lines, row, first, last, hardness, excess)
-    mask = lines.cells.shape[1] - 1
+    start = lines.flag[row, WINDOW]
     most = max(1, int(LONGEST / lines.value[row, CELL]))
     j = first
     while j < last:
-        if lines.cells[row, j & mask, TO] <= lines.cells[row, j & mask, FROM]:
+        if lines.cells[row, TO, j - start] <= lines.cells[row, FROM, j - start]:
             j += 1
             continue
         end = j
-        while end < last and end - j < most and lines.cells[row, end & mask, TO] > lines.cells[row, end & mask, FROM]:
+        while end < last and end - j < most and lines.cells[row, TO, end - start] > lines.cells[row, FROM, end - start]:
             end += 1
         _add(archive, lines, row, j, end)
         j = end
@@ -107,17 +107,17 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
     m, place = archive.used[0], archive.used[1]
     if m >= len(archive.cell) or place + last - first > len(archive.pool):
         return  # the caller keeps room; see `room_left`
-    mask = lines.cells.shape[1] - 1
+    start = lines.flag[row, WINDOW]
     cell = lines.value[row, CELL]
     for a in range(12):
         archive.frame[m, a] = lines.frame[row, a]
     archive.cell[m], archive.slope[m] = cell, lines.value[row, SLOPE]
     archive.start[m, 0], archive.start[m, 1], archive.start[m, 2] = first, last - first, place
     for j in range(first, last):
-        i, p, middle = j & mask, place + j - first, (j + 0.5) * cell
-        archive.pool[p, 0] = lines.cells[row, i, DEEPEST]
-        archive.pool[p, 1] = lines.cells[row, i, FROM] - middle
-        archive.pool[p, 2] = lines.cells[row, i, TO] - middle
+        i, p, middle = j - start, place + j - first, (j + 0.5) * cell
+        archive.pool[p, 0] = lines.cells[row, DEEPEST, i]
+        archive.pool[p, 1] = lines.cells[row, FROM, i] - middle
+        archive.pool[p, 2] = lines.cells[row, TO, i] - middle
     y = 0.5 * (first + last) * cell
     a = int(np.floor((archive.frame[m, 0] + y * archive.frame[m, 6]) / BUCKET))
     b = int(np.floor((archive.frame[m, 1] + y * archive.frame[m, 7]) / BUCKET))
@@ -144,7 +144,6 @@ def meets_older(archive: Archive, x: float, y: float, reach: float) -> bool:
 def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> bool:
     """Bring older tracks into the cells first ≤ j < last of a line, and tell whether there were any."""
     cell = lines.value[row, CELL]
-    mask = lines.cells.shape[1] - 1
     frame = lines.frame[row]
     y = 0.5 * (first + last) * cell
     reach = 0.5 * (last - first) * cell
@@ -157,7 +156,7 @@ def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hard
             piece = archive.head[_bucket(a + i, b + j)]
             while piece >= 0:
                 if _lies_on(archive, piece, x0, y0, z0, frame, reach, 0.5 * lines.spacing[0]):
-                    found = _take_over(archive, piece, lines, row, first, last, mask) or found
+                    found = _take_over(archive, piece, lines, row, first, last) or found
                 piece = archive.before[piece]
     if found:
         lines.value[row, LOST] += energy_left(lines, row, first, last, hardness, excess)
@@ -180,8 +179,8 @@ def _lies_on(
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int, last: int, mask: int) -> bool:
-    cell, old = lines.value[row, CELL], archive.cell[piece]
+def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int, last: int) -> bool:
+    cell, old, start = lines.value[row, CELL], archive.cell[piece], lines.flag[row, WINDOW]
     frame, other = lines.frame[row], archive.frame[piece]
     found = False
     for j in range(first, last):
@@ -202,10 +201,10 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
         if offset < archive.pool[p, 1] or offset > archive.pool[p, 2]:
             continue
         here = archive.pool[p, 0] + archive.slope[piece] * offset
-        i = j & mask
-        if here > max(lines.cells[row, i, DEEPEST], 0.0):
-            lines.cells[row, i, DEEPEST] = lines.cells[row, i, CENTRE] = here
-            lines.cells[row, i, FROM], lines.cells[row, i, TO] = j * cell, (j + 1) * cell
+        i = j - start
+        if here > max(lines.cells[row, DEEPEST, i], 0.0):
+            lines.cells[row, DEEPEST, i] = lines.cells[row, CENTRE, i] = here
+            lines.cells[row, FROM, i], lines.cells[row, TO, i] = j * cell, (j + 1) * cell
             found = True
     return found
 
@@ -213,7 +212,7 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
 @numba.njit(cache=True, error_model="numpy")
 def look_ahead(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
     """Give a fresh line the older tracks that lie on it, if there are any."""
-    cells = lines.cells.shape[1]
+    cells = lines.cells.shape[2]
     if not meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], 0.5 * cells * lines.value[row, CELL]):
         return
     open_window(lines, row, -cells // 2)
@@ -226,7 +225,7 @@ def make_room(
     archive: Archive, lines: Lines, row: int, low: float, high: float, hardness: float, excess: float
 ) -> None:  # fmt: skip
     """Bring a line's cells to where it is touched now: open them, move them along, or make them coarser."""
-    cells = lines.cells.shape[1]
+    cells = lines.cells.shape[2]
     fresh = lines.flag[row, KEPT] == 0
     while (high - low) / lines.value[row, CELL] > cells - 4 * MARGIN:
         if fresh:
@@ -260,11 +259,7 @@ def make_room(
         return
     gone_from, gone_to = (start, new) if new > start else (new + cells, start + cells)
     put_away(archive, lines, row, gone_from, gone_to, hardness, excess)
-    mask = cells - 1
-    for j in range(gone_from, gone_to):
-        lines.cells[row, j & mask, DEEPEST] = -NOTHING
-        lines.cells[row, j & mask, FROM], lines.cells[row, j & mask, TO] = NOTHING, -NOTHING
-        lines.cells[row, j & mask, CENTRE] = 0.0
+    _move_window(lines, row, new - start)
     lines.flag[row, WINDOW] = new
     if new > start:
         recall(archive, lines, row, start + cells, new + cells, hardness, excess)
@@ -273,27 +268,41 @@ def make_room(
 
 
 @numba.njit(cache=True, error_model="numpy")
+def _move_window(lines: Lines, row: int, by: int) -> None:
+    """Move a line's cells down by so many places, and empty those that become free; |by| < cells."""
+    cells = lines.cells.shape[2]
+    for column in range(4):
+        about = lines.cells[row, column]
+        nothing = NOTHING if column == FROM else 0.0 if column == CENTRE else -NOTHING
+        if by > 0:
+            for i in range(cells):
+                about[i] = about[i + by] if i + by < cells else nothing
+        else:
+            for i in range(cells - 1, -1, -1):
+                about[i] = about[i + by] if i + by >= 0 else nothing
+
+
+@numba.njit(cache=True, error_model="numpy")
 def _coarsen(lines: Lines, row: int) -> None:
     """Double the size of a line's cells."""
-    cells = lines.cells.shape[1]
-    mask = cells - 1
+    cells = lines.cells.shape[2]
     start, cell, slope = lines.flag[row, WINDOW], lines.value[row, CELL], lines.value[row, SLOPE]
     deepest, low, high = np.full(cells, -NOTHING), np.full(cells, NOTHING), np.full(cells, -NOTHING)
     centre, both = np.zeros(cells), np.zeros(cells, np.int64)
     new = int(np.floor(start / 2)) - cells // 4
     for j in range(start, start + cells):
-        i, target = j & mask, int(np.floor(j / 2))
-        if lines.cells[row, i, TO] > lines.cells[row, i, FROM]:
-            t = target & mask
+        i, target = j - start, int(np.floor(j / 2))
+        if lines.cells[row, TO, i] > lines.cells[row, FROM, i]:
+            t = target - new
             shift = slope * ((target + 0.5) * 2.0 * cell - (j + 0.5) * cell)
-            deepest[t] = max(deepest[t], lines.cells[row, i, DEEPEST] + shift)
-            centre[t] += 0.5 * lines.cells[row, i, CENTRE]
-            both[t] += 1 if lines.cells[row, i, CENTRE] > 0.0 else 0
-            low[t], high[t] = min(low[t], lines.cells[row, i, FROM]), max(high[t], lines.cells[row, i, TO])
+            deepest[t] = max(deepest[t], lines.cells[row, DEEPEST, i] + shift)
+            centre[t] += 0.5 * lines.cells[row, CENTRE, i]
+            both[t] += 1 if lines.cells[row, CENTRE, i] > 0.0 else 0
+            low[t], high[t] = min(low[t], lines.cells[row, FROM, i]), max(high[t], lines.cells[row, TO, i])
     lines.value[row, CELL], lines.flag[row, WINDOW] = 2.0 * cell, new
     for i in range(cells):
-        lines.cells[row, i, DEEPEST], lines.cells[row, i, FROM], lines.cells[row, i, TO] = deepest[i], low[i], high[i]
-        lines.cells[row, i, CENTRE] = centre[i] if both[i] == 2 else 0.0
+        lines.cells[row, DEEPEST, i], lines.cells[row, FROM, i], lines.cells[row, TO, i] = deepest[i], low[i], high[i]
+        lines.cells[row, CENTRE, i] = centre[i] if both[i] == 2 else 0.0
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -301,6 +310,6 @@ def leave_line(archive: Archive, lines: Lines, row: int, hardness: float, excess
     """Archive a line that the ski has left."""
     if lines.flag[row, KEPT] == 1:
         start = lines.flag[row, WINDOW]
-        put_away(archive, lines, row, start, start + lines.cells.shape[1], hardness, excess)
+        put_away(archive, lines, row, start, start + lines.cells.shape[2], hardness, excess)
         archive.lost[0] -= lines.value[row, LOST]
         lines.flag[row, KEPT] = 0

@@ -10,7 +10,7 @@ What lines and cells leave behind goes to the archive, and comes back where a sk
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import numba
 import numpy as np
@@ -21,6 +21,8 @@ IntArray: TypeAlias = npt.NDArray[np.int64]
 
 NOTHING = 1e9
 """Stands for a place that nothing has touched."""
+FLAT = 1e-12
+"""Fall of the depth across below which a base is level."""
 MARGIN = 6
 """Cells kept free on both sides of a contact."""
 
@@ -57,7 +59,7 @@ class Lines(NamedTuple):
     """Lines of both skis, in one ring for each: row k × ring + i. Places in space (m)."""
 
     frame: FloatArray  # (2 ring, 12) origin, unit vectors ahead, to the left, out of the snow
-    cells: FloatArray  # (2 ring, cells, 4)
+    cells: FloatArray  # (2 ring, 4, cells), from the first of a window on
     value: FloatArray  # (2 ring, 14)
     flag: IntArray  # (2 ring, 7)
     first: IntArray  # (2,) of the ring, the line nearest the tail
@@ -66,11 +68,11 @@ class Lines(NamedTuple):
 
 
 def new_lines(ring: int, cells: int, *, spacing: float, cell: float) -> Lines:
-    """Room for `ring` lines under each ski, with `cells` cells (a power of two) across."""
+    """Room for `ring` lines under each ski, with `cells` cells (a multiple of eight) across."""
     rows = 2 * ring
     return Lines(
         np.zeros((rows, 12)),
-        np.zeros((rows, cells, 4)),
+        np.zeros((rows, 4, cells)),
         np.zeros((rows, 14)),
         np.zeros((rows, 7), np.int64),
         np.zeros(2, np.int64),
@@ -100,14 +102,18 @@ def open_window(lines: Lines, row: int, start: int) -> None:
     """Give a line empty cells from number `start` on."""
     lines.flag[row, WINDOW] = start
     lines.flag[row, KEPT] = 1
-    for j in range(lines.cells.shape[1]):
-        lines.cells[row, j, DEEPEST] = -NOTHING
-        lines.cells[row, j, FROM] = NOTHING
-        lines.cells[row, j, TO] = -NOTHING
-        lines.cells[row, j, CENTRE] = 0.0
+    for j in range(lines.cells.shape[2]):
+        lines.cells[row, DEEPEST, j] = -NOTHING
+        lines.cells[row, FROM, j] = NOTHING
+        lines.cells[row, TO, j] = -NOTHING
+        lines.cells[row, CENTRE, j] = 0.0
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
+SUMS: Final = {"contract", "reassoc", "nsz"}
+"""Freedom to add in any order: several cells in one instruction. The order is the same in every run."""
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath=SUMS, inline="always")
 def pressure(
     sums: FloatArray, cells: FloatArray, row: int, start: int, cell: float, low: float, high: float, depth: float,
     slope: float, edge: float, hardness: float, excess: float,
@@ -116,58 +122,54 @@ def pressure(
 
     x counts from the edge. `sums` (6,): ∫p dx, ∫p x dx, ∫∂p/∂ε xⁿ dx for n = 0, 1, 2, and ∫p²/k_u dx, twice the springy
     energy.
+
+    Virgin snow bears q = H_V (depth + slope x). Where a cell was pressed deeper by `lift`, over a ≤ x ≤ b, it bears
+    q - (k_u - H_V) lift, if that is above zero: over u ≤ x ≤ v. So all sums come from those of 1, x, x² over what is
+    wet, u to v, less those over a to b, and of lift, lift x and lift² over u to v.
     """
-    size = cells.shape[1]
-    mask = size - 1
-    stiff = hardness + excess
-    total = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    j, last = int(np.floor((low + edge) / cell)), int(np.floor((high + edge) / cell))
-    j, last = max(j, start), min(last, start + size - 1)
-    middle = (j + 0.5) * cell - edge
-    u = low  # virgin from here on, as far as is known
-    while j <= last:
-        i = np.uint64(j & mask)
-        lift = cells[row, i, DEEPEST] - (depth + slope * middle)
-        if lift > 0.0:
-            a = max(u, cells[row, i, FROM] - edge, middle - 0.5 * cell)
-            b = min(high, cells[row, i, TO] - edge, middle + 0.5 * cell)
-            if b > a:
-                if a > u:
-                    total = _with_piece(total, u, a, hardness * (depth + slope * u), hardness * slope, hardness)
-                rise = hardness * (depth + slope * a) - excess * lift
-                total = _with_piece(total, a, b, rise, hardness * slope, stiff)
-                u = b
-        middle += cell
-        j += 1
-    if high > u:
-        total = _with_piece(total, u, high, hardness * (depth + slope * u), hardness * slope, hardness)
-    sums[0], sums[1], sums[2], sums[3], sums[4] = total[0], total[1], total[2], total[3], total[4]
-    sums[5] = total[5] / (3.0 * stiff)
-
-
-Sums: TypeAlias = tuple[float, float, float, float, float, float]
-
-
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
-def _with_piece(total: Sums, u: float, v: float, p0: float, rise: float, stiffness: float) -> Sums:
-    """Sums with a piece from u to v of the pressure p0 + rise (x - u), where it is above zero."""
-    p1 = p0 + rise * (v - u)
-    h = v - u
-    if min(p0, p1) < 0.0:
-        zero = max(p0, p1) / abs(rise) if max(p0, p1) > 0.0 else 0.0
-        u = v - zero if p1 > p0 else u
-        h = zero
-        p0, p1 = max(p0, 0.0), max(p1, 0.0)
-    force = 0.5 * h * (p0 + p1)
-    k = stiffness * h
-    return (
-        total[0] + force,
-        total[1] + u * force + h * h * (p0 + 2.0 * p1) * (1.0 / 6.0),
-        total[2] + k,
-        total[3] + k * (u + 0.5 * h),
-        total[4] + k * (u * (u + h) + h * h * (1.0 / 3.0)),
-        total[5] + h * (p0 * p0 + p0 * p1 + p1 * p1),
-    )
+    size = cells.shape[2]
+    per_cell = 1.0 / cell
+    first = min(max(int(np.floor((low + edge) * per_cell)) - start, 0), size) & ~7
+    last = min(int(np.floor((high + edge) * per_cell)) - start, size - 1) | 7
+    half = 0.5 * cell
+    origin = (start + 0.5) * cell - edge
+    falls = slope if abs(slope) > FLAT else FLAT
+    to_right = falls > 0.0
+    per_lift, waterline = excess / (hardness * falls), -depth / falls
+    surface, step = depth + slope * origin, slope * cell
+    # of xⁿ: over all that bears as virgin snow does, and over u to v; of lift × xⁿ over u to v; of lift²
+    q0, q1, q2, w0, w1, w2, l0, l1, l2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(np.uint64(first), np.uint64(max(last + 1, first))):
+        middle = origin + i * cell
+        lift = cells[row, DEEPEST, i] - (surface + step * i)
+        a = max(low, max(cells[row, FROM, i] - edge, middle - half))
+        b = max(a, min(high, min(cells[row, TO, i] - edge, middle + half)))
+        b = b if lift > 0.0 else a
+        zero = min(max(waterline + per_lift * lift, a), b)
+        u, v = zero if to_right else a, b if to_right else zero
+        width, covered, both, ends = v - u, b - a, v + u, b + a
+        first_moment, second = width * both, width * (both * both - u * v)
+        lifted = lift * width
+        q0 += width - covered
+        q1 += first_moment - covered * ends
+        q2 += second - covered * (ends * ends - a * b)
+        w0 += width
+        w1 += first_moment
+        w2 += second
+        l0 += lifted
+        l1 += lifted * both
+        l2 += lifted * lift
+    width, both = high - low, high + low
+    q0, q1, q2 = q0 + width, 0.5 * (q1 + width * both), (q2 + width * (both * both - high * low)) * (1.0 / 3.0)
+    l0, l1 = excess * l0, 0.5 * excess * l1
+    sums[0] = hardness * (depth * q0 + slope * q1) - l0
+    sums[1] = hardness * (depth * q1 + slope * q2) - l1
+    sums[2] = hardness * q0 + excess * w0
+    sums[3] = hardness * q1 + 0.5 * excess * w1
+    sums[4] = hardness * q2 + excess * w2 * (1.0 / 3.0)
+    squared = depth * depth * q0 + 2.0 * depth * slope * q1 + slope * slope * q2
+    crossed = 2.0 * hardness * (depth * l0 + slope * l1)
+    sums[5] = (hardness * hardness * squared - crossed + excess * excess * l2) / (hardness + excess)
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
@@ -180,64 +182,64 @@ def anchor_of(value: FloatArray, flag: IntArray, row: int, edge: float, deep: fl
     return edge
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
-def mark_cells(cells: FloatArray, value: FloatArray, row: int) -> None:
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def mark_cells(cells: FloatArray, value: FloatArray, row: int, window: int) -> None:
     """Remember the base that touches a line now; its cells must reach as far."""
     low, high, edge = value[row, LOW], value[row, HIGH], value[row, EDGE]
     depth, slope, cell = value[row, DEPTH], value[row, FALL], value[row, CELL]
-    mask = cells.shape[1] - 1
-    start = low
-    j, last = int(np.floor(low / cell)), int(np.floor(high / cell))
-    while j <= last:
-        end = high if j == last else (j + 1) * cell
-        i = j & mask
-        middle = (j + 0.5) * cell
+    half, origin = 0.5 * cell, (window + 0.5) * cell
+    deepest, covered_from, covered_to, centre = cells[row, DEEPEST], cells[row, FROM], cells[row, TO], cells[row, CENTRE]
+    per_cell = 1.0 / cell
+    first = (int(np.floor(low * per_cell)) - window) & ~7
+    last = (int(np.floor(high * per_cell)) - window) | 7
+    deeper = 0
+    for i in range(np.uint64(first), np.uint64(last + 1)):
+        middle = origin + i * cell
+        a, b = max(low, middle - half), min(high, middle + half)
         here = depth + slope * (middle - edge)
-        if low <= middle <= high:
-            cells[row, i, CENTRE] = max(cells[row, i, CENTRE], here)
-        if here > cells[row, i, DEEPEST]:
-            cells[row, i, DEEPEST] = here
-            value[row, SLOPE] = slope
-        cells[row, i, FROM] = min(cells[row, i, FROM], start)
-        cells[row, i, TO] = max(cells[row, i, TO], end)
-        start = end
-        j += 1
+        marked = here if b >= a else -NOTHING
+        deeper |= marked > deepest[i]
+        deepest[i] = max(deepest[i], marked)
+        covered_from[i] = min(covered_from[i], a if b >= a else NOTHING)
+        covered_to[i] = max(covered_to[i], b if b >= a else -NOTHING)
+        centre[i] = max(centre[i], here if a <= middle <= b else 0.0)
+    if deeper:
+        value[row, SLOPE] = slope
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
-def mark_swept(cells: FloatArray, value: FloatArray, row: int) -> None:
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> None:
     """Remember the ground that the edge left sideways since it was marked last: as deep as the edge that passed."""
     edge, before, depth, slope = value[row, EDGE], value[row, EDGE_MARKED], value[row, DEPTH], value[row, FALL]
     cell = value[row, CELL]
+    half, origin = 0.5 * cell, (window + 0.5) * cell
     rise = (depth - value[row, DEPTH_MARKED]) / (edge - before)
-    mask = cells.shape[1] - 1
     low, high = min(edge, before), max(edge, before)
-    j, last = int(np.floor(low / cell)), int(np.floor(high / cell))
-    while j <= last:
-        i = j & mask
-        middle = (j + 0.5) * cell
+    deepest, covered_from, covered_to, centre = cells[row, DEEPEST], cells[row, FROM], cells[row, TO], cells[row, CENTRE]
+    for j in range(int(np.floor(low / cell)) - window, int(np.floor(high / cell)) - window + 1):
+        i = np.uint64(j)
+        middle = origin + i * cell
         passed = min(max(middle, low), high)
         here = depth + rise * (passed - edge) + slope * (middle - passed)
         if passed == middle:
-            cells[row, i, CENTRE] = max(cells[row, i, CENTRE], here)
-        cells[row, i, DEEPEST] = max(cells[row, i, DEEPEST], here)
-        cells[row, i, FROM] = min(cells[row, i, FROM], max(low, j * cell))
-        cells[row, i, TO] = max(cells[row, i, TO], min(high, (j + 1) * cell))
-        j += 1
+            centre[i] = max(centre[i], here)
+        deepest[i] = max(deepest[i], here)
+        covered_from[i] = min(covered_from[i], max(low, middle - half))
+        covered_to[i] = max(covered_to[i], min(high, middle + half))
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> float:
     """Energy lost to the groove in the cells first ≤ j < last of a line (J): ½ H_V g² (1 - H_V/k_u) per area."""
-    mask = lines.cells.shape[1] - 1
+    start = lines.flag[row, WINDOW]
     cell, slope = lines.value[row, CELL], 0.0 if lines.flag[row, SWEPT] == 1 else lines.value[row, SLOPE]
     total = 0.0
     for j in range(first, last):
-        i = j & mask
-        width = lines.cells[row, i, TO] - lines.cells[row, i, FROM]
+        i = j - start
+        width = lines.cells[row, TO, i] - lines.cells[row, FROM, i]
         if width > 0.0:
-            middle = 0.5 * (lines.cells[row, i, TO] + lines.cells[row, i, FROM])
-            depth = lines.cells[row, i, CENTRE] if lines.cells[row, i, CENTRE] > 0.0 else lines.cells[row, i, DEEPEST]
+            middle = 0.5 * (lines.cells[row, TO, i] + lines.cells[row, FROM, i])
+            depth = lines.cells[row, CENTRE, i] if lines.cells[row, CENTRE, i] > 0.0 else lines.cells[row, DEEPEST, i]
             depth += slope * (middle - (j + 0.5) * cell)
             total += width * (depth * depth + slope * slope * width * width / 12.0)
     return 0.5 * hardness * excess / (hardness + excess) * total * lines.spacing[0]
@@ -250,11 +252,11 @@ def energy_at_edge(
 ) -> float:  # fmt: skip
     """Energy per area (J/m²) that the snow gains where an edge covers new ground, or gives back where it leaves."""
     j = int(np.floor(y / cell))
-    i = j & (cells.shape[1] - 1)
+    i = j - start
     stiff = hardness + excess
     before = 0.0
-    if start <= j < start + cells.shape[1] and cells[row, i, FROM] <= y <= cells[row, i, TO]:
-        before = cells[row, i, DEEPEST] + slope * (y - (j + 0.5) * cell)
+    if 0 <= i < cells.shape[2] and cells[row, FROM, i] <= y <= cells[row, TO, i]:
+        before = cells[row, DEEPEST, i] + slope * (y - (j + 0.5) * cell)
     deepest = max(before, depth)
     pressed = max(0.0, hardness * depth - excess * (deepest - depth))
     gain = 0.5 * pressed * pressed / stiff

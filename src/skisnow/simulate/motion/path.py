@@ -166,7 +166,7 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
     """Let the snow remember the bases that touch its lines now, and where the edges hold."""
     ring = len(lines.flag) // 2
     value, flag, cells = lines.value, lines.flag, lines.cells
-    size = cells.shape[1]
+    size = cells.shape[2]
     for k in range(2):
         for c in range(lines.count[k]):
             row = k * ring + (lines.first[k] + c) % ring
@@ -184,8 +184,8 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
             if swept:
                 if high - low > value[row, HIGH] - value[row, LOW] + cell:
                     flag[row, SWEPT] = 1
-                mark_swept(cells, value, row)
-            mark_cells(cells, value, row)
+                mark_swept(cells, value, row, flag[row, WINDOW])
+            mark_cells(cells, value, row, flag[row, WINDOW])
             value[row, EDGE_MARKED], value[row, DEPTH_MARKED], flag[row, MARKED] = edge, value[row, DEPTH], 1
             anchor = anchor_of(value, flag, row, edge, value[row, DEEP_NOW])
             value[row, ANCHOR] = max(min(anchor, edge + snow.holding), edge - snow.holding)
@@ -202,6 +202,6 @@ def energy_in_snow(snow: Snow, lines: Lines, archive: Archive) -> float:
             row = k * ring + (lines.first[k] + c) % ring
             if lines.flag[row, KEPT] == 1:
                 start = lines.flag[row, WINDOW]
-                total += energy_left(lines, row, start, start + lines.cells.shape[1], snow.hardness, snow.excess)
+                total += energy_left(lines, row, start, start + lines.cells.shape[2], snow.hardness, snow.excess)
                 total -= lines.value[row, LOST]
     return total

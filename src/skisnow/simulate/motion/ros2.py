@@ -70,7 +70,8 @@ def ros2_step(
             first.bend[k, i] -= state.bend_rate[k, i] / gh
             middle.bend_rate[k, i] = state.bend_rate[k, i] + h * first.bend[k, i]
     move(state, places.rigid, places.bend, h, middle)
-    feel(model, snow, lines, middle, False, False, stage)
+    neither = h < 0.0
+    feel(model, snow, lines, middle, neither, neither, stage)
     # a = x'₁ - 2 k₁ₓ; x'₁ to second order in the rotation vector
     sought, p = room.weights, places
     v, q0, q1, q2 = middle.velocity, h * p.rigid[3], h * p.rigid[4], h * p.rigid[5]
