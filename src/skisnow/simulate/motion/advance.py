@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from .archive import Archive
 from .equations import add_forces, channel_rows, copy_state
-from .fast import REACH, STEPS_PER_TANGENT, Past, fast_step, new_past
+from .fast import REACH, Past, fast_step, new_past
 from .forces import FRICTION, NORMAL, RELEASED, SHEAR, SIDEWAYS, Forces, feel, new_forces
 from .lines import Lines
 from .model import PADDING, Model, Snow, State, World, new_state
@@ -31,6 +31,8 @@ WORKS: Final = 7
 
 SHORTEST_STEP: Final = 1e-7
 """Step (s) below which a run ends."""
+STEPS_PER_TANGENT: Final = 4
+"""Fixed steps over which the matrix is kept: both methods are of order 2 whatever the matrix."""
 LONGEST_STEP: Final = 4e-3
 """Step (s) of the error control, which is halved; a ski at 30 m/s moves 12 cm in it."""
 
@@ -123,24 +125,26 @@ def advance_fixed(
     until: float,
 ) -> int:  # fmt: skip
     """Take equal steps of about `step` (s) until `until` (s); the forces are known at the start, and at the end."""
-    clock = memory.clock
+    clock, past = memory.clock, memory.past
     left = until - clock.time[0]
     if left <= 0.0:
         return GOES_ON
     steps = max(1, int(np.ceil(left / step - 1e-9)))
     h = left / steps
+    if clock.counts[0] > 0 and abs(h - clock.time[1]) < 1e-9 * h:
+        h = clock.time[1]  # but for rounding the same: the matrix may be kept
+    else:
+        clock.counts[2] = 0
     clock.time[1] = h
     for i in range(steps):
-        if fast:
-            first = memory.past.step[0] != h
-            if first or clock.counts[2] % STEPS_PER_TANGENT == 0:
-                if not _factor(model, lines, memory, h, 1.0 if first else REACH):
-                    return NOT_FINITE
-                clock.counts[2] = -1 if first else 0  # Euler's matrix serves one step alone
-            fast_step(model, world, memory.state, memory.start, memory.system, h, memory.past, memory.next)
-        else:
-            if not _factor(model, lines, memory, h, GAMMA):
+        first = fast and past.step[0] != h
+        if first or clock.counts[2] % STEPS_PER_TANGENT == 0:
+            if not _factor(model, lines, memory, h, 1.0 if first else REACH if fast else GAMMA):
                 return NOT_FINITE
+            clock.counts[2] = -1 if first else 0  # Euler's matrix serves one step alone
+        if fast:
+            fast_step(model, world, memory.state, memory.start, memory.system, h, past, memory.next)
+        else:
             ros2_step(
                 model, snow, world, lines, memory.state, memory.start, memory.stage, memory.system, h, memory.room,
                 memory.next,
@@ -152,7 +156,8 @@ def advance_fixed(
         clock.counts[2] += 1
         if not _is_finite(memory.state):
             return NOT_FINITE
-        renew = not fast or clock.counts[2] % STEPS_PER_TANGENT == 0
+        # the last step's tangent is there in case that the next steps are of another length
+        renew = i == steps - 1 or clock.counts[2] % STEPS_PER_TANGENT == 0
         observe(model, snow, world, lines, archive, memory, renew)
     return GOES_ON
 

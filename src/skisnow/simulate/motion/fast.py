@@ -24,8 +24,6 @@ from .system import Factored, Vector, add_band, add_mass, new_vector, solve
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-STEPS_PER_TANGENT: Final = 4
-"""Steps over which the matrix is kept."""
 REACH: Final = 2.0 / 3.0
 """β of the matrix, in steps."""
 
