@@ -21,7 +21,7 @@ from .motion.advance import (
 )
 from .motion.along import shares
 from .motion.archive import Archive, grown, new_archive
-from .motion.lines import CELL, DEEPEST, FROM, KEPT, SLOPE, TO, TOUCHED, WINDOW, Lines, new_lines
+from .motion.lines import CELL, CELLS, KEPT, SLOPE, TOUCHED, WINDOW, Lines, new_lines
 from .motion.model import Model, Snow, World, sledge_model
 from .motion.path import AHEAD, follow
 from .motion.settle import settle
@@ -42,8 +42,6 @@ LINE_SPACING: Final = 0.02
 """Largest spacing (m) of the snow's lines (Choice)."""
 CELLS_ACROSS: Final = 8
 """Cells over the width of the contact (Choice)."""
-CELLS: Final = 64
-"""Cells that a line keeps at a time: many more than a contact needs, few enough for the processor's cache."""
 SMALLEST_CELL, LARGEST_CELL = 10e-6, 8e-3
 """Sizes (m) of cells."""
 FLOATING_DEPTH: Final = 0.1
@@ -139,11 +137,11 @@ class Setup:
 
     def _keep_room(self) -> None:
         """Let the archive grow before it is full."""
-        rows, _, cells = self.lines.cells.shape
+        rows = len(self.lines.cells)
         pieces, places = (int(n) for n in self.archive.used)
         most_pieces, most_places = len(self.archive.cell), len(self.archive.pool)
-        if most_pieces - pieces < 2 * rows or most_places - places < rows * cells:
-            self.archive = grown(self.archive, 2 * most_pieces + 4 * rows, 2 * most_places + 2 * rows * cells)
+        if most_pieces - pieces < 2 * rows or most_places - places < rows * CELLS:
+            self.archive = grown(self.archive, 2 * most_pieces + 4 * rows, 2 * most_places + 2 * rows * CELLS)
 
     def left_behind(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Pieces of lines with a groove: frames (k, 12), middle across, width and greatest depth (m)."""
@@ -179,20 +177,20 @@ def _archived(archive: Archive) -> list[_Piece]:
 
 def _under_skis(lines: Lines) -> list[_Piece]:
     found = []
-    rows, _, cells = lines.cells.shape
-    ring = rows // 2
+    ring = len(lines.cells) // 2
     for k in range(2):
         for c in range(int(lines.count[k])):
             row = k * ring + (int(lines.first[k]) + c) % ring
-            about = lines.cells[row]
-            covered = about[TO] > about[FROM]
+            about = lines.cells[row].reshape(4, CELLS)
+            deepest, covered_from, covered_to, _ = about
+            covered = covered_to > covered_from
             if lines.flag[row, KEPT] == 0 or not covered.any():
                 continue
-            number = lines.flag[row, WINDOW] + np.arange(cells)
+            number = lines.flag[row, WINDOW] + np.arange(CELLS)
             middle = (number[covered] + 0.5) * lines.value[row, CELL]
-            reach = np.maximum(about[TO, covered] - middle, middle - about[FROM, covered])
-            depth = about[DEEPEST, covered] + abs(lines.value[row, SLOPE]) * reach
-            found.append((lines.frame[row], about[FROM, covered].min(), about[TO, covered].max(), float(depth.max())))
+            reach = np.maximum(covered_to[covered] - middle, middle - covered_from[covered])
+            depth = deepest[covered] + abs(lines.value[row, SLOPE]) * reach
+            found.append((lines.frame[row], covered_from[covered].min(), covered_to[covered].max(), float(depth.max())))
     return found
 
 
@@ -209,7 +207,7 @@ def set_up(scenario: Scenario) -> Setup:
     ski = clamped(scenario.ski, scenario.clamp_length, elements)
     model = sledge_model(scenario.sledge, ski, damping_ratio=scenario.damping_ratio)
     ring = math.ceil((model.tip - model.tail + 2.0 * AHEAD) / spacing) + 12
-    lines = new_lines(ring, CELLS, spacing=spacing, cell=cell)
+    lines = new_lines(ring, spacing=spacing, cell=cell)
     memory = new_memory(ski.size, ring)
     memory.clock.time[1] = solver.step
     archive = new_archive(8 * ring, 4 * ring * CELLS)

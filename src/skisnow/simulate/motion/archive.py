@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .lines import (
     CELL,
+    CELLS,
     CENTRE,
     DEEPEST,
     FROM,
@@ -92,14 +93,20 @@ def put_away(archive: Archive, lines: Lines, row: int, first: int, last: int, ha
     most = max(1, int(LONGEST / lines.value[row, CELL]))
     j = first
     while j < last:
-        if lines.cells[row, TO, j - start] <= lines.cells[row, FROM, j - start]:
+        if not _covered(lines, row, j - start):
             j += 1
             continue
         end = j
-        while end < last and end - j < most and lines.cells[row, TO, end - start] > lines.cells[row, FROM, end - start]:
+        while end < last and end - j < most and _covered(lines, row, end - start):
             end += 1
         _add(archive, lines, row, j, end)
         j = end
+
+
+@numba.njit(cache=True, error_model="numpy", inline="always")
+def _covered(lines: Lines, row: int, place: int) -> bool:
+    i = np.uint64(place)
+    return lines.cells[row, TO + i] > lines.cells[row, FROM + i]
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -114,10 +121,10 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
     archive.cell[m], archive.slope[m] = cell, lines.value[row, SLOPE]
     archive.start[m, 0], archive.start[m, 1], archive.start[m, 2] = first, last - first, place
     for j in range(first, last):
-        i, p, middle = j - start, place + j - first, (j + 0.5) * cell
-        archive.pool[p, 0] = lines.cells[row, DEEPEST, i]
-        archive.pool[p, 1] = lines.cells[row, FROM, i] - middle
-        archive.pool[p, 2] = lines.cells[row, TO, i] - middle
+        i, p, middle = np.uint64(j - start), place + j - first, (j + 0.5) * cell
+        archive.pool[p, 0] = lines.cells[row, DEEPEST + i]
+        archive.pool[p, 1] = lines.cells[row, FROM + i] - middle
+        archive.pool[p, 2] = lines.cells[row, TO + i] - middle
     y = 0.5 * (first + last) * cell
     a = int(np.floor((archive.frame[m, 0] + y * archive.frame[m, 6]) / BUCKET))
     b = int(np.floor((archive.frame[m, 1] + y * archive.frame[m, 7]) / BUCKET))
@@ -201,10 +208,10 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
         if offset < archive.pool[p, 1] or offset > archive.pool[p, 2]:
             continue
         here = archive.pool[p, 0] + archive.slope[piece] * offset
-        i = j - start
-        if here > max(lines.cells[row, DEEPEST, i], 0.0):
-            lines.cells[row, DEEPEST, i] = lines.cells[row, CENTRE, i] = here
-            lines.cells[row, FROM, i], lines.cells[row, TO, i] = j * cell, (j + 1) * cell
+        i = np.uint64(j - start)
+        if here > max(lines.cells[row, DEEPEST + i], 0.0):
+            lines.cells[row, DEEPEST + i] = lines.cells[row, CENTRE + i] = here
+            lines.cells[row, FROM + i], lines.cells[row, TO + i] = j * cell, (j + 1) * cell
             found = True
     return found
 
@@ -212,11 +219,10 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
 @numba.njit(cache=True, error_model="numpy")
 def look_ahead(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
     """Give a fresh line the older tracks that lie on it, if there are any."""
-    cells = lines.cells.shape[2]
-    if not meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], 0.5 * cells * lines.value[row, CELL]):
+    if not meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], 0.5 * CELLS * lines.value[row, CELL]):
         return
-    open_window(lines, row, -cells // 2)
-    if not recall(archive, lines, row, -cells // 2, cells - cells // 2, hardness, excess):
+    open_window(lines, row, -CELLS // 2)
+    if not recall(archive, lines, row, -CELLS // 2, CELLS - CELLS // 2, hardness, excess):
         lines.flag[row, KEPT] = 0
 
 
@@ -225,9 +231,8 @@ def make_room(
     archive: Archive, lines: Lines, row: int, low: float, high: float, hardness: float, excess: float
 ) -> None:  # fmt: skip
     """Bring a line's cells to where it is touched now: open them, move them along, or make them coarser."""
-    cells = lines.cells.shape[2]
     fresh = lines.flag[row, KEPT] == 0
-    while (high - low) / lines.value[row, CELL] > cells - 4 * MARGIN:
+    while (high - low) / lines.value[row, CELL] > CELLS - 4 * MARGIN:
         if fresh:
             lines.value[row, CELL] *= 2.0
         else:
@@ -235,34 +240,34 @@ def make_room(
     cell = lines.value[row, CELL]
     first, last = int(np.floor(low / cell)) - MARGIN, int(np.floor(high / cell)) + MARGIN
     start = lines.flag[row, WINDOW]
-    if not fresh and start <= first and last < start + cells:
+    if not fresh and start <= first and last < start + CELLS:
         return
-    while not fresh and cell * cells < SWEEP:
+    while not fresh and cell * CELLS < SWEEP:
         _coarsen(lines, row)
         cell, start = lines.value[row, CELL], lines.flag[row, WINDOW]
         first, last = int(np.floor(low / cell)) - MARGIN, int(np.floor(high / cell)) + MARGIN
-        if start <= first and last < start + cells:
+        if start <= first and last < start + CELLS:
             return
-    new = (first + last) // 2 - cells // 2
+    new = (first + last) // 2 - CELLS // 2
     if fresh:
         open_window(lines, row, new)
-        if meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], max(abs(new), abs(new + cells)) * cell):
-            recall(archive, lines, row, new, new + cells, hardness, excess)
+        if meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], max(abs(new), abs(new + CELLS)) * cell):
+            recall(archive, lines, row, new, new + CELLS, hardness, excess)
         return
     before = lines.value[row, LOST]
-    if new >= start + cells or new + cells <= start:
-        put_away(archive, lines, row, start, start + cells, hardness, excess)
+    if new >= start + CELLS or new + CELLS <= start:
+        put_away(archive, lines, row, start, start + CELLS, hardness, excess)
         archive.lost[0] -= before
         lines.value[row, LOST] = 0.0
         open_window(lines, row, new)
-        recall(archive, lines, row, new, new + cells, hardness, excess)
+        recall(archive, lines, row, new, new + CELLS, hardness, excess)
         return
-    gone_from, gone_to = (start, new) if new > start else (new + cells, start + cells)
+    gone_from, gone_to = (start, new) if new > start else (new + CELLS, start + CELLS)
     put_away(archive, lines, row, gone_from, gone_to, hardness, excess)
     _move_window(lines, row, new - start)
     lines.flag[row, WINDOW] = new
     if new > start:
-        recall(archive, lines, row, start + cells, new + cells, hardness, excess)
+        recall(archive, lines, row, start + CELLS, new + CELLS, hardness, excess)
     else:
         recall(archive, lines, row, new, start, hardness, excess)
 
@@ -270,39 +275,37 @@ def make_room(
 @numba.njit(cache=True, error_model="numpy")
 def _move_window(lines: Lines, row: int, by: int) -> None:
     """Move a line's cells down by so many places, and empty those that become free; |by| < cells."""
-    cells = lines.cells.shape[2]
     for column in range(4):
-        about = lines.cells[row, column]
-        nothing = NOTHING if column == FROM else 0.0 if column == CENTRE else -NOTHING
+        about = lines.cells[row, CELLS * column : CELLS * (column + 1)]
+        nothing = NOTHING if column == 1 else 0.0 if column == 3 else -NOTHING
         if by > 0:
-            for i in range(cells):
-                about[i] = about[i + by] if i + by < cells else nothing
+            for i in range(CELLS):
+                about[i] = about[i + by] if i + by < CELLS else nothing
         else:
-            for i in range(cells - 1, -1, -1):
+            for i in range(CELLS - 1, -1, -1):
                 about[i] = about[i + by] if i + by >= 0 else nothing
 
 
 @numba.njit(cache=True, error_model="numpy")
 def _coarsen(lines: Lines, row: int) -> None:
     """Double the size of a line's cells."""
-    cells = lines.cells.shape[2]
     start, cell, slope = lines.flag[row, WINDOW], lines.value[row, CELL], lines.value[row, SLOPE]
-    deepest, low, high = np.full(cells, -NOTHING), np.full(cells, NOTHING), np.full(cells, -NOTHING)
-    centre, both = np.zeros(cells), np.zeros(cells, np.int64)
-    new = int(np.floor(start / 2)) - cells // 4
-    for j in range(start, start + cells):
-        i, target = j - start, int(np.floor(j / 2))
-        if lines.cells[row, TO, i] > lines.cells[row, FROM, i]:
+    deepest, low, high = np.full(CELLS, -NOTHING), np.full(CELLS, NOTHING), np.full(CELLS, -NOTHING)
+    centre, both = np.zeros(CELLS), np.zeros(CELLS, np.int64)
+    new = int(np.floor(start / 2)) - CELLS // 4
+    for j in range(start, start + CELLS):
+        i, target = np.uint64(j - start), int(np.floor(j / 2))
+        if lines.cells[row, TO + i] > lines.cells[row, FROM + i]:
             t = target - new
             shift = slope * ((target + 0.5) * 2.0 * cell - (j + 0.5) * cell)
-            deepest[t] = max(deepest[t], lines.cells[row, DEEPEST, i] + shift)
-            centre[t] += 0.5 * lines.cells[row, CENTRE, i]
-            both[t] += 1 if lines.cells[row, CENTRE, i] > 0.0 else 0
-            low[t], high[t] = min(low[t], lines.cells[row, FROM, i]), max(high[t], lines.cells[row, TO, i])
+            deepest[t] = max(deepest[t], lines.cells[row, DEEPEST + i] + shift)
+            centre[t] += 0.5 * lines.cells[row, CENTRE + i]
+            both[t] += 1 if lines.cells[row, CENTRE + i] > 0.0 else 0
+            low[t], high[t] = min(low[t], lines.cells[row, FROM + i]), max(high[t], lines.cells[row, TO + i])
     lines.value[row, CELL], lines.flag[row, WINDOW] = 2.0 * cell, new
-    for i in range(cells):
-        lines.cells[row, DEEPEST, i], lines.cells[row, FROM, i], lines.cells[row, TO, i] = deepest[i], low[i], high[i]
-        lines.cells[row, CENTRE, i] = centre[i] if both[i] == 2 else 0.0
+    for i in range(np.uint64(CELLS)):
+        lines.cells[row, DEEPEST + i], lines.cells[row, FROM + i], lines.cells[row, TO + i] = deepest[i], low[i], high[i]
+        lines.cells[row, CENTRE + i] = centre[i] if both[i] == 2 else 0.0
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -310,6 +313,6 @@ def leave_line(archive: Archive, lines: Lines, row: int, hardness: float, excess
     """Archive a line that the ski has left."""
     if lines.flag[row, KEPT] == 1:
         start = lines.flag[row, WINDOW]
-        put_away(archive, lines, row, start, start + lines.cells.shape[2], hardness, excess)
+        put_away(archive, lines, row, start, start + CELLS, hardness, excess)
         archive.lost[0] -= lines.value[row, LOST]
         lines.flag[row, KEPT] = 0

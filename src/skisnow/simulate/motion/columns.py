@@ -47,4 +47,6 @@ FORCE, MOMENT, STIFF0, STIFF1, STIFF2, SPRING, HOLD, USED = _columns(64, 8)
 H0, H1, H2, C0, C1, C2, SLIDING, ARM, TWIST_RATE, RESIST, RUB, SHEARING = _columns(72, 12)
 # on the beam: force (N), moment, and the shares that the nodes take of the force
 UP, TURNING, W0, W1, W2, W3 = _columns(84, 6)
-COLUMNS: Final = 90
+# speeds of the base's edges along the line (m/s)
+RIGHT_MOVES, LEFT_MOVES = _columns(90, 2)
+COLUMNS: Final = 92

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from .columns import (
     ARM, ASIDE, C0, C1, C2, CLIMB, COLUMNS, COSINE, D0, D1, D2, DEEP, EDGE_AT, EDGE_DEEP, FALLING, FLARE, FORCE, H0,
-    H1, H2, HALF, HEIGHT, HOLD, K1, K2, LATERAL, LEFT, LENGTH, MOMENT, N0, N1, N2, NORMAL_AHEAD, REACH, RESIST,
+    H1, H2, HALF, HEIGHT, HOLD, K1, K2, LATERAL, LEFT, LENGTH, MOMENT, N0, N1, N2, NORMAL_AHEAD, REACH, RESIST, RIGHT_MOVES, LEFT_MOVES,
     RIGHT, RISE, RUB, S, SHARE, SHEARING, SINE, SIZE, SLIDING, SPRING, STEEP, STIFF0, STIFF1, STIFF2, T0, T1, T2,
     TILT, TURNING, TWISTING, TWIST_RATE, U0, U1, U2, UP, USED, VS, VT, VW, W0, W1, W2, W3, WET_FROM, WET_TO, WIDE,
     WIDTH, WS, WT, WW, Y0, Y1, Y2, Z,
@@ -114,7 +114,8 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
             _bend(count, out.sheet, out.numbers, out.bend[k])
             if look:
                 _record(lines, k, count, out)
-                _sum_powers(model, snow, lines, state, k, count, out)
+                _sum_powers(model, snow, state, lines.spacing[0], count, out.sheet, out.power)
+                out.power[SIDEWAYS] += _cover_ground(snow, lines, count, out.sheet, out.numbers)
             if tangent:
                 _add_tangents(model, snow, k, count, out)
 
@@ -131,6 +132,7 @@ def _press(snow: Snow, lines: Lines, count: int, look: bool, sheet: FloatArray, 
             flag[row, TOUCHED] = 0
         if not (weight > 0.0 and deep > 0.0):
             sheet[FORCE + i], sheet[MOMENT + i], sheet[HOLD + i], sheet[USED + i] = 0.0, 0.0, 0.0, 0.0
+            sheet[SPRING + i] = 0.0
             if look and weight > 0.0:
                 # the anchor of a line is where the edge meets the surface, within a step
                 value[row, EDGE_ABOVE], value[row, DEEP_ABOVE] = edge, deep
@@ -253,69 +255,86 @@ def _record(lines: Lines, k: int, count: int, out: Forces) -> None:
     out.sections[k] = filled
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _sum_powers(model: Model, snow: Snow, lines: Lines, state: State, k: int, count: int, out: Forces) -> None:
-    """Add up what the forces do, and what the snow gains and gives back besides."""
-    sheet, power = out.sheet, out.power
+@numba.njit(cache=True, error_model="numpy", fastmath=SUMS)
+def _sum_powers(  # noqa: PLR0915 - one loop over many lines at a time
+    model: Model, snow: Snow, state: State, spacing: float, count: int, sheet: FloatArray, power: FloatArray
+) -> None:  # fmt: skip
+    """Add up what the forces do, and what the snow gives back at tip and tail; find how fast the base's edges move."""
     V, lateral, normal = state.velocity, model.lateral, model.normal
     o0, o1, o2 = V[3], lateral[1] * V[4] + lateral[2] * V[5], normal[1] * V[4] + normal[2] * V[5]
+    slipping = 1.0 - snow.compaction  # compaction that does not resist is done for nothing
+    as_new = (snow.hardness + snow.excess) / snow.hardness
+    rubbed, pressed, sheared, sprung, held, across, released = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(count):
-        if not (sheet[SHARE + i] > 0.0 and sheet[DEEP + i] > 0.0):
-            continue
         s, sp, cp, height, slope = sheet[S + i], sheet[SINE + i], sheet[COSINE + i], sheet[HEIGHT + i], sheet[RISE + i]
-        F, weight, sliding, shear = sheet[FORCE + i], sheet[SHARE + i], sheet[SLIDING + i], sheet[SHEARING + i]
+        F, weight, sliding, sine = sheet[FORCE + i], sheet[SHARE + i], sheet[SLIDING + i], sheet[TILT + i]
         n0, n1, n2, u0, u1, u2 = (
             sheet[N0 + i], sheet[N1 + i], sheet[N2 + i], sheet[U0 + i], sheet[U1 + i], sheet[U2 + i],
         )  # fmt: skip
         c0, c1, c2, h0, h1, h2 = (
             sheet[C0 + i], sheet[C1 + i], sheet[C2 + i], sheet[H0 + i], sheet[H1 + i], sheet[H2 + i],
         )  # fmt: skip
-        power[FRICTION] += sheet[RUB + i] * sliding
-        power[NORMAL] += F * (c0 * n0 + c1 * n1 + c2 * n2) + sheet[RESIST + i] * sliding
-        across = sheet[NORMAL_AHEAD + i] * u0 + sp * u1 + cp * u2
-        sideways = -F * across * sheet[STEEP + i] * (c0 * u0 + c1 * u1 + c2 * u2)
-        if snow.compaction == 0.0:
-            sine = sheet[TILT + i]
-            by_twist = sheet[TWISTING + i] * sheet[MOMENT + i] / (1.0 - sine * sine) * sheet[SIZE + i]
-            sideways -= (F * sheet[CLIMB + i] + by_twist) * sliding
-        # the edge that is down (0), and ground that the base's edges cover or leave (right, left)
-        for which in range(3):
-            water = sheet[WET_TO + i] if which == 2 else sheet[WET_FROM + i]
-            if (which == 1 and water > sheet[RIGHT + i]) or (which == 2 and water < sheet[LEFT + i]):
-                continue
-            at = sheet[REACH + i] if which == 0 else -sheet[HALF + i] if which == 1 else sheet[HALF + i]
-            i0, i1, i2 = s - h0, at * cp - h1, height - at * sp - h2
-            rolling = sheet[TWIST_RATE + i] * (at - sheet[ARM + i])
+        rubbed += sheet[RUB + i] * sliding
+        pressed += F * (c0 * n0 + c1 * n1 + c2 * n2) + sheet[RESIST + i] * sliding
+        aslant = (sheet[NORMAL_AHEAD + i] * u0 + sp * u1 + cp * u2) * sheet[STEEP + i]
+        by_twist = sheet[TWISTING + i] * sheet[MOMENT + i] / (1.0 - sine * sine) * sheet[SIZE + i]
+        across -= F * aslant * (c0 * u0 + c1 * u1 + c2 * u2) + slipping * (F * sheet[CLIMB + i] + by_twist) * sliding
+        # the edge that is down
+        rate, arm, at = sheet[TWIST_RATE + i], sheet[ARM + i], sheet[REACH + i]
+        i0, i1, i2, rolling = s - h0, at * cp - h1, height - at * sp - h2, rate * (at - arm)
+        m0, m1, m2 = c0 + o1 * i2 - o2 * i1, c1 + o2 * i0 - o0 * i2 - sp * rolling, c2 + o0 * i1 - o1 * i0 - cp * rolling
+        sheared += sheet[SHEARING + i] * (m0 * u0 + m1 * u1 + m2 * u2)
+        # the base's edges, at -half and +half: their speed along the line
+        half, flare, twisting = sheet[HALF + i], sheet[FLARE + i], sheet[TWISTING + i]
+        y0, y1, y2 = sheet[Y0 + i], sheet[Y1 + i], sheet[Y2 + i]
+        for way in (-1.0, 1.0):
+            at = way * half
+            i1, i2, rolling = at * cp - h1, height - at * sp - h2, rate * (at - arm)
             m0 = c0 + o1 * i2 - o2 * i1
-            m1 = c1 + o2 * i0 - o0 * i2 - sp * rolling
-            m2 = c2 + o0 * i1 - o1 * i0 - cp * rolling
-            if which == 0:
-                power[SHEAR] += shear * (m0 * u0 + m1 * u1 + m2 * u2)
-                continue
-            way = -1.0 if which == 1 else 1.0
-            fl, tw = sheet[FLARE + i] * way, at * sheet[TWISTING + i]
+            m1, m2 = c1 + o2 * i0 - o0 * i2 - sp * rolling, c2 + o0 * i1 - o1 * i0 - cp * rolling
+            fl, tw = flare * way, at * twisting
             t1, t2 = fl * cp - tw * sp, slope - fl * sp - tw * cp
             b0, b1, b2 = n1 * t2 - n2 * t1, n2 - n0 * t2, n0 * t1 - n1
-            moves = (m0 * b0 + m1 * b1 + m2 * b2) / (b0 * sheet[Y0 + i] + b1 * sheet[Y1 + i] + b2 * sheet[Y2 + i])
-            row = out.numbers[i, ROW]
-            window = lines.flag[row, WINDOW] if lines.flag[row, KEPT] == 1 else FAR
-            gain = energy_at_edge(
-                lines.cells, row, window, lines.value[row, CELL], lines.value[row, SLOPE], sheet[EDGE_AT + i] + water,
-                sheet[EDGE_DEEP + i] + sheet[FALLING + i] * water, way * moves > 0.0, snow.hardness, snow.excess,
-            )  # fmt: skip
-            sideways += weight * way * moves * gain
-        power[SIDEWAYS] += sideways
+            moves = (m0 * b0 + m1 * b1 + m2 * b2) / (b0 * y0 + b1 * y1 + b2 * y2)
+            if way < 0.0:
+                sheet[RIGHT_MOVES + i] = moves
+            else:
+                sheet[LEFT_MOVES + i] = moves
         spring = 0.5 * sheet[SPRING + i]
-        power[SPRINGY] += weight * spring
-        if weight < lines.spacing[0]:
-            leaves = s < 0.0
-            d0, d1, d2 = sheet[D0 + i], sheet[D1 + i], sheet[D2 + i]
-            passing = (c0 * d0 + c1 * d1 + c2 * d2) / d0
-            if (passing > 0.0) != leaves:  # new ground costs the whole work: on virgin snow k_u/H_V times as much
-                spring *= (snow.hardness + snow.excess) / snow.hardness
-            power[RELEASED] += (spring if leaves else -spring) * passing
+        sprung += weight * spring
+        passing = c0 + (c1 * sheet[D1 + i] + c2 * sheet[D2 + i]) / sheet[D0 + i]
+        # new ground costs the whole work: on virgin snow k_u/H_V times as much
+        given = spring * abs(passing) * (1.0 if (passing > 0.0) == (s < 0.0) else -as_new)
+        released += given if weight < spacing else 0.0
         used = min(max(sheet[USED + i], -1.0), 1.0)
-        power[HELD] += 0.5 * sheet[HOLD + i] * snow.holding * used * used
+        held += sheet[HOLD + i] * used * used
+    power[FRICTION] += rubbed
+    power[NORMAL] += pressed
+    power[SHEAR] += sheared
+    power[SPRINGY] += sprung
+    power[HELD] += 0.5 * snow.holding * held
+    power[SIDEWAYS] += across
+    power[RELEASED] += released
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _cover_ground(snow: Snow, lines: Lines, count: int, sheet: FloatArray, numbers: PlaceArray) -> float:
+    """Power (W) that the snow gains where the base's edges cover ground sideways, less what it gives back."""
+    total = 0.0
+    for i in range(count):
+        if not (sheet[SHARE + i] > 0.0 and sheet[DEEP + i] > 0.0):
+            continue
+        row, wet_from, wet_to = numbers[i, ROW], sheet[WET_FROM + i], sheet[WET_TO + i]
+        window = lines.flag[row, WINDOW] if lines.flag[row, KEPT] == 1 else FAR
+        for which in range(2):
+            if (wet_from > sheet[RIGHT + i]) if which == 0 else (wet_to < sheet[LEFT + i]):
+                continue  # it ends at the water
+            at, moves = (wet_from, -sheet[RIGHT_MOVES + i]) if which == 0 else (wet_to, sheet[LEFT_MOVES + i])
+            total += sheet[SHARE + i] * moves * energy_at_edge(
+                lines.cells, row, window, lines.value[row, CELL], lines.value[row, SLOPE], sheet[EDGE_AT + i] + at,
+                sheet[EDGE_DEEP + i] + sheet[FALLING + i] * at, moves > 0.0, snow.hardness, snow.excess,
+            )  # fmt: skip
+    return total
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})

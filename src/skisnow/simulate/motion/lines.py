@@ -50,16 +50,20 @@ EDGE_MARKED, DEPTH_MARKED = 12, 13
 # is there, whether at the last look it was just above, whether its base was marked at the last look, whether
 # an edge has swept across it by more than a cell in a step: its ground is flat then
 WINDOW, KEPT, ANCHORED, TOUCHED, ABOVE, MARKED, SWEPT = 0, 1, 2, 3, 4, 5, 6
-# columns of `cells`: deepest base extended to the cell's middle, part that a base has covered, across; deepest base at
-# the middle itself, which counts for the energy: an edge that leaves a cell is deeper, extended to the middle (m)
-DEEPEST, FROM, TO, CENTRE = 0, 1, 2, 3
+CELLS = 64
+"""Cells that a line keeps at a time: many more than a contact needs, few enough for the processor's cache; a multiple
+of eight."""
+# where in a row of `cells` they begin, unsigned: the compiled loops need not ask whether a place counts from the end.
+# Deepest base extended to the cell's middle, part that a base has covered, across; deepest base at the middle itself,
+# which counts for the energy: an edge that leaves a cell is deeper, extended to the middle (m)
+DEEPEST, FROM, TO, CENTRE = (np.uint64(i * CELLS) for i in range(4))
 
 
 class Lines(NamedTuple):
     """Lines of both skis, in one ring for each: row k × ring + i. Places in space (m)."""
 
     frame: FloatArray  # (2 ring, 12) origin, unit vectors ahead, to the left, out of the snow
-    cells: FloatArray  # (2 ring, 4, cells), from the first of a window on
+    cells: FloatArray  # (2 ring, 4 × CELLS), each from the first of a window on
     value: FloatArray  # (2 ring, 14)
     flag: IntArray  # (2 ring, 7)
     first: IntArray  # (2,) of the ring, the line nearest the tail
@@ -67,12 +71,12 @@ class Lines(NamedTuple):
     spacing: FloatArray  # (2,) of the lines along the path, and of fresh cells across (m)
 
 
-def new_lines(ring: int, cells: int, *, spacing: float, cell: float) -> Lines:
-    """Room for `ring` lines under each ski, with `cells` cells (a multiple of eight) across."""
+def new_lines(ring: int, *, spacing: float, cell: float) -> Lines:
+    """Room for `ring` lines under each ski."""
     rows = 2 * ring
     return Lines(
         np.zeros((rows, 12)),
-        np.zeros((rows, 4, cells)),
+        np.zeros((rows, 4 * CELLS)),
         np.zeros((rows, 14)),
         np.zeros((rows, 7), np.int64),
         np.zeros(2, np.int64),
@@ -102,11 +106,11 @@ def open_window(lines: Lines, row: int, start: int) -> None:
     """Give a line empty cells from number `start` on."""
     lines.flag[row, WINDOW] = start
     lines.flag[row, KEPT] = 1
-    for j in range(lines.cells.shape[2]):
-        lines.cells[row, DEEPEST, j] = -NOTHING
-        lines.cells[row, FROM, j] = NOTHING
-        lines.cells[row, TO, j] = -NOTHING
-        lines.cells[row, CENTRE, j] = 0.0
+    for j in range(np.uint64(CELLS)):
+        lines.cells[row, DEEPEST + j] = -NOTHING
+        lines.cells[row, FROM + j] = NOTHING
+        lines.cells[row, TO + j] = -NOTHING
+        lines.cells[row, CENTRE + j] = 0.0
 
 
 SUMS: Final = {"contract", "reassoc", "nsz"}
@@ -127,10 +131,9 @@ def pressure(
     q - (k_u - H_V) lift, if that is above zero: over u ≤ x ≤ v. So all sums come from those of 1, x, x² over what is
     wet, u to v, less those over a to b, and of lift, lift x and lift² over u to v.
     """
-    size = cells.shape[2]
     per_cell = 1.0 / cell
-    first = min(max(int(np.floor((low + edge) * per_cell)) - start, 0), size) & ~7
-    last = min(int(np.floor((high + edge) * per_cell)) - start, size - 1) | 7
+    first = min(max(int(np.floor((low + edge) * per_cell)) - start, 0), CELLS) & ~7
+    last = min(int(np.floor((high + edge) * per_cell)) - start, CELLS - 1) | 7
     half = 0.5 * cell
     origin = (start + 0.5) * cell - edge
     falls = slope if abs(slope) > FLAT else FLAT
@@ -141,9 +144,9 @@ def pressure(
     q0, q1, q2, w0, w1, w2, l0, l1, l2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(np.uint64(first), np.uint64(max(last + 1, first))):
         middle = origin + i * cell
-        lift = cells[row, DEEPEST, i] - (surface + step * i)
-        a = max(low, max(cells[row, FROM, i] - edge, middle - half))
-        b = max(a, min(high, min(cells[row, TO, i] - edge, middle + half)))
+        lift = cells[row, DEEPEST + i] - (surface + step * i)
+        a = max(low, max(cells[row, FROM + i] - edge, middle - half))
+        b = max(a, min(high, min(cells[row, TO + i] - edge, middle + half)))
         b = b if lift > 0.0 else a
         zero = min(max(waterline + per_lift * lift, a), b)
         u, v = zero if to_right else a, b if to_right else zero
@@ -183,12 +186,11 @@ def anchor_of(value: FloatArray, flag: IntArray, row: int, edge: float, deep: fl
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def mark_cells(cells: FloatArray, value: FloatArray, row: int, window: int) -> None:
+def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int) -> None:
     """Remember the base that touches a line now; its cells must reach as far."""
     low, high, edge = value[row, LOW], value[row, HIGH], value[row, EDGE]
     depth, slope, cell = value[row, DEPTH], value[row, FALL], value[row, CELL]
     half, origin = 0.5 * cell, (window + 0.5) * cell
-    deepest, covered_from, covered_to, centre = cells[row, DEEPEST], cells[row, FROM], cells[row, TO], cells[row, CENTRE]
     per_cell = 1.0 / cell
     first = (int(np.floor(low * per_cell)) - window) & ~7
     last = (int(np.floor(high * per_cell)) - window) | 7
@@ -198,11 +200,11 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: int, window: int) -> N
         a, b = max(low, middle - half), min(high, middle + half)
         here = depth + slope * (middle - edge)
         marked = here if b >= a else -NOTHING
-        deeper |= marked > deepest[i]
-        deepest[i] = max(deepest[i], marked)
-        covered_from[i] = min(covered_from[i], a if b >= a else NOTHING)
-        covered_to[i] = max(covered_to[i], b if b >= a else -NOTHING)
-        centre[i] = max(centre[i], here if a <= middle <= b else 0.0)
+        deeper |= marked > cells[row, DEEPEST + i]
+        cells[row, DEEPEST + i] = max(cells[row, DEEPEST + i], marked)
+        cells[row, FROM + i] = min(cells[row, FROM + i], a if b >= a else NOTHING)
+        cells[row, TO + i] = max(cells[row, TO + i], b if b >= a else -NOTHING)
+        cells[row, CENTRE + i] = max(cells[row, CENTRE + i], here if a <= middle <= b else 0.0)
     if deeper:
         value[row, SLOPE] = slope
 
@@ -215,17 +217,16 @@ def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> N
     half, origin = 0.5 * cell, (window + 0.5) * cell
     rise = (depth - value[row, DEPTH_MARKED]) / (edge - before)
     low, high = min(edge, before), max(edge, before)
-    deepest, covered_from, covered_to, centre = cells[row, DEEPEST], cells[row, FROM], cells[row, TO], cells[row, CENTRE]
     for j in range(int(np.floor(low / cell)) - window, int(np.floor(high / cell)) - window + 1):
         i = np.uint64(j)
         middle = origin + i * cell
         passed = min(max(middle, low), high)
         here = depth + rise * (passed - edge) + slope * (middle - passed)
         if passed == middle:
-            centre[i] = max(centre[i], here)
-        deepest[i] = max(deepest[i], here)
-        covered_from[i] = min(covered_from[i], max(low, middle - half))
-        covered_to[i] = max(covered_to[i], min(high, middle + half))
+            cells[row, CENTRE + i] = max(cells[row, CENTRE + i], here)
+        cells[row, DEEPEST + i] = max(cells[row, DEEPEST + i], here)
+        cells[row, FROM + i] = min(cells[row, FROM + i], max(low, middle - half))
+        cells[row, TO + i] = max(cells[row, TO + i], min(high, middle + half))
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -235,11 +236,11 @@ def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, 
     cell, slope = lines.value[row, CELL], 0.0 if lines.flag[row, SWEPT] == 1 else lines.value[row, SLOPE]
     total = 0.0
     for j in range(first, last):
-        i = j - start
-        width = lines.cells[row, TO, i] - lines.cells[row, FROM, i]
+        i = np.uint64(j - start)
+        width = lines.cells[row, TO + i] - lines.cells[row, FROM + i]
         if width > 0.0:
-            middle = 0.5 * (lines.cells[row, TO, i] + lines.cells[row, FROM, i])
-            depth = lines.cells[row, CENTRE, i] if lines.cells[row, CENTRE, i] > 0.0 else lines.cells[row, DEEPEST, i]
+            middle = 0.5 * (lines.cells[row, TO + i] + lines.cells[row, FROM + i])
+            depth = lines.cells[row, CENTRE + i] if lines.cells[row, CENTRE + i] > 0.0 else lines.cells[row, DEEPEST + i]
             depth += slope * (middle - (j + 0.5) * cell)
             total += width * (depth * depth + slope * slope * width * width / 12.0)
     return 0.5 * hardness * excess / (hardness + excess) * total * lines.spacing[0]
@@ -252,11 +253,12 @@ def energy_at_edge(
 ) -> float:  # fmt: skip
     """Energy per area (J/m²) that the snow gains where an edge covers new ground, or gives back where it leaves."""
     j = int(np.floor(y / cell))
-    i = j - start
+    at = j - start
     stiff = hardness + excess
     before = 0.0
-    if 0 <= i < cells.shape[2] and cells[row, FROM, i] <= y <= cells[row, TO, i]:
-        before = cells[row, DEEPEST, i] + slope * (y - (j + 0.5) * cell)
+    i = np.uint64(at)
+    if 0 <= at < CELLS and cells[row, FROM + i] <= y <= cells[row, TO + i]:
+        before = cells[row, DEEPEST + i] + slope * (y - (j + 0.5) * cell)
     deepest = max(before, depth)
     pressed = max(0.0, hardness * depth - excess * (deepest - depth))
     gain = 0.5 * pressed * pressed / stiff

@@ -14,6 +14,7 @@ from .lines import (
     ANCHOR,
     ANCHORED,
     CELL,
+    CELLS,
     DEEP_NOW,
     DEPTH,
     DEPTH_MARKED,
@@ -166,7 +167,6 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
     """Let the snow remember the bases that touch its lines now, and where the edges hold."""
     ring = len(lines.flag) // 2
     value, flag, cells = lines.value, lines.flag, lines.cells
-    size = cells.shape[2]
     for k in range(2):
         for c in range(lines.count[k]):
             row = k * ring + (lines.first[k] + c) % ring
@@ -179,7 +179,7 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
             if swept:
                 low, high = min(low, value[row, EDGE_MARKED]), max(high, value[row, EDGE_MARKED])
             reach = MARGIN * cell
-            if flag[row, KEPT] == 0 or low - reach < start * cell or high + reach >= (start + size) * cell:
+            if flag[row, KEPT] == 0 or low - reach < start * cell or high + reach >= (start + CELLS) * cell:
                 make_room(archive, lines, row, low, high, snow.hardness, snow.excess)
             if swept:
                 if high - low > value[row, HIGH] - value[row, LOW] + cell:
@@ -202,6 +202,6 @@ def energy_in_snow(snow: Snow, lines: Lines, archive: Archive) -> float:
             row = k * ring + (lines.first[k] + c) % ring
             if lines.flag[row, KEPT] == 1:
                 start = lines.flag[row, WINDOW]
-                total += energy_left(lines, row, start, start + lines.cells.shape[2], snow.hardness, snow.excess)
+                total += energy_left(lines, row, start, start + CELLS, snow.hardness, snow.excess)
                 total -= lines.value[row, LOST]
     return total
