@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from .motion.advance import (
-    OF_DAMPING,
-    OF_DRAG,
-    OF_FRICTION,
-    OF_RELEASED,
-    OF_SHEAR,
-    OF_SIDEWAYS,
-    mechanical_energy,
-)
-from .motion.along import along_skis
-from .motion.forces import HELD, SPRINGY
+from .motion.forces import HELD
+from .motion.history import History, longer, new_history, note
 from .motion.path import energy_in_snow
 from .run import LOST, STORED, SkiHistory
 from .run_setup import Setup
@@ -30,14 +22,8 @@ GAINED_SHARE, GAINED = 0.05, 10.0
 _MECHANICAL = 3  # kinetic, potential, elastic in the skis
 
 
-@dataclass(frozen=True, slots=True)
-class _Moment:
-    time: float
-    place: FloatArray
-    attitude: FloatArray
-    velocity: FloatArray
-    skis: dict[str, FloatArray]
-    energies: FloatArray
+_ROOM = 64
+"""Moments for which a record begins with room."""
 
 
 @dataclass(slots=True)
@@ -46,90 +32,77 @@ class Record:
 
     setup: Setup
     run_length: float = 0.0
-    _moments: list[_Moment] = field(default_factory=list)
+    _history: History = field(init=False)
+    _count: int = 0
     _lost_before: float = field(init=False)
+    _held_first: float = field(init=False)
 
     def __post_init__(self) -> None:
-        self._lost_before = energy_in_snow(self.setup.snow, self.setup.lines, self.setup.archive)
+        setup = self.setup
+        self._history = new_history(_ROOM, len(setup.model.node))
+        self._lost_before = energy_in_snow(setup.snow, setup.lines, setup.archive)
+        self._held_first = float(setup.memory.start.power[HELD])
 
     def add(self, *, replace: bool = False) -> None:
         """Keep the present moment; with `replace` in place of the last one."""
-        state = self.setup.memory.state
-        moment = _Moment(
-            self.setup.time,
-            state.place.copy(),
-            state.turn.copy(),
-            state.turn @ state.velocity[:3],
-            _skis(self.setup),
-            self._energies(),
-        )
-        length = self.run_length
-        if self._moments:
-            length += _arc(self._moments[-1], moment)
-        same = bool(self._moments) and moment.time <= self._moments[-1].time
-        if (replace or same) and len(self._moments) > 1:
-            self._moments[-1:] = [moment]
+        if self._count == len(self._history.time):
+            self._history = longer(self._history)
+        setup, row = self.setup, self._count
+        note(
+            setup.model, setup.snow, setup.world, setup.lines, setup.archive, setup.memory, setup.shares,
+            self._lost_before, self._held_first, self._history, row,
+        )  # fmt: skip
+        if row:
+            self.run_length += self._arc(row - 1, row)
+        same = row > 0 and self._history.time[row] <= self._history.time[row - 1]
+        if (replace or same) and row > 1:
+            for each in self._history:
+                each[row - 1] = each[row]
         else:
-            self._moments.append(moment)
-        self.run_length = length
+            self._count += 1
 
     @property
     def gains_energy(self) -> bool:
         """Whether motion, height and bend hold more energy than at the start: numbers have run away."""
-        first, last = self._moments[0].energies, self._moments[-1].energies
+        first, last = self._history.energies[0], self._history.energies[self._count - 1]
         gained = float(last[:_MECHANICAL].sum() - first[:_MECHANICAL].sum())
         turned_over = float(first[0] + max(0.0, first[1] - last[1]))
         return not gained <= GAINED_SHARE * turned_over + GAINED
 
     def drop(self) -> None:
         """Forget the last moment."""
-        if len(self._moments) > 1:
-            gone = self._moments.pop()
-            self.run_length -= _arc(self._moments[-1], gone)
+        if self._count > 1:
+            self._count -= 1
+            self.run_length -= self._arc(self._count - 1, self._count)
 
-    def _energies(self) -> FloatArray:
-        setup = self.setup
-        clock, power = setup.memory.clock, setup.memory.start.power
-        kinetic, potential, elastic = mechanical_energy(
-            setup.model, setup.world, setup.memory.state, setup.memory.scratch
-        )
-        left = energy_in_snow(setup.snow, setup.lines, setup.archive) - self._lost_before
-        work = clock.work
-        first = self._moments[0].energies[-1] if self._moments else power[HELD]
-        return np.array(
-            [
-                kinetic,
-                potential,
-                elastic,
-                power[SPRINGY] + power[HELD],
-                left - work[OF_SIDEWAYS] + work[OF_RELEASED],
-                work[OF_SHEAR] - (power[HELD] - first),
-                work[OF_FRICTION],
-                work[OF_DRAG],
-                work[OF_DAMPING],
-                power[HELD],
-            ]
-        )
+    def _arc(self, one: int, other: int) -> float:
+        """Length of path between two moments (m), by the velocities at both ends and the chord."""
+        place, velocity = self._history.place, self._history.velocity
+        chord = math.dist(place[one], place[other])
+        before, after = math.hypot(*velocity[one]), math.hypot(*velocity[other])
+        if before * after == 0.0:
+            return chord
+        angle2 = max(0.0, 2.0 * (1.0 - float(velocity[one] @ velocity[other]) / (before * after)))
+        return chord * (1.0 + angle2 / 24.0) if angle2 < 1.0 else chord
 
     def histories(self) -> dict[str, Any]:
         """The arrays of a `Run`."""
-        moments = self._moments
-        attitude = np.array([m.attitude for m in moments]).reshape(-1, 3, 3)
-        velocity = np.array([m.velocity for m in moments]).reshape(-1, 3)
-        time = np.array([m.time for m in moments])
-        energies = np.array([m.energies for m in moments]).reshape(len(moments), -1)
-        station = self.setup.model.node
-        skis = {name: np.array([m.skis[name] for m in moments]) for name in moments[0].skis} if moments else {}
+        kept = History(*(each[: self._count].copy() for each in self._history))
+        normal = np.array([self.setup.slope_normal(float(x)) for x in kept.place[:, 0]])
+        skis = {name: kept.along[:, i] for i, name in enumerate(_ALONG)}
         return {
-            "time": time,
-            "place": np.array([m.place for m in moments]).reshape(-1, 3),
-            "attitude": attitude,
-            "velocity": velocity,
-            "heading": _heading(attitude, np.array([self.setup.slope_normal(float(m.place[0])) for m in moments])),
-            "turn_radius": turn_radius(time, velocity, attitude[:, :, 2]),
-            "skis": SkiHistory(station=station, **(skis or _no_skis(len(station)))),
-            "energies": {name: energies[:, i] for i, name in enumerate((*STORED, *LOST))},
+            "time": kept.time,
+            "place": kept.place,
+            "attitude": kept.turn,
+            "velocity": kept.velocity,
+            "heading": _heading(kept.turn, normal),
+            "turn_radius": turn_radius(kept.time, kept.velocity, kept.turn[:, :, 2]),
+            "skis": SkiHistory(station=self.setup.model.node, track=kept.edge, depth=kept.boot_depth, **skis),
+            "energies": {name: kept.energies[:, i] for i, name in enumerate((*STORED, *LOST))},
         }
+
+
+_ALONG = ("edge_depth", "force_per_length", "shear_per_length", "bending", "twist")
 
 
 def _heading(attitude: FloatArray, normal: FloatArray) -> FloatArray:
@@ -137,17 +110,6 @@ def _heading(attitude: FloatArray, normal: FloatArray) -> FloatArray:
     ahead, normal = attitude[:, :, 0], normal.reshape(-1, 3)
     down = ahead[:, 0] * normal[:, 2] - ahead[:, 2] * normal[:, 0]
     return np.asarray(np.unwrap(np.arctan2(ahead[:, 1], down)))
-
-
-def _arc(one: _Moment, other: _Moment) -> float:
-    """Length of path between two moments (m), by the speeds at both ends and the chord."""
-    chord = float(np.linalg.norm(other.place - one.place))
-    before, after = np.linalg.norm(one.velocity), np.linalg.norm(other.velocity)
-    if before * after == 0.0:
-        return chord
-    cosine = float(one.velocity @ other.velocity / (before * after))
-    angle2 = max(0.0, 2.0 * (1.0 - cosine))
-    return chord * (1.0 + angle2 / 24.0) if angle2 < 1.0 else chord
 
 
 def turn_radius(time: FloatArray, velocity: FloatArray, normal: FloatArray) -> FloatArray:
@@ -162,33 +124,3 @@ def turn_radius(time: FloatArray, velocity: FloatArray, normal: FloatArray) -> F
     turning = np.einsum("ij,ij->i", np.cross(velocity, acceleration), normal)
     moving = (speed > 0.01) & (np.abs(turning) > 1e-6 * speed**3)
     return np.where(moving, speed**3 / np.where(moving, turning, 1.0), np.inf)
-
-
-def _skis(setup: Setup) -> dict[str, FloatArray]:
-    """Histories along the skis, at the nodes."""
-    nodes = len(setup.model.node)
-    along = np.zeros((5, 2, nodes))
-    along_skis(setup.model, setup.memory.state, setup.memory.start, setup.shares, along)
-    edge = np.array([_boot_edge(setup, k) for k in range(2)])
-    boot = [float(np.interp(0.0, setup.model.node[::-1], along[0, k, ::-1])) for k in range(2)]
-    return dict(zip(_NAMES, (edge, np.array(boot), *along), strict=True))
-
-
-_NAMES = ("track", "depth", "edge_depth", "force_per_length", "shear_per_length", "bending", "twist")
-
-
-def _no_skis(stations: int) -> dict[str, FloatArray]:
-    empty = {name: np.zeros((0, 2, stations)) for name in _NAMES}
-    return empty | {"track": np.zeros((0, 2, 3)), "depth": np.zeros((0, 2))}
-
-
-def _boot_edge(setup: Setup, k: int) -> FloatArray:
-    """The edge that is down at the boot, brought to the slope's surface (m)."""
-    model, state = setup.model, setup.memory.state
-    place = round(-model.tail / (model.tip - model.tail) * (len(model.table) - 1))
-    half, height = model.table[place, 0], model.table[place, 2]
-    lateral = state.turn @ model.lateral
-    side = -np.sign(lateral[2]) if abs(lateral[2]) > 1e-9 else 0.0
-    edge = state.place + state.turn @ (model.middle[k] + height * model.normal) + side * half * lateral
-    edge[2] = setup.surface_height(float(edge[0]))
-    return np.asarray(edge)

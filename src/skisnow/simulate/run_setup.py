@@ -21,7 +21,7 @@ from .motion.advance import (
 )
 from .motion.along import shares
 from .motion.archive import Archive, grown, new_archive
-from .motion.lines import CELL, CELLS, KEPT, SLOPE, TOUCHED, WINDOW, Lines, new_lines
+from .motion.lines import CELL, CELLS, KEPT, SLOPE, TOUCHED, WINDOW, Lines, cells_of, new_lines
 from .motion.model import Model, Snow, World, sledge_model
 from .motion.path import AHEAD, follow
 from .motion.settle import settle
@@ -181,8 +181,7 @@ def _under_skis(lines: Lines) -> list[_Piece]:
     for k in range(2):
         for c in range(int(lines.count[k])):
             row = k * ring + (int(lines.first[k]) + c) % ring
-            about = lines.cells[row].reshape(4, CELLS)
-            deepest, covered_from, covered_to, _ = about
+            deepest, covered_from, covered_to, _ = cells_of(lines, row)
             covered = covered_to > covered_from
             if lines.flag[row, KEPT] == 0 or not covered.any():
                 continue

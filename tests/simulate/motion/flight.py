@@ -61,7 +61,7 @@ class Flight:
         self.world = World(np.array([0.0, 0.0, -gravity]), 0.0, 0.0, 0.0, 1.0, np.zeros((1, 2)))
         self.state, self._next = new_state(n), new_state(n)
         self._forces, self._stage = new_forces(n, 4), new_forces(n, 4)
-        self._lines = new_lines(4, 16, spacing=0.02, cell=1e-3)
+        self._lines = new_lines(4, spacing=0.02, cell=1e-3)
         self._system, self._room = new_factored(n), new_room(n)
         self._past = new_past(n)
 

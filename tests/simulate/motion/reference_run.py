@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
+from skisnow.simulate.motion.lines import CELLS
 from skisnow.simulate.motion.model import Snow, World
 from skisnow.simulate.run_setup import Setup
 from skisnow.ski.beam.clamped import clamped
@@ -16,7 +18,7 @@ from .reference import Body, Motion, felt, motion_of, ros2_step
 from .reference_snow import Line, lines_of, remember
 
 FloatArray = npt.NDArray[np.float64]
-AHEAD, BESIDE, FREE_CELLS = 0.12, 0.04, 24
+AHEAD, BESIDE, FREE_CELLS, STEPS_PER_TANGENT = 0.12, 0.04, 24, 4
 
 
 class ReferenceRun:
@@ -29,7 +31,7 @@ class ReferenceRun:
         self.motion: Motion = motion_of(setup.memory.state)
         self.lines = lines_of(setup.lines)
         self.spacing, self.cell = (float(value) for value in setup.lines.spacing)
-        self.most_cells = setup.lines.cells.shape[1] - FREE_CELLS
+        self.most_cells = CELLS - FREE_CELLS
         for line in (*self.lines[0], *self.lines[1]):
             line.cells, line.anchor, line.cell, line.slope, line.above, line.marked = (
                 {},
@@ -39,12 +41,16 @@ class ReferenceRun:
                 None,
                 None,
             )
+        self.steps = 0
         self._feel()
 
     def step(self, h: float) -> None:
         """One step (s), accepted."""
+        if self.steps % STEPS_PER_TANGENT == 0:
+            self.tangent = self.start.tangent
+        self.steps += 1
         arguments = (self.body, self.snow, self.world, self.spacing, self.lines)
-        self.motion = ros2_step(*arguments, self.motion, self.start, h)
+        self.motion = ros2_step(*arguments, self.motion, replace(self.start, tangent=self.tangent), h)
         for k in range(2):
             self._follow(k)
         self._feel()

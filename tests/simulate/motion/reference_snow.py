@@ -18,14 +18,12 @@ from skisnow.simulate.motion.lines import (
     ANCHORED,
     CELL,
     DEEP_ABOVE,
-    DEEPEST,
     EDGE_ABOVE,
-    FROM,
     KEPT,
     SLOPE,
-    TO,
     WINDOW,
     Lines,
+    cells_of,
 )
 from skisnow.simulate.motion.model import Snow
 
@@ -95,11 +93,9 @@ def lines_of(arrays: Lines) -> tuple[list[Line], list[Line]]:
         made.anchor = float(value[ANCHOR]) if flag[ANCHORED] else None
         made.above = (float(value[EDGE_ABOVE]), float(value[DEEP_ABOVE])) if flag[ABOVE] else None
         if flag[KEPT]:
-            size = arrays.cells.shape[1]
-            for j in range(flag[WINDOW], flag[WINDOW] + size):
-                kept = arrays.cells[row, j % size]
-                if kept[TO] > kept[FROM]:
-                    made.cells[j] = Cell(*(float(kept[i]) for i in (DEEPEST, FROM, TO)))
+            for j, (deepest, start, end, _) in enumerate(cells_of(arrays, row).T.tolist(), int(flag[WINDOW])):
+                if end > start:
+                    made.cells[j] = Cell(deepest, start, end)
         return made
 
     left, right = (

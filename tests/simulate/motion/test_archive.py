@@ -10,20 +10,18 @@ import pytest
 
 from skisnow.simulate.motion.archive import Archive, grown, leave_line, look_ahead, new_archive
 from skisnow.simulate.motion.lines import (
-    DEEPEST,
     DEPTH,
     EDGE,
     FALL,
-    FROM,
     HIGH,
     KEPT,
     LOST,
     LOW,
-    TO,
     TOUCHED,
     WINDOW,
     Lines,
     begin_line,
+    cells_of,
     energy_left,
     new_lines,
     open_window,
@@ -47,7 +45,7 @@ def frame_at(place: FloatArray, heading: float) -> FloatArray:
 
 def first_pass(heading: float) -> tuple[Archive, Lines]:
     """A straight groove, archived line by line."""
-    archive, lines = new_archive(200, 20000), new_lines(1, 64, spacing=SPACING, cell=CELL)
+    archive, lines = new_archive(200, 20000), new_lines(1, spacing=SPACING, cell=CELL)
     for number in range(-40, 41):
         place = ORIGIN + number * SPACING * np.array([math.cos(heading), math.sin(heading), 0.0])
         begin_line(lines, 0, frame_at(place, heading))
@@ -74,7 +72,7 @@ def test_older_groove_is_recalled(heading: float, angle: float) -> None:
     for j in range(lines.flag[0, WINDOW], lines.flag[0, WINDOW] + 64):
         place = frame[:2] + (j + 0.5) * CELL * frame[6:8]
         across = float((place - ORIGIN[:2]) @ left)
-        deepest, low, high = lines.cells[0, j % 64, [DEEPEST, FROM, TO]]
+        deepest, low, high = cells_of(lines, 0)[:3, j - lines.flag[0, WINDOW]]
         if abs(across) < HALF - 1e-6:
             met += 1
             assert deepest == pytest.approx(DEPTH_AT_MIDDLE + SLOPE * across, abs=1e-9)  # single precision of 5 mm

@@ -43,7 +43,7 @@ def test_surface_is_the_profile(profile: Profile, hill: World) -> None:
 
 def laid(world: World, state: State) -> Lines:
     """Lines under a sledge that has just come."""
-    lines, archive = new_lines(256, 16, spacing=0.02, cell=1e-3), new_archive(10, 100)
+    lines, archive = new_lines(256, spacing=0.02, cell=1e-3), new_archive(10, 100)
     follow(free_model(), SNOW, world, lines, archive, state)
     return lines
 
@@ -81,7 +81,7 @@ def test_lines_stay_while_the_ski_goes_over_them(hill: World) -> None:
     model = free_model()
     state = new_state(len(model.mass))
     state.place[:] = 9.0, 2.0, 0.0
-    lines, archive = new_lines(256, 16, spacing=0.02, cell=1e-3), new_archive(10, 100)
+    lines, archive = new_lines(256, spacing=0.02, cell=1e-3), new_archive(10, 100)
     follow(model, SNOW, hill, lines, archive, state)
     before = {tuple(lines.frame[(int(lines.first[0]) + c) % 256, :3]) for c in range(int(lines.count[0]))}
     for _ in range(20):

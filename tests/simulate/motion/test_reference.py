@@ -11,7 +11,7 @@ import pytest
 
 from skisnow.simulate.motion.equations import add_forces, channel_rows
 from skisnow.simulate.motion.forces import FRICTION, NORMAL, SHEAR, feel
-from skisnow.simulate.motion.lines import ANCHORED, DEEPEST, FROM, KEPT, TO, TOUCHED, WINDOW
+from skisnow.simulate.motion.lines import ANCHORED, CELLS, KEPT, TOUCHED, WINDOW, cells_of
 from skisnow.simulate.motion.model import PADDING
 from skisnow.simulate.motion.system import factor, new_vector
 from skisnow.simulate.motion.tangent import CHANNELS
@@ -53,11 +53,11 @@ def with_older_track(setup: Setup, rng: np.random.Generator) -> Setup:
     for row in np.flatnonzero(lines.flag[:, TOUCHED]):
         if lines.flag[row, KEPT] == 0:
             continue
-        cell, first, size = lines.value[row, 0], lines.flag[row, WINDOW], lines.cells.shape[1]
+        cell, first, size = lines.value[row, 0], int(lines.flag[row, WINDOW]), CELLS
         for j in range(first, first + size):
             if rng.uniform() < 0.7:
                 ends = np.sort(rng.uniform(j * cell, (j + 1) * cell, 2))
-                lines.cells[row, j % size, [DEEPEST, FROM, TO]] = rng.uniform(0.0, 0.01), *ends
+                cells_of(lines, row)[:3, j - first] = rng.uniform(0.0, 0.01), *ends
     return setup
 
 

@@ -9,14 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from .archive import Archive
-from .equations import add_forces, channel_rows, copy_state
+from .equations import channel_rows, copy_state, drag_power
 from .fast import REACH, Past, fast_step, new_past
 from .forces import FRICTION, NORMAL, RELEASED, SHEAR, SIDEWAYS, Forces, feel, new_forces
 from .lines import Lines
 from .model import PADDING, Model, Snow, State, World, new_state
 from .path import follow, press
 from .ros2 import GAMMA, Room, new_room, ros2_step
-from .system import Factored, Vector, add_band, factor, new_factored, new_vector
+from .system import Factored, factor, new_factored, quadratic
 from .tangent import CHANNELS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -41,7 +41,7 @@ class Clock(NamedTuple):
     """What goes on from call to call: time now, next step, last step taken (s); counts."""
 
     time: FloatArray  # (3,)
-    counts: IntArray  # (3,) steps taken, rejected, since the tangent was renewed
+    counts: IntArray  # (4,) steps taken, rejected, since the matrix was renewed; 1: the tangent is known
     work: FloatArray  # (WORKS,) energies (J)
     power: FloatArray  # (WORKS,) at the last look (W)
 
@@ -60,7 +60,6 @@ class Memory(NamedTuple):
     room: Room
     past: Past
     clock: Clock
-    scratch: Vector
 
 
 def new_memory(size: int, ring: int) -> Memory:
@@ -76,8 +75,7 @@ def new_memory(size: int, ring: int) -> Memory:
         new_factored(size),
         new_room(size),
         new_past(size),
-        Clock(np.zeros(3), np.zeros(3, np.int64), np.zeros(WORKS), np.zeros(WORKS)),
-        new_vector(size),
+        Clock(np.zeros(3), np.zeros(4, np.int64), np.zeros(WORKS), np.zeros(WORKS)),
     )
 
 
@@ -88,21 +86,17 @@ def observe(
     """Look at the snow at the state reached: forces, powers, and what the snow remembers of it."""
     state, start, clock = memory.state, memory.start, memory.clock
     follow(model, snow, world, lines, archive, state)
+    # for a constant in place of a value Numba compiles a function anew, and more slowly
     feel(model, snow, lines, state, tangent, clock.time[0] >= 0.0, start)
     press(snow, lines, archive)
-    scratch = memory.scratch
-    scratch.rigid[:] = 0.0
-    scratch.bend[:] = 0.0
-    drag = add_forces(model, world, state, start, 0.0, scratch)
     damping = 0.0
     for k in range(2):
-        add_band(model.stiffness, state.bend_rate[k], 1.0, scratch.bend[k])
-        for i in range(PADDING, state.bend.shape[1] - PADDING):
-            damping += scratch.bend[k, i] * state.bend_rate[k, i]
+        damping += model.damping * quadratic(model.stiffness, state.bend_rate[k])
     now = (
         -start.power[SHEAR], -start.power[FRICTION], start.power[SIDEWAYS], start.power[RELEASED],
-        -start.power[NORMAL], -drag, model.damping * damping,
+        -start.power[NORMAL], drag_power(world, state.velocity), damping,
     )  # fmt: skip
+    clock.counts[3] = 1 if tangent else 0
     half = 0.5 * clock.time[2]
     for a in range(WORKS):
         clock.work[a] += half * (clock.power[a] + now[a])
@@ -135,6 +129,8 @@ def advance_fixed(
         h = clock.time[1]  # but for rounding the same: the matrix may be kept
     else:
         clock.counts[2] = 0
+        if clock.counts[3] == 0:
+            feel(model, snow, lines, memory.state, h > 0.0, h < 0.0, memory.start)
     clock.time[1] = h
     for i in range(steps):
         first = fast and past.step[0] != h
@@ -156,9 +152,7 @@ def advance_fixed(
         clock.counts[2] += 1
         if not _is_finite(memory.state):
             return NOT_FINITE
-        # the last step's tangent is there in case that the next steps are of another length
-        renew = i == steps - 1 or clock.counts[2] % STEPS_PER_TANGENT == 0
-        observe(model, snow, world, lines, archive, memory, renew)
+        observe(model, snow, world, lines, archive, memory, clock.counts[2] % STEPS_PER_TANGENT == 0)
     return GOES_ON
 
 
@@ -262,27 +256,19 @@ def _is_finite(state: State) -> bool:
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def mechanical_energy(model: Model, world: World, state: State, scratch: Vector) -> tuple[float, float, float]:
+def mechanical_energy(model: Model, world: World, state: State) -> tuple[float, float, float]:
     """Kinetic, potential and the skis' elastic energy (J)."""
-    from_skis = 0.0
-    elastic = 0.0
     V = state.velocity
-    kinetic = 0.0
+    kinetic, elastic = 0.0, 0.0
     for a in range(6):
         for b in range(6):
             kinetic += 0.5 * V[a] * model.rigid[a, b] * V[b]
-    scratch.bend[:] = 0.0
     for k in range(2):
-        add_band(model.mass, state.bend_rate[k], 1.0, scratch.bend[k])
+        kinetic += 0.5 * quadratic(model.mass, state.bend_rate[k])
+        elastic += 0.5 * quadratic(model.stiffness, state.bend[k])
         for i in range(len(model.mass)):
-            u = state.bend_rate[k, i + PADDING]
-            from_skis += 0.5 * u * scratch.bend[k, i + PADDING]
             for a in range(6):
-                from_skis += u * model.coupling[k, i, a] * V[a]
-        scratch.bend[k, :] = 0.0
-        add_band(model.stiffness, state.bend[k], 0.5, scratch.bend[k])
-        for i in range(PADDING, state.bend.shape[1] - PADDING):
-            elastic += scratch.bend[k, i] * state.bend[k, i]
+                kinetic += state.bend_rate[k, i + PADDING] * model.coupling[k, i, a] * V[a]
     potential = 0.0
     c = model.first_moment
     for a in range(3):
@@ -294,4 +280,4 @@ def mechanical_energy(model: Model, world: World, state: State, scratch: Vector)
                 # the coupling's place part is the mass that each unknown lifts along the base's normal
                 lifted = model.coupling[k, i, 1] * model.normal[1] + model.coupling[k, i, 2] * model.normal[2]
                 potential -= world.gravity[a] * n * lifted * state.bend[k, i + PADDING]
-    return kinetic + from_skis, potential, elastic
+    return kinetic, potential, elastic

@@ -304,7 +304,8 @@ def _coarsen(lines: Lines, row: int) -> None:
             low[t], high[t] = min(low[t], lines.cells[row, FROM + i]), max(high[t], lines.cells[row, TO + i])
     lines.value[row, CELL], lines.flag[row, WINDOW] = 2.0 * cell, new
     for i in range(np.uint64(CELLS)):
-        lines.cells[row, DEEPEST + i], lines.cells[row, FROM + i], lines.cells[row, TO + i] = deepest[i], low[i], high[i]
+        lines.cells[row, DEEPEST + i] = deepest[i]
+        lines.cells[row, FROM + i], lines.cells[row, TO + i] = low[i], high[i]
         lines.cells[row, CENTRE + i] = centre[i] if both[i] == 2 else 0.0
 
 

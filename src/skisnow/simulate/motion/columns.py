@@ -39,8 +39,8 @@ U0, U1, U2, T0, T1, T2, SIZE, ASIDE = _columns(46, 8)
 # the base: its normal along the ski, one over its part along the line's; fall of the depth to the left, growth along
 # the edge; width across the base over that along the line; where it begins and ends, and where it is wet (m)
 NORMAL_AHEAD, STEEP, FALLING, CLIMB, WIDE, LATERAL, RIGHT, LEFT, WET_FROM, WET_TO = _columns(54, 10)
-# the answer of the snow: force (N) and moment, stiffness and its moments, twice the springy energy (J); grip of the edge
-# (N), and the share of it in use
+# the answer of the snow: force (N) and moment, stiffness and its moments, twice the springy energy per length (J/m);
+# grip of the edge (N), and the share of it in use
 FORCE, MOMENT, STIFF0, STIFF1, STIFF2, SPRING, HOLD, USED = _columns(64, 8)
 # centre of pressure (m), its velocity (m/s) and speed along the edge, how far across the base from the ski's middle;
 # rate of the twist; what compaction and friction do along the edge, and the shear across it (N)

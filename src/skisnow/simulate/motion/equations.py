@@ -24,8 +24,8 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def add_forces(model: Model, world: World, state: State, snow: Forces, scale: float, out: Vector) -> float:
-    """Add scale × all generalised forces but stiffness and damping, and return the power of the drag (W)."""
+def add_forces(model: Model, world: World, state: State, snow: Forces, scale: float, out: Vector) -> None:
+    """Add scale × all generalised forces but stiffness and damping."""
     R, v = state.turn, state.velocity
     g = world.gravity
     g0 = R[0, 0] * g[0] + R[1, 0] * g[1] + R[2, 0] * g[2]
@@ -75,7 +75,14 @@ def add_forces(model: Model, world: World, state: State, snow: Forces, scale: fl
     out.rigid[5] += scale * (
         snow.rigid[5] + c[0] * g1 - c[1] * g0 - (v[3] * p[4] - v[4] * p[3]) - (v[0] * p[1] - v[1] * p[0])
     )
-    return drag * speed * speed
+
+
+@numba.njit(cache=True, error_model="numpy")
+def drag_power(world: World, velocity: FloatArray) -> float:
+    """Power (W) that the air takes at the centre of pressure."""
+    high = world.drag_height
+    a0, a1, a2 = velocity[0] + velocity[4] * high, velocity[1] - velocity[3] * high, velocity[2]
+    return world.drag * (a0 * a0 + a1 * a1 + a2 * a2) ** 1.5
 
 
 @numba.njit(cache=True, error_model="numpy")

@@ -12,13 +12,16 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+# isort: off
 from .columns import (
     ARM, ASIDE, C0, C1, C2, CLIMB, COLUMNS, COSINE, D0, D1, D2, DEEP, EDGE_AT, EDGE_DEEP, FALLING, FLARE, FORCE, H0,
-    H1, H2, HALF, HEIGHT, HOLD, K1, K2, LATERAL, LEFT, LENGTH, MOMENT, N0, N1, N2, NORMAL_AHEAD, REACH, RESIST, RIGHT_MOVES, LEFT_MOVES,
-    RIGHT, RISE, RUB, S, SHARE, SHEARING, SINE, SIZE, SLIDING, SPRING, STEEP, STIFF0, STIFF1, STIFF2, T0, T1, T2,
-    TILT, TURNING, TWISTING, TWIST_RATE, U0, U1, U2, UP, USED, VS, VT, VW, W0, W1, W2, W3, WET_FROM, WET_TO, WIDE,
-    WIDTH, WS, WT, WW, Y0, Y1, Y2, Z,
+    H1, H2, HALF, HEIGHT, HOLD, K1, K2, LATERAL, LEFT, LEFT_MOVES, LENGTH, MOMENT, N0, N1, N2, NORMAL_AHEAD, REACH,
+    RESIST, RIGHT, RIGHT_MOVES, RISE, RUB, S, SHARE, SHEARING, SINE, SIZE, SLIDING, SPRING, STEEP, STIFF0, STIFF1,
+    STIFF2, T0, T1, T2, TILT, TURNING, TWISTING, TWIST_RATE, U0, U1, U2, UP, USED, VS, VT, VW, W0, W1, W2, W3,
+    WET_FROM, WET_TO, WIDE, WIDTH, WS, WT, WW, Y0, Y1, Y2, Z,
 )  # fmt: skip
+
+# isort: on
 from .lines import (
     ABOVE,
     ANCHORED,
@@ -153,7 +156,7 @@ def _press(snow: Snow, lines: Lines, count: int, look: bool, sheet: FloatArray, 
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath=SUMS)
-def _push(
+def _push(  # noqa: PLR0915 - one loop over many lines at a time
     model: Model, snow: Snow, state: State, k: int, count: int, sheet: FloatArray, rigid: FloatArray
 ) -> None:  # fmt: skip
     """Work out what acts along and across the edge, and add the forces on the rigid body to `rigid`."""
@@ -249,14 +252,15 @@ def _record(lines: Lines, k: int, count: int, out: Forces) -> None:
         if sheet[DEEP + i] > 0.0:
             row, edge = out.numbers[i, ROW], sheet[EDGE_AT + i]
             flag[row, TOUCHED] = 1
-            value[row, LOW], value[row, HIGH], value[row, EDGE] = edge + sheet[WET_FROM + i], edge + sheet[WET_TO + i], edge
+            value[row, LOW], value[row, HIGH] = edge + sheet[WET_FROM + i], edge + sheet[WET_TO + i]
+            value[row, EDGE] = edge
             value[row, DEPTH], value[row, FALL] = sheet[EDGE_DEEP + i], sheet[FALLING + i]
             value[row, DEEP_NOW] = sheet[DEEP + i]
     out.sections[k] = filled
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath=SUMS)
-def _sum_powers(  # noqa: PLR0915 - one loop over many lines at a time
+def _sum_powers(
     model: Model, snow: Snow, state: State, spacing: float, count: int, sheet: FloatArray, power: FloatArray
 ) -> None:  # fmt: skip
     """Add up what the forces do, and what the snow gives back at tip and tail; find how fast the base's edges move."""
@@ -282,7 +286,8 @@ def _sum_powers(  # noqa: PLR0915 - one loop over many lines at a time
         # the edge that is down
         rate, arm, at = sheet[TWIST_RATE + i], sheet[ARM + i], sheet[REACH + i]
         i0, i1, i2, rolling = s - h0, at * cp - h1, height - at * sp - h2, rate * (at - arm)
-        m0, m1, m2 = c0 + o1 * i2 - o2 * i1, c1 + o2 * i0 - o0 * i2 - sp * rolling, c2 + o0 * i1 - o1 * i0 - cp * rolling
+        m0 = c0 + o1 * i2 - o2 * i1
+        m1, m2 = c1 + o2 * i0 - o0 * i2 - sp * rolling, c2 + o0 * i1 - o1 * i0 - cp * rolling
         sheared += sheet[SHEARING + i] * (m0 * u0 + m1 * u1 + m2 * u2)
         # the base's edges, at -half and +half: their speed along the line
         half, flare, twisting = sheet[HALF + i], sheet[FLARE + i], sheet[TWISTING + i]

@@ -85,6 +85,11 @@ def new_lines(ring: int, *, spacing: float, cell: float) -> Lines:
     )
 
 
+def cells_of(lines: Lines, row: int) -> FloatArray:
+    """(4, CELLS) of a line: deepest, from, to, centre."""
+    return lines.cells[row].reshape(4, CELLS)
+
+
 @numba.njit(cache=True, error_model="numpy")
 def begin_line(lines: Lines, row: int, frame: FloatArray) -> None:
     """Make a row a line of virgin snow."""
@@ -145,8 +150,8 @@ def pressure(
     for i in range(np.uint64(first), np.uint64(max(last + 1, first))):
         middle = origin + i * cell
         lift = cells[row, DEEPEST + i] - (surface + step * i)
-        a = max(low, max(cells[row, FROM + i] - edge, middle - half))
-        b = max(a, min(high, min(cells[row, TO + i] - edge, middle + half)))
+        a = max(low, cells[row, FROM + i] - edge, middle - half)
+        b = max(a, min(high, cells[row, TO + i] - edge, middle + half))
         b = b if lift > 0.0 else a
         zero = min(max(waterline + per_lift * lift, a), b)
         u, v = zero if to_right else a, b if to_right else zero
@@ -190,14 +195,13 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int
     """Remember the base that touches a line now; its cells must reach as far."""
     low, high, edge = value[row, LOW], value[row, HIGH], value[row, EDGE]
     depth, slope, cell = value[row, DEPTH], value[row, FALL], value[row, CELL]
-    half, origin = 0.5 * cell, (window + 0.5) * cell
     per_cell = 1.0 / cell
     first = (int(np.floor(low * per_cell)) - window) & ~7
     last = (int(np.floor(high * per_cell)) - window) | 7
     deeper = 0
     for i in range(np.uint64(first), np.uint64(last + 1)):
-        middle = origin + i * cell
-        a, b = max(low, middle - half), min(high, middle + half)
+        number = float(window) + i
+        a, b, middle = max(low, number * cell), min(high, (number + 1.0) * cell), (number + 0.5) * cell
         here = depth + slope * (middle - edge)
         marked = here if b >= a else -NOTHING
         deeper |= marked > cells[row, DEEPEST + i]
@@ -214,19 +218,18 @@ def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> N
     """Remember the ground that the edge left sideways since it was marked last: as deep as the edge that passed."""
     edge, before, depth, slope = value[row, EDGE], value[row, EDGE_MARKED], value[row, DEPTH], value[row, FALL]
     cell = value[row, CELL]
-    half, origin = 0.5 * cell, (window + 0.5) * cell
     rise = (depth - value[row, DEPTH_MARKED]) / (edge - before)
     low, high = min(edge, before), max(edge, before)
-    for j in range(int(np.floor(low / cell)) - window, int(np.floor(high / cell)) - window + 1):
-        i = np.uint64(j)
-        middle = origin + i * cell
+    for j in range(int(np.floor(low / cell)), int(np.floor(high / cell)) + 1):
+        i = np.uint64(j - window)
+        middle = (j + 0.5) * cell
         passed = min(max(middle, low), high)
         here = depth + rise * (passed - edge) + slope * (middle - passed)
         if passed == middle:
             cells[row, CENTRE + i] = max(cells[row, CENTRE + i], here)
         cells[row, DEEPEST + i] = max(cells[row, DEEPEST + i], here)
-        cells[row, FROM + i] = min(cells[row, FROM + i], max(low, middle - half))
-        cells[row, TO + i] = max(cells[row, TO + i], min(high, middle + half))
+        cells[row, FROM + i] = min(cells[row, FROM + i], max(low, j * cell))
+        cells[row, TO + i] = max(cells[row, TO + i], min(high, (j + 1) * cell))
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -240,7 +243,9 @@ def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, 
         width = lines.cells[row, TO + i] - lines.cells[row, FROM + i]
         if width > 0.0:
             middle = 0.5 * (lines.cells[row, TO + i] + lines.cells[row, FROM + i])
-            depth = lines.cells[row, CENTRE + i] if lines.cells[row, CENTRE + i] > 0.0 else lines.cells[row, DEEPEST + i]
+            depth = (
+                lines.cells[row, CENTRE + i] if lines.cells[row, CENTRE + i] > 0.0 else lines.cells[row, DEEPEST + i]
+            )
             depth += slope * (middle - (j + 0.5) * cell)
             total += width * (depth * depth + slope * slope * width * width / 12.0)
     return 0.5 * hardness * excess / (hardness + excess) * total * lines.spacing[0]

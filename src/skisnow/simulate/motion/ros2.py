@@ -70,7 +70,7 @@ def ros2_step(
             first.bend[k, i] -= state.bend_rate[k, i] / gh
             middle.bend_rate[k, i] = state.bend_rate[k, i] + h * first.bend[k, i]
     move(state, places.rigid, places.bend, h, middle)
-    neither = h < 0.0
+    neither = h < 0.0  # for a constant Numba compiles a function anew
     feel(model, snow, lines, middle, neither, neither, stage)
     # a = x'₁ - 2 k₁ₓ; x'₁ to second order in the rotation vector
     sought, p = room.weights, places

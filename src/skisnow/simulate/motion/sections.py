@@ -13,11 +13,15 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+# isort: off
 from .columns import (
-    ASIDE, AT, BS, BT, BW, CLIMB, COSINE, CS, CT, CW, D0, D1, D2, DEEP, E0, E1, E2, EDGE_AT, EDGE_DEEP, FALLING, FLARE,
-    GAP, HALF, HEIGHT, K1, K2, LATERAL, LEFT, LENGTH, N0, N1, N2, NORMAL_AHEAD, REACH, RIGHT, RISE, S, SHARE, SINE, SIZE, STEEP,
-    T0, T1, T2, TILT, TOWARD, TWISTING, U0, U1, U2, UPWARDS, VS, VT, VW, WET_FROM, WET_TO, WIDE, WS, WT, WW, Y0, Y1, Y2, Z,
+    ASIDE, AT, BS, BT, BW, CLIMB, COSINE, CS, CT, CW, D0, D1, D2, DEEP, E0, E1, E2, EDGE_AT, EDGE_DEEP, FALLING,
+    FLARE, GAP, HALF, HEIGHT, K1, K2, LATERAL, LEFT, LENGTH, N0, N1, N2, NORMAL_AHEAD, REACH, RIGHT, RISE, S, SHARE,
+    SINE, SIZE, STEEP, T0, T1, T2, TILT, TOWARD, TWISTING, U0, U1, U2, UPWARDS, VS, VT, VW, WET_FROM, WET_TO, WIDE,
+    WS, WT, WW, Y0, Y1, Y2, Z,
 )  # fmt: skip
+
+# isort: on
 from .lines import FLAT, Lines
 from .model import Model, State
 

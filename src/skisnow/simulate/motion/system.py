@@ -18,6 +18,9 @@ from .tangent import CHANNELS
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
+ONE, TWO, THREE, FOUR, FIVE = (np.uint64(i) for i in range(1, 6))
+
+
 class Vector(NamedTuple):
     """Accelerations, forces or increments of rigid body and skis; the skis' rows are padded."""
 
@@ -155,48 +158,60 @@ def solve(system: Factored, vector: Vector) -> None:
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def forwards(system: Factored, vector: Vector) -> None:
     """Solve the skis' rows forwards, and bring the border's right side to its Schur complement."""
-    last = system.band.shape[1] - PADDING
-    for k in range(2):
-        L, Y, z = system.band[k], system.border[k], vector.bend[k]
-        r0, r1, r2, r3, r4, r5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for p in range(PADDING, last):
-            value = z[p] - (
-                L[p, 5] * z[p - 5] + L[p, 4] * z[p - 4] + L[p, 3] * z[p - 3] + L[p, 2] * z[p - 2] + L[p, 1] * z[p - 1]
-            )
-            z[p] = value
-            scaled = value * L[p, 0]
-            r0 += Y[p, 0] * scaled
-            r1 += Y[p, 1] * scaled
-            r2 += Y[p, 2] * scaled
-            r3 += Y[p, 3] * scaled
-            r4 += Y[p, 4] * scaled
-            r5 += Y[p, 5] * scaled
-        rigid = vector.rigid
-        rigid[0] -= r0
-        rigid[1] -= r1
-        rigid[2] -= r2
-        rigid[3] -= r3
-        rigid[4] -= r4
-        rigid[5] -= r5
+    last = np.uint64(system.band.shape[1] - PADDING)
+    L, Y, z = system.band[0], system.border[0], vector.bend[0]
+    K, X, y = system.band[1], system.border[1], vector.bend[1]
+    r0, r1, r2, r3, r4, r5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for p in range(np.uint64(PADDING), last):  # both skis at once: each waits for its own last number
+        value = z[p] - (
+            L[p, 5] * z[p - FIVE] + L[p, 4] * z[p - FOUR] + L[p, 3] * z[p - THREE] + L[p, 2] * z[p - TWO]
+            + L[p, 1] * z[p - ONE]
+        )  # fmt: skip
+        other = y[p] - (
+            K[p, 5] * y[p - FIVE] + K[p, 4] * y[p - FOUR] + K[p, 3] * y[p - THREE] + K[p, 2] * y[p - TWO]
+            + K[p, 1] * y[p - ONE]
+        )  # fmt: skip
+        z[p], y[p] = value, other
+        value *= L[p, 0]
+        other *= K[p, 0]
+        r0 += Y[p, 0] * value + X[p, 0] * other
+        r1 += Y[p, 1] * value + X[p, 1] * other
+        r2 += Y[p, 2] * value + X[p, 2] * other
+        r3 += Y[p, 3] * value + X[p, 3] * other
+        r4 += Y[p, 4] * value + X[p, 4] * other
+        r5 += Y[p, 5] * value + X[p, 5] * other
+    rigid = vector.rigid
+    rigid[0] -= r0
+    rigid[1] -= r1
+    rigid[2] -= r2
+    rigid[3] -= r3
+    rigid[4] -= r4
+    rigid[5] -= r5
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def backwards(system: Factored, vector: Vector) -> None:
     """Solve the skis' rows backwards, the border's solution being known."""
-    last = system.band.shape[1] - PADDING
+    first, last = np.uint64(PADDING), np.uint64(system.band.shape[1] - PADDING)
     x0, x1, x2 = vector.rigid[0], vector.rigid[1], vector.rigid[2]
     x3, x4, x5 = vector.rigid[3], vector.rigid[4], vector.rigid[5]
-    for k in range(2):
-        L, Y, z = system.band[k], system.border[k], vector.bend[k]
-        for p in range(last - 1, PADDING - 1, -1):
-            border = Y[p, 0] * x0 + Y[p, 1] * x1 + Y[p, 2] * x2 + Y[p, 3] * x3 + Y[p, 4] * x4 + Y[p, 5] * x5
-            z[p] = (z[p] - border) * L[p, 0] - (
-                L[p + 1, 1] * z[p + 1]
-                + L[p + 2, 2] * z[p + 2]
-                + L[p + 3, 3] * z[p + 3]
-                + L[p + 4, 4] * z[p + 4]
-                + L[p + 5, 5] * z[p + 5]
-            )
+    L, Y, z = system.band[0], system.border[0], vector.bend[0]
+    K, X, y = system.band[1], system.border[1], vector.bend[1]
+    for p in range(first, last):
+        border = Y[p, 0] * x0 + Y[p, 1] * x1 + Y[p, 2] * x2 + Y[p, 3] * x3 + Y[p, 4] * x4 + Y[p, 5] * x5
+        z[p] = (z[p] - border) * L[p, 0]
+        border = X[p, 0] * x0 + X[p, 1] * x1 + X[p, 2] * x2 + X[p, 3] * x3 + X[p, 4] * x4 + X[p, 5] * x5
+        y[p] = (y[p] - border) * K[p, 0]
+    for back in range(last - first):
+        p = last - ONE - back
+        z[p] -= (
+            L[p + ONE, 1] * z[p + ONE] + L[p + TWO, 2] * z[p + TWO] + L[p + THREE, 3] * z[p + THREE]
+            + L[p + FOUR, 4] * z[p + FOUR] + L[p + FIVE, 5] * z[p + FIVE]
+        )  # fmt: skip
+        y[p] -= (
+            K[p + ONE, 1] * y[p + ONE] + K[p + TWO, 2] * y[p + TWO] + K[p + THREE, 3] * y[p + THREE]
+            + K[p + FOUR, 4] * y[p + FOUR] + K[p + FIVE, 5] * y[p + FIVE]
+        )  # fmt: skip
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -211,6 +226,19 @@ def add_band(matrix: FloatArray, vector: FloatArray, scale: float, out: FloatArr
             total += scale * a * vector[p - j]
             out[p - j] += a * x
         out[p] += total
+
+
+@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+def quadratic(matrix: FloatArray, vector: FloatArray) -> float:
+    """Value of vectorᵀ × matrix × vector, the vector padded."""
+    total = 0.0
+    for i in range(len(matrix)):
+        p = i + PADDING
+        row = 0.5 * matrix[i, 0] * vector[p]
+        for j in range(1, 6):
+            row += matrix[i, j] * vector[p - j]
+        total += 2.0 * vector[p] * row
+    return total
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
