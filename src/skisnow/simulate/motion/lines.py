@@ -147,26 +147,31 @@ def pressure(
     surface, step = depth + slope * origin, slope * cell
     # of xⁿ: over all that bears as virgin snow does, and over u to v; of lift × xⁿ over u to v; of lift²
     q0, q1, q2, w0, w1, w2, l0, l1, l2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(np.uint64(first), np.uint64(max(last + 1, first))):
-        middle = origin + i * cell
-        lift = cells[row, DEEPEST + i] - (surface + step * i)
-        a = max(low, cells[row, FROM + i] - edge, middle - half)
-        b = max(a, min(high, cells[row, TO + i] - edge, middle + half))
-        b = b if lift > 0.0 else a
-        zero = min(max(waterline + per_lift * lift, a), b)
-        u, v = zero if to_right else a, b if to_right else zero
-        width, covered, both, ends = v - u, b - a, v + u, b + a
-        first_moment, second = width * both, width * (both * both - u * v)
-        lifted = lift * width
-        q0 += width - covered
-        q1 += first_moment - covered * ends
-        q2 += second - covered * (ends * ends - a * b)
-        w0 += width
-        w1 += first_moment
-        w2 += second
-        l0 += lifted
-        l1 += lifted * both
-        l2 += lifted * lift
+    begin, end = np.uint64(first), np.uint64(max(last + 1, first))
+    lifted = 0
+    for i in range(begin, end):
+        lifted |= cells[row, DEEPEST + i] > surface + step * i
+    if lifted:
+        for i in range(begin, end):
+            middle = origin + i * cell
+            lift = cells[row, DEEPEST + i] - (surface + step * i)
+            a = max(low, cells[row, FROM + i] - edge, middle - half)
+            b = max(a, min(high, cells[row, TO + i] - edge, middle + half))
+            b = b if lift > 0.0 else a
+            zero = min(max(waterline + per_lift * lift, a), b)
+            u, v = zero if to_right else a, b if to_right else zero
+            width, covered, both, ends = v - u, b - a, v + u, b + a
+            first_moment, second = width * both, width * (both * both - u * v)
+            raised = lift * width
+            q0 += width - covered
+            q1 += first_moment - covered * ends
+            q2 += second - covered * (ends * ends - a * b)
+            w0 += width
+            w1 += first_moment
+            w2 += second
+            l0 += raised
+            l1 += raised * both
+            l2 += raised * lift
     width, both = high - low, high + low
     q0, q1, q2 = q0 + width, 0.5 * (q1 + width * both), (q2 + width * (both * both - high * low)) * (1.0 / 3.0)
     l0, l1 = excess * l0, 0.5 * excess * l1
