@@ -57,7 +57,7 @@ def with_older_track(setup: Setup, rng: np.random.Generator) -> Setup:
         for j in range(first, first + size):
             if rng.uniform() < 0.7:
                 ends = np.sort(rng.uniform(j * cell, (j + 1) * cell, 2))
-                cells_of(lines, row)[:3, j - first] = rng.uniform(0.0, 0.01), *ends
+                cells_of(lines, int(row))[:3, j - first] = rng.uniform(0.0, 0.01), *ends
     return setup
 
 

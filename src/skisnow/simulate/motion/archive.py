@@ -303,10 +303,10 @@ def _coarsen(lines: Lines, row: int) -> None:
             both[t] += 1 if lines.cells[row, CENTRE + i] > 0.0 else 0
             low[t], high[t] = min(low[t], lines.cells[row, FROM + i]), max(high[t], lines.cells[row, TO + i])
     lines.value[row, CELL], lines.flag[row, WINDOW] = 2.0 * cell, new
-    for i in range(np.uint64(CELLS)):
-        lines.cells[row, DEEPEST + i] = deepest[i]
-        lines.cells[row, FROM + i], lines.cells[row, TO + i] = low[i], high[i]
-        lines.cells[row, CENTRE + i] = centre[i] if both[i] == 2 else 0.0
+    for each in range(np.uint64(CELLS)):
+        lines.cells[row, DEEPEST + each] = deepest[each]
+        lines.cells[row, FROM + each], lines.cells[row, TO + each] = low[each], high[each]
+        lines.cells[row, CENTRE + each] = centre[each] if both[each] == 2 else 0.0
 
 
 @numba.njit(cache=True, error_model="numpy")

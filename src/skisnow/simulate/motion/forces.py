@@ -124,7 +124,7 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath=SUMS)
-def _press(snow: Snow, lines: Lines, count: int, look: bool, sheet: FloatArray, numbers: PlaceArray) -> None:
+def _press(snow: Snow, lines: Lines, count: np.uint64, look: bool, sheet: FloatArray, numbers: PlaceArray) -> None:
     """Let the snow answer the sections that lie in it; the others get no force."""
     cells, value, flag = lines.cells, lines.value, lines.flag
     per_holding = 1.0 / snow.holding
@@ -157,7 +157,7 @@ def _press(snow: Snow, lines: Lines, count: int, look: bool, sheet: FloatArray, 
 
 @numba.njit(cache=True, error_model="numpy", fastmath=SUMS)
 def _push(  # noqa: PLR0915 - one loop over many lines at a time
-    model: Model, snow: Snow, state: State, k: int, count: int, sheet: FloatArray, rigid: FloatArray
+    model: Model, snow: Snow, state: State, k: int, count: np.uint64, sheet: FloatArray, rigid: FloatArray
 ) -> None:  # fmt: skip
     """Work out what acts along and across the edge, and add the forces on the rigid body to `rigid`."""
     V = state.velocity
@@ -224,7 +224,7 @@ def _push(  # noqa: PLR0915 - one loop over many lines at a time
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _bend(count: int, sheet: FloatArray, numbers: PlaceArray, force: FloatArray) -> None:
+def _bend(count: np.uint64, sheet: FloatArray, numbers: PlaceArray, force: FloatArray) -> None:
     """Add the forces on the beam."""
     for i in range(count):
         if not (sheet[SHARE + i] > 0.0 and sheet[DEEP + i] > 0.0):
@@ -239,7 +239,7 @@ def _bend(count: int, sheet: FloatArray, numbers: PlaceArray, force: FloatArray)
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _record(lines: Lines, k: int, count: int, out: Forces) -> None:
+def _record(lines: Lines, k: int, count: np.uint64, out: Forces) -> None:
     """Write down what each section bears, and where the base touches its line."""
     sheet, section, value, flag = out.sheet, out.section, lines.value, lines.flag
     filled = out.sections[k]
@@ -261,7 +261,7 @@ def _record(lines: Lines, k: int, count: int, out: Forces) -> None:
 
 @numba.njit(cache=True, error_model="numpy", fastmath=SUMS)
 def _sum_powers(
-    model: Model, snow: Snow, state: State, spacing: float, count: int, sheet: FloatArray, power: FloatArray
+    model: Model, snow: Snow, state: State, spacing: float, count: np.uint64, sheet: FloatArray, power: FloatArray
 ) -> None:  # fmt: skip
     """Add up what the forces do, and what the snow gives back at tip and tail; find how fast the base's edges move."""
     V, lateral, normal = state.velocity, model.lateral, model.normal
@@ -323,7 +323,7 @@ def _sum_powers(
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _cover_ground(snow: Snow, lines: Lines, count: int, sheet: FloatArray, numbers: PlaceArray) -> float:
+def _cover_ground(snow: Snow, lines: Lines, count: np.uint64, sheet: FloatArray, numbers: PlaceArray) -> float:
     """Power (W) that the snow gains where the base's edges cover ground sideways, less what it gives back."""
     total = 0.0
     for i in range(count):
@@ -343,7 +343,7 @@ def _cover_ground(snow: Snow, lines: Lines, count: int, sheet: FloatArray, numbe
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _add_tangents(model: Model, snow: Snow, k: int, count: int, out: Forces) -> None:
+def _add_tangents(model: Model, snow: Snow, k: int, count: np.uint64, out: Forces) -> None:
     """Add minus the tangent of the sections in contact."""
     sheet, dof = out.sheet, model.dof
     for i in range(count):

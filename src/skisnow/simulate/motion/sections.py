@@ -35,10 +35,10 @@ ROW, ELEMENT, FRONT, REAR = ZERO, ONE, TWO, np.uint64(3)
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def find_sections(
-    model: Model, one_sided: float, lines: Lines, state: State, skis: FloatArray, k: int, begin: int, count: int,
+    model: Model, one_sided: float, lines: Lines, state: State, skis: FloatArray, k: int, begin: int, n: np.uint64,
     sheet: FloatArray, numbers: PlaceArray,
 ) -> None:  # fmt: skip
-    """Fill `sheet` and `numbers` for `count` lines of ski k from number `begin` on, from the tail.
+    """Fill `sheet` and `numbers` for `n` lines of ski k from number `begin` on, from the tail.
 
     A line that the ski does not reach gets no share. `skis` (3, 3) are the skis' directions in space.
     """
@@ -50,7 +50,6 @@ def find_sections(
     tail, tip = model.tail, model.tip
     most = len(model.table) - 1.000001
     step = (len(model.table) - 1) / (tip - tail)
-    n = np.uint64(count)
     _take_lines(lines, k, begin, n, boot, skis, sheet, numbers)
     _cross(n, 1.0 / one_sided, tail, step, most, sheet)
     for _ in range(2):
@@ -72,7 +71,7 @@ def find_sections(
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def _take_lines(
-    lines: Lines, k: int, begin: int, n: int, boot: FloatArray, skis: FloatArray, sheet: FloatArray, numbers: PlaceArray
+    lines: Lines, k: int, begin: int, n: np.uint64, boot: FloatArray, skis: FloatArray, sheet: FloatArray, numbers: PlaceArray
 ) -> None:  # fmt: skip
     """Bring the lines into the ski's frame."""
     ring, frame = len(lines.flag) // 2, lines.frame
@@ -103,7 +102,7 @@ def _take_lines(
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _cross(n: int, sided: float, tail: float, step: float, most: float, sheet: FloatArray) -> None:
+def _cross(n: np.uint64, sided: float, tail: float, step: float, most: float, sheet: FloatArray) -> None:
     """Find where along the ski's straight axis the edge that is down crosses the lines."""
     for i in range(n):
         d1, d2 = sheet[D1 + i], sheet[D2 + i]
@@ -118,7 +117,7 @@ def _cross(n: int, sided: float, tail: float, step: float, most: float, sheet: F
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _share(n: int, tail: float, tip: float, per_spacing: float, spacing: float, sheet: FloatArray) -> None:
+def _share(n: np.uint64, tail: float, tip: float, per_spacing: float, spacing: float, sheet: FloatArray) -> None:
     """Give each line its share of the spacing, whole but for those at tip and tail."""
     for i in range(n):
         s = sheet[S + i]
@@ -128,7 +127,7 @@ def _share(n: int, tail: float, tip: float, per_spacing: float, spacing: float, 
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _look_up(model: Model, state: State, k: int, n: int, sheet: FloatArray, numbers: PlaceArray) -> None:
+def _look_up(model: Model, state: State, k: int, n: np.uint64, sheet: FloatArray, numbers: PlaceArray) -> None:
     """Look up the ski's shape, its bend and how that changes."""
     table, node, place, bend, rate = model.table, model.node, model.at, state.bend[k], state.bend_rate[k]
     for i in range(n):
@@ -153,7 +152,7 @@ def _look_up(model: Model, state: State, k: int, n: int, sheet: FloatArray, numb
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _bend(n: int, sheet: FloatArray) -> None:
+def _bend(n: np.uint64, sheet: FloatArray) -> None:
     """Bend the sections with the beam: height and rise of the base, sine and cosine of its twist, depth."""
     for i in range(n):
         z, h = sheet[Z + i], sheet[LENGTH + i]
@@ -173,7 +172,7 @@ def _bend(n: int, sheet: FloatArray) -> None:
 
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _cut(n: int, sided: float, sheet: FloatArray) -> None:
+def _cut(n: np.uint64, sided: float, sheet: FloatArray) -> None:
     """Cut the base with the lines: the edge that is down, its directions, and where the base is wet."""
     _bend(n, sheet)
     for i in range(n):

@@ -203,14 +203,14 @@ def backwards(system: Factored, vector: Vector) -> None:
         border = X[p, 0] * x0 + X[p, 1] * x1 + X[p, 2] * x2 + X[p, 3] * x3 + X[p, 4] * x4 + X[p, 5] * x5
         y[p] = (y[p] - border) * K[p, 0]
     for back in range(last - first):
-        p = last - ONE - back
-        z[p] -= (
-            L[p + ONE, 1] * z[p + ONE] + L[p + TWO, 2] * z[p + TWO] + L[p + THREE, 3] * z[p + THREE]
-            + L[p + FOUR, 4] * z[p + FOUR] + L[p + FIVE, 5] * z[p + FIVE]
+        q = last - ONE - np.uint64(back)
+        z[q] -= (
+            L[q + ONE, 1] * z[q + ONE] + L[q + TWO, 2] * z[q + TWO] + L[q + THREE, 3] * z[q + THREE]
+            + L[q + FOUR, 4] * z[q + FOUR] + L[q + FIVE, 5] * z[q + FIVE]
         )  # fmt: skip
-        y[p] -= (
-            K[p + ONE, 1] * y[p + ONE] + K[p + TWO, 2] * y[p + TWO] + K[p + THREE, 3] * y[p + THREE]
-            + K[p + FOUR, 4] * y[p + FOUR] + K[p + FIVE, 5] * y[p + FIVE]
+        y[q] -= (
+            K[q + ONE, 1] * y[q + ONE] + K[q + TWO, 2] * y[q + TWO] + K[q + THREE, 3] * y[q + THREE]
+            + K[q + FOUR, 4] * y[q + FOUR] + K[q + FIVE, 5] * y[q + FIVE]
         )  # fmt: skip
 
 
