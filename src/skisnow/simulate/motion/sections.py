@@ -71,7 +71,8 @@ def find_sections(
 
 @numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
 def _take_lines(
-    lines: Lines, k: int, begin: int, n: np.uint64, boot: FloatArray, skis: FloatArray, sheet: FloatArray, numbers: PlaceArray
+    lines: Lines, k: int, begin: int, n: np.uint64, boot: FloatArray, skis: FloatArray, sheet: FloatArray,
+    numbers: PlaceArray,
 ) -> None:  # fmt: skip
     """Bring the lines into the ski's frame."""
     ring, frame = len(lines.flag) // 2, lines.frame
