@@ -56,9 +56,14 @@ def edit_stations(ski: Ski, *, count: int = 9) -> FloatArray:
     """
     half = ski.sidecut_length / 2.0
     if ski.sidecut_middle + half > ski.station[0] - _END or ski.sidecut_middle - half < ski.station[-1] + _END:
-        return np.linspace(ski.station[0], ski.station[-1], count)
+        return _plain(np.linspace(ski.station[0], ski.station[-1], count))
     inner = np.linspace(ski.sidecut_middle + half, ski.sidecut_middle - half, count - 2)
-    return np.concatenate([ski.station[:1], inner, ski.station[-1:]])
+    return _plain(np.concatenate([ski.station[:1], inner, ski.station[-1:]]))
+
+
+def _plain(station: FloatArray) -> FloatArray:
+    """Without digits below a nanometre, so that the boot is at 0 and not a little behind it."""
+    return np.asarray(np.round(station, 9) + 0.0)
 
 
 def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+Beside: TypeAlias = tuple[str, bytes]
 State: TypeAlias = Literal["waiting", "running", "done", "failed", "cancelled"]
 
 JOB: Final = "job.json"
@@ -32,7 +33,10 @@ _PAUSE_S: Final = 0.3
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """One simulation: its folder's name, the scenario, changed keys, when it was asked for (UTC), how it stands."""
+    """One simulation: its folder's name, the scenario, changed keys, when it was asked for (UTC), how it stands.
+
+    ``given`` is what was given with it by name, in words; its paths say nothing to a reader.
+    """
 
     name: str
     scenario: str
@@ -40,6 +44,7 @@ class Job:
     asked_at: str
     state: State = "waiting"
     said: str = ""
+    given: str = ""
 
 
 class Runs:
@@ -50,6 +55,7 @@ class Runs:
         self.progress = ""
         self._process: asyncio.subprocess.Process | None = None
         self._running = ""
+        self._cancelling = ""
         self._ended = False
 
     def jobs(self) -> list[Job]:
@@ -60,12 +66,36 @@ class Runs:
                 found.append(Job(**json.loads(place.read_text(encoding="utf-8"))))
         return sorted(found, key=lambda job: job.asked_at, reverse=True)
 
-    def ask(self, scenario: str, changes: Mapping[str, str]) -> Job:
-        """Put a simulation at the end of the queue; it is on the disk when this returns."""
+    def ask(
+        self,
+        scenario: str,
+        changes: Mapping[str, str],
+        *,
+        files: Mapping[str, Beside] | None = None,
+        given: str = "",
+    ) -> Job:
+        """Put a simulation at the end of the queue; it is on the disk when this returns.
+
+        Parameters
+        ----------
+        scenario
+            Its name.
+        changes
+            Texts by key, as the command line takes them.
+        files
+            By key: name and content of a file that the key is to name. It is kept with the run, so that what comes
+            later changes nothing of what was asked.
+        given
+            See `Job`.
+        """
         now = datetime.now(UTC)
         plain = re.sub(r"[^A-Za-z0-9-]", "-", scenario)
         name = f"{now:%Y-%m-%d-%H%M%S}-{plain}-{secrets.token_hex(2)}"
-        job = Job(name, scenario, dict(changes), now.isoformat())
+        every = dict(changes)
+        for key, (file, content) in (files or {}).items():
+            write_file(self.folder / name / file, content)
+            every[key] = str((self.folder / name / file).absolute())
+        job = Job(name, scenario, every, now.isoformat(), given=given)
         self._keep(job)
         return job
 
@@ -79,9 +109,11 @@ class Runs:
         """
         job = next((job for job in self.jobs() if job.name == name), None)
         if job is not None and job.state == "waiting":
-            self._keep(replace(job, state="cancelled"))
-        elif job is not None and name == self._running and self._process is not None:
-            self._process.terminate()
+            self._keep(replace(job, state="cancelled", said="It had not begun."))
+        elif job is not None and name == self._running:
+            self._cancelling, self.progress = name, "being cancelled; what was computed is written"
+            if self._process is not None:
+                self._process.terminate()
         else:
             raise ParameterError("this run is over already; there is nothing to cancel")
 
@@ -115,25 +147,33 @@ class Runs:
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.PIPE,
         )
+        if self._cancelling:  # in the moment before
+            self._process.terminate()
         last = await self._listen(self._process)
-        status = await self._process.wait()
-        self._process, self._running, self.progress = None, "", ""
+        await self._process.wait()
+        cancelled = self._cancelling == job.name
+        self._process, self._running, self._cancelling, self.progress = None, "", "", ""
         if not self._ended:
-            self._keep(self._over(job, status, last))
+            self._keep(self._over(job, last, cancelled=cancelled))
 
     async def _listen(self, process: asyncio.subprocess.Process) -> str:
         last = ""
         assert process.stderr is not None
         while line := await process.stderr.readline():
-            self.progress = last = line.decode("utf-8", "replace").strip()
+            last = line.decode("utf-8", "replace").strip()
+            if not self._cancelling:
+                self.progress = last
         return last[-LAST_WORDS:]
 
-    def _over(self, job: Job, status: int, last: str) -> Job:
+    def _over(self, job: Job, last: str, *, cancelled: bool) -> Job:
         summary = self.folder / job.name / "summary.json"
         if not summary.is_file():
-            return replace(job, state="cancelled" if status < 0 or status == 143 else "failed", said=last)
+            said = "Nothing was computed yet." if cancelled else last
+            return replace(job, state="cancelled" if cancelled else "failed", said=said)
         found = json.loads(summary.read_text(encoding="utf-8"))
         words = f"{found['outcome']}: {found['run_length_m']:.1f} m in {found['simulated_s']:.2f} s".replace("_", " ")
+        if found["outcome"] == "interrupted":  # cancelled a moment after the end it is finished all the same
+            return replace(job, state="cancelled", said=f"{words}. What was computed until then is kept.")
         return replace(job, state="done", said=f"{words}. {found['remedy']}".strip())
 
     def _keep(self, job: Job) -> None:

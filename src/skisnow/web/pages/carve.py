@@ -10,8 +10,8 @@ from nicegui import background_tasks, run, ui
 
 from ...errors import SkisnowError
 from ...report.numerals import significant
-from ...ski import ski_names
 from ..fields import choice
+from ..lab_skis import LabSkis
 from ..layout import framed
 from ..line_chart import ChartLine, LineChart
 
@@ -62,14 +62,14 @@ FACTS: Final = {
 }
 
 
-def add_page(_: Lab) -> None:
+def add_page(lab: Lab) -> None:
     """Add the page to the application."""
-    solver = _Solver()
+    solver, skis = _Solver(), LabSkis(lab.runs)
 
     @ui.page(PATH)
     async def carve() -> None:
         with framed("Carve", here=PATH):
-            _Carve(solver).ask()  # answered while the browser builds the page
+            _Carve(solver, skis).ask()  # answered while the browser builds the page
 
 
 class _Solver:
@@ -96,12 +96,13 @@ class _Solver:
 class _Carve:
     """The sliders and what follows them; while one answer is computed only the latest question waits."""
 
-    def __init__(self, solver: _Solver) -> None:
+    def __init__(self, solver: _Solver, skis: LabSkis) -> None:
         self._solver = solver
+        self._skis = skis
         self._values: dict[str, str] = {key: start for key, (_, _, start) in SLIDERS.items()}
         self._waiting = False
         self._working = False
-        names = list(ski_names())
+        names = skis.names()
         with ui.element("div").classes("fields"):
             self._ski = choice("Ski", names, names[0])
             self._other = choice("Compared with", ["nothing", *names], "nothing")
@@ -156,8 +157,10 @@ class _Carve:
 
     def _questions(self) -> list[dict[str, object]]:
         numbers = {key: float(value) for key, value in self._values.items()}
-        skis = [name for name in (self._ski.value, self._other.value) if name != "nothing"]
-        return [{"ski": name, **numbers, "unloading_ratio": float(str(self._ratio.value))} for name in skis]
+        skis = [str(name) for name in (self._ski.value, self._other.value) if name != "nothing"]
+        return [
+            {"ski": self._skis.word(name), **numbers, "unloading_ratio": float(str(self._ratio.value))} for name in skis
+        ]
 
     def _show(self, answers: list[dict[str, Any]]) -> None:
         self._status.set_text(" ".join(_told(answer) for answer in answers))

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import app, background_tasks, run, ui
 
 from ...errors import ParameterError, SkisnowError
-from ...estimate.results_text import results_json
 from ...field.store import Journals
-from ...files import write_file
-from ..analysing import Choice, Refusal, numbers_of
 from ..desk import Desk
 from ..fields import button, choice, field, link
+from ..lab_skis import LabSkis
 from ..layout import framed, heading, sentence
 from ..replay.addresses import show_address
+from ..replay.of_file import RUN_FILE
 from ..runs import Job, Runs
-from ..transfer import write_entry, write_kept
+from ..snow_of_campaign import require_scenario, snow_of_campaign
 from ..trouble import told
 
 if TYPE_CHECKING:
@@ -27,6 +24,8 @@ if TYPE_CHECKING:
 PATH: Final = "/simulate"
 TITLE: Final = "Simulate"
 GIVEN: Final = "as in the scenario"
+GIVEN_BY_NAME: Final = ("ski.file", "snow.results")
+SNOW_FILE: Final = "snow.json"
 EVERY_S: Final = 1.0
 
 
@@ -53,14 +52,19 @@ class _Form:
         from ...simulate.scenario import scenario_names
 
         self._lab, self._runs, self._status = lab, runs, status
+        self._skis = LabSkis(lab.runs)
         names = list(scenario_names())
         with ui.element("div").classes("fields"):
             self._scenario = choice("Scenario", names, names[0])
-            self._snow = choice("Snow", {GIVEN: GIVEN, **_snows(lab)}, GIVEN)
+            self._names = _snows(lab)
+            self._snow = choice("Snow", {GIVEN: GIVEN, **self._names}, GIVEN)
+            self._ski = choice("Ski", [GIVEN, *self._skis.names()], GIVEN)
+        self._known = sentence("").props("role=status")
         self._place = ui.element("div")
         self._fields: dict[str, ui.input] = {}
         self._before: dict[str, str] = {}
         self._scenario.on_value_change(self._draw)
+        self._snow.on_value_change(self._tell_snow)
         self._draw()
 
     def _draw(self) -> None:
@@ -88,15 +92,10 @@ class _Form:
 
     async def ask(self) -> None:
         """Put the simulation into the queue, when its values can be read."""
-        from ...simulate.scenario import scenario_file
-        from ...simulate.scenario.given import change_of
-
         typed = {name: str(each.value or "").strip() for name, each in self._fields.items()}
         changes = {name: text for name, text in typed.items() if text and text != self._before[name]}
-        scenario = str(self._scenario.value)
         try:
-            scenario_file(scenario, changes=dict(change_of(f"{name}={text}") for name, text in changes.items()))
-            job = await self._asked(scenario, changes)
+            job = await self._asked(str(self._scenario.value), changes)
         except SkisnowError as error:
             self._status.set_text(f"Not begun: {told(error)}")
             self._status.classes(add="bad")
@@ -105,23 +104,36 @@ class _Form:
         self._status.classes(remove="bad")
 
     async def _asked(self, scenario: str, changes: dict[str, str]) -> Job:
-        if self._snow.value == GIVEN:
-            return self._runs.ask(scenario, changes)
-        results = await run.io_bound(self._results, str(self._snow.value))
-        place = self._runs.folder / "snow" / f"{self._snow.value}.json"
-        await run.io_bound(write_file, place, results or b"")
-        return self._runs.ask(scenario, {**changes, "snow.results": str(place)})
+        ski, snow = str(self._ski.value), str(self._snow.value)
+        given = []
+        if ski != GIVEN:
+            word = self._skis.word(ski)
+            changes["ski.name" if word == ski else "ski.file"] = word
+            given.append(f"ski: {ski}")
+        if snow == GIVEN:
+            await run.io_bound(require_scenario, scenario, changes)
+            return self._runs.ask(scenario, changes, given="; ".join(given))
+        found = await run.io_bound(snow_of_campaign, self._lab, snow, scenario, changes)
+        if found is None:
+            raise ParameterError("the lab is about to end")
+        results, words = found
+        given.append(f"snow: {self._names[snow]}, {words}")
+        files = {"snow.results": (SNOW_FILE, results)}
+        return self._runs.ask(scenario, changes, files=files, given="; ".join(given))
 
-    def _results(self, key: str) -> bytes:
-        """results.json of a campaign, whose means and intervals the run then carries."""
-        kind, id_ = key.split("-", 1)
-        with TemporaryDirectory(prefix="skisnow-snow-") as name:
-            folder = Path(name) / "campaign"
-            (write_kept if kind == "kept" else write_entry)(self._lab, id_, folder)
-            found = numbers_of(str(folder), Choice())
-        if isinstance(found, Refusal):
-            raise ParameterError(f"this campaign gives no snow yet. {found.said}")
-        return results_json(found.results)
+    async def _tell_snow(self) -> None:
+        """Say at once what snow a campaign gives, and how well it is known."""
+        self._known.set_text("")
+        snow = str(self._snow.value)
+        if snow == GIVEN:
+            return
+        try:
+            found = await run.io_bound(snow_of_campaign, self._lab, snow, str(self._scenario.value), {})
+        except SkisnowError as error:
+            self._known.set_text(told(error))
+            return
+        if found is not None and snow == self._snow.value:
+            self._known.set_text(f"Snow: {found[1]}")
 
 
 def _snows(lab: Lab) -> dict[str, str]:
@@ -169,12 +181,12 @@ class _History:
         with ui.element("section").classes("card"):
             heading(job.name, 3)
             state = f"running: {self._runs.progress}" if job.state == "running" else job.state
-            changed = ", ".join(f"{key} = {value}" for key, value in job.changes.items())
-            sentence(" · ".join(filter(None, (job.scenario, changed, state, job.said))), "quiet")
+            changed = ", ".join(f"{key} = {value}" for key, value in job.changes.items() if key not in GIVEN_BY_NAME)
+            sentence(" · ".join(filter(None, (job.scenario, changed, job.given, state, job.said))), "quiet")
             with ui.element("div").classes("acts"):
                 if job.state in ("waiting", "running"):
                     button("Cancel", lambda: self._cancel(job.name)).props(f'aria-label="Cancel {job.name}"')
-                if job.state == "done":
+                if (self._runs.folder / job.name / RUN_FILE).is_file():
                     link("Watch", show_address(job.name), "main").props(f'aria-label="Watch {job.name}"')
 
     def _cancel(self, name: str) -> None:

@@ -1,22 +1,21 @@
-"""The catalogue of skis: drawings, numbers, two compared, and an editor of a ski's file with the drawing beside it."""
+"""Skis: the catalogue and those of the lab, two compared, and an editor with the drawing beside it."""
 
 from __future__ import annotations
 
-import warnings
-from importlib.resources import files
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from nicegui import run, ui
 
-from ...errors import RangeWarning, SkisnowError
+from ...errors import SkisnowError
 from ...report.ski_drawing import SkiDrawing, ski_drawing
-from ...ski import read_ski, ski_names
 from ..charts import COLOURS
-from ..fields import button, choice
+from ..fields import button, choice, field
+from ..lab_skis import FILE, TABLE, LabSkis, texts_of_ski
 from ..layout import framed, heading, sentence
 from ..line_chart import ChartLine, LineChart
+from ..ski_asked import SkiAsked, SkiFound, ski_found
+from ..ski_editor import SkiEditor
+from ..trouble import told
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,65 +32,87 @@ PANELS: Final = {
     "GJ_N_m2": "GJ (N m²)",
 }
 STIFFNESSES: Final = ("EI_N_m2", "GJ_N_m2")
-EDITED: Final = "edited below"
+NOTHING: Final = "nothing"
+EDITED: Final = "the edited ski"
 
 
-def add_page(_: Lab) -> None:
+def add_page(lab: Lab) -> None:
     """Add the page to the application."""
+    skis = LabSkis(lab.runs)
 
     @ui.page(PATH)
-    async def skis() -> None:
+    async def show_skis() -> None:
         with framed("Skis", here=PATH):
-            page = _Skis()
+            page = _Skis(skis)
         await page.draw()
 
 
 class _Skis:
-    """Two skis side by side; the second one may be the edited one, or none."""
+    """Two skis over each other; the second one may be the edited one, or none."""
 
-    def __init__(self) -> None:
-        names = list(ski_names())
+    def __init__(self, skis: LabSkis) -> None:
+        self._skis = skis
+        self._asked = 0
+        names = skis.names()
         with ui.element("div").classes("fields"):
             self._first = choice("Ski", names, names[0])
-            self._second = choice("Compared with", ["nothing", *names, EDITED], "nothing")
+            self._second = choice("Compared with", [NOTHING, EDITED, *names], NOTHING)
         self._status = ui.label("").classes("status").props("role=status")
         self._facts = ui.element("div").classes("table")
         with ui.element("div").classes("two"):
-            self._charts = {key: LineChart(ALONG, title, f"{title} along the ski") for key, title in PANELS.items()}
-        self._editor()
+            with ui.element("section").classes("drawing").props('aria-label="Drawing"'):
+                self._charts = {
+                    key: LineChart(ALONG, title, f"{title} along the ski", height=190) for key, title in PANELS.items()
+                }
+            with ui.element("section").props('aria-label="Editor"'):
+                self._editor = SkiEditor(skis, names[0], self._follow)
+                self._saving()
         self._first.on_value_change(self.draw)
         self._second.on_value_change(self.draw)
 
-    def _editor(self) -> None:
-        heading("Edit a ski")
-        sentence("The file of the ski, with units in its keys. Draw shows it beside the other one.", "quiet")
-        self._text = ui.textarea("File of the edited ski", value=_file(self._first.value)).props("outlined autogrow")
-        self._text.classes("code")
+    def _saving(self) -> None:
         with ui.element("div").classes("acts"):
-            button("Draw", self._draw_edited, "main")
-            button("Begin again from the ski above", lambda: self._text.set_value(_file(self._first.value)))
-            button("Download the file", lambda: ui.download(str(self._text.value or "").encode(), "ski.toml"))
+            button("Begin again from the ski above", self._begin)
+        heading("Save it", 3)
+        with ui.element("div").classes("fields"):
+            self._name = field("New name")
+        with ui.element("div").classes("acts"):
+            button("Save in the lab", self._save, "main")
+            button("Download the file", self._download)
+        self._saved = ui.label("").classes("status").props("role=status")
 
-    async def _draw_edited(self) -> None:
+    async def _begin(self) -> None:
+        await self._editor.begin(str(self._first.value))
+
+    async def _follow(self) -> None:
+        """The editor's fields changed: show what they say."""
         if self._second.value == EDITED:
             await self.draw()
         else:
-            self._second.set_value(EDITED)
+            self._second.set_value(EDITED)  # which draws
 
     async def draw(self) -> None:
-        """Draw what is chosen; what is wrong with an edited file is said."""
-        words = [name for name in (self._first.value, self._second.value) if name != "nothing"]
+        """Draw what is chosen; what is wrong with an edited ski is said. An older question's answer is dropped."""
+        self._asked += 1
+        number, asked = self._asked, self._editor.asked()
+        words = [str(each) for each in (self._first.value, self._second.value) if each != NOTHING]
         try:
-            drawn = await run.io_bound(_drawings, words, str(self._text.value or ""))
+            found = await run.io_bound(self._found, words, asked)
         except SkisnowError as error:
-            self._status.set_text(str(error))
-            self._status.classes(add="bad")
+            if number == self._asked:
+                _say(self._status, told(error), bad=True)
             return
-        if drawn is None:  # the server ends
+        if found is None or number != self._asked:  # the server ends, or something else is wanted by now
             return
-        self._status.set_text(" ".join(told for _, told in drawn))
-        self._status.classes(remove="bad")
-        self._show([drawing for drawing, _ in drawn])
+        skis, edited = found
+        _say(self._status, " ".join(each.warned for each in skis if each.warned), bad=False)
+        self._editor.show(edited.station, edited.cells)
+        self._show([ski_drawing(each.ski) for each in skis])
+
+    def _found(self, words: list[str], asked: SkiAsked) -> tuple[list[SkiFound], SkiFound]:
+        edited = ski_found(asked)
+        others = (edited if word == EDITED else ski_found(SkiAsked(*self._skis.texts(word))) for word in words)
+        return list(others), edited
 
     def _show(self, drawn: list[SkiDrawing]) -> None:
         self._facts.clear()
@@ -99,6 +120,48 @@ class _Skis:
             _table(drawn)
         for key, chart in self._charts.items():
             chart.show(list(_lines(key, drawn)), from_zero=key in STIFFNESSES)
+
+    async def _save(self) -> None:
+        name, asked = " ".join(str(self._name.value or "").split()), self._editor.asked()
+        try:
+            await run.io_bound(self._keep, name, asked)
+        except SkisnowError as error:
+            _say(self._saved, f"Not saved: {told(error)}", bad=True)
+            return
+        names = self._skis.names()
+        self._first.set_options(names)
+        self._second.set_options([NOTHING, EDITED, *names])
+        self._second.set_value(name)  # which draws it
+        _say(self._saved, f"Saved: {name}. Carve and Simulate have it too.", bad=False)
+
+    def _keep(self, name: str, asked: SkiAsked) -> None:
+        self._skis.require_new(name)
+        found = ski_found(asked, name=name)
+        if asked.is_file:
+            self._skis.save_texts(name, asked.text, asked.table)
+        else:
+            self._skis.save_ski(name, found.ski)
+
+    async def _download(self) -> None:
+        try:
+            files = await run.io_bound(_files, self._editor.asked())
+        except SkisnowError as error:
+            _say(self._saved, told(error), bad=True)
+            return
+        for name, text in (files or {}).items():
+            ui.download(text.encode(), name)
+
+
+def _say(label: ui.label, text: str, *, bad: bool) -> None:
+    label.set_text(text)
+    label.classes(add="bad" if bad else "good", remove="good" if bad else "bad")
+
+
+def _files(asked: SkiAsked) -> dict[str, str]:
+    """The file of the edited ski, and its table where it has one."""
+    found = ski_found(asked)
+    text, table = (asked.text, asked.table) if asked.is_file else texts_of_ski(found.ski)
+    return {FILE: text, **({TABLE: table} if table else {})}
 
 
 def _lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
@@ -125,24 +188,3 @@ def _table(drawn: list[SkiDrawing]) -> None:
                             ui.label(each.facts[key])
     for each in drawn:
         sentence(f"{each.name}: {each.source}", "quiet")
-
-
-def _drawings(names: list[str], text: str) -> list[tuple[SkiDrawing, str]]:
-    return [_drawing(name, text) for name in names]
-
-
-def _drawing(name: str, text: str) -> tuple[SkiDrawing, str]:
-    """The drawing, and what the reader warned of."""
-    with warnings.catch_warnings(record=True) as caught, TemporaryDirectory(prefix="skisnow-ski-") as folder:
-        warnings.simplefilter("always", RangeWarning)
-        place: str | Path = name
-        if name == EDITED:
-            place = Path(folder) / "edited.toml"
-            place.write_text(text, encoding="utf-8", newline="")
-        drawn = ski_drawing(read_ski(place))
-    return drawn, " ".join(str(each.message) for each in caught)
-
-
-def _file(name: str | None) -> str:
-    """The text of a catalogue ski's file."""
-    return (files("skisnow.ski") / "catalogue" / f"{name}.toml").read_text(encoding="utf-8")

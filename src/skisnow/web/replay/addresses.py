@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
@@ -10,15 +12,18 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from ...errors import ParameterError
+from ...ski import read_ski
+from ..runs import JOB
 from .binary import replay_bytes
 from .model import replay_model
 from .of_file import RUN_FILE, replay_of_file
 from .page import MODULES, STYLE, static_text
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from fastapi import FastAPI
+
+    from ...ski import Ski
+    from .replay import Replay
 
 LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"
@@ -54,6 +59,25 @@ class RunFolders:
             raise ParameterError(f"there is no run {name!r} here. Choose one from the list")
         return self.folder / name
 
+    def replay(self, name: str) -> Replay:
+        """The replay of a run. The ski of a run of the lab is where its job says: the run itself knows the name alone.
+
+        Raises
+        ------
+        ParameterError
+            There is no such run, or it cannot be shown.
+        """
+        place = self.place(name)
+        return replay_of_file(place, title=name, ski=_ski_of_job(place / JOB))
+
+
+def _ski_of_job(job: Path) -> Ski | None:
+    try:
+        word = json.loads(job.read_text(encoding="utf-8"))["changes"]["ski.file"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return None  # a run from the command line, or one with a ski of the catalogue
+    return read_ski(Path(word))
+
 
 def add_addresses(app: FastAPI, runs: RunFolders) -> None:
     """Let an application answer for the replays of these runs."""
@@ -68,7 +92,7 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
     def data(name: str) -> Response:
         try:
-            content = replay_bytes(replay_of_file(runs.place(name), title=name))
+            content = replay_bytes(runs.replay(name))
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
         return Response(content, media_type="application/octet-stream", headers={"cache-control": "no-cache"})
@@ -76,7 +100,7 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
     def model(name: str, time: float = 0.0, exaggeration: float = 1.0) -> Response:
         try:
             factor = min(max(exaggeration, 1.0), _LARGEST_FACTOR)
-            content = replay_model(replay_of_file(runs.place(name), title=name), time, exaggeration=factor)
+            content = replay_model(runs.replay(name), time, exaggeration=factor)
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
         named = f"attachment; filename*=UTF-8''{quote(name)}-{time:.2f}s.glb"

@@ -1,0 +1,134 @@
+"""The editor of a ski: factors for whole curves, values at stations, and the text of its file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from nicegui import ui
+
+from .fields import button, field
+from .layout import heading, sentence
+from .ski_asked import CELLS, FACTORS, SkiAsked
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable, Mapping
+
+    from .lab_skis import LabSkis
+
+STATION: Final = "Station (m)"
+ONE: Final = "1"
+
+
+class SkiEditor:
+    """Fields over the file of a ski; ``changed`` is awaited after each change, to draw what the fields then say."""
+
+    def __init__(self, skis: LabSkis, name: str, changed: Callable[[], Awaitable[None]]) -> None:
+        self._skis = skis
+        self._changed = changed
+        self._typed: dict[tuple[str, int], str] = {}
+        self._cells: dict[tuple[str, int], ui.input] = {}
+        self._stations: tuple[float, ...] = ()
+        text, table = skis.texts(name)
+        heading("Edit a ski")
+        self._begun = sentence("", "quiet")
+        heading("Whole curves", 3)
+        with ui.element("div").classes("factors"):
+            self._factors = {key: self._factor(words) for key, words in FACTORS.items()}
+        heading("At stations", 3)
+        sentence("What is typed here holds; between its neighbours the curve goes through it smoothly.", "quiet")
+        self._table = ui.element("div").classes("table")
+        self._text, self._csv = self._file(text, table)
+        self._base = self._typed_texts()
+        self._tell(name)
+
+    def _factor(self, words: str) -> ui.input:
+        made = field(f"{words} ×", ONE, numeric=True)
+        made.on("change", self._follow)
+        return made
+
+    def _file(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
+        with ui.element("details"):
+            with ui.element("summary"):
+                ui.label("The file of the ski")
+            sentence(
+                "With units in its keys. Draw the file takes it as it is written here; factors and values at stations "
+                "begin anew from it.",
+                "quiet",
+            )
+            written = ui.textarea("File of the edited ski", value=text).props("outlined autogrow").classes("code")
+            with ui.element("details"):
+                with ui.element("summary"):
+                    ui.label("Its table, where it has one")
+                rows = ui.textarea("Table of the edited ski", value=table).props("outlined").classes("code")
+            button("Draw the file", self._take_file, "main")
+        return written, rows
+
+    def _typed_texts(self) -> tuple[str, str]:
+        return str(self._text.value or ""), str(self._csv.value or "")
+
+    def asked(self) -> SkiAsked:
+        """What the fields say now."""
+        factors = {key: str(each.value or "") for key, each in self._factors.items()}
+        return SkiAsked(*self._base, factors, dict(self._typed))
+
+    async def begin(self, name: str) -> None:
+        """Begin again from a ski of the lab."""
+        text, table = self._skis.texts(name)
+        self._text.set_value(text)
+        self._csv.set_value(table)
+        self._tell(name)
+        await self._take_file()
+
+    async def _take_file(self) -> None:
+        self._base = self._typed_texts()
+        self._typed.clear()
+        for each in self._factors.values():
+            each.set_value(ONE)
+        await self._changed()
+
+    def _tell(self, name: str) -> None:
+        self._begun.set_text(f"Begun from {name}. Nothing is saved until you give it a name of its own.")
+
+    async def _follow(self) -> None:
+        await self._changed()
+
+    def show(self, stations: tuple[float, ...], cells: Mapping[tuple[str, int], str]) -> None:
+        """Show what the curves are at the stations; what was typed there stays."""
+        if stations != self._stations:
+            self._stations = stations
+            self._draw_table()
+        for place, each in self._cells.items():
+            if each.value != cells[place]:
+                each.set_value(cells[place])
+
+    def _draw_table(self) -> None:
+        self._table.clear()
+        self._cells = {}
+        with self._table, ui.element("table").classes("cells"):
+            with ui.element("thead"), ui.element("tr"):
+                for words in (STATION, *CELLS.values()):
+                    with ui.element("th").props("scope=col"):
+                        ui.label(words)
+            with ui.element("tbody"):
+                for i, station in enumerate(self._stations):
+                    with ui.element("tr"):
+                        with ui.element("th").props("scope=row"):
+                            ui.label(f"{station:.3f}".replace("-", "−"))
+                        for column in CELLS:
+                            with ui.element("td"):
+                                self._cell(column, i, station)
+
+    def _cell(self, column: str, i: int, station: float) -> None:
+        place = (column, i)
+        made = ui.input().props("outlined dense inputmode=decimal autocomplete=off")
+        made.props(f'aria-label="{CELLS[column]} at {station:.3f} m"')
+        self._cells[place] = made
+
+        async def typed() -> None:
+            if text := str(made.value or "").strip():
+                self._typed[place] = text
+            else:  # emptied: as it was
+                self._typed.pop(place, None)
+            await self._changed()
+
+        made.on("change", typed)

@@ -1,0 +1,72 @@
+"""The snow of a campaign for a simulation: its results, and in words what they say and how well it is known."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from ..errors import ParameterError
+from ..estimate.results_text import results_json
+from ..files import write_file
+from .analysing import Choice, Refusal, numbers_of
+from .transfer import write_entry, write_kept
+from .words import hardness_words, stress_words
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ..simulate.scenario.reading import ScenarioFile
+    from .settings import Lab
+
+
+def require_scenario(scenario: str, changes: Mapping[str, str]) -> ScenarioFile:
+    """Read a scenario with changes as the command line would.
+
+    Raises
+    ------
+    ParameterError
+        A value cannot be read or is not allowed.
+    """
+    from ..simulate.scenario import scenario_file
+    from ..simulate.scenario.given import change_of
+
+    return scenario_file(scenario, changes=dict(change_of(f"{name}={text}") for name, text in changes.items()))
+
+
+def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
+    """Results of a campaign, for the key snow.results, and hardness and stress with their intervals in words.
+
+    Parameters
+    ----------
+    lab
+        Whose store has the campaign.
+    key
+        entry or kept, and the id, with - between.
+    scenario, changes
+        What is to be simulated with it.
+
+    Raises
+    ------
+    ParameterError
+        The campaign gives no snow, or the scenario cannot be read.
+    """
+    from ..simulate.carve_dict import snow_dict
+    from ..simulate.scenario import scenario_values
+
+    kind, id_ = key.split("-", 1)
+    with TemporaryDirectory(prefix="skisnow-snow-") as name:
+        folder, place = Path(name) / "campaign", Path(name) / "results.json"
+        (write_kept if kind == "kept" else write_entry)(lab, id_, folder)
+        found = numbers_of(str(folder), Choice())
+        if isinstance(found, Refusal):
+            raise ParameterError(f"this campaign gives no snow yet. {found.said}")
+        results = results_json(found.results)
+        write_file(place, results)
+        asked = require_scenario(scenario, {**changes, "snow.results": str(place)}).scenario
+        values = scenario_values(asked)
+        snow = snow_dict(asked.contact.snow)
+    hardness = {"H_V_N_per_mm3": values["snow.H_V_N_per_mm3"], **snow}
+    stress = {"S_f_N_per_mm2": values["snow.S_f_N_per_mm2"], **snow}
+    words = f"H_V = {hardness_words(hardness)}; S_f = {stress_words(stress)}"
+    return results, words
