@@ -11,6 +11,8 @@ from ...report.numerals import counted
 from ..fields import link
 from ..layout import framed, heading, sentence
 from ..replay.addresses import LIST, SHOW, RunFolders, add_addresses, show_address
+from ..replay.tracks import LARGEST_BYTES, MOST_POINTS, TrackFolders
+from ..replay.uploads import UPLOAD, add_uploads
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,22 +21,29 @@ if TYPE_CHECKING:
 
 PATH: Final = LIST
 TITLE: Final = "Replay"
+NONE: Final = "none"
 
 
 def add_page(lab: Lab) -> None:
     """Add the page, and the addresses that its pictures are fetched from."""
-    runs = RunFolders(lab.runs)
+    runs, tracks = RunFolders(lab.runs), TrackFolders(lab.runs)
     add_addresses(app, runs)
+    add_uploads(app, tracks)
 
     @ui.page(PATH)
-    def replay() -> None:
+    def replay(track: str = "") -> None:
         with framed("Replay", here=PATH):
             names = runs.names()
+            if track in tracks.names():
+                sentence(f"The track {track} is kept. Choose the run that it is to stand beside.", "good").props(
+                    "role=status"
+                )
             sentence(f"{counted(len(names), 'run')} kept, the newest first.", "quiet")
             if not names:
                 sentence("Simulate one, then it can be watched here.")
-            if len(names) > 1:
-                _two_runs(names)
+            if names:
+                _together(names, tracks.names(), track)
+            _upload()
             for name in names:
                 _run(runs.place(name), name)
 
@@ -57,23 +66,53 @@ def _told(place: Path) -> str:
         return "without a readable summary"
 
 
-def _two_runs(names: list[str]) -> None:
-    """A form that lays one run over another: plain HTML, so that it works by keyboard everywhere."""
-    heading("Two runs, one over the other", 2)
+def _together(names: list[str], tracks: list[str], track: str) -> None:
+    """A form that puts a run, another one and a track together: plain HTML, so that it works by keyboard everywhere."""
+    if len(names) == 1 and not tracks:
+        return
+    heading("Side by side", 2)
     with ui.element("form").props(f'action="{SHOW}" method="get"').classes("acts"):
-        _select("run", "Run", names, 0)
-        _select("ghost", "Laid over it, translucent", names, 1)
-        with ui.element("button").props("type=submit").classes("act"):
-            ui.label("Watch both")
+        _select("run", "Run", names, names[0])
+        _select("ghost", "Laid over it, translucent", [NONE, *names], names[1] if len(names) > 1 else NONE)
+        _select("track", "Measured track beside it", [NONE, *tracks], track or NONE)
+        with ui.element("button").props("type=submit").classes("act main"):
+            ui.label("Watch together")
 
 
-def _select(key: str, text: str, names: list[str], chosen: int) -> None:
+def _select(key: str, text: str, names: list[str], chosen: str) -> None:
     with ui.element("label").props(f"for=replay-{key}"):
         ui.label(text)
     with ui.element("select").props(f"id=replay-{key} name={key}").classes("act"):
-        for i, name in enumerate(names):
-            said = f'value="{_quoted(name)}" label="{_quoted(name)}"'
-            ui.element("option").props(said + (" selected" if i == chosen else ""))
+        for name in names:
+            said = f'value="{_quoted("" if name == NONE else name)}" label="{_quoted(name)}"'
+            ui.element("option").props(said + (" selected" if name == chosen else ""))
+
+
+def _upload() -> None:
+    """A form that takes a measured track in."""
+    with ui.element("details"):
+        with ui.element("summary"):
+            ui.label("Add a measured track")
+        sentence(
+            f"CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {LARGEST_BYTES // 1_000_000} MB and {MOST_POINTS} points. A "
+            "track in latitude and longitude needs the compass direction in which the slope falls; it begins where the "
+            "run begins. One in the run's own axes (x down the fall line, y left, z out of the snow, in m) needs none, "
+            "and stands where it says. Nothing is fitted.",
+            "quiet",
+        )
+        form = f'method=post action="{UPLOAD}" enctype="multipart/form-data"'
+        with ui.element("form").props(form).classes("acts"):
+            _input("file", "Track", "type=file required")
+            _input("azimuth", "Direction of the fall line (°), clockwise from north", "inputmode=decimal")
+            _input("start", "Time of the run at its first point (s)", "inputmode=decimal value=0")
+            with ui.element("button").props("type=submit").classes("act"):
+                ui.label("Add the track")
+
+
+def _input(key: str, text: str, further: str) -> None:
+    with ui.element("label").props(f"for=track-{key}"):
+        ui.label(text)
+    ui.element("input").props(f"id=track-{key} name={key} {further}").classes("" if "file" in further else "act plain")
 
 
 def _quoted(name: str) -> str:

@@ -18,6 +18,7 @@ from .binary import replay_bytes
 from .model import replay_model
 from .of_file import RUN_FILE, replay_of_file
 from .page import MODULES, STYLE, static_text
+from .tracks import TrackFolders
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -59,8 +60,10 @@ class RunFolders:
             raise ParameterError(f"there is no run {name!r} here. Choose one from the list")
         return self.folder / name
 
-    def replay(self, name: str) -> Replay:
-        """The replay of a run. The ski of a run of the lab is where its job says: the run itself knows the name alone.
+    def replay(self, name: str, track: str = "") -> Replay:
+        """The replay of a run, with a measured track beside it where one is named.
+
+        The ski of a run of the lab is where its job says: the run itself knows the name alone.
 
         Raises
         ------
@@ -68,7 +71,11 @@ class RunFolders:
             There is no such run, or it cannot be shown.
         """
         place = self.place(name)
-        return replay_of_file(place, title=name, ski=_ski_of_job(place / JOB))
+        ski = _ski_of_job(place / JOB)
+        alone = replay_of_file(place, title=name, ski=ski)
+        if not track:
+            return alone
+        return replay_of_file(place, title=name, ski=ski, track=TrackFolders(self.folder).beside(track, alone))
 
 
 def _ski_of_job(job: Path) -> Ski | None:
@@ -82,17 +89,17 @@ def _ski_of_job(job: Path) -> Ski | None:
 def add_addresses(app: FastAPI, runs: RunFolders) -> None:
     """Let an application answer for the replays of these runs."""
 
-    def show(run: str, ghost: str = "") -> Response:
+    def show(run: str, ghost: str = "", track: str = "") -> Response:
         try:
             for name in (run, ghost) if ghost else (run,):
                 runs.place(name)
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
-        return HTMLResponse(show_page(run, ghost or None))
+        return HTMLResponse(show_page(run, ghost or None, track))
 
-    def data(name: str) -> Response:
+    def data(name: str, track: str = "") -> Response:
         try:
-            content = replay_bytes(runs.replay(name))
+            content = replay_bytes(runs.replay(name, track))
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
         return Response(content, media_type="application/octet-stream", headers={"cache-control": "no-cache"})
@@ -120,8 +127,8 @@ def program_file(name: str) -> Response:
     return Response(static_text(name), media_type=kind, headers={"cache-control": "no-cache"})
 
 
-def show_page(run: str, ghost: str | None) -> str:
-    """The HTML that fetches a run, and a second one to lay over it, by their names."""
+def show_page(run: str, ghost: str | None, track: str = "") -> str:
+    """The HTML that fetches a run, a second one to lay over it and a track beside it, by their names."""
     environment = Environment(
         loader=PackageLoader("skisnow.web.replay", "static"), autoescape=True, undefined=StrictUndefined
     )
@@ -129,7 +136,7 @@ def show_page(run: str, ghost: str | None) -> str:
         title=run,
         files=FILES,
         list=LIST,
-        run=f"{DATA}/{quote(run)}",
+        run=f"{DATA}/{quote(run)}" + (f"?track={quote(track, safe='')}" if track else ""),
         ghost=f"{DATA}/{quote(ghost)}" if ghost else "",
         model=f"{MODEL}/{quote(run)}.glb",
     )

@@ -1,0 +1,49 @@
+"""The address that takes a measured track in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+from urllib.parse import quote
+
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import FormData, UploadFile
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+
+from ...errors import ParameterError, SkisnowError
+from ..trouble import plain_page, told
+from .tracks import Placing, number_of
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
+
+    from .tracks import TrackFolders
+
+UPLOAD: Final = "/replay/track"
+_BACK: Final = "/replay"
+
+
+def add_uploads(app: FastAPI, tracks: TrackFolders) -> None:
+    """Let an application take tracks in. Where a request may come from is held by the guard around it."""
+
+    async def take_in(request: Request) -> Response:
+        try:
+            async with request.form(max_files=1, max_fields=4) as form:
+                name, _ = await run_in_threadpool(_kept, tracks, form)
+        except (SkisnowError, OSError) as error:
+            return plain_page("This was not taken in", f"Nothing was stored: {told(error)}", 400)
+        except HTTPException:
+            return plain_page("This was not taken in", "Nothing was stored: one file at a time is taken in.", 400)
+        return RedirectResponse(f"{_BACK}?track={quote(name, safe='')}", 303)
+
+    app.add_api_route(UPLOAD, take_in, methods=["POST"], include_in_schema=False, response_model=None)
+
+
+def _kept(tracks: TrackFolders, form: FormData) -> tuple[str, int]:
+    upload = form.get("file")
+    if not isinstance(upload, UploadFile) or not upload.filename:
+        raise ParameterError("no file was chosen; choose the file of a track")
+    azimuth = number_of(str(form.get("azimuth", "")), "the direction of the fall line")
+    start = number_of(str(form.get("start", "")), "the time at the first point")
+    return tracks.keep(upload.file, Placing(upload.filename[:200], azimuth, start or 0.0))
