@@ -32,6 +32,7 @@ def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:
     fill(page, {"Site": "A", "Edge angle (°)": "95"})
     page.keyboard.press("Enter")
     page.get_by_text("Not begun: edge_angle_deg is a number of at least 0 and below 90").wait_for()
+    ready(page)
     fill(page, {"Edge angle (°)": "30"})
     page.keyboard.press("Enter")
     page.get_by_label("Depth under 20 N (mm)").and_(page.locator(":focus")).wait_for()
