@@ -73,7 +73,8 @@ def _together(names: list[str], tracks: list[str], track: str) -> None:
     heading("Side by side", 2)
     with ui.element("form").props(f'action="{SHOW}" method="get"').classes("acts"):
         _select("run", "Run", names, names[0])
-        _select("ghost", "Laid over it, translucent", [NONE, *names], names[1] if len(names) > 1 else NONE)
+        other = names[1] if len(names) > 1 and not track else NONE
+        _select("ghost", "Laid over it, translucent", [NONE, *names], other)
         _select("track", "Measured track beside it", [NONE, *tracks], track or NONE)
         with ui.element("button").props("type=submit").classes("act main"):
             ui.label("Watch together")
