@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import brentq
 
 from skisnow.simulate.motion.lines import CELLS
 from skisnow.simulate.motion.model import Snow, World
@@ -79,6 +80,17 @@ class ReferenceRun:
         lateral = turn @ body.lateral
         side = np.clip(-lateral[2] / self.snow.one_sided, -1.0, 1.0) * BESIDE
         origin = self.motion.place + turn @ body.middle[k] + s * turn[:, 0] + side * lateral
+        above, axis = origin[2], turn[:, 0]
+
+        def off(ahead: float) -> float:
+            """How far the surface there lies from this station."""
+            height = surface(self.world, float(origin[0] + ahead * axis[0]))[0]
+            return float(ahead * axis[:2] @ axis[:2] + (height - above) * axis[2])
+
+        if len(self.world.heights) > 1:
+            origin[:2] += brentq(off, -0.5, 0.5, xtol=1e-15) * axis[:2]
+        else:
+            origin[:2] += above * axis[2] / (axis[:2] @ axis[:2]) * axis[:2]
         origin[2], gradient = surface(self.world, float(origin[0]))
         out = np.array([-gradient, 0.0, 1.0]) / math.hypot(1.0, gradient)
         ahead = turn[:, 0] - (turn[:, 0] @ out) * out

@@ -48,12 +48,17 @@ def laid(world: World, state: State) -> Lines:
     return lines
 
 
-def test_lines_lie_on_the_slope_across_the_skis(profile: Profile, hill: World) -> None:
+@pytest.mark.parametrize("pitch", [0.0, 0.35])
+def test_lines_lie_on_the_slope_across_the_skis(profile: Profile, hill: World, pitch: float) -> None:
+    """As far from each other along the skis as asked, also where the slope rises from a ski that points downwards."""
     model, heading = free_model(), 0.3
     state = new_state(len(model.mass))
     state.place[:] = 9.0, 2.0, float(profile.heights(9.0))
     c, s = math.cos(heading), math.sin(heading)
-    state.turn[:] = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    down = np.array(
+        [[math.cos(pitch), 0.0, math.sin(pitch)], [0.0, 1.0, 0.0], [-math.sin(pitch), 0.0, math.cos(pitch)]]
+    )
+    state.turn[:] = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) @ down
     lines = laid(hill, state)
     for k in range(2):
         rows = k * 256 + (int(lines.first[k]) + np.arange(int(lines.count[k]))) % 256

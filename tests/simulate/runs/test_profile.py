@@ -62,3 +62,18 @@ def test_heading_is_told_in_the_slope() -> None:
     tilt = 1e-3  # °: settled into its grooves the sledge pitches and rolls by milliradians, whose product turns it
     assert math.degrees(plane.heading[0]) == pytest.approx(-30.0, abs=tilt)
     assert math.degrees(profile.heading[0]) == pytest.approx(-30.0, abs=tilt)
+
+
+@pytest.mark.parametrize(("edge_deg", "heading_deg"), [(0.0, 0.0), (20.0, -20.0)])
+def test_energy_closes_in_a_hollow(edge_deg: float, heading_deg: float) -> None:
+    """Into a bottom of 20 m radius: lines that crowded before the tips once made 20 % of the energy out of nothing."""
+    x = np.linspace(-3.0, 12.0, 61)
+    hollow = Profile(x, 20.0 - np.sqrt(400.0 - (x - 8.0) ** 2))
+    changes = {"run.duration_s": 0.8, "snow.H_V_N_per_mm3": 1.0, "sledge.edge_angle_deg": edge_deg}
+    given = read_scenario("carved-46m", changes=changes | {"start.heading_deg": heading_deg})
+    run = simulated_run(replace(given, slope=hollow))
+    assert run.outcome == "finished"
+    assert run.place[-1, 0] > 4.0
+    assert run.energies["penetration"][-1] > 1.0
+    assert run.energy_balance_error is not None
+    assert run.energy_balance_error < 2e-3  # as on a plane, where the tables say 0.01 to 0.5 %

@@ -46,6 +46,8 @@ AHEAD: Final = 0.12
 """Distance (m) before tip and behind tail in which lines are laid: more than a ski moves in a step."""
 BESIDE: Final = 0.04
 """Half the width of a ski (m), about: where the edge will cross a line (no accuracy hangs on it)."""
+NEWTON_STEPS: Final = 3
+"""To the place on a curved surface: off by 1 cm at the first, by its square over the radius at the next."""
 MOST_TURN: Final = 0.3
 """Angle (rad) between a line's direction ahead and the ski beyond which the lines are laid anew (Choice)."""
 
@@ -80,8 +82,14 @@ def _lay(
     side = min(max(-lateral[2] / snow.one_sided, -1.0), 1.0) * BESIDE
     for a in range(3):
         frame[a] = state.place[a] + R[a, 1] * y + s * R[a, 0] + side * lateral[a]
-    height, gradient = surface(world, frame[0])
-    frame[2] = height
+    # on the surface at this station: straight below or above it would be another, and lines crowd where a ski runs into
+    # a hollow
+    x, y, z, level, ahead = frame[0], frame[1], frame[2], R[0, 0] * R[0, 0] + R[1, 0] * R[1, 0], 0.0
+    for _ in range(NEWTON_STEPS):
+        height, gradient = surface(world, x + ahead * R[0, 0])
+        ahead -= (ahead * level + (height - z) * R[2, 0]) / (level + gradient * R[0, 0] * R[2, 0])
+    frame[0], frame[1] = x + ahead * R[0, 0], y + ahead * R[1, 0]
+    frame[2], gradient = surface(world, frame[0])
     size = 1.0 / np.sqrt(1.0 + gradient * gradient)
     n0, n2 = -gradient * size, size
     # ahead: the ski's axis in the surface
