@@ -32,7 +32,10 @@ WORKS: Final = 7
 SHORTEST_STEP: Final = 1e-7
 """Step (s) below which a run ends."""
 STEPS_PER_TANGENT: Final = 4
-"""Fixed steps over which the matrix is kept: both methods are of order 2 whatever the matrix."""
+"""Fixed steps over which the matrix is kept: both methods are of order 2 whatever the matrix (Choice)."""
+EASY: Final = 1.0
+"""Stiffness of the contact per length of ski, times the step's square, up to which ROS2 keeps its matrix: about a ski's
+mass per length (kg/m). With longer steps on harder snow an old matrix costs centimetres (Choice)."""
 LONGEST_STEP: Final = 4e-3
 """Step (s) of the error control, which is halved; a ski at 30 m/s moves 12 cm in it."""
 
@@ -137,7 +140,9 @@ def advance_fixed(
         if first or clock.counts[2] % STEPS_PER_TANGENT == 0:
             if not _factor(model, lines, memory, h, 1.0 if first else REACH if fast else GAMMA):
                 return NOT_FINITE
-            clock.counts[2] = -1 if first else 0  # Euler's matrix serves one step alone
+            # Euler's matrix serves one step alone, and so does one of a step that is long for so hard a contact
+            once = first or not (fast or _is_easy(memory.start, lines, h))
+            clock.counts[2] = -1 if once else 0
         if fast:
             fast_step(model, world, memory.state, memory.start, memory.system, h, past, memory.next)
         else:
@@ -154,6 +159,18 @@ def advance_fixed(
             return NOT_FINITE
         observe(model, snow, world, lines, archive, memory, clock.counts[2] % STEPS_PER_TANGENT == 0)
     return GOES_ON
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _is_easy(start: Forces, lines: Lines, h: float) -> bool:
+    """Whether the contact is soft enough for a step h (s) that its matrix may be kept."""
+    stiffest = 0.0
+    for k in range(2):
+        met = 0
+        for i in range(start.sections[k]):
+            met += 1 if start.section[k, i, 1] > 0.0 else 0
+        stiffest = max(stiffest, start.corner[k, 0, 0] / (max(met, 1) * lines.spacing[0]))
+    return stiffest * h * h <= EASY
 
 
 @numba.njit(cache=True, error_model="numpy")
