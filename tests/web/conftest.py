@@ -117,6 +117,7 @@ def ready(page: Page) -> None:
 
 
 def fill(page: Page, values: dict[str, Any]) -> None:
-    """Fill fields by their accessible names."""
+    """Fill fields by their accessible names, once the page is ready: it holds what comes before as if it were typed."""
+    ready(page)
     for label, value in values.items():
         page.get_by_label(label, exact=True).fill(str(value))
