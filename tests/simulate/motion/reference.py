@@ -8,7 +8,7 @@ m δw - b r δφ.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -157,12 +157,17 @@ def free_forces(body: Body, world: World, motion: Motion) -> FloatArray:
 
 @dataclass
 class Felt:
-    """Generalised force of the snow, minus its tangent, and power (W) of shear, friction and all."""
+    """Generalised force of the snow, minus its tangent, and power (W) of shear, friction and all.
+
+    Of each ski also its stiffness in depth (N/m), and how many lines bear it.
+    """
 
     force: FloatArray
     tangent: FloatArray
     shear: float = 0.0
     friction: float = 0.0
+    stiffness: FloatArray = field(default_factory=lambda: np.zeros(2))
+    met: FloatArray = field(default_factory=lambda: np.zeros(2))
 
 
 def felt(body: Body, snow: Snow, spacing: float, lines: tuple[list[Line], list[Line]], motion: Motion) -> Felt:
@@ -269,6 +274,8 @@ def _section(
     line.touch = touch
     # tangent: the depth ε(x) = depth + x/cos θ (roll + twist), x from the ski's middle; the edge's place across
     k0, k1, k2 = (weight * value for value in sums.stiffness)
+    out.stiffness[k] += k0
+    out.met[k] += force > 0.0
     shift, secant = reach * float(t @ y), 1.0 / math.sqrt(1.0 - sine**2)
     k1, k2 = (k1 + shift * k0) * secant, (k2 + 2.0 * shift * k1 + shift**2 * k0) * secant**2
     # a line feels the ski go along its base and its edge: forwards the depth grows, and the edge lies aside

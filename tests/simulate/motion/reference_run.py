@@ -19,7 +19,7 @@ from .reference import Body, Motion, felt, motion_of, ros2_step
 from .reference_snow import Line, lines_of, remember
 
 FloatArray = npt.NDArray[np.float64]
-AHEAD, BESIDE, FREE_CELLS, STEPS_PER_TANGENT = 0.12, 0.04, 24, 4
+AHEAD, BESIDE, FREE_CELLS, STEPS_PER_TANGENT, EASY = 0.12, 0.04, 24, 4, 1.0
 
 
 class ReferenceRun:
@@ -42,14 +42,16 @@ class ReferenceRun:
                 None,
                 None,
             )
-        self.steps = 0
+        self.kept_for = 0
         self._feel()
 
     def step(self, h: float) -> None:
         """One step (s), accepted."""
-        if self.steps % STEPS_PER_TANGENT == 0:
+        if self.kept_for == 0:
             self.tangent = self.start.tangent
-        self.steps += 1
+            per_length = self.start.stiffness / np.maximum(self.start.met, 1.0) / self.spacing
+            self.kept_for = STEPS_PER_TANGENT if max(per_length) * h**2 <= EASY else 1
+        self.kept_for -= 1
         arguments = (self.body, self.snow, self.world, self.spacing, self.lines)
         self.motion = ros2_step(*arguments, self.motion, replace(self.start, tangent=self.tangent), h)
         for k in range(2):
