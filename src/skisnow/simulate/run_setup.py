@@ -198,8 +198,8 @@ def set_up(scenario: Scenario) -> Setup:
     load, depth, wavelength = _contact(scenario)
     solver = scenario.solver
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])
-    elements = solver.elements or max(ELEMENTS, math.ceil(4.0 * length / wavelength))
-    spacing = solver.line_spacing or min(LINE_SPACING, wavelength / 8.0)
+    elements = solver.elements or max(ELEMENTS, math.ceil(5.0 * length / wavelength))
+    spacing = solver.line_spacing or min(LINE_SPACING, wavelength / 10.0)  # two to an element
     tangent = math.tan(max(abs(scenario.sledge.edge_angle), 1e-3))
     across = min(depth / tangent, float(scenario.ski.width.max()))
     cell = solver.cell or min(max(across / CELLS_ACROSS, SMALLEST_CELL), LARGEST_CELL)
