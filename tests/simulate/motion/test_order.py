@@ -106,8 +106,8 @@ def test_bouncing_on_elastic_snow(method: str, order: float) -> None:
             )
         )
 
-    # the edge of the contact moves along the skis: a kink of the second derivative keeps the order off by a little; with
-    # steps longer than these ROS2 makes its matrix at every step, and is nearer to the exact motion than the order says
+    # the edge of the contact moves along the skis: a kink of the second derivative keeps the order off by a little.
+    # With longer steps ROS2 makes its matrix at every step, and is nearer to the exact motion than the order says
     assert orders(error, (200, 400, 800)) == pytest.approx([order, order], abs=0.2)
     assert error(400) < (1e-6 if method == "ros2" else 5e-5)
 
