@@ -154,7 +154,10 @@ def test_the_list_counts_entries(store: Store) -> None:
 def test_entries_can_only_be_added_by_the_rules(store: Store) -> None:
     """The table itself refuses what no program should write."""
     id_, _ = campaign_with(Journals(store), "1.5")
-    with sqlite3.connect(store.path) as connection, pytest.raises(sqlite3.IntegrityError):
+    with (
+        sqlite3.connect(store.path) as connection,
+        pytest.raises(sqlite3.IntegrityError, match="CHECK constraint failed: ck_journal_entry_known_action"),
+    ):
         connection.execute(
             "INSERT INTO journal_entry (journal_id, at, who, action, file, test, cells, why) "
             "VALUES (?, '', '', 'overwrite', '', '', '{}', '')",
