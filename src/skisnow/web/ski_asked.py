@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..errors import ParameterError
 from ..ski.editing import EDITED_COLUMNS, SkiEdit, edit_stations, edited_ski, values_at
 from ..ski.file_keys import COLUMNS
 from .lab_skis import ski_of_texts
+from .typed import typed_number
 
 if TYPE_CHECKING:
     from ..ski import Ski
@@ -45,7 +45,7 @@ class SkiAsked:
     @property
     def is_file(self) -> bool:
         """Whether nothing but the file says what the ski is."""
-        return not self.cells and all(_number(FACTORS[key], text) == 1.0 for key, text in self.factors.items())
+        return not self.cells and all(typed_number(FACTORS[key], text) == 1.0 for key, text in self.factors.items())
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +68,10 @@ def ski_found(asked: SkiAsked, *, name: str = "") -> SkiFound:
     """
     ski, warned = ski_of_texts(asked.text, asked.table)
     station = edit_stations(ski)
-    factors = {key: _number(f"the factor of {FACTORS[key]}", text) for key, text in asked.factors.items()}
+    factors = {key: typed_number(f"the factor of {FACTORS[key]}", text) for key, text in asked.factors.items()}
     wanted = {column: np.full(station.size, np.nan) for column in EDITED_COLUMNS}
     for (column, i), text in asked.cells.items():
-        wanted[column][i] = _number(f"{CELLS[column]} at {station[i]:.3f} m", text) * COLUMNS[column].unit
+        wanted[column][i] = typed_number(f"{CELLS[column]} at {station[i]:.3f} m", text) * COLUMNS[column].unit
     source = ski.source if asked.is_file else f"edited in the lab ({_told(asked, station)}) from: {ski.source}"
     own = ski.name if asked.is_file else f"{ski.name}, edited"
     edited = edited_ski(ski, SkiEdit(station, factors, wanted), name=name or own, source=source)
@@ -85,17 +85,6 @@ def ski_found(asked: SkiAsked, *, name: str = "") -> SkiFound:
 
 
 def _told(asked: SkiAsked, station: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
-    scaled = [f"{FACTORS[key]} × {text}" for key, text in asked.factors.items() if _number(key, text) != 1.0]
+    scaled = [f"{FACTORS[key]} × {text}" for key, text in asked.factors.items() if typed_number(key, text) != 1.0]
     given = [f"{CELLS[column]} {text} at {station[i]:.3f} m" for (column, i), text in asked.cells.items()]
     return "; ".join([*scaled, *given])
-
-
-def _number(what: str, text: str) -> float:
-    """What was typed, with a comma or a point."""
-    try:
-        value = float(text.strip().replace(",", ".").replace("−", "-"))
-    except ValueError:
-        value = np.nan
-    if not np.isfinite(value):
-        raise ParameterError(f"{what}: {text!r} is no number. Correct it")
-    return value

@@ -17,6 +17,7 @@ from ..desk import Desk
 from ..fields import button, choice, field
 from ..layout import framed, heading, sentence
 from ..names import entering, required_id
+from ..typed import typed_number
 
 if TYPE_CHECKING:
     from ..settings import Lab
@@ -90,12 +91,14 @@ class DescriptionForm:
     def text(self) -> str:
         """The text of campaign.toml; errors as `description_text` raises them."""
         observers = [name.strip() for name in (self._observers.value or "").split(",") if name.strip()]
-        loads = [_number("the loads", word) for word in (self._loads.value or "").replace(";", " ").split()]
+        loads = [typed_number("the loads", word) for word in (self._loads.value or "").replace(";", " ").split()]
         values: dict[str, Any] = {"name": (self._name.value or "").strip(), "place": (self._place.value or "").strip()}
         if not values["name"]:
             raise ParameterError("the campaign has no name")
         values |= {"observers": observers or None, "load_steps_N": loads or None}
-        values |= {key: _number(NUMBERS[key], each.value or "") for key, each in self._numbers.items() if each.value}
+        values |= {
+            key: typed_number(NUMBERS[key], each.value or "") for key, each in self._numbers.items() if each.value
+        }
         text = description_text(Description(values, self._tools.values(), self._plates.values()))
         return text + _screening(self._given)
 
@@ -139,7 +142,7 @@ class _Entries:
             if shape is not None:
                 entry["shape"] = shape.value
             used = SHAPES[shape.value].argument_of_key if shape is not None else lengths
-            entry |= {key: _number(key, lengths[key].value or "") for key in used}
+            entry |= {key: typed_number(key, lengths[key].value or "") for key in used}
             found.append(entry)
         return found
 
@@ -151,13 +154,6 @@ def _show_lengths(shape: ui.select, lengths: dict[str, ui.input]) -> None:
 
 def _shown(value: float | None) -> str:
     return "" if value is None else f"{value:.12g}"
-
-
-def _number(what: str, typed: str) -> float:
-    try:
-        return float(typed.strip().replace(",", "."))
-    except ValueError:
-        raise ParameterError(f"{what}: {typed.strip()!r} is no number") from None
 
 
 def _screening(given: dict[str, Any]) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 import secrets
 import shutil
@@ -17,6 +16,7 @@ from ...files import cannot_write, write_file
 from ...track.read import SUFFIXES, read_track
 from ...track.slope_frame import in_slope_frame
 from ...units import DEGREE
+from ..typed import typed_number
 from .replay import measured_track
 
 if TYPE_CHECKING:
@@ -173,16 +173,7 @@ def number_of(text: str, words: str) -> float | None:
     ParameterError
         It is none.
     """
-    plain = text.strip().replace(",", ".").replace("−", "-")
-    if not plain:
-        return None
-    try:
-        value = float(plain)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise ParameterError(f"{words}: {text!r} is no number")
-    return value
+    return typed_number(words, text) if text.strip() else None
 
 
 def _plain(called: str) -> str:
