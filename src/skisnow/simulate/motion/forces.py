@@ -108,7 +108,8 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
         frame[1, a] = R[a, 1] * lateral[1] + R[a, 2] * lateral[2]
         frame[2, a] = R[a, 1] * normal[1] + R[a, 2] * normal[2]
     for k in range(2):
-        out.sections[k] = 0
+        if look:
+            out.sections[k] = 0
         for begin in range(0, lines.count[k], WIDTH):
             count = np.uint64(min(lines.count[k] - begin, WIDTH))
             find_sections(model, snow.one_sided, lines, state, frame, k, begin, count, out.sheet, out.numbers)
