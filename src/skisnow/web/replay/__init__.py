@@ -2,6 +2,7 @@
 
 from .binary import replay_bytes, replay_of_bytes
 from .model import replay_model, write_replay_model
+from .moving_model import moving_replay_model, write_moving_replay_model
 from .of_file import replay_of_file
 from .of_run import replay_of_run
 from .page import replay_page, write_replay
@@ -12,6 +13,7 @@ __all__ = [
     "Replay",
     "ReplayTrack",
     "measured_track",
+    "moving_replay_model",
     "replay_bytes",
     "replay_model",
     "replay_of_bytes",
@@ -19,6 +21,7 @@ __all__ = [
     "replay_of_run",
     "replay_page",
     "ski_edges",
+    "write_moving_replay_model",
     "write_replay",
     "write_replay_model",
 ]

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import json
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
@@ -85,7 +85,7 @@ def replay_bytes(replay: Replay) -> bytes:
     groove.
     """
     arrays, described, at = [], {}, 0
-    for name, values in _arrays(_thinned(replay)).items():
+    for name, values in _arrays(thinned(replay)).items():
         content, description = _packed(KEPT[name], values)
         described[name] = description | {"start": at}
         arrays.append(content)
@@ -118,16 +118,18 @@ def replay_of_bytes(content: bytes) -> Replay:
     return _rebuilt(header, arrays)
 
 
-def _thinned(replay: Replay) -> Replay:
+def thinned(replay: Replay) -> Replay:
     """At most so many moments a second, first and last kept."""
-    from dataclasses import replace
-
     number = len(replay.time)
     duration = float(replay.time[-1] - replay.time[0])
     step = max(1, round((number - 1) / max(duration * MOST_FRAMES_PER_SECOND, 1.0))) if number > 1 else 1
     if step == 1:
         return replay
-    kept = np.unique(np.append(np.arange(0, number, step), number - 1))
+    return at_moments(replay, np.unique(np.append(np.arange(0, number, step), number - 1)))
+
+
+def at_moments(replay: Replay, kept: npt.NDArray[np.int64]) -> Replay:
+    """Those moments alone, by their numbers; the groove stays whole."""
     skis = replay.skis
     along = {name: getattr(skis, name)[kept] for name in ("bending", "twist", "edge_depth", "force_per_length")}
     over = {

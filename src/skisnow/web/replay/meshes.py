@@ -1,0 +1,143 @@
+"""Snow, skis and groove of a replay as meshes of triangles with colours, in the run's own axes."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .glb import Mesh
+from .looks import COLOURS, drawn_thickness, linear, linear_colours, round_above
+from .shape import ski_edges
+
+if TYPE_CHECKING:
+    from .replay import Replay
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+IntArray: TypeAlias = npt.NDArray[np.int64]
+
+_MARGIN: Final = 3.0
+LIFTED: Final = 0.0005
+"""Height (m) of the groove over the snow of a model, or the two would flicker into each other (Choice)."""
+_GRID: Final = {False: [188, 202, 217], True: [128, 149, 171]}
+CORNERS: Final = 8
+"""Vertices of a ski's cross section: left and right on top, right and left on the base, and the same for the walls."""
+
+
+def upright(tilt: float) -> list[float]:
+    """Quaternion x, y, z, w from the run's axes to those of glTF: the inclination about y, then z up made y up."""
+    y, w = math.sqrt(0.5) * math.sin(tilt / 2.0), math.sqrt(0.5) * math.cos(tilt / 2.0)
+    return [-w, y, -y, w]  # (-√½, 0, 0, √½) times (0, sin, 0, cos)
+
+
+def ski_mesh(replay: Replay, frame: int, ski: int, exaggeration: float) -> Mesh:
+    """A ski as it is drawn at a moment, in its place: base, top and both walls, coloured by the force of the snow."""
+    edges = ski_edges(replay, frame, exaggeration=exaggeration)[ski]
+    along = np.gradient(edges.mean(axis=1), axis=0)
+    away = np.cross(edges[:, 0] - edges[:, 1], along)  # across to the left and towards the tail: away from the snow
+    away /= np.linalg.norm(away, axis=1)[:, None]
+    top = edges + (drawn_thickness(replay.skis.station)[:, None] * away)[:, None]
+    return _walled(edges, top, _force_colours(replay, replay.skis.force_per_length[frame, ski]))
+
+
+def unloaded_ski_mesh(replay: Replay, ski: int) -> Mesh:
+    """A ski with its unloaded base, x ahead of the boot, y across the base to the left, z away from the snow.
+
+    Its colours are those of the mean force over the run.
+    """
+    skis = replay.skis
+    height = np.stack([skis.base_height, skis.base_height + drawn_thickness(skis.station)])
+    side = np.stack([skis.half_width, -skis.half_width])
+    place = np.empty((2, len(skis.station), 2, 3))  # base or top, station, left or right
+    place[..., 0], place[..., 1], place[..., 2] = skis.station[:, None], side.T, height[..., None]
+    return _walled(place[0], place[1], _force_colours(replay, skis.force_per_length[:, ski].mean(axis=0)))
+
+
+def _force_colours(replay: Replay, force: FloatArray) -> FloatArray:
+    """Colours (m, 3) of forces (m,) along a ski in N/m, on the scale of the whole run."""
+    share = force / round_above(float(replay.skis.force_per_length.max()))
+    face = linear_colours("force", share)
+    face[share <= COLOURS["least_share"]] = linear(COLOURS["unloaded"])
+    return face
+
+
+def _walled(base: FloatArray, top: FloatArray, face: FloatArray) -> Mesh:
+    """A ski from its base and top (station, left or right, 3) and its faces' colours (station, 3)."""
+    ring = [top[:, 0], top[:, 1], base[:, 1], base[:, 0]]  # twice: for the faces and for the walls
+    corners = np.stack([ring[0], ring[1], ring[2], ring[3], ring[3], ring[0], ring[1], ring[2]], axis=1)
+    colours = np.empty_like(corners)
+    colours[:, :4], colours[:, 4:] = face[:, None], linear(COLOURS["side"])
+    pairs = [(0, 1), (2, 3), (4, 5), (6, 7)]
+    return Mesh(corners.reshape(-1, 3), colours.reshape(-1, 3), _strips(len(corners), CORNERS, pairs))
+
+
+def _strips(sections: int, corners: int, pairs: list[tuple[int, int]]) -> IntArray:
+    """Triangles (t, 3) between neighbouring sections, for each pair of corners a strip."""
+    j = np.arange(sections - 1)[:, None] * corners
+    a, b = (np.array([pair[i] for pair in pairs]) + j for i in (0, 1))
+    below, above = np.stack([a, a + corners, b], axis=-1), np.stack([b, a + corners, b + corners], axis=-1)
+    return np.concatenate([below.reshape(-1, 3), above.reshape(-1, 3)])
+
+
+def groove_mesh(replay: Replay, kept: npt.NDArray[np.bool_]) -> Mesh:
+    """Those pieces of the groove that are kept (k,), as rectangles of their true width, a little over the snow."""
+    groove = replay.groove
+    half = 0.5 * groove.width[kept, None] * groove.left[kept]
+    up = _normals(replay, groove.middle[kept])
+    ahead = 0.5 * groove.spacing * np.cross(groove.left[kept], up)
+    middle = groove.middle[kept] + LIFTED * up
+    corners = np.stack([middle - half - ahead, middle + half - ahead, middle + half + ahead, middle - half + ahead], 1)
+    share = groove.residual_depth[kept] / round_above(float(groove.residual_depth.max()))
+    colours = np.repeat(linear_colours("depth", share), 4, axis=0)
+    first = 4 * np.arange(len(middle))[:, None]
+    triangles = np.concatenate([first + np.array([0, 1, 2]), first + np.array([0, 2, 3])])
+    return Mesh(corners.reshape(-1, 3), colours, triangles)
+
+
+def _normals(replay: Replay, place: FloatArray) -> FloatArray:
+    if replay.profile is None:
+        return np.broadcast_to([0.0, 0.0, 1.0], place.shape)
+    slope = np.interp(place[:, 0], replay.profile[:, 0], np.gradient(replay.profile[:, 1], replay.profile[:, 0]))
+    return np.stack([-slope, np.zeros_like(slope), np.ones_like(slope)], axis=1) / np.hypot(1.0, slope)[:, None]
+
+
+def snow_mesh(replay: Replay) -> Mesh:
+    """The slope around the run."""
+    low, high = _around(replay)
+    line = _fall_line(replay, float(low[0]), float(high[0]))
+    vertices = np.array([[x, y, z] for x, z in line for y in (low[1], high[1])])
+    colours = np.broadcast_to(linear(COLOURS["snow"]), vertices.shape)
+    return Mesh(vertices, colours, _strips(len(line), 2, [(0, 1)]))
+
+
+def grid_mesh(replay: Replay) -> Mesh:
+    """Lines on the snow at each metre of x and y, darker at each fifth; a profile's x is horizontal."""
+    low, high = np.ceil(_around(replay)[0]), np.floor(_around(replay)[1])
+    line = _fall_line(replay, float(low[0]), float(high[0]))
+    across = np.arange(low[0], high[0] + 0.5)
+    height = np.interp(across, line[:, 0], line[:, 1])
+    lines = [np.array([[x, low[1], z], [x, high[1], z]]) for x, z in zip(across, height, strict=True)]
+    lines += [np.insert(line, 1, y, axis=1) for y in np.arange(low[1], high[1] + 0.5)]
+    tones = [_GRID[float(x) % 5.0 == 0.0] for x in (*across, *np.arange(low[1], high[1] + 0.5))]
+    first = np.cumsum([0, *(len(each) for each in lines)])
+    pieces = np.concatenate([np.arange(a, b - 1) for a, b in itertools.pairwise(first)])
+    colours = np.concatenate([np.tile(linear(tone), (len(each), 1)) for tone, each in zip(tones, lines, strict=True)])
+    vertices = np.concatenate(lines)
+    vertices = vertices + 0.5 * LIFTED * _normals(replay, vertices)
+    return Mesh(vertices, colours, np.stack([pieces, pieces + 1], axis=1))
+
+
+def _around(replay: Replay) -> FloatArray:
+    """Lowest and highest coordinates (2, 3) of what is shown of the slope."""
+    return np.stack([replay.place.min(axis=0) - _MARGIN, replay.place.max(axis=0) + _MARGIN])
+
+
+def _fall_line(replay: Replay, start: float, end: float) -> FloatArray:
+    """Points (k, 2) x and z of the surface."""
+    if replay.profile is None:
+        return np.array([[start, 0.0], [end, 0.0]])
+    x = np.linspace(start, end, max(2, math.ceil(end - start) * 4))
+    return np.column_stack([x, np.interp(x, replay.profile[:, 0], replay.profile[:, 1])])
