@@ -26,11 +26,11 @@ WATCH = """([kind, conditions]) => {
   const charts = () => [...document.querySelectorAll('[data-drawn]')]
     .reduce((sum, each) => sum + Number(each.dataset.drawn), 0);
   const drawnBefore = charts();
-  let drawn = 0, begun = null;
+  let begun = null;
   const times = tests.map(() => null);
   window.reaction = new Promise((done) => {
     const look = () => tests.forEach((test, i) => {
-      if (begun === null || times[i] !== null || !test(before, drawn + charts() - drawnBefore)) return;
+      if (begun === null || times[i] !== null || !test(before, charts() - drawnBefore)) return;
       times[i] = -1;
       requestAnimationFrame((now) => {
         times[i] = performance.now() - begun;
@@ -39,10 +39,6 @@ WATCH = """([kind, conditions]) => {
     });
     const watching = new MutationObserver(look);
     watching.observe(document.body, {subtree: true, childList: true, characterData: true, attributes: true});
-    document.querySelectorAll('.js-plotly-plot').forEach((plot) => {
-      plot.removeAllListeners('plotly_afterplot');
-      plot.on('plotly_afterplot', () => { if (begun !== null) { drawn += 1; look(); } });
-    });
     document.addEventListener(kind, () => { begun = performance.now(); }, {capture: true, once: true});
   });
 }"""

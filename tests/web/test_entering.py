@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 from skisnow.field.store import Journals, Store, grown
 
 from .conftest import Served, fill, ready
-from .test_day import correct_the_typing_error, create, enter_series
+from .test_day import correct_the_typing_error, create, enter_series, next_series
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
@@ -25,6 +25,27 @@ def test_undo_and_a_second_look(page: Page, served: Served) -> None:
         test = grown(Journals(store).entries(head.id)).test("penetration.csv", "1")
     assert [row.cells["depth_mm"] for row in test.rows] == ["1.5", "22.5", "2.6"]
     assert [entry.action for entry in test.history] == ["add"] * 4 + ["undo"]
+
+
+def test_the_curve_follows_the_readings(page: Page, served: Served) -> None:
+    """Load over depth; under the mouse the reading in numbers and, behind it, what the law says there."""
+    create(page, served)
+    enter_series(page, "1")
+    points = page.locator(".beside path.points")
+    drawn = "document.querySelectorAll('.beside path.points')[{}]?.getAttribute('d').split('M').length === 5"
+    page.wait_for_function(drawn.format(0))
+    assert points.count() == 1
+    x, y = (points.get_attribute("d") or "").split("M")[-1].removesuffix("h0").split()
+    page.locator(".beside svg[role=img]").hover(position={"x": float(x), "y": float(y)})
+    assert (page.locator(".beside svg g text").text_content() or "").startswith("3.000: 80.0 · ")
+    next_series(page)
+    enter_series(page, "3")
+    page.wait_for_function(drawn.format(1))
+    behind, own = (each.get_attribute("d") or "" for each in points.all())
+    assert (behind.count("M"), own.count("M")) == (4, 4)
+    left, top = zip(*(map(float, each.removesuffix("h0").split()) for each in own.split("M")[1:]), strict=True)
+    assert sorted(left) == list(left)  # deeper and deeper
+    assert sorted(top, reverse=True) == list(top)  # under more and more load, which counts upwards
 
 
 def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:

@@ -1,6 +1,7 @@
 // Lines over one quantity, as SVG: small, so that a page with several is there at once and follows the hand.
+import { toRaw } from "vue";
+
 const LEFT = 70, RIGHT = 12, TOP = 10, BOTTOM = 48, TICK = 6;
-const LOOKS = [["#0b4f8a", ""], ["#b3450b", "7 5"], ["#48525c", "2 4"]];
 const INK = "#14181c", GRID = "#d8dee4", ZERO = "#8b96a1";
 
 function made(kind, attributes, text) {
@@ -17,9 +18,9 @@ function stepOf(span, most) {
 }
 
 function extent(values, fromZero) {
-  const found = values.filter(Number.isFinite);
-  let low = Math.min(...found), high = Math.max(...found);
-  if (!found.length) [low, high] = [0, 1];
+  let low = Infinity, high = -Infinity;
+  for (const value of values) if (Number.isFinite(value)) { low = Math.min(low, value); high = Math.max(high, value); }
+  if (low > high) [low, high] = [0, 1];
   if (fromZero) low = Math.min(low, 0);
   const margin = 0.05 * (high - low) || Math.abs(high) * 0.1 || 1;
   return [fromZero && low === 0 ? 0 : low - margin, high + margin];
@@ -49,9 +50,25 @@ function pathOf(line, across, up) {
   return text;
 }
 
+// One path however many there are: lines of no length with round ends.
+function pointsOf(line, across, up) {
+  let text = "";
+  line.x.forEach((x, i) => {
+    if (x !== null && line.y[i] !== null) text += `M${across(x).toFixed(1)} ${up(line.y[i]).toFixed(1)}h0`;
+  });
+  return text;
+}
+
+function drawn(line, { colour, dash, width, point }, across, up) {
+  const look = line.points
+    ? { d: pointsOf(line, across, up), "stroke-width": point, "stroke-linecap": "round", class: "points" }
+    : { d: pathOf(line, across, up), "stroke-width": width, "stroke-dasharray": dash, class: "line" };
+  return made("path", { ...look, stroke: colour, fill: "none" });
+}
+
 export default {
   template: '<div><svg role="img" style="display: block; width: 100%; touch-action: pan-y"></svg></div>',
-  props: { panel: Object, height: Number },
+  props: { panel: Object, height: Number, looks: Array },
   mounted() {
     this.svg = this.$el.firstChild;
     this.observer = new ResizeObserver(() => this.draw());
@@ -64,11 +81,12 @@ export default {
   watch: { panel() { this.draw(); } },
   methods: {
     draw() {
-      const panel = this.panel, width = this.$el.clientWidth;
+      // without Vue's watching of each number, which takes longer than the drawing
+      const panel = toRaw(this.panel), width = this.$el.clientWidth;
       if (!width) return;
       const lines = panel.lines;
-      const xRange = extent(lines.flatMap((line) => line.x), false);
-      const yRange = panel.range || extent(lines.flatMap((line) => line.y), panel.from_zero);
+      const xRange = extent(lines.flatMap((line) => line.x), panel.from_zero.includes("x"));
+      const yRange = panel.range || extent(lines.flatMap((line) => line.y), panel.from_zero.includes("y"));
       const right = width - RIGHT, bottom = this.height - BOTTOM;
       this.across = scale(xRange, LEFT, right);
       this.up = scale(yRange, bottom, TOP);
@@ -89,13 +107,7 @@ export default {
       // a window of its own: what is beyond the range is cut off
       const inside = made("svg", { x: LEFT, y: TOP, width: Math.max(0, right - LEFT), height: bottom - TOP,
                                    viewBox: `${LEFT} ${TOP} ${Math.max(1, right - LEFT)} ${bottom - TOP}` });
-      for (const line of lines) {
-        const [stroke, dash] = LOOKS[line.look];
-        const look = { stroke, "stroke-dasharray": dash, "stroke-width": 2.5, fill: "none", class: "line" };
-        inside.append(made("path", { d: pathOf(line, this.across, this.up), ...look }));
-        if (line.points) line.x.forEach((x, i) => inside.append(
-          made("circle", { cx: this.across(x), cy: this.up(line.y[i]), r: 5, fill: stroke })));
-      }
+      inside.append(...lines.map((line) => drawn(line, this.looks[line.look], this.across, this.up)));
       this.svg.setAttribute("viewBox", `0 0 ${width} ${this.height}`);
       this.svg.setAttribute("height", this.height);
       this.svg.setAttribute("aria-label", panel.label);
@@ -108,9 +120,10 @@ export default {
     read(event) {
       this.reading?.remove();
       const x = (event.clientX - this.svg.getBoundingClientRect().left);
-      const nearest = this.panel.lines.map((line) => {
+      const nearest = toRaw(this.panel).lines.filter((line) => this.looks[line.look].read).map((line) => {
         let best = -1;
         line.x.forEach((value, i) => {
+          if (value === null) return;
           if (best < 0 || Math.abs(this.across(value) - x) < Math.abs(this.across(line.x[best]) - x)) best = i;
         });
         return best < 0 ? null : [line.x[best], line.y[best]];

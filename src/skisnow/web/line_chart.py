@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from nicegui.element import Element
 
@@ -17,13 +17,25 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 DIGITS: Final = 5
+LOOKS: Final = (
+    {"colour": "#0b4f8a", "dash": "", "width": 2.5, "point": 11, "read": True},
+    {"colour": "#b3450b", "dash": "7 5", "width": 2.5, "point": 11, "read": True},
+    {"colour": "#48525c", "dash": "2 4", "width": 2.5, "point": 11, "read": True},
+    {"colour": "#8b96a1", "dash": "", "width": 1, "point": 6, "read": False},
+)
+"""Colour, dashes, width of a line and of a point in pixels, and whether numbers stand beside the finger or mouse."""
+BEHIND: Final = 3
+"""The look of what the others are seen against."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChartLine:
-    """Values over places, None where there is none; ``look`` 0, 1 or 2: the first, second or a further thing."""
+    """Values over places, None where there is none, which breaks the line.
 
-    x: Sequence[float]
+    ``look`` 0, 1 or 2: the first, second or a further thing, or `BEHIND`. ``points``: points in place of a line.
+    """
+
+    x: Sequence[float | None]
     y: Sequence[float | None]
     look: int = 0
     points: bool = False
@@ -47,12 +59,21 @@ class LineChart(Element, component="line_chart.js"):
         self._titles = {"x": x, "y": y}
         self._words = words
         self._props["height"] = height
+        self._props["looks"] = LOOKS
         self.show([])
 
     def show(
-        self, lines: Sequence[ChartLine], *, range_: tuple[float, float] | None = None, from_zero: bool = False
+        self,
+        lines: Sequence[ChartLine],
+        *,
+        range_: tuple[float, float] | None = None,
+        from_zero: Literal["", "y", "xy"] = "",
     ) -> None:
-        """Draw these lines; ``range_``: values at the lower and the upper end of the axis, else all of them."""
+        """Draw these lines, the first one undermost.
+
+        ``range_``: values at the lower and the upper end of the axis, else all of them. ``from_zero``: which axes show
+        zero whatever the values are.
+        """
         self._props["panel"] = {
             **self._titles,
             "label": self._label(lines),

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from itertools import chain
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from nicegui import background_tasks, run, ui
 
 from ...errors import FieldDataError
-from ..charts import axis, chart
+from ..line_chart import BEHIND, ChartLine, LineChart
 from ..trouble import told
 from ..words import hardness_words, label, stress_words
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     from ...report.curves import SeriesCurve
     from ..desk import AtOnce
     from .sheet import Sheet
 
-OWN: Final = "#0b4f8a"
-OTHERS: Final = "#8b96a1"
+    _Values: TypeAlias = list[float | None]
 
 
 class Beside:
@@ -31,10 +33,10 @@ class Beside:
             self._name = ui.label("").classes("quiet")
             self._value = ui.label("").classes("value").props("role=status")
             self._marks = ui.element("ul").classes("marks")
-            self._plot: ui.plotly | None = None
+            self._chart: LineChart | None = None
             if sheet.file == "penetration.csv":
-                words = "Load against depth: this series and the others of its site"
-                self._plot = ui.plotly(_figure(None, {})).props(f'role=img aria-label="{words}"').classes("plot")
+                words = "Load against depth of this series and the others of its site, load in N"
+                self._chart = LineChart(label("depth_mm"), label("load_N"), words, height=340)
 
     def follow(self, name: str, site: str) -> None:
         """Show this test; what is computed meanwhile for an older state is dropped."""
@@ -67,8 +69,8 @@ class Beside:
             for sentence in found.marks.get(f"{self._sheet.file}/{name}", ()):
                 with ui.element("li"):
                     ui.label(sentence)
-        if self._plot is not None:
-            self._plot.update_figure(_figure(name, found.curves))
+        if self._chart is not None:
+            self._chart.show(list(_lines(name, found.curves)), from_zero="xy")
 
 
 def _value(row: dict[str, Any] | None, *, pressed: bool) -> str:
@@ -77,28 +79,18 @@ def _value(row: dict[str, Any] | None, *, pressed: bool) -> str:
     return f"H_V = {hardness_words(row)}" if pressed else f"S_f = {stress_words(row)}"
 
 
-def _figure(name: str | None, curves: dict[str, SeriesCurve]) -> dict[str, Any]:
-    # one trace for all the others: a site may have hundreds
+def _lines(name: str, curves: dict[str, SeriesCurve]) -> Iterator[ChartLine]:
+    """Readings and law of a series, over those of all others, which are one thing: a site may have hundreds."""
     others = [curve for other, curve in curves.items() if other != name]
-    traces = _traces(others, OTHERS, size=6, width=1) if others else []
-    if name in curves:
-        traces += _traces([curves[name]], OWN, size=11, width=3)
-    x, y = (axis(label(column), rangemode="tozero") for column in ("depth_mm", "load_N"))
-    return chart(traces, x, y, height=340)
+    own = [curves[name]] if name in curves else []
+    for chosen, look in ((others, BEHIND), (own, 0)):
+        if chosen:
+            points = [(curve.depth_mm, curve.load_N) for curve in chosen]
+            laws = [((*curve.law_depth_mm, None), (*curve.law_load_N, None)) for curve in chosen]
+            yield ChartLine(*_joined(points), look, points=True)
+            yield ChartLine(*_joined(laws), look)
 
 
-def _traces(curves: list[SeriesCurve], colour: str, *, size: int, width: int) -> list[dict[str, Any]]:
-    """Readings as points and laws as lines, broken between one series and the next."""
-    points = {
-        "x": [depth for curve in curves for depth in curve.depth_mm],
-        "y": [load for curve in curves for load in curve.load_N],
-    }
-    lines = {
-        "x": [depth for curve in curves for depth in (*curve.law_depth_mm, None)],
-        "y": [load for curve in curves for load in (*curve.law_load_N, None)],
-    }
-    marker, line = {"color": colour, "size": size}, {"color": colour, "width": width}
-    return [
-        {"type": "scatter", "mode": "markers", "marker": marker, "hoverinfo": "x+y", **points},
-        {"type": "scatter", "mode": "lines", "line": line, "hoverinfo": "skip", **lines},
-    ]
+def _joined(pairs: Iterable[tuple[Iterable[float | None], Iterable[float | None]]]) -> tuple[_Values, _Values]:
+    x, y = zip(*pairs, strict=True)
+    return list(chain.from_iterable(x)), list(chain.from_iterable(y))

@@ -8,11 +8,10 @@ from nicegui import run, ui
 
 from ...errors import SkisnowError
 from ...report.ski_drawing import SkiDrawing, ski_drawing
-from ..charts import COLOURS
 from ..fields import button, choice, field
 from ..lab_skis import FILE, TABLE, LabSkis, texts_of_ski
 from ..layout import framed, heading, sentence
-from ..line_chart import ChartLine, LineChart
+from ..line_chart import LOOKS, ChartLine, LineChart
 from ..ski_asked import SkiAsked, SkiFound, ski_found
 from ..ski_editor import SkiEditor
 from ..trouble import told
@@ -119,7 +118,7 @@ class _Skis:
         with self._facts:
             _table(drawn)
         for key, chart in self._charts.items():
-            chart.show(list(_lines(key, drawn)), from_zero=key in STIFFNESSES)
+            chart.show(list(_lines(key, drawn)), from_zero="y" if key in STIFFNESSES else "")
 
     async def _save(self) -> None:
         name, asked = " ".join(str(self._name.value or "").split()), self._editor.asked()
@@ -184,7 +183,7 @@ def _table(drawn: list[SkiDrawing]) -> None:
                     with ui.element("th").props("scope=row"):
                         ui.label(key)
                     for number, each in enumerate(drawn):
-                        with ui.element("td").style(f"color: {COLOURS[number]}"):
+                        with ui.element("td").style(f"color: {LOOKS[number]['colour']}"):
                             ui.label(each.facts[key])
     for each in drawn:
         sentence(f"{each.name}: {each.source}", "quiet")
