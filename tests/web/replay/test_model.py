@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
-import struct
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,6 +14,7 @@ from skisnow.web.replay import Replay, replay_model, replay_of_run, ski_edges, w
 from skisnow.web.replay.looks import linear, round_above
 
 from ...report.runs import circle_run
+from .glb_files import GlbFile
 
 TIME = 2.0
 FRAME = 100
@@ -27,33 +25,14 @@ def replay() -> Replay:
     return replay_of_run(circle_run(), title="A turn")
 
 
-class Glb:
-    """Read by hand, after section 4 of the specification."""
-
-    def __init__(self, content: bytes) -> None:
-        magic, version, length = struct.unpack("<4sII", content[:12])
-        assert (magic, version, length) == (b"glTF", 2, len(content))
-        size, kind = struct.unpack("<I4s", content[12:20])
-        assert kind == b"JSON"
-        assert size % 4 == 0
-        self.words: dict[str, Any] = json.loads(content[20 : 20 + size])
-        size2, kind2 = struct.unpack("<I4s", content[20 + size : 28 + size])
-        assert kind2 == b"BIN\0"
-        self.binary = content[28 + size :]
-        assert size2 == len(self.binary) >= self.words["buffers"][0]["byteLength"]
-
-    def array(self, number: int) -> np.ndarray:
-        accessor = self.words["accessors"][number]
-        view = self.words["bufferViews"][accessor["bufferView"]]
-        kind, parts = {5126: "<f4", 5125: "<u4"}[accessor["componentType"]], {"VEC3": 3, "SCALAR": 1}[accessor["type"]]
-        assert view["byteOffset"] % 4 == 0
-        assert view["byteLength"] == 4 * parts * accessor["count"]
-        return np.frombuffer(self.binary, kind, parts * accessor["count"], view["byteOffset"]).reshape(-1, parts)
+class Glb(GlbFile):
+    """With a mesh by its name."""
 
     def mesh(self, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         (mesh,) = [each for each in self.words["meshes"] if each["name"] == name]
         primitive = mesh["primitives"][0]
         at = primitive["attributes"]
+        assert primitive["mode"] == 4
         triangles = self.array(primitive["indices"]).reshape(-1, 3)
         vertices, colours = self.array(at["POSITION"]), self.array(at["COLOR_0"])
         assert triangles.max() < len(vertices) == len(colours)

@@ -90,7 +90,7 @@ class Glb:
 
     def skin(self, name: str, joints: list[int], skeleton: int, into_joints: FloatArray) -> int:
         """Joints (nodes), the node above them, and matrices (joint, 4, 4) from the resting mesh to each joint."""
-        columns = np.swapaxes(into_joints, 1, 2).reshape(-1, 16)  # column by column, 3.6.2.3
+        columns = np.swapaxes(into_joints, 1, 2).reshape(-1, 16)  # column by column, 3.6.2.4
         matrices = self.array(columns)
         self.skins.append({"name": name, "joints": joints, "skeleton": skeleton, "inverseBindMatrices": matrices})
         return len(self.skins) - 1

@@ -93,7 +93,7 @@ def _about_x(angle: FloatArray | float) -> FloatArray:
 def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int) -> tuple[int, int]:
     """A ski: the node on the sledge that carries its joints, and the node with its mesh.
 
-    The joints alone place a mesh with a skin (section 3.7.3.3), wherever its node is. It is on the sledge because some
+    The joints alone place a mesh with a skin (section 3.7.3.2), wherever its node is. It is on the sledge because some
     viewers look once how far the mesh reaches from its node, and draw it while that is in the picture.
     """
     skis, name = replay.skis, f"{SKI_NAMES[ski]} ski"
