@@ -18,7 +18,7 @@ from skisnow.errors import ParameterError
 from skisnow.report.run_file import write_run_file
 from skisnow.simulate.scenario import scenario_values
 from skisnow.simulate.scenario.values import in_sections
-from skisnow.web.replay import replay_bytes, replay_model, replay_of_file
+from skisnow.web.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file
 from skisnow.web.replay.addresses import RunFolders, add_addresses, show_address
 
 from ...report.runs import circle_run
@@ -76,6 +76,7 @@ def test_only_names_of_the_list_lead_anywhere(runs: Path, client: Client, name: 
     escaped = name.replace("/", "%2F") or "%20"
     assert client.get(f"/replay/data/{escaped}").status_code == 404
     assert client.get(f"/replay/model/{escaped}.glb").status_code == 404
+    assert client.get(f"/replay/moving-model/{escaped}.glb").status_code == 404
 
 
 def test_bytes_and_model_are_those_of_the_library(runs: Path, client: Client) -> None:
@@ -84,6 +85,22 @@ def test_bytes_and_model_are_those_of_the_library(runs: Path, client: Client) ->
     answer = client.get("/replay/model/older.glb", params={"time": "1.0", "exaggeration": "4.0"})
     assert answer.content == replay_model(replay, 1.0, exaggeration=4.0)
     assert answer.headers["content-type"] == "model/gltf-binary"
+    assert answer.headers["content-disposition"] == "attachment; filename*=UTF-8''older-1.00s.glb"
+    moving = client.get("/replay/moving-model/older.glb", params={"exaggeration": "4.0"})
+    assert moving.content == moving_replay_model(replay, exaggeration=4.0)
+    assert moving.headers["content-type"] == "model/gltf-binary"
+    assert moving.headers["content-disposition"] == "attachment; filename*=UTF-8''older.glb"
+
+
+@pytest.mark.parametrize(("asked", "given"), [("nan", 1.0), ("-3", 1.0), ("inf", 20.0), ("1e9", 20.0)])
+def test_an_exaggeration_that_the_page_has_not_becomes_the_nearest(
+    runs: Path, client: Client, asked: str, given: float
+) -> None:
+    replay = replay_of_file(runs / "older", title="older")
+    answer = client.get("/replay/moving-model/older.glb", params={"exaggeration": asked})
+    assert answer.content == moving_replay_model(replay, exaggeration=given)
+    answer = client.get("/replay/model/older.glb", params={"time": "1.0", "exaggeration": asked})
+    assert answer.content == replay_model(replay, 1.0, exaggeration=given)
 
 
 def test_an_odd_name_is_text_on_its_page_and_its_address_leads_there(client: Client) -> None:

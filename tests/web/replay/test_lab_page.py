@@ -11,6 +11,7 @@ from skisnow.cli import main
 from skisnow.report.run_file import write_run_file
 from skisnow.simulate.scenario import scenario_values
 from skisnow.simulate.scenario.values import in_sections
+from skisnow.web.replay import moving_replay_model, replay_model, replay_of_file
 
 from ...report.runs import circle_run
 
@@ -41,9 +42,17 @@ def test_runs_are_listed_and_two_are_watched(served: Any, page: Any) -> None:
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("window.skisnowReplay.time > 0.2")
     page.get_by_role("button", name="Pause").click()
-    with page.expect_download() as download:
-        page.get_by_role("link", name="Model (glTF)").click()
-    assert Path(download.value.path()).read_bytes()[:4] == b"glTF"
+    page.get_by_label("Exaggeration of bending and twist").fill("5")
+    replay = replay_of_file(runs / "tight", title="tight")
+    moment = float(page.evaluate("skisnowReplay.time.toFixed(3)"))
+    for link, name, expected in (
+        ("Model that moves (glTF)", "tight.glb", moving_replay_model(replay, exaggeration=5.0)),
+        ("Model of this moment (glTF)", f"tight-{moment:.2f}s.glb", replay_model(replay, moment, exaggeration=5.0)),
+    ):
+        with page.expect_download() as download:
+            page.get_by_role("link", name=link).click()
+        assert download.value.suggested_filename == name
+        assert Path(download.value.path()).read_bytes() == expected
 
 
 def test_the_command_writes_a_replay_beside_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,6 +16,7 @@ from ...ski import read_ski
 from ..runs import JOB
 from .binary import replay_bytes
 from .model import replay_model
+from .moving_model import moving_replay_model
 from .of_file import RUN_FILE, replay_of_file
 from .page import MODULES, STYLE, static_text
 from .tracks import TrackFolders
@@ -31,6 +32,7 @@ SHOW: Final = f"{LIST}/show"
 FILES: Final = f"{LIST}/files"
 DATA: Final = f"{LIST}/data"
 MODEL: Final = f"{LIST}/model"
+MOVING_MODEL: Final = f"{LIST}/moving-model"
 _TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
 _LARGEST_FACTOR: Final = 20.0
 
@@ -106,17 +108,33 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
     def model(name: str, time: float = 0.0, exaggeration: float = 1.0) -> Response:
         try:
-            factor = min(max(exaggeration, 1.0), _LARGEST_FACTOR)
-            content = replay_model(runs.replay(name), time, exaggeration=factor)
+            content = replay_model(runs.replay(name), time, exaggeration=_possible(exaggeration))
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
-        named = f"attachment; filename*=UTF-8''{quote(name)}-{time:.2f}s.glb"
-        return Response(content, media_type="model/gltf-binary", headers={"content-disposition": named})
+        return _model_file(content, f"{name}-{time:.2f}s")
+
+    def moving_model(name: str, exaggeration: float = 1.0) -> Response:
+        try:
+            content = moving_replay_model(runs.replay(name), exaggeration=_possible(exaggeration))
+        except ParameterError as error:
+            return PlainTextResponse(str(error), 404)
+        return _model_file(content, name)
 
     for address, answer in ((SHOW, show), (f"{FILES}/{{name}}", program_file)):
         app.add_api_route(address, answer, include_in_schema=False, response_model=None)
-    for address, of_run in ((f"{DATA}/{{name}}", data), (f"{MODEL}/{{name}}.glb", model)):
+    models = ((f"{MODEL}/{{name}}.glb", model), (f"{MOVING_MODEL}/{{name}}.glb", moving_model))
+    for address, of_run in ((f"{DATA}/{{name}}", data), *models):
         app.add_api_route(address, of_run, include_in_schema=False, response_model=None)
+
+
+def _possible(exaggeration: float) -> float:
+    """The nearest factor that the page's slider has; 1 for what is no number."""
+    return min(max(1.0, exaggeration), _LARGEST_FACTOR)  # in this order: of 1 and nan the first is taken
+
+
+def _model_file(content: bytes, name: str) -> Response:
+    named = f"attachment; filename*=UTF-8''{quote(name, safe='')}.glb"
+    return Response(content, media_type="model/gltf-binary", headers={"content-disposition": named})
 
 
 def program_file(name: str) -> Response:
@@ -139,6 +157,7 @@ def show_page(run: str, ghost: str | None, track: str = "") -> str:
         run=f"{DATA}/{quote(run)}" + (f"?track={quote(track, safe='')}" if track else ""),
         ghost=f"{DATA}/{quote(ghost)}" if ghost else "",
         model=f"{MODEL}/{quote(run)}.glb",
+        moving_model=f"{MOVING_MODEL}/{quote(run)}.glb",
     )
 
 

@@ -23,7 +23,7 @@ export function made(tag, properties = {}, ...children) {
 }
 
 /** All parts of the page, by name. */
-export function controls({ run, ghost, modelAddress }) {
+export function controls({ run, ghost, modelAddress, movingModelAddress }) {
   const parts = {
     canvas: made("canvas", { className: "replay-canvas", tabIndex: 0, role: "img", "aria-label": `Replay of ${run.title}` }),
     readings: made("dl", { className: "replay-readings", "aria-label": "Readings" }),
@@ -38,7 +38,8 @@ export function controls({ run, ghost, modelAddress }) {
     shown: made("div", { className: "replay-shown", role: "group", "aria-label": "What is shown" }),
     picture: made("button", { type: "button", textContent: "Picture (PNG)" }),
     film: made("button", { type: "button", textContent: "Film (WebM)" }),
-    model: modelAddress ? made("a", { textContent: "Model (glTF)", className: "replay-button", download: "" }) : null,
+    movingModel: movingModelAddress ? fileLink("Model that moves (glTF)") : null,
+    model: modelAddress ? fileLink("Model of this moment (glTF)") : null,
   };
   for (const [name, text] of Object.entries(VIEW_NAMES)) {
     parts.views.append(made("button", { type: "button", textContent: text, "data-view": name, "aria-pressed": "false" }));
@@ -53,6 +54,8 @@ export function controls({ run, ghost, modelAddress }) {
 function slider(label, min, max, step) {
   return made("input", { type: "range", min, max, step, value: min, "aria-label": label });
 }
+
+const fileLink = (text) => made("a", { textContent: text, className: "replay-button", download: "" });
 
 function choice(label, entries) {
   const options = entries.map(([value, text]) => made("option", { value, textContent: text }));
@@ -72,7 +75,7 @@ export function laidOut(root, parts, run) {
   const field = (text, ...inputs) => made("div", { className: "replay-field" }, made("span", { textContent: text }), ...inputs);
   const keys = made("dl", { className: "replay-keys" });
   for (const [key, text] of KEYS) keys.append(made("dt", { textContent: key }), made("dd", { textContent: text }));
-  const takeAway = [parts.picture, parts.film, parts.model].filter(Boolean);
+  const takeAway = [parts.picture, parts.film, parts.movingModel, parts.model].filter(Boolean);
   root.classList.add("replay");
   root.replaceChildren(
     made("div", { className: "replay-stage" }, parts.canvas, parts.readings, parts.legend),

@@ -14,19 +14,20 @@ const LARGE_STEP = 0.5;
 /**
  * Show a run in an element.
  *
- * `run` and, for a second one laid over it, `ghost` are the bytes of replays; `modelAddress(time, exaggeration)` gives
- * the address of a glTF model where there is a server.
+ * `run` and, for a second one laid over it, `ghost` are the bytes of replays. Where there is a server,
+ * `modelAddress(time, exaggeration)` gives the address of a glTF model of a moment, `movingModelAddress(exaggeration)`
+ * that of one that moves.
  */
-export function startReplay(root, { run, ghost = null, modelAddress = null }) {
-  return new Player(root, decoded(run), ghost ? decoded(ghost) : null, modelAddress);
+export function startReplay(root, { run, ghost = null, modelAddress = null, movingModelAddress = null }) {
+  return new Player(root, decoded(run), ghost ? decoded(ghost) : null, { modelAddress, movingModelAddress });
 }
 
 class Player {
-  constructor(root, run, ghost, modelAddress) {
+  constructor(root, run, ghost, addresses) {
     this.run = run;
     this.ghost = ghost;
-    this.modelAddress = modelAddress;
-    this.parts = controls({ run, ghost, modelAddress });
+    this.addresses = addresses;
+    this.parts = controls({ run, ghost, ...addresses });
     laidOut(root, this.parts, run);
     const times = run.arrays.time.values;
     [this.start, this.end] = [times[0], times[times.length - 1]];
@@ -96,7 +97,8 @@ class Player {
     });
     parts.time.value = this.time;
     parts.time.setAttribute("aria-valuetext", `${this.time.toFixed(2)} seconds`);
-    if (parts.model) parts.model.href = this.modelAddress(this.time, this.exaggeration);
+    if (parts.model) parts.model.href = this.addresses.modelAddress(this.time, this.exaggeration);
+    if (parts.movingModel) parts.movingModel.href = this.addresses.movingModelAddress(this.exaggeration);
   }
 
   #compose() {
