@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -41,7 +42,10 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class Client:
-    """Asks the application itself: no socket, no server."""
+    """Asks the application itself: no socket, no server.
+
+    In a thread of its own, for in this one the event loop of Playwright's browser runs once another test has used it.
+    """
 
     def __init__(self, app: FastAPI) -> None:
         self.app = app
@@ -52,7 +56,8 @@ class Client:
             async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as client:
                 return await client.get(address, params=params)
 
-        return asyncio.run(asked())
+        with ThreadPoolExecutor(max_workers=1) as thread:
+            return thread.submit(lambda: asyncio.run(asked())).result()
 
 
 @pytest.fixture
