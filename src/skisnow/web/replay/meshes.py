@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -107,27 +106,31 @@ def _normals(replay: Replay, place: FloatArray) -> FloatArray:
 def snow_mesh(replay: Replay) -> Mesh:
     """The slope around the run."""
     low, high = _around(replay)
-    line = _fall_line(replay, float(low[0]), float(high[0]))
-    vertices = np.array([[x, y, z] for x, z in line for y in (low[1], high[1])])
+    x = np.linspace(low[0], high[0], 2 if replay.profile is None else max(2, math.ceil(high[0] - low[0]) * 4))
+    vertices = np.array([[a, b, z] for a, z in zip(x, _heights(replay, x), strict=True) for b in (low[1], high[1])])
     colours = np.broadcast_to(linear(COLOURS["snow"]), vertices.shape)
-    return Mesh(vertices, colours, _strips(len(line), 2, [(0, 1)]))
+    return Mesh(vertices, colours, _strips(len(x), 2, [(0, 1)]))
 
 
 def grid_mesh(replay: Replay) -> Mesh:
-    """Lines on the snow at each metre of x and y, darker at each fifth; a profile's x is horizontal."""
+    """Lines on the snow at each metre of x and y, darker at each fifth; a profile's x is horizontal.
+
+    They are in pieces of at most a metre: a line of a piece that passes behind the eye is not drawn everywhere.
+    """
     low, high = np.ceil(_around(replay)[0]), np.floor(_around(replay)[1])
-    line = _fall_line(replay, float(low[0]), float(high[0]))
-    across = np.arange(low[0], high[0] + 0.5)
-    height = np.interp(across, line[:, 0], line[:, 1])
-    lines = [np.array([[x, low[1], z], [x, high[1], z]]) for x, z in zip(across, height, strict=True)]
-    lines += [np.insert(line, 1, y, axis=1) for y in np.arange(low[1], high[1] + 0.5)]
-    tones = [_GRID[float(x) % 5.0 == 0.0] for x in (*across, *np.arange(low[1], high[1] + 0.5))]
-    first = np.cumsum([0, *(len(each) for each in lines)])
-    pieces = np.concatenate([np.arange(a, b - 1) for a, b in itertools.pairwise(first)])
-    colours = np.concatenate([np.tile(linear(tone), (len(each), 1)) for tone, each in zip(tones, lines, strict=True)])
-    vertices = np.concatenate(lines)
-    vertices = vertices + 0.5 * LIFTED * _normals(replay, vertices)
-    return Mesh(vertices, colours, np.stack([pieces, pieces + 1], axis=1))
+    x, y = (np.arange(low[axis], high[axis] + 0.5) for axis in (0, 1))
+    finer = x if replay.profile is None else np.arange(low[0], high[0] + 0.1, 0.25)  # so that it follows the snow
+    pieces, tones = [], []
+    for along, across, order in ((y, x, (1, 0)), (finer, y, (0, 1))):
+        ends = np.stack([along[:-1], along[1:]], axis=1)
+        place = np.stack(np.broadcast_arrays(ends[None], across[:, None, None]), axis=-1)  # line, piece, end, 2
+        pieces.append(place[..., list(order)].reshape(-1, 2))
+        tones.append(np.repeat(across % 5.0 == 0.0, 2 * len(ends)))
+    place, dark = np.concatenate(pieces), np.concatenate(tones)
+    vertices = np.column_stack([place, _heights(replay, place[:, 0])])
+    vertices += LIFTED * _normals(replay, vertices)
+    colours = np.where(dark[:, None], linear(_GRID[True]), linear(_GRID[False]))
+    return Mesh(vertices, colours, np.arange(len(vertices)).reshape(-1, 2))
 
 
 def _around(replay: Replay) -> FloatArray:
@@ -135,9 +138,8 @@ def _around(replay: Replay) -> FloatArray:
     return np.stack([replay.place.min(axis=0) - _MARGIN, replay.place.max(axis=0) + _MARGIN])
 
 
-def _fall_line(replay: Replay, start: float, end: float) -> FloatArray:
-    """Points (k, 2) x and z of the surface."""
+def _heights(replay: Replay, x: FloatArray) -> FloatArray:
+    """Of the surface (m)."""
     if replay.profile is None:
-        return np.array([[start, 0.0], [end, 0.0]])
-    x = np.linspace(start, end, max(2, math.ceil(end - start) * 4))
-    return np.column_stack([x, np.interp(x, replay.profile[:, 0], replay.profile[:, 1])])
+        return np.zeros_like(x)
+    return np.interp(x, replay.profile[:, 0], replay.profile[:, 1])

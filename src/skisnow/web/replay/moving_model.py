@@ -131,7 +131,7 @@ def _groove(model: Glb, replay: Replay) -> list[int]:
     return parts
 
 
-_CAMERAS: Final = [{"name": "along", "type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1, "zfar": 300.0}}]
+_CAMERAS: Final = [{"name": "along", "type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.5, "zfar": 300.0}}]
 
 
 def _camera(model: Glb, replay: Replay, clock: int, course: int) -> int:
