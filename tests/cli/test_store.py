@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from skisnow.cli import main
-from skisnow.field.store import Store
+from skisnow.field.store import Journals, NewEntry, Store
 
 RAW = b"experiment;site\r\nP1;Gr\xf6den\r\n"
 
@@ -63,9 +63,29 @@ def test_from_add_to_export_in_json(shell: Shell, folder: Path, tmp_path: Path) 
     sha256 = hashlib.sha256(RAW).hexdigest()
     assert shown["files"][1] == {"path": "raw/penetration.csv", "size": len(RAW), "sha256": sha256}
     out = tmp_path / "out"
-    assert shell.json("export", added["id"], "--out", out) == {**listed, "out": str(out)}
+    assert shell.json("export", added["id"], "--out", out) == {**listed, "n_corrections": 0, "out": str(out)}
     assert (out / "raw" / "penetration.csv").read_bytes() == RAW
     assert shell.json("verify") == {"findings": []}
+
+
+def test_what_was_corrected_in_the_lab_is_exported(shell: Shell, folder: Path, tmp_path: Path, place: Path) -> None:
+    id_ = shell.json("add", folder)["id"]
+    with Store.open(place) as store:
+        entry = NewEntry(
+            action="correct", file="shear.csv", test="1", cells={"2/depth_mm": "6,5"}, who="Ada", why="slip"
+        )
+        standing = {"2/depth_mm": "5,6", "2/site": "Gröden"}
+        written = Journals(store).correct(id_, entry, seen=0, standing=standing)
+    out, told = shell.text("export", id_[:6], "--out", tmp_path / "out")
+    assert out.endswith("given back in " + str(tmp_path / "out") + "\ncells corrected since, in corrections.csv: 1\n")
+    assert told == ""
+    assert (tmp_path / "out" / "corrections.csv").read_text(encoding="utf-8") == (
+        f'file,experiment,row,column,old,new,who,when,why\nshear.csv,1,2,depth_mm,"5,6","6,5",Ada,{written.at},slip\n'
+    )
+    assert (tmp_path / "out" / "raw" / "penetration.csv").read_bytes() == RAW
+    assert shell.json("export", id_, "--out", tmp_path / "again")["n_corrections"] == 1
+    assert shell.json("export", id_, "--as-added", "--out", tmp_path / "alone")["n_corrections"] == 0
+    assert sorted(path.name for path in (tmp_path / "alone").rglob("*.*")) == ["campaign.toml", "penetration.csv"]
 
 
 def test_from_add_to_export_in_words(shell: Shell, folder: Path, tmp_path: Path) -> None:

@@ -10,6 +10,8 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from skisnow.field.store import Store
+
 from .conftest import Served, ready
 
 if TYPE_CHECKING:
@@ -65,6 +67,18 @@ def exported(page: Page, served: Served, place: Path) -> Path:
     return place / "campaign"
 
 
+def exported_by_command(served: Served, place: Path) -> Path:
+    with Store.open(served.store) as store:
+        (stored,) = store.list()
+    command = [sys.executable, "-m", "skisnow", "store", "export", stored.id, "--out", str(place)]
+    subprocess.run([*command, "--store", str(served.store)], check=True, capture_output=True)
+    return place
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
 def analysed(folder: Path) -> dict[str, Any]:
     command = [sys.executable, "-m", "skisnow", "analyse", str(folder), "--json"]
     answer: dict[str, Any] = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
@@ -118,6 +132,7 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
     page.get_by_text("Cancelled: the tool slipped").wait_for()
 
     folder = exported(page, served, tmp_path / "export")
+    assert contents(folder) == contents(exported_by_command(served, tmp_path / "back"))
     for name, text in FILES.items():
         assert (folder / name).read_bytes() == text.encode(), name
     results = analysed(folder)

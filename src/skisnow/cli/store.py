@@ -34,10 +34,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add.add_argument("folder", type=Path, metavar="DIR", help="the campaign's folder")
     actions.add_parser("list", parents=[every], help="list the campaigns")
     show = actions.add_parser("show", parents=[every], help="list the files of a campaign")
-    export = actions.add_parser("export", parents=[every], help="give a campaign back as it came in")
+    export = actions.add_parser(
+        "export", parents=[every], help="give a campaign back, with what was corrected in the lab"
+    )
     for with_id in (show, export):
         with_id.add_argument("id", metavar="ID", help="the campaign's id, or its first 4 digits or more")
     export.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder to make")
+    export.add_argument("--as-added", action="store_true", help="its files alone, without corrections made in the lab")
     actions.add_parser("verify", parents=[every], help="check every file in the store; exit code 1 if any is damaged")
     parser.set_defaults(run=run)
 
@@ -82,10 +85,17 @@ def _show(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _export(store: Store, args: argparse.Namespace) -> Answer:
+    from ..field.store import ExportedCampaign, export_corrected
+
     with _share_shown("exporting") as progress:
-        stored = store.export(args.id, args.out, progress=progress)
+        if args.as_added:
+            exported = ExportedCampaign(store.export(args.id, args.out, progress=progress), 0)
+        else:
+            exported = export_corrected(store, args.id, args.out, progress=progress)
+    stored, n = exported.stored, exported.n_corrections
     text = f"{stored.id}  {stored.name}: {_amount(stored.n_files, stored.n_bytes)}, given back in {args.out}"
-    return {**_as_json(stored), "out": str(args.out)}, text, 0
+    text += f"\ncells corrected since, in corrections.csv: {n}" if n else ""
+    return {**_as_json(stored), "n_corrections": n, "out": str(args.out)}, text, 0
 
 
 def _verify(store: Store, _: argparse.Namespace) -> Answer:

@@ -71,7 +71,7 @@ def test_a_correction_is_exported_and_read_and_the_files_stay(store: Store, tmp_
     place = tmp_path / "kept"
     id_ = kept(store, place, PLAIN.encode())
     Journals(store).correct(id_, correction("1", {"3/depth_mm": "2.25"}), seen=0, standing=standing(place, "1"))
-    export_corrected(store, id_, tmp_path / "out")
+    assert export_corrected(store, id_, tmp_path / "out").n_corrections == 1
     for name in ("campaign.toml", "penetration.csv"):
         assert (tmp_path / "out" / name).read_bytes() == (place / name).read_bytes()
     assert depths(tmp_path / "out") == {"1": [1.5, 2.25, 2.6], "2": [1.4, 2.0, 2.5]}
@@ -138,9 +138,32 @@ def test_somebody_else_was_quicker(store: Store, tmp_path: Path) -> None:
     assert len(journals.corrections(id_)) == 2
 
 
+def test_what_came_as_corrections_and_is_no_text_is_said_and_nothing_is_left(store: Store, tmp_path: Path) -> None:
+    place = tmp_path / "kept"
+    place.mkdir()
+    (place / "corrections.csv").write_bytes(bytes(range(256)))
+    (place / "penetration.csv").write_text(PLAIN, encoding="utf-8")
+    id_ = store.add(place).id
+    assert export_corrected(store, id_, tmp_path / "plain").n_corrections == 0
+    Journals(store).correct(id_, correction("1", {"3/depth_mm": "2.25"}), seen=0, standing=standing(place, "1"))
+    with pytest.raises(StoreError, match=r"corrections\.csv that came with the campaign cannot be read"):
+        export_corrected(store, id_, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
 def test_only_kept_campaigns_are_corrected_so(store: Store) -> None:
     id_ = Journals(store).begin(TOML)
     with pytest.raises(StoreError, match="keeps no campaign"):
         Journals(store).correct(id_, correction("1", {}), seen=0, standing={})
     with pytest.raises(StoreError, match="keeps no campaign"):
         Journals(store).corrections("0123456789ab")
+
+
+def test_a_corrected_campaign_is_not_one_in_entry(store: Store, tmp_path: Path) -> None:
+    place = tmp_path / "kept"
+    id_ = kept(store, place, PLAIN.encode())
+    Journals(store).correct(id_, correction("1", {"3/depth_mm": "2.25"}), seen=0, standing=standing(place, "1"))
+    with pytest.raises(StoreError, match="no campaign in entry"):
+        Journals(store).entries(id_)
+    with pytest.raises(StoreError, match="no campaign in entry"):
+        Journals(store).append(id_, NewEntry(action="add", file="penetration.csv", test="9"), seen=0)

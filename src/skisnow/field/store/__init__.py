@@ -3,12 +3,13 @@
 from .grown import GrownCampaign, GrownRow, GrownTest, grown
 from .grown_files import campaign_files, write_campaign
 from .journal import JournalEntry, JournalHead, Journals, NewEntry, OvertakenError
-from .kept import add_corrections, export_corrected
+from .kept import ExportedCampaign, add_corrections, export_corrected
 from .kept_tables import KeptTable, kept_tables
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
 
 __all__ = [
     "AddedCampaign",
+    "ExportedCampaign",
     "Finding",
     "GrownCampaign",
     "GrownRow",

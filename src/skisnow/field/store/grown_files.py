@@ -6,12 +6,11 @@ campaign, so that the history travels with the numbers.
 
 from __future__ import annotations
 
-import csv
-import io
 from typing import TYPE_CHECKING
 
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS, TABLES
+from .correction_rows import COLUMNS, correction_row, csv_text
 from .journal import DESCRIPTION
 
 if TYPE_CHECKING:
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
 
     from ..reading.table_forms import TableForm
     from .grown import GrownCampaign, GrownRow, GrownTest
-    from .journal import JournalEntry
 
 _TIME = "time"
 
@@ -44,8 +42,7 @@ def campaign_files(campaign: GrownCampaign, *, of: Iterable[GrownTest] | None = 
             files[form.file] = _table(form, tests)
             corrections.extend(_corrections(tests))
     if corrections:
-        header = ("file", "experiment", "row", "column", "old", "new", "who", "when", "why")
-        files[CORRECTIONS.file] = _csv([header, *corrections])
+        files[CORRECTIONS.file] = csv_text([COLUMNS, *corrections])
     return files
 
 
@@ -60,7 +57,7 @@ def _table(form: TableForm, tests: Sequence[GrownTest]) -> str:
     present = {column for row in rows for column in row.entered.cells} | {_TIME}
     present |= {column for row in rows for correction in row.corrections for column in correction.cells}
     columns = [column for column in form.known if column in present or column in form.required]
-    return _csv([columns, *(_cells(row, columns) for row in rows)])
+    return csv_text([columns, *(_cells(row, columns) for row in rows)])
 
 
 def _cells(row: GrownRow, columns: Sequence[str]) -> list[str]:
@@ -72,21 +69,11 @@ def _corrections(tests: Sequence[GrownTest]) -> Iterator[tuple[str, ...]]:
     line = 1  # of the header
     for test in tests:
         if test.cancelling is not None:
-            yield _correction(test.cancelling, line + 1, STATUS, "", test.cancelled)
+            yield correction_row(test.cancelling, line + 1, STATUS, "", test.cancelled)
         for row in test.rows:
             line += 1
             now = dict(row.entered.cells)
             for entry in row.corrections:
                 for column, new in entry.cells.items():
-                    yield _correction(entry, line, column, now.get(column, ""), new)
+                    yield correction_row(entry, line, column, now.get(column, ""), new)
                     now[column] = new
-
-
-def _correction(entry: JournalEntry, line: int, column: str, old: str, new: str) -> tuple[str, ...]:
-    return (entry.file, entry.test, str(line), column, old, new, entry.who, entry.at, entry.why)
-
-
-def _csv(rows: Iterable[Sequence[str]]) -> str:
-    stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(rows)
-    return stream.getvalue()

@@ -23,7 +23,7 @@ from .rows import TIME
 from .schema import campaign, journal, journal_entry
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from .store import Store
 
@@ -31,6 +31,10 @@ Action: TypeAlias = Literal["describe", "add", "correct", "cancel", "undo"]
 
 DESCRIPTION: Final = "campaign.toml"
 """The file, and the only cell, of an entry that describes the campaign."""
+
+
+_IN_ENTRY: Final = journal.c.id.not_in(select(campaign.c.id))
+"""Of a journal; that of a kept campaign says what is corrected in it."""
 
 
 class OvertakenError(StoreError):
@@ -116,7 +120,7 @@ class Journals:
                 func.coalesce(func.max(journal_entry.c.at), journal.c.begun_at),
             )
             .join_from(journal, journal_entry, isouter=True)
-            .where(journal.c.id.not_in(select(campaign.c.id)))
+            .where(_IN_ENTRY)
             .group_by(journal.c.id)
             .order_by(journal.c.begun_at, journal.c.id)
         )
@@ -131,9 +135,7 @@ class Journals:
         StoreError
             There is no such journal.
         """
-        with database_told(self._path, "could not be read"), reading(self._engine) as connection:
-            _require(connection, id)
-            return _entries(connection, id, after)
+        return self._read(id, after, _require)
 
     def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
         """Give the entries about a campaign that is kept byte for byte, oldest first, from behind a sequence on.
@@ -143,9 +145,14 @@ class Journals:
         StoreError
             There is no such campaign.
         """
+        return self._read(id, after, _require_kept)
+
+    def _read(self, id_: str, after: int, require: Callable[[Connection, str], None]) -> tuple[JournalEntry, ...]:
         with database_told(self._path, "could not be read"), reading(self._engine) as connection:
-            _require_kept(connection, id)
-            return _entries(connection, id, after)
+            require(connection, id_)
+            asked = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
+            rows = connection.execute(asked.order_by(journal_entry.c.sequence)).mappings()
+            return tuple(_entry(row) for row in rows)
 
     def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
         """Write an entry down; when this returns it is on the disk.
@@ -210,7 +217,7 @@ def _now() -> str:
 
 
 def _require(connection: Connection, id_: str) -> None:
-    if connection.execute(select(journal.c.id).where(journal.c.id == id_)).first() is None:
+    if connection.execute(select(journal.c.id).where(journal.c.id == id_, _IN_ENTRY)).first() is None:
         raise StoreError(f"The store has no campaign in entry with the id {id_!r}; the list of campaigns names all.")
 
 
@@ -227,15 +234,6 @@ def _base(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[s
         return int(row[0])
     said = NewEntry(action="add", file=entry.file, test=entry.test, cells=standing, why="as the file has it")
     return _write(connection, id_, said).sequence
-
-
-def _entries(connection: Connection, id_: str, after: int) -> tuple[JournalEntry, ...]:
-    asked = (
-        select(journal_entry)
-        .where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
-        .order_by(journal_entry.c.sequence)
-    )
-    return tuple(_entry(row) for row in connection.execute(asked).mappings())
 
 
 def _of_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:

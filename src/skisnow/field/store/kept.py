@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
+from ...errors import StoreError
 from ...files import write_file
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
-from ..reading.text import look_at_csv
+from ..reading.text import UnreadableTextError, look_at_csv
+from .correction_rows import COLUMNS, correction_row, csv_text
+from .folder import no_progress
 from .grown import grown
 from .journal import Journals
 from .kept_tables import cell_of
@@ -18,14 +20,21 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
+    from .folder import Progress
     from .grown import GrownTest
     from .journal import JournalEntry
     from .store import Store, StoredCampaign
 
-COLUMNS: Final = ("file", "experiment", "row", "column", "old", "new", "who", "when", "why")
+
+@dataclass(frozen=True, slots=True)
+class ExportedCampaign:
+    """A campaign that was given back, and how many cells were corrected since it was kept."""
+
+    stored: StoredCampaign
+    n_corrections: int
 
 
-def export_corrected(store: Store, id_: str, folder: Path) -> StoredCampaign:
+def export_corrected(store: Store, id_: str, folder: Path, *, progress: Progress = no_progress) -> ExportedCampaign:
     """Give a kept campaign back in a new folder: its files byte for byte, and what was corrected since.
 
     Corrections stand in corrections.csv behind those that came with the campaign; where there are none, every file is
@@ -34,15 +43,18 @@ def export_corrected(store: Store, id_: str, folder: Path) -> StoredCampaign:
     Raises
     ------
     StoreError
-        As `Store.export`.
+        As `Store.export`; and where a corrections.csv that came with the campaign cannot be gone on with.
     """
-    stored = store.export(id_, folder)
-    add_corrections(folder, Journals(store).corrections(stored.id))
-    return stored
+    entries = Journals(store).corrections(store.show(id_).id)
+    written: list[int] = []
+    stored = store.export(
+        id_, folder, progress=progress, complete=lambda filled: written.append(add_corrections(filled, entries))
+    )
+    return ExportedCampaign(stored, sum(written))
 
 
-def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: bytes | None = None) -> None:
-    """Write corrections.csv into a campaign's folder, where there is something to correct.
+def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: bytes | None = None) -> int:
+    """Write corrections.csv into a campaign's folder, where there is something to correct; says how many cells are.
 
     Parameters
     ----------
@@ -52,6 +64,11 @@ def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: by
         Those about the campaign, oldest first.
     before
         corrections.csv as it came with the campaign; None: as it stands in the folder.
+
+    Raises
+    ------
+    StoreError
+        That file cannot be read.
     """
     place = folder / CORRECTIONS.file
     rows = list(_rows(entries))
@@ -63,19 +80,27 @@ def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: by
         write_file(place, before)
     else:
         place.unlink(missing_ok=True)
+    return len(rows)
 
 
 def _together(before: bytes, rows: list[dict[str, str]]) -> str:
     """One file: the rows that came with the campaign with all their columns, then ours."""
-    records = [cells for _, some in look_at_csv(before).records() for cells in some] if before.strip() else []
+    records = _records(before) if before.strip() else []
     header = [cell.strip() for cell in records.pop(0)] if records else []
     header += [column for column in COLUMNS if column not in header]
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows([*cells, *[""] * (len(header) - len(cells))] for cells in records)
-    writer.writerows([row.get(column, "") for column in header] for row in rows)
-    return stream.getvalue()
+    came = ([*cells, *[""] * (len(header) - len(cells))] for cells in records)
+    ours = ([row.get(column, "") for column in header] for row in rows)
+    return csv_text([header, *came, *ours])
+
+
+def _records(data: bytes) -> list[list[str]]:
+    try:
+        return [cells for _, some in look_at_csv(data).records() for cells in some]
+    except UnreadableTextError as error:
+        raise StoreError(
+            f"The {CORRECTIONS.file} that came with the campaign cannot be read, so that no rows can follow: "
+            f"{error.allowed} is wanted. `skisnow store export --as-added` gives the files without later corrections."
+        ) from error
 
 
 def _rows(entries: Iterable[JournalEntry]) -> Iterator[dict[str, str]]:
@@ -94,6 +119,5 @@ def _rows_of(test: GrownTest) -> Iterator[dict[str, str]]:
         cells = entry.cells if entry.action == "correct" else {f"{first}/{STATUS}": entry.why}
         for key, new in cells.items():
             line, column = cell_of(key)
-            said = (entry.file, entry.test, str(line), column, now.get(key, ""), new, entry.who, entry.at, entry.why)
-            yield dict(zip(COLUMNS, said, strict=True))
+            yield dict(zip(COLUMNS, correction_row(entry, line, column, now.get(key, ""), new), strict=True))
             now[key] = new

@@ -205,10 +205,18 @@ class Store:
         with database_told(self.path, "could not be read"), reading(self.engine) as connection:
             return one_campaign(connection, id)
 
-    def export(self, id: str, out_folder: Path, *, progress: Progress = no_progress) -> StoredCampaign:  # noqa: A002
-        """Give a campaign's files back as they came in, in a new folder.
+    def export(
+        self,
+        id: str,  # noqa: A002
+        out_folder: Path,
+        *,
+        progress: Progress = no_progress,
+        complete: Callable[[Path], object] | None = None,
+    ) -> StoredCampaign:
+        """Give a campaign's files back as they came in, in a new folder; `export_corrected` adds later corrections.
 
-        The folder appears under its name when all files are on the disk and their hashes were checked.
+        The folder appears under its name when all files are on the disk and their hashes were checked. ``complete`` is
+        called with it just before, and can put more into it.
 
         Raises
         ------
@@ -223,6 +231,8 @@ class Store:
                     write_file(filling, file, stored_chunks(connection, file.sha256))
                     done += file.size
                     progress(done, stored.n_bytes)
+                if complete is not None:
+                    complete(filling)
         return stored
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:

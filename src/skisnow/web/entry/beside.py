@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from nicegui import background_tasks, run, ui
 
-from ...errors import FieldDataError
+from ...errors import FieldDataError, StoreError
 from ..line_chart import BEHIND, ChartLine, LineChart
 from ..trouble import told
 from ..words import hardness_words, label, stress_words
@@ -51,7 +51,7 @@ class Beside:
                 (name, site), self._wanted = self._wanted, None
                 try:
                     found = await run.io_bound(self._sheet.desk.at_once, site)
-                except FieldDataError as error:
+                except (FieldDataError, StoreError) as error:
                     self._value.set_text(told(error))
                     continue
                 if self._wanted is None and found is not None:
