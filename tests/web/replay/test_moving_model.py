@@ -220,16 +220,42 @@ def test_snow_and_grid_lie_on_the_slope(model: GlbFile) -> None:
     assert fifth.any()
 
 
-def test_grid_on_a_measured_slope_follows_it() -> None:
-    """Down 20 %: the run's axes are horizontal and vertical there, so the grid falls with the snow."""
-    x = np.linspace(-30.0, 60.0, 91)
-    run = circle_run(count=11)
-    scenario = replace(run.scenario, slope=Profile(x, -0.2 * x))
-    place = run.place - np.array([0.0, 0.0, 0.2]) * run.place[:, :1]
-    model = GlbFile(moving_replay_model(replay_of_run(replace(run, scenario=scenario, place=place))))
+@pytest.fixture(scope="module")
+def steep() -> GlbFile:
+    """Down 60 % and ever less, 2 mm less each metre; the run's axes are horizontal and vertical there."""
+    x = np.linspace(-30.0, 60.0, 901)
+    run = circle_run(count=41)
+    scenario = replace(run.scenario, slope=Profile(x, falls(x)))
+    place = np.column_stack([run.place[:, :2], falls(run.place[:, 0])])
+    return GlbFile(moving_replay_model(replay_of_run(replace(run, scenario=scenario, place=place))))
+
+
+def falls(x: np.ndarray) -> np.ndarray:
+    """Height (m) at x (m)."""
+    return -0.6 * x + 0.001 * x**2
+
+
+def test_grid_on_a_measured_slope_follows_it(steep: GlbFile) -> None:
     for name in ("grid", "snow"):
-        world = Playing(model, 0.0).vertices(name)
-        assert world[:, 1] == pytest.approx(-0.2 * world[:, 0], abs=6e-4)  # m; the grid is lifted by half a millimetre
+        world = Playing(steep, 0.0).vertices(name)
+        # m; the grid is lifted by half a millimetre, which is 0.6 mm up there; chords of 0.25 m are 0.01 mm off
+        assert world[:, 1] == pytest.approx(falls(world[:, 0]), abs=7e-4)
+    depth = Playing(steep, 0.0).vertices("grid")
+    assert np.ptp(depth[:, 0]) > 5.0
+    assert np.ptp(depth[:, 1]) > 3.0
+
+
+def test_the_camera_stays_over_a_steep_slope(steep: GlbFile) -> None:
+    for time in (0.0, 1.3, 4.0):
+        playing = Playing(steep, time)
+        x, y, _ = playing.matrix(steep.node("camera"))[:3, 3]
+        above = float(y - falls(x)) * math.cos(math.atan(0.6))
+        assert above == pytest.approx(2.0, abs=0.1)  # m, across the slope, as on a plane
+        seen_from = np.linalg.inv(playing.matrix(steep.node("camera")))
+        sledge = playing.matrix(steep.node("sledge"))[:, 3]
+        right, up, back = (seen_from @ sledge)[:3]
+        assert back < 0.0
+        assert max(abs(right), abs(up)) < 0.1 * abs(back)  # in the middle of the picture
 
 
 def test_the_camera_follows_and_looks_at_the_skis(model: GlbFile) -> None:

@@ -107,7 +107,9 @@ def snow_mesh(replay: Replay) -> Mesh:
     """The slope around the run."""
     low, high = _around(replay)
     x = np.linspace(low[0], high[0], 2 if replay.profile is None else max(2, math.ceil(high[0] - low[0]) * 4))
-    vertices = np.array([[a, b, z] for a, z in zip(x, _heights(replay, x), strict=True) for b in (low[1], high[1])])
+    vertices = np.array(
+        [[a, b, z] for a, z in zip(x, surface_heights(replay, x), strict=True) for b in (low[1], high[1])]
+    )
     colours = np.broadcast_to(linear(COLOURS["snow"]), vertices.shape)
     return Mesh(vertices, colours, _strips(len(x), 2, [(0, 1)]))
 
@@ -127,7 +129,7 @@ def grid_mesh(replay: Replay) -> Mesh:
         pieces.append(place[..., list(order)].reshape(-1, 2))
         tones.append(np.repeat(across % 5.0 == 0.0, 2 * len(ends)))
     place, dark = np.concatenate(pieces), np.concatenate(tones)
-    vertices = np.column_stack([place, _heights(replay, place[:, 0])])
+    vertices = np.column_stack([place, surface_heights(replay, place[:, 0])])
     vertices += LIFTED * _normals(replay, vertices)
     colours = np.where(dark[:, None], linear(_GRID[True]), linear(_GRID[False]))
     return Mesh(vertices, colours, np.arange(len(vertices)).reshape(-1, 2))
@@ -138,7 +140,7 @@ def _around(replay: Replay) -> FloatArray:
     return np.stack([replay.place.min(axis=0) - _MARGIN, replay.place.max(axis=0) + _MARGIN])
 
 
-def _heights(replay: Replay, x: FloatArray) -> FloatArray:
+def surface_heights(replay: Replay, x: FloatArray) -> FloatArray:
     """Of the surface (m)."""
     if replay.profile is None:
         return np.zeros_like(x)

@@ -19,7 +19,7 @@ from ...files import write_file
 from .binary import at_moments, thinned
 from .glb import Glb
 from .looks import round_above
-from .meshes import CORNERS, grid_mesh, groove_mesh, snow_mesh, unloaded_ski_mesh, upright
+from .meshes import CORNERS, grid_mesh, groove_mesh, snow_mesh, surface_heights, unloaded_ski_mesh, upright
 from .replay import SKI_NAMES
 
 if TYPE_CHECKING:
@@ -83,11 +83,12 @@ def _xyzw(replay: Replay) -> FloatArray:
     return replay.attitude[:, [1, 2, 3, 0]]
 
 
-def _about_x(angle: FloatArray | float) -> FloatArray:
-    """Quaternions x, y, z, w of turns about x (rad)."""
+def _about(axis: int, angle: FloatArray | float) -> FloatArray:
+    """Quaternions x, y, z, w of turns about an axis (0 x, 1 y, 2 z) by angles (rad)."""
     half = 0.5 * np.asarray(angle)
-    none = np.zeros_like(half)
-    return np.stack([np.sin(half), none, none, np.cos(half)], axis=-1)
+    found = np.zeros((*half.shape, 4))
+    found[..., axis], found[..., 3] = np.sin(half), np.cos(half)
+    return found
 
 
 def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int) -> tuple[int, int]:
@@ -99,13 +100,13 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int) 
     skis, name = replay.skis, f"{SKI_NAMES[ski]} ski"
     place = np.zeros((*skis.bending[:, ski].shape, 3))
     place[..., 0], place[..., 2] = skis.station, skis.base_height + exaggeration * skis.bending[:, ski]
-    turn = _about_x(-exaggeration * skis.twist[:, ski])  # the left edge goes down as the edge angle grows
+    turn = _about(0, -exaggeration * skis.twist[:, ski])  # the left edge goes down as the edge angle grows
     joints = []
     for j in range(len(skis.station)):
         joints.append(model.node(f"{name}, station {j + 1}", translation=place[0, j], rotation=turn[0, j]))
         model.move(joints[j], "translation", clock, model.array(place[:, j]))
         model.move(joints[j], "rotation", clock, model.array(turn[:, j]))
-    boot = {"translation": skis.middle[ski], "rotation": _about_x(-skis.edge_angle)}
+    boot = {"translation": skis.middle[ski], "rotation": _about(0, -skis.edge_angle)}
     carrier = model.node(f"{name}, boot", children=joints, **boot)
     into_joints = np.tile(np.eye(4), (len(joints), 1, 1))
     into_joints[:, 0, 3], into_joints[:, 2, 3] = -skis.station, -skis.base_height
@@ -142,9 +143,18 @@ def _camera(model: Glb, replay: Replay, clock: int, course: int) -> int:
     right /= math.hypot(*right)
     axes = np.column_stack([right, np.cross(back, right), back])  # a camera looks along -z, y up, section 3.10
     eye = model.node("camera", camera=0, translation=list(_EYE), rotation=Rotation.from_matrix(axes).as_quat())
-    along = model.node("camera's place", translation=replay.place[0], children=[eye])
+    leans = _about(1, _steepness_behind(replay))
+    along = model.node("camera's place", translation=replay.place[0], rotation=leans[0], children=[eye])
     model.move(along, "translation", clock, course)
+    if replay.profile is not None:
+        model.move(along, "rotation", clock, model.array(leans))
     return along
+
+
+def _steepness_behind(replay: Replay) -> FloatArray:
+    """Angle (n,) by which the snow falls below the x axis from under the camera to the sledge (rad): none may hide it."""
+    x = replay.place[:, 0]
+    return np.arctan2(surface_heights(replay, x + _EYE[0]) - surface_heights(replay, x), -_EYE[0])
 
 
 def _told(replay: Replay, exaggeration: float) -> dict[str, Any]:
