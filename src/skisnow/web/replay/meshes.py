@@ -107,9 +107,8 @@ def snow_mesh(replay: Replay) -> Mesh:
     """The slope around the run."""
     low, high = _around(replay)
     x = np.linspace(low[0], high[0], 2 if replay.profile is None else max(2, math.ceil(high[0] - low[0]) * 4))
-    vertices = np.array(
-        [[a, b, z] for a, z in zip(x, surface_heights(replay, x), strict=True) for b in (low[1], high[1])]
-    )
+    line = zip(x, surface_heights(replay, x), strict=True)
+    vertices = np.array([[at, y, z] for at, z in line for y in (low[1], high[1])])
     colours = np.broadcast_to(linear(COLOURS["snow"]), vertices.shape)
     return Mesh(vertices, colours, _strips(len(x), 2, [(0, 1)]))
 
@@ -141,7 +140,7 @@ def _around(replay: Replay) -> FloatArray:
 
 
 def surface_heights(replay: Replay, x: FloatArray) -> FloatArray:
-    """Of the surface (m)."""
+    """Heights (k,) of the snow at distances x (k,), all in m; 0 on a plane."""
     if replay.profile is None:
         return np.zeros_like(x)
     return np.interp(x, replay.profile[:, 0], replay.profile[:, 1])

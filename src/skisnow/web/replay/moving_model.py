@@ -152,7 +152,7 @@ def _camera(model: Glb, replay: Replay, clock: int, course: int) -> int:
 
 
 def _steepness_behind(replay: Replay) -> FloatArray:
-    """Angle (n,) by which the snow falls below the x axis from under the camera to the sledge (rad): none may hide it."""
+    """Angle (n,) by which the snow falls from under the camera to the sledge (rad): by so much the camera is higher."""
     x = replay.place[:, 0]
     return np.arctan2(surface_heights(replay, x + _EYE[0]) - surface_heights(replay, x), -_EYE[0])
 
