@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import math
 
+import numba
 import numpy as np
 import numpy.typing as npt
 import pytest
 
 from skisnow.simulate.motion.archive import Archive, leave_line, make_room, new_archive
+
+# isort: off
+from skisnow.simulate.motion.columns import (
+    COLUMNS, DEEP, EDGE_AT, EDGE_DEEP, FALLING, FORCE, MOMENT, PER_FALL, SHARE, SPRING, STIFF0, STIFF1, STIFF2,
+    WATERLINE, WET_FROM, WET_TO, WIDTH,
+)  # fmt: skip
+
+# isort: on
 from skisnow.simulate.motion.lines import (
     CELL,
     CELLS,
@@ -28,9 +37,9 @@ from skisnow.simulate.motion.lines import (
     energy_left,
     new_lines,
     open_window,
-    pressure,
 )
 from skisnow.simulate.motion.path import press as press_lines
+from skisnow.simulate.motion.pressure import bear, sum_cells
 
 from .flight import NO_SNOW
 
@@ -58,10 +67,23 @@ def press(lines: Lines, low: float, high: float, edge: float, depth: float, fall
 
 def sums_of(lines: Lines, low: float, high: float, depth: float, fall: float, edge: float) -> FloatArray:
     """The sums of a base from `low` to `high` across, places from the edge."""
-    sums = np.zeros(6)
-    start, cell = lines.flag[0, WINDOW], lines.value[0, CELL]
-    pressure(sums, lines.cells, 0, start, cell, low, high, depth, fall, edge, H, K - H)
-    return sums
+    sheet, one = np.zeros(COLUMNS * WIDTH), np.uint64(0)
+    per_fall = 1.0 / fall if fall != 0.0 else 1e12
+    given = {WET_FROM: low, WET_TO: high, EDGE_DEEP: depth, FALLING: fall, EDGE_AT: edge, SHARE: 1.0, DEEP: 1.0}
+    for column, value in {**given, PER_FALL: per_fall, WATERLINE: -depth * per_fall}.items():
+        sheet[column] = value
+    cell = lines.value[0, CELL]
+    _sum_cells(sheet, one, lines.cells, one, lines.flag[0, WINDOW], cell, 1.0 / cell, K / H - 1.0)
+    bear(np.uint64(1), H, K - H, sheet)
+    return sheet[[FORCE, MOMENT, STIFF0, STIFF1, STIFF2, SPRING]]
+
+
+@numba.njit()
+def _sum_cells(
+    sheet: FloatArray, i: np.uint64, cells: FloatArray, row: np.uint64, start: int, cell: float, per_cell: float,
+    ratio: float,
+) -> None:  # fmt: skip
+    sum_cells(sheet, i, cells, row, start, cell, per_cell, ratio)
 
 
 def quadrature(lines: Lines, low: float, high: float, depth: float, fall: float, edge: float) -> FloatArray:

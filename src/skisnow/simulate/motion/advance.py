@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .archive import Archive
+from .compiled import PLAIN
 from .equations import channel_rows, copy_state, drag_power
 from .fast import REACH, Past, fast_step, new_past
 from .forces import FRICTION, NORMAL, RELEASED, SHEAR, SIDEWAYS, Forces, feel, new_forces
@@ -17,7 +18,6 @@ from .model import PADDING, Model, Snow, State, World, new_state
 from .path import follow, press
 from .ros2 import GAMMA, Room, new_room, ros2_step
 from .system import Factored, factor, new_factored, quadratic
-from .tangent import CHANNELS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
@@ -82,7 +82,7 @@ def new_memory(size: int, ring: int) -> Memory:
     )
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def observe(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tangent: bool
 ) -> None:
@@ -106,17 +106,17 @@ def observe(
         clock.power[a] = now[a]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _factor(
     model: Model, lines: Lines, memory: Memory, h: float, gamma: float
 ) -> bool:  # fmt: skip
-    rows = np.zeros((2, CHANNELS, 6))
+    rows = memory.system.rows
     channel_rows(model, lines, memory.state, rows)
     gh = gamma * h
     return factor(model, memory.start, rows, gh * (gh + model.damping), gh * gh, memory.system)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def advance_fixed(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, fast: bool, step: float,
     until: float,
@@ -161,7 +161,7 @@ def advance_fixed(
     return GOES_ON
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _is_easy(start: Forces, lines: Lines, h: float) -> bool:
     """Whether the contact is soft enough for a step h (s) that its matrix may be kept."""
     stiffest = 0.0
@@ -173,7 +173,7 @@ def _is_easy(start: Forces, lines: Lines, h: float) -> bool:
     return stiffest * h * h <= EASY
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def advance_controlled(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tolerance: float,
     until: float,
@@ -209,7 +209,7 @@ def advance_controlled(
     return GOES_ON
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _on_ladder(h: float) -> float:
     """The longest step of a ladder of steps, four to an octave, that is not above h (s).
 
@@ -218,7 +218,7 @@ def _on_ladder(h: float) -> float:
     return LONGEST_STEP * 2.0 ** (0.25 * np.floor(4.0 * np.log2(h / LONGEST_STEP) + 1e-6))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _try_pair(model: Model, snow: Snow, world: World, lines: Lines, memory: Memory, h: float) -> float:
     """Fill `next` with the state after two steps of h/2, and return how far one step of h is off (m)."""
     if not _factor(model, lines, memory, h, GAMMA):
@@ -242,7 +242,7 @@ def _try_pair(model: Model, snow: Snow, world: World, lines: Lines, memory: Memo
     return _difference(memory.trial, memory.next, h) / 3.0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _difference(one: State, other: State, h: float) -> float:
     """Largest difference of place (m): of the boots, of ends a metre off that turn with them, of the skis' bend."""
     worst = 0.0
@@ -259,7 +259,7 @@ def _difference(one: State, other: State, h: float) -> float:
     return worst
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _is_finite(state: State) -> bool:
     total = 0.0
     for a in range(6):
@@ -272,7 +272,7 @@ def _is_finite(state: State) -> bool:
     return bool(np.isfinite(total))
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def mechanical_energy(model: Model, world: World, state: State) -> tuple[float, float, float]:
     """Kinetic, potential and the skis' elastic energy (J)."""
     V = state.velocity

@@ -8,6 +8,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from .compiled import MAKING, PLAIN
 from .lines import (
     CELL,
     CELLS,
@@ -80,12 +81,12 @@ def grown(archive: Archive, pieces: int, places: int) -> Archive:
     return larger
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@numba.njit(**PLAIN, inline="always")
 def _bucket(a: int, b: int) -> int:
     return (a * 73856093 ^ b * 19349663) & (BUCKETS - 1)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def put_away(archive: Archive, lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> None:
     """Archive the cells first ≤ j < last of a line where a base has been, and count the energy lost there."""
     archive.lost[0] += energy_left(lines, row, first, last, hardness, excess)
@@ -103,13 +104,13 @@ def put_away(archive: Archive, lines: Lines, row: int, first: int, last: int, ha
         j = end
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@numba.njit(**PLAIN, inline="always")
 def _covered(lines: Lines, row: int, place: int) -> bool:
     i = np.uint64(place)
     return lines.cells[row, TO + i] > lines.cells[row, FROM + i]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> None:
     m, place = archive.used[0], archive.used[1]
     if m >= len(archive.cell) or place + last - first > len(archive.pool):
@@ -135,7 +136,7 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
     archive.used[1] = place + last - first
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def meets_older(archive: Archive, x: float, y: float, reach: float) -> bool:
     """Whether there is any older track within reach (m) of a place, about."""
     a, b = int(np.floor(x / BUCKET)), int(np.floor(y / BUCKET))
@@ -147,7 +148,7 @@ def meets_older(archive: Archive, x: float, y: float, reach: float) -> bool:
     return False
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> bool:
     """Bring older tracks into the cells first ≤ j < last of a line, and tell whether there were any."""
     cell = lines.value[row, CELL]
@@ -170,7 +171,7 @@ def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hard
     return found
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@numba.njit(**PLAIN, inline="always")
 def _lies_on(
     archive: Archive, piece: int, x: float, y: float, z: float, frame: FloatArray, reach: float, wide: float
 ) -> bool:
@@ -185,7 +186,7 @@ def _lies_on(
     return abs(across - archive.start[piece, 0] * archive.cell[piece] - half) <= half + reach
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int, last: int) -> bool:
     cell, old, start = lines.value[row, CELL], archive.cell[piece], lines.flag[row, WINDOW]
     frame, other = lines.frame[row], archive.frame[piece]
@@ -216,7 +217,7 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
     return found
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def look_ahead(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
     """Give a fresh line the older tracks that lie on it, if there are any."""
     if not meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], 0.5 * CELLS * lines.value[row, CELL]):
@@ -226,7 +227,7 @@ def look_ahead(archive: Archive, lines: Lines, row: int, hardness: float, excess
         lines.flag[row, KEPT] = 0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def make_room(
     archive: Archive, lines: Lines, row: int, low: float, high: float, hardness: float, excess: float
 ) -> None:  # fmt: skip
@@ -272,7 +273,7 @@ def make_room(
         recall(archive, lines, row, new, start, hardness, excess)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _move_window(lines: Lines, row: int, by: int) -> None:
     """Move a line's cells down by so many places, and empty those that become free; |by| < cells."""
     for column in range(4):
@@ -286,7 +287,7 @@ def _move_window(lines: Lines, row: int, by: int) -> None:
                 about[i] = about[i + by] if i + by >= 0 else nothing
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**MAKING)
 def _coarsen(lines: Lines, row: int) -> None:
     """Double the size of a line's cells."""
     start, cell, slope = lines.flag[row, WINDOW], lines.value[row, CELL], lines.value[row, SLOPE]
@@ -309,7 +310,7 @@ def _coarsen(lines: Lines, row: int) -> None:
         lines.cells[row, CENTRE + each] = centre[each] if both[each] == 2 else 0.0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def leave_line(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
     """Archive a line that the ski has left."""
     if lines.flag[row, KEPT] == 1:

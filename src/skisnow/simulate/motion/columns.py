@@ -49,4 +49,7 @@ H0, H1, H2, C0, C1, C2, SLIDING, ARM, TWIST_RATE, RESIST, RUB, SHEARING = _colum
 UP, TURNING, W0, W1, W2, W3 = _columns(84, 6)
 # speeds of the base's edges along the line (m/s)
 RIGHT_MOVES, LEFT_MOVES = _columns(90, 2)
-COLUMNS: Final = 92
+# where the pressure of virgin snow ends (m from the edge), one over the fall of the depth; sums over the cells that
+# were pressed deeper, see `pressure`
+WATERLINE, PER_FALL, Q0, Q1, Q2, V0, V1, V2, L0, L1, L2 = _columns(92, 11)
+COLUMNS: Final = 103

@@ -14,6 +14,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from .compiled import PLAIN
 from .forces import Forces
 from .lines import Lines
 from .model import PADDING, Model, State, World
@@ -23,7 +24,7 @@ from .tangent import CHANNELS
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def add_forces(model: Model, world: World, state: State, snow: Forces, scale: float, out: Vector) -> None:
     """Add scale × all generalised forces but stiffness and damping."""
     R, v = state.turn, state.velocity
@@ -31,10 +32,12 @@ def add_forces(model: Model, world: World, state: State, snow: Forces, scale: fl
     g0 = R[0, 0] * g[0] + R[1, 0] * g[1] + R[2, 0] * g[2]
     g1 = R[0, 1] * g[0] + R[1, 1] * g[1] + R[2, 1] * g[2]
     g2 = R[0, 2] * g[0] + R[1, 2] * g[1] + R[2, 2] * g[2]
-    p = np.zeros(6)
-    for a in range(6):
-        for b in range(6):
-            p[a] += model.rigid[a, b] * v[b]
+    p0, p1, p2, p3, p4, p5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for b in range(6):
+        M, u = model.rigid[b], v[b]
+        p0, p1, p2, p3, p4, p5 = (
+            p0 + M[0] * u, p1 + M[1] * u, p2 + M[2] * u, p3 + M[3] * u, p4 + M[4] * u, p5 + M[5] * u
+        )  # fmt: skip
     # gravity, and what the skis feel of the turning of the velocity: v × ω
     w0, w1, w2 = g0 + v[1] * v[5] - v[2] * v[4], g1 + v[2] * v[3] - v[0] * v[5], g2 + v[0] * v[4] - v[1] * v[3]
     b0, b1, b2 = 0.0, 0.0, 0.0
@@ -42,11 +45,12 @@ def add_forces(model: Model, world: World, state: State, snow: Forces, scale: fl
         B, bend, rate = model.coupling[k], out.bend[k], state.bend_rate[k]
         for i in range(len(B)):
             u = rate[i + PADDING]
-            for a in range(6):
-                p[a] += B[i, a] * u
             b0 += B[i, 0] * u
             b1 += B[i, 1] * u
             b2 += B[i, 2] * u
+            p3 += B[i, 3] * u
+            p4 += B[i, 4] * u
+            p5 += B[i, 5] * u
             bend[i + PADDING] += scale * (snow.bend[k, i + PADDING] + B[i, 0] * w0 + B[i, 1] * w1 + B[i, 2] * w2)
     # its counterpart on the sledge: -ω × b on the velocity, v × b on the turning, with b the momentum of bending
     out.rigid[0] -= scale * (v[4] * b2 - v[5] * b1)
@@ -55,29 +59,28 @@ def add_forces(model: Model, world: World, state: State, snow: Forces, scale: fl
     out.rigid[3] += scale * (v[1] * b2 - v[2] * b1)
     out.rigid[4] += scale * (v[2] * b0 - v[0] * b2)
     out.rigid[5] += scale * (v[0] * b1 - v[1] * b0)
+    p0, p1, p2 = p0 + b0, p1 + b1, p2 + b2
     m, c = model.total_mass, model.first_moment
     # air drag at the centre of pressure
     high = world.drag_height
     a0, a1, a2 = v[0] + v[4] * high, v[1] - v[3] * high, v[2]
     speed = np.sqrt(a0 * a0 + a1 * a1 + a2 * a2)
     drag = -world.drag * speed
-    out.rigid[0] += scale * (snow.rigid[0] + m * g0 + drag * a0 - (v[4] * p[2] - v[5] * p[1]))
-    out.rigid[1] += scale * (snow.rigid[1] + m * g1 + drag * a1 - (v[5] * p[0] - v[3] * p[2]))
-    out.rigid[2] += scale * (snow.rigid[2] + m * g2 + drag * a2 - (v[3] * p[1] - v[4] * p[0]))
+    out.rigid[0] += scale * (snow.rigid[0] + m * g0 + drag * a0 - (v[4] * p2 - v[5] * p1))
+    out.rigid[1] += scale * (snow.rigid[1] + m * g1 + drag * a1 - (v[5] * p0 - v[3] * p2))
+    out.rigid[2] += scale * (snow.rigid[2] + m * g2 + drag * a2 - (v[3] * p1 - v[4] * p0))
     out.rigid[3] += scale * (
         snow.rigid[3] + c[1] * g2 - c[2] * g1 - high * drag * a1
-        - (v[4] * p[5] - v[5] * p[4]) - (v[1] * p[2] - v[2] * p[1])
+        - (v[4] * p5 - v[5] * p4) - (v[1] * p2 - v[2] * p1)
     )  # fmt: skip
     out.rigid[4] += scale * (
         snow.rigid[4] + c[2] * g0 - c[0] * g2 + high * drag * a0
-        - (v[5] * p[3] - v[3] * p[5]) - (v[2] * p[0] - v[0] * p[2])
+        - (v[5] * p3 - v[3] * p5) - (v[2] * p0 - v[0] * p2)
     )  # fmt: skip
-    out.rigid[5] += scale * (
-        snow.rigid[5] + c[0] * g1 - c[1] * g0 - (v[3] * p[4] - v[4] * p[3]) - (v[0] * p[1] - v[1] * p[0])
-    )
+    out.rigid[5] += scale * (snow.rigid[5] + c[0] * g1 - c[1] * g0 - (v[3] * p4 - v[4] * p3) - (v[0] * p1 - v[1] * p0))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def drag_power(world: World, velocity: FloatArray) -> float:
     """Power (W) that the air takes at the centre of pressure."""
     high = world.drag_height
@@ -85,36 +88,37 @@ def drag_power(world: World, velocity: FloatArray) -> float:
     return world.drag * (a0 * a0 + a1 * a1 + a2 * a2) ** 1.5
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def channel_rows(model: Model, lines: Lines, state: State, rows: FloatArray) -> None:
     """Fill in how depth, roll and place across of each ski's sections follow from the rigid body: (2, CHANNELS, 6)."""
     ring = len(lines.flag) // 2
     R = state.turn
-    n, t = np.zeros(3), np.zeros(3)
     for k in range(2):
         row = k * ring + (lines.first[k] + lines.count[k] // 2) % ring
-        for a in range(3):
-            n[a] = R[0, a] * lines.frame[row, 9] + R[1, a] * lines.frame[row, 10] + R[2, a] * lines.frame[row, 11]
-        size = 1.0 / np.sqrt(n[1] * n[1] + n[2] * n[2])
-        t[1], t[2] = n[2] * size, -n[1] * size  # n × forwards
+        m0, m1, m2 = lines.frame[row, 9], lines.frame[row, 10], lines.frame[row, 11]
+        n0 = R[0, 0] * m0 + R[1, 0] * m1 + R[2, 0] * m2
+        n1 = R[0, 1] * m0 + R[1, 1] * m1 + R[2, 1] * m2
+        n2 = R[0, 2] * m0 + R[1, 2] * m1 + R[2, 2] * m2
+        size = 1.0 / np.sqrt(n1 * n1 + n2 * n2)
+        t1, t2 = n2 * size, -n1 * size  # n × forwards
         y, z = model.middle[k, 1], model.middle[k, 2]
         for a in range(CHANNELS):
             for b in range(6):
                 rows[k, a, b] = 0.0
-        for a in range(3):
-            rows[k, 0, a], rows[k, 3, a] = -n[a], t[a]
-        rows[k, 0, 3], rows[k, 0, 4], rows[k, 0, 5] = -(y * n[2] - z * n[1]), -z * n[0], y * n[0]
-        rows[k, 3, 3], rows[k, 3, 4], rows[k, 3, 5] = y * t[2] - z * t[1], z * t[0], -y * t[0]
-        rows[k, 1, 4], rows[k, 1, 5] = n[2], -n[1]
+        rows[k, 0, 0], rows[k, 0, 1], rows[k, 0, 2] = -n0, -n1, -n2
+        rows[k, 3, 1], rows[k, 3, 2] = t1, t2
+        rows[k, 0, 3], rows[k, 0, 4], rows[k, 0, 5] = -(y * n2 - z * n1), -z * n0, y * n0
+        rows[k, 3, 3] = y * t2 - z * t1
+        rows[k, 1, 4], rows[k, 1, 5] = n2, -n1
         rows[k, 2, 3] = -1.0
-        rows[k, 4, 4], rows[k, 4, 5] = -t[2], t[1]
+        rows[k, 4, 4], rows[k, 4, 5] = -t2, t1
         # forwards: t × n
-        d0, d1, d2 = t[1] * n[2] - t[2] * n[1], t[2] * n[0], -t[1] * n[0]
+        d0, d1, d2 = t1 * n2 - t2 * n1, t2 * n0, -t1 * n0
         rows[k, 5, 0], rows[k, 5, 1], rows[k, 5, 2] = d0, d1, d2
         rows[k, 5, 3], rows[k, 5, 4], rows[k, 5, 5] = y * d2 - z * d1, z * d0, -y * d0
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def move(state: State, rigid: FloatArray, bend: FloatArray, scale: float, out: State) -> None:
     """Fill `out` with place, turn and bend after scale × the increments, in the frame of `state`."""
     R = state.turn
@@ -141,7 +145,7 @@ def move(state: State, rigid: FloatArray, bend: FloatArray, scale: float, out: S
             out.bend[k, i] = state.bend[k, i] + scale * bend[k, i]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def copy_pose(source: State, target: State) -> None:
     """Copy place, turn and bend. Loops: Numba compiles the assignment of arrays together with words for its errors."""
     for a in range(3):
@@ -153,7 +157,7 @@ def copy_pose(source: State, target: State) -> None:
             target.bend[k, i] = source.bend[k, i]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def copy_state(source: State, target: State) -> None:
     """Copy a state."""
     copy_pose(source, target)

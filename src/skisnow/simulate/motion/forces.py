@@ -12,6 +12,8 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from .compiled import PLAIN
+
 # isort: off
 from .columns import (
     ARM, ASIDE, C0, C1, C2, CLIMB, COLUMNS, COSINE, D0, D1, D2, DEEP, EDGE_AT, EDGE_DEEP, FALLING, FLARE, FORCE, H0,
@@ -42,9 +44,9 @@ from .lines import (
     Lines,
     anchor_of,
     energy_at_edge,
-    pressure,
 )
 from .model import PADDING, Model, Snow, State
+from .pressure import bear, sum_cells
 from .sections import ELEMENT, FRONT, ONE, REAR, ROW, TWO, find_sections
 from .tangent import CHANNELS, add_tangent
 
@@ -72,6 +74,7 @@ class Forces(NamedTuple):
     sections: npt.NDArray[np.int64]  # (2,) how many
     sheet: FloatArray  # (COLUMNS × WIDTH,) working space: sections of the ski that is looked at, see `columns`
     numbers: PlaceArray  # (WIDTH, 4) their line, element, and places of its unknowns
+    skis: FloatArray  # (3, 3) directions of both skis in space: ahead, across the base to the left, off the snow
 
 
 def new_forces(size: int, ring: int) -> Forces:
@@ -87,10 +90,11 @@ def new_forces(size: int, ring: int) -> Forces:
         np.zeros(2, np.int64),
         np.zeros(COLUMNS * WIDTH),
         np.zeros((WIDTH, 4), np.uint64),
+        np.zeros((3, 3)),
     )
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, look: bool, out: Forces) -> None:
     """Fill `out` with the forces at a state, with `tangent` also their tangent, with `look` powers and touches."""
     out.rigid[:] = 0.0
@@ -101,8 +105,7 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
         out.band[:] = 0.0
         out.channels[:] = 0.0
         out.corner[:] = 0.0
-    frame = np.empty((3, 3))  # of both skis in space: ahead, across the base to the left, away from the snow
-    R, lateral, normal = state.turn, model.lateral, model.normal
+    R, frame, lateral, normal = state.turn, out.skis, model.lateral, model.normal
     for a in range(3):
         frame[0, a] = R[a, 0]
         frame[1, a] = R[a, 1] * lateral[1] + R[a, 2] * lateral[2]
@@ -124,19 +127,18 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
                 _add_tangents(model, snow, k, count, out)
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath=SUMS)
+@numba.njit(**PLAIN, fastmath=SUMS)
 def _press(snow: Snow, lines: Lines, count: np.uint64, look: bool, sheet: FloatArray, numbers: PlaceArray) -> None:
     """Let the snow answer the sections that lie in it; the others get no force."""
     cells, value, flag = lines.cells, lines.value, lines.flag
-    per_holding = 1.0 / snow.holding
-    sums = np.empty(6)
+    per_holding, ratio, fresh = 1.0 / snow.holding, snow.excess / snow.hardness, lines.spacing[1]
+    per_fresh = 1.0 / fresh
     for i in range(count):
         row, weight, deep, edge = numbers[i, ROW], sheet[SHARE + i], sheet[DEEP + i], sheet[EDGE_AT + i]
         if look:
             flag[row, TOUCHED] = 0
         if not (weight > 0.0 and deep > 0.0):
-            sheet[FORCE + i], sheet[MOMENT + i], sheet[HOLD + i], sheet[USED + i] = 0.0, 0.0, 0.0, 0.0
-            sheet[SPRING + i] = 0.0
+            sheet[HOLD + i], sheet[USED + i] = 0.0, 0.0
             if look and weight > 0.0:
                 # the anchor of a line is where the edge meets the surface, within a step
                 value[row, EDGE_ABOVE], value[row, DEEP_ABOVE] = edge, deep
@@ -144,19 +146,15 @@ def _press(snow: Snow, lines: Lines, count: np.uint64, look: bool, sheet: FloatA
             continue
         # a line that nothing has touched has no cells: its window lies far off
         window = flag[row, WINDOW] if flag[row, KEPT] == 1 else FAR
-        pressure(
-            sums, cells, row, window, value[row, CELL], sheet[WET_FROM + i], sheet[WET_TO + i], sheet[EDGE_DEEP + i],
-            sheet[FALLING + i], edge, snow.hardness, snow.excess,
-        )  # fmt: skip
-        sheet[FORCE + i], sheet[MOMENT + i] = weight * sums[0], weight * sums[1]
-        sheet[STIFF0 + i], sheet[STIFF1 + i], sheet[STIFF2 + i] = weight * sums[2], weight * sums[3], weight * sums[4]
-        sheet[SPRING + i] = sums[5]
+        cell = value[row, CELL]
+        sum_cells(sheet, i, cells, row, window, cell, per_fresh if cell == fresh else 1.0 / cell, ratio)
         # the edge holds where it first took hold, with up to its strength
         sheet[HOLD + i] = snow.shear_stress * deep * weight
         sheet[USED + i] = (anchor_of(value, flag, row, edge, deep) - edge) * per_holding
+    bear(count, snow.hardness, snow.excess, sheet)
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath=SUMS)
+@numba.njit(**PLAIN, fastmath=SUMS)
 def _push(  # noqa: PLR0915 - one loop over many lines at a time
     model: Model, snow: Snow, state: State, k: int, count: np.uint64, sheet: FloatArray, rigid: FloatArray
 ) -> None:  # fmt: skip
@@ -224,7 +222,7 @@ def _push(  # noqa: PLR0915 - one loop over many lines at a time
     rigid[5] += left2 * g1 + up2 * g2 - side * f0
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _bend(count: np.uint64, sheet: FloatArray, numbers: PlaceArray, force: FloatArray) -> None:
     """Add the forces on the beam."""
     for i in range(count):
@@ -239,7 +237,7 @@ def _bend(count: np.uint64, sheet: FloatArray, numbers: PlaceArray, force: Float
         force[B + TWO] += z * turn
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _record(lines: Lines, k: int, count: np.uint64, out: Forces) -> None:
     """Write down what each section bears, and where the base touches its line."""
     sheet, section, value, flag = out.sheet, out.section, lines.value, lines.flag
@@ -260,7 +258,7 @@ def _record(lines: Lines, k: int, count: np.uint64, out: Forces) -> None:
     out.sections[k] = filled
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath=SUMS)
+@numba.njit(**PLAIN, fastmath=SUMS)
 def _sum_powers(
     model: Model, snow: Snow, state: State, spacing: float, count: np.uint64, sheet: FloatArray, power: FloatArray
 ) -> None:  # fmt: skip
@@ -323,7 +321,7 @@ def _sum_powers(
     power[RELEASED] += released
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _cover_ground(snow: Snow, lines: Lines, count: np.uint64, sheet: FloatArray, numbers: PlaceArray) -> float:
     """Power (W) that the snow gains where the base's edges cover ground sideways, less what it gives back."""
     total = 0.0
@@ -343,7 +341,7 @@ def _cover_ground(snow: Snow, lines: Lines, count: np.uint64, sheet: FloatArray,
     return total
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _add_tangents(model: Model, snow: Snow, k: int, count: np.uint64, out: Forces) -> None:
     """Add minus the tangent of the sections in contact."""
     sheet, dof = out.sheet, model.dof

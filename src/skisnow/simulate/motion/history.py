@@ -20,6 +20,7 @@ from .advance import (
 )
 from .along import along_skis
 from .archive import Archive
+from .compiled import PLAIN
 from .forces import HELD, SPRINGY
 from .lines import Lines
 from .model import Model, Snow, State, World
@@ -64,7 +65,7 @@ def longer(history: History) -> History:
     return History(*(np.concatenate([each, np.zeros_like(each)]) for each in history))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def note(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, share: FloatArray,
     lost_before: float, held_first: float, history: History, row: int,
@@ -93,7 +94,7 @@ def note(
         history.boot_depth[row, k] = _at_boot(model.node, history.along[row, 0, k])
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _note_edge(model: Model, world: World, state: State, k: int, edge: FloatArray) -> None:
     """Fill in the edge that is down at the boot, brought to the slope's surface (m)."""
     boot = int(np.rint(-model.tail / (model.tip - model.tail) * (len(model.table) - 1)))
@@ -108,7 +109,7 @@ def _note_edge(model: Model, world: World, state: State, k: int, edge: FloatArra
     edge[2] = surface(world, edge[0])[0]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _at_boot(node: FloatArray, values: FloatArray) -> float:
     """Value at station 0, interpolated between the nodes, which go from tip to tail."""
     i = 0

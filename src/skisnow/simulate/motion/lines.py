@@ -16,6 +16,8 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from .compiled import PLAIN
+
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
 
@@ -53,6 +55,8 @@ WINDOW, KEPT, ANCHORED, TOUCHED, ABOVE, MARKED, SWEPT = 0, 1, 2, 3, 4, 5, 6
 CELLS = 64
 """Cells that a line keeps at a time: many more than a contact needs, few enough for the processor's cache; a multiple
 of eight."""
+BESIDES: Final = 8
+"""Empty places of each row: rows a power of two apart compete for the same places of the processor's cache."""
 # where in a row of `cells` they begin, unsigned: the compiled loops need not ask whether a place counts from the end.
 # Deepest base extended to the cell's middle, part that a base has covered, across; deepest base at the middle itself,
 # which counts for the energy: an edge that leaves a cell is deeper, extended to the middle (m)
@@ -63,7 +67,7 @@ class Lines(NamedTuple):
     """Lines of both skis, in one ring for each: row k × ring + i. Places in space (m)."""
 
     frame: FloatArray  # (2 ring, 12) origin, unit vectors ahead, to the left, out of the snow
-    cells: FloatArray  # (2 ring, 4 × CELLS), each from the first of a window on
+    cells: FloatArray  # (2 ring, 4 × CELLS + BESIDES), each from the first of a window on
     value: FloatArray  # (2 ring, 14)
     flag: IntArray  # (2 ring, 7)
     first: IntArray  # (2,) of the ring, the line nearest the tail
@@ -76,7 +80,7 @@ def new_lines(ring: int, *, spacing: float, cell: float) -> Lines:
     rows = 2 * ring
     return Lines(
         np.zeros((rows, 12)),
-        np.zeros((rows, 4 * CELLS)),
+        np.zeros((rows, 4 * CELLS + BESIDES)),
         np.zeros((rows, 14)),
         np.zeros((rows, 7), np.int64),
         np.zeros(2, np.int64),
@@ -87,10 +91,10 @@ def new_lines(ring: int, *, spacing: float, cell: float) -> Lines:
 
 def cells_of(lines: Lines, row: int) -> FloatArray:
     """(4, CELLS) of a line: deepest, from, to, centre."""
-    return lines.cells[row].reshape(4, CELLS)
+    return lines.cells[row, : 4 * CELLS].reshape(4, CELLS)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def begin_line(lines: Lines, row: int, frame: FloatArray) -> None:
     """Make a row a line of virgin snow."""
     for a in range(12):
@@ -106,7 +110,7 @@ def begin_line(lines: Lines, row: int, frame: FloatArray) -> None:
     lines.flag[row, SWEPT] = 0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def open_window(lines: Lines, row: int, start: int) -> None:
     """Give a line empty cells from number `start` on."""
     lines.flag[row, WINDOW] = start
@@ -122,70 +126,7 @@ SUMS: Final = {"contract", "reassoc", "nsz"}
 """Freedom to add in any order: several cells in one instruction. The order is the same in every run."""
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath=SUMS, inline="always")
-def pressure(
-    sums: FloatArray, cells: FloatArray, row: int, start: int, cell: float, low: float, high: float, depth: float,
-    slope: float, edge: float, hardness: float, excess: float,
-) -> None:  # fmt: skip
-    """Fill the sums of the snow's pressure over low ≤ x ≤ high, where the base is depth + slope x > 0 deep.
-
-    x counts from the edge. `sums` (6,): ∫p dx, ∫p x dx, ∫∂p/∂ε xⁿ dx for n = 0, 1, 2, and ∫p²/k_u dx, twice the springy
-    energy.
-
-    Virgin snow bears q = H_V (depth + slope x). Where a cell was pressed deeper by `lift`, over a ≤ x ≤ b, it bears
-    q - (k_u - H_V) lift, if that is above zero: over u ≤ x ≤ v. So all sums come from those of 1, x, x² over what is
-    wet, u to v, less those over a to b, and of lift, lift x and lift² over u to v.
-    """
-    per_cell = 1.0 / cell
-    first = min(max(int(np.floor((low + edge) * per_cell)) - start, 0), CELLS) & ~7
-    last = min(int(np.floor((high + edge) * per_cell)) - start, CELLS - 1) | 7
-    half = 0.5 * cell
-    origin = (start + 0.5) * cell - edge
-    falls = slope if abs(slope) > FLAT else FLAT
-    to_right = falls > 0.0
-    per_lift, waterline = excess / (hardness * falls), -depth / falls
-    surface, step = depth + slope * origin, slope * cell
-    # of xⁿ: over all that bears as virgin snow does, and over u to v; of lift × xⁿ over u to v; of lift²
-    q0, q1, q2, w0, w1, w2, l0, l1, l2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    begin, end = np.uint64(first), np.uint64(max(last + 1, first))
-    lifted = 0
-    for i in range(begin, end):
-        lifted |= cells[row, DEEPEST + i] > surface + step * i
-    if lifted:
-        for i in range(begin, end):
-            middle = origin + i * cell
-            lift = cells[row, DEEPEST + i] - (surface + step * i)
-            a = max(low, cells[row, FROM + i] - edge, middle - half)
-            b = max(a, min(high, cells[row, TO + i] - edge, middle + half))
-            b = b if lift > 0.0 else a
-            zero = min(max(waterline + per_lift * lift, a), b)
-            u, v = zero if to_right else a, b if to_right else zero
-            width, covered, both, ends = v - u, b - a, v + u, b + a
-            first_moment, second = width * both, width * (both * both - u * v)
-            raised = lift * width
-            q0 += width - covered
-            q1 += first_moment - covered * ends
-            q2 += second - covered * (ends * ends - a * b)
-            w0 += width
-            w1 += first_moment
-            w2 += second
-            l0 += raised
-            l1 += raised * both
-            l2 += raised * lift
-    width, both = high - low, high + low
-    q0, q1, q2 = q0 + width, 0.5 * (q1 + width * both), (q2 + width * (both * both - high * low)) * (1.0 / 3.0)
-    l0, l1 = excess * l0, 0.5 * excess * l1
-    sums[0] = hardness * (depth * q0 + slope * q1) - l0
-    sums[1] = hardness * (depth * q1 + slope * q2) - l1
-    sums[2] = hardness * q0 + excess * w0
-    sums[3] = hardness * q1 + 0.5 * excess * w1
-    sums[4] = hardness * q2 + excess * w2 * (1.0 / 3.0)
-    squared = depth * depth * q0 + 2.0 * depth * slope * q1 + slope * slope * q2
-    crossed = 2.0 * hardness * (depth * l0 + slope * l1)
-    sums[5] = (hardness * hardness * squared - crossed + excess * excess * l2) / (hardness + excess)
-
-
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
+@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
 def anchor_of(value: FloatArray, flag: IntArray, row: int, edge: float, deep: float) -> float:
     """Where across an edge that is `deep` now holds: as before, else where it met the surface since the last look."""
     if flag[row, ANCHORED] == 1:
@@ -195,7 +136,7 @@ def anchor_of(value: FloatArray, flag: IntArray, row: int, edge: float, deep: fl
     return edge
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int) -> None:
     """Remember the base that touches a line now; its cells must reach as far."""
     low, high, edge = value[row, LOW], value[row, HIGH], value[row, EDGE]
@@ -218,7 +159,7 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int
         value[row, SLOPE] = slope
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> None:
     """Remember the ground that the edge left sideways since it was marked last: as deep as the edge that passed."""
     edge, before, depth, slope = value[row, EDGE], value[row, EDGE_MARKED], value[row, DEPTH], value[row, FALL]
@@ -237,7 +178,7 @@ def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> N
         cells[row, TO + i] = max(cells[row, TO + i], min(high, (j + 1) * cell))
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> float:
     """Energy lost to the groove in the cells first ≤ j < last of a line (J): ½ H_V g² (1 - H_V/k_u) per area."""
     start = lines.flag[row, WINDOW]
@@ -256,7 +197,7 @@ def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, 
     return 0.5 * hardness * excess / (hardness + excess) * total * lines.spacing[0]
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
+@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
 def energy_at_edge(
     cells: FloatArray, row: int, start: int, cell: float, slope: float, y: float, depth: float, covers: bool,
     hardness: float, excess: float,

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .archive import Archive, leave_line, look_ahead, make_room
+from .compiled import MAKING, PLAIN
 from .lines import (
     ABOVE,
     ANCHOR,
@@ -52,7 +53,7 @@ MOST_TURN: Final = 0.3
 """Angle (rad) between a line's direction ahead and the ski beyond which the lines are laid anew (Choice)."""
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def surface(world: World, x: float) -> tuple[float, float]:
     """Height of the slope (m) and its gradient at x."""
     if len(world.heights) == 1:
@@ -68,7 +69,7 @@ def surface(world: World, x: float) -> tuple[float, float]:
     return height + (at - i - f) * h * gradient, gradient
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**MAKING)
 def _lay(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, state: State, k: int, s: float, way: float
 ) -> None:  # fmt: skip
@@ -110,7 +111,7 @@ def _lay(
     look_ahead(archive, lines, row, snow.hardness, snow.excess)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _station(model: Model, lines: Lines, state: State, k: int, number: int) -> float:
     """Station on ski k's straight axis of its line `number`, counted from the tail."""
     ring = len(lines.flag) // 2
@@ -122,7 +123,7 @@ def _station(model: Model, lines: Lines, state: State, k: int, number: int) -> f
     return total
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def follow(model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, state: State) -> None:
     """Take up the lines that the skis have left, lay those they will meet."""
     ring = len(lines.flag) // 2
@@ -152,7 +153,7 @@ def follow(model: Model, snow: Snow, world: World, lines: Lines, archive: Archiv
             _lay(model, snow, world, lines, archive, state, k, s, -spacing)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _has_turned(lines: Lines, state: State, k: int) -> bool:
     ring = len(lines.flag) // 2
     row = k * ring + lines.first[k] % ring
@@ -162,7 +163,7 @@ def _has_turned(lines: Lines, state: State, k: int) -> bool:
     return abs(np.arctan2(across, ahead)) > MOST_TURN
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def _leave_all(snow: Snow, lines: Lines, archive: Archive, k: int) -> None:
     ring = len(lines.flag) // 2
     for c in range(lines.count[k]):
@@ -170,7 +171,7 @@ def _leave_all(snow: Snow, lines: Lines, archive: Archive, k: int) -> None:
     lines.count[k] = 0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def press(snow: Snow, lines: Lines, archive: Archive) -> None:
     """Let the snow remember the bases that touch its lines now, and where the edges hold."""
     ring = len(lines.flag) // 2
@@ -200,7 +201,7 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
             flag[row, ANCHORED], flag[row, ABOVE] = 1, 0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(**PLAIN)
 def energy_in_snow(snow: Snow, lines: Lines, archive: Archive) -> float:
     """Energy lost to the grooves so far (J), those under the skis included."""
     ring = len(lines.flag) // 2

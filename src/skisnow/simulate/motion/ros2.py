@@ -16,6 +16,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from .compiled import PLAIN
 from .equations import add_forces, move
 from .forces import Forces, feel
 from .lines import Lines
@@ -42,7 +43,7 @@ def new_room(size: int) -> Room:
     return Room(new_vector(size), new_vector(size), new_vector(size), new_vector(size), new_state(size))
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def ros2_step(
     model: Model, snow: Snow, world: World, lines: Lines, state: State, start: Forces, stage: Forces,
     system: Factored, h: float, room: Room, out: State,

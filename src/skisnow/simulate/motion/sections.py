@@ -13,12 +13,14 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from .compiled import PLAIN
+
 # isort: off
 from .columns import (
     ASIDE, AT, BS, BT, BW, CLIMB, COSINE, CS, CT, CW, D0, D1, D2, DEEP, E0, E1, E2, EDGE_AT, EDGE_DEEP, FALLING,
-    FLARE, GAP, HALF, HEIGHT, K1, K2, LATERAL, LEFT, LENGTH, N0, N1, N2, NORMAL_AHEAD, REACH, RIGHT, RISE, S, SHARE,
-    SINE, SIZE, STEEP, T0, T1, T2, TILT, TOWARD, TWISTING, U0, U1, U2, UPWARDS, VS, VT, VW, WET_FROM, WET_TO, WIDE,
-    WS, WT, WW, Y0, Y1, Y2, Z,
+    FLARE, GAP, HALF, HEIGHT, K1, K2, LATERAL, LEFT, LENGTH, N0, N1, N2, NORMAL_AHEAD, PER_FALL, REACH, RIGHT, RISE,
+    S, SHARE, SINE, SIZE, STEEP, T0, T1, T2, TILT, TOWARD, TWISTING, U0, U1, U2, UPWARDS, VS, VT, VW, WATERLINE,
+    WET_FROM, WET_TO, WIDE, WS, WT, WW, Y0, Y1, Y2, Z,
 )  # fmt: skip
 
 # isort: on
@@ -33,7 +35,7 @@ ROW, ELEMENT, FRONT, REAR = ZERO, ONE, TWO, np.uint64(3)
 """Columns of `numbers`: the line, the section's element, places of its unknowns before and behind."""
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def find_sections(
     model: Model, one_sided: float, lines: Lines, state: State, skis: FloatArray, k: int, begin: int, n: np.uint64,
     sheet: FloatArray, numbers: PlaceArray,
@@ -44,13 +46,11 @@ def find_sections(
     """
     side = model.middle[k, 1]
     R, place = state.turn, state.place
-    boot = np.empty(3)
-    for a in range(3):
-        boot[a] = place[a] + R[a, 1] * side
     tail, tip = model.tail, model.tip
     most = len(model.table) - 1.000001
     step = (len(model.table) - 1) / (tip - tail)
-    _take_lines(lines, k, begin, n, boot, skis, sheet, numbers)
+    c0, c1, c2 = place[0] + R[0, 1] * side, place[1] + R[1, 1] * side, place[2] + R[2, 1] * side
+    _take_lines(lines, k, begin, n, c0, c1, c2, skis, sheet, numbers)
     _cross(n, 1.0 / one_sided, tail, step, most, sheet)
     for _ in range(2):
         for i in range(n):
@@ -69,15 +69,14 @@ def find_sections(
     _cut(n, 1.0 / one_sided, sheet)
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _take_lines(
-    lines: Lines, k: int, begin: int, n: np.uint64, boot: FloatArray, skis: FloatArray, sheet: FloatArray,
-    numbers: PlaceArray,
+    lines: Lines, k: int, begin: int, n: np.uint64, c0: float, c1: float, c2: float, skis: FloatArray,
+    sheet: FloatArray, numbers: PlaceArray,
 ) -> None:  # fmt: skip
-    """Bring the lines into the ski's frame."""
+    """Bring the lines into the ski's frame, whose boot is at c."""
     ring, frame = len(lines.flag) // 2, lines.frame
     first = lines.first[k] + begin
-    c0, c1, c2 = boot[0], boot[1], boot[2]
     for i in range(n):
         at_ring = first + np.int64(i)
         row = np.uint64(k * ring + (at_ring if at_ring < ring else at_ring - ring))
@@ -96,13 +95,13 @@ def _take_lines(
         b0, b1, b2 = sheet[D0 + i], sheet[D1 + i], sheet[D2 + i]
         d0, d1, d2 = x0 * b0 + x1 * b1 + x2 * b2, l0 * b0 + l1 * b1 + l2 * b2, m0 * b0 + m1 * b1 + m2 * b2
         sheet[D0 + i], sheet[D1 + i], sheet[D2 + i] = d0, d1, d2
-        c0, c1, c2 = sheet[N0 + i], sheet[N1 + i], sheet[N2 + i]
-        n0, n1, n2 = x0 * c0 + x1 * c1 + x2 * c2, l0 * c0 + l1 * c1 + l2 * c2, m0 * c0 + m1 * c1 + m2 * c2
+        b0, b1, b2 = sheet[N0 + i], sheet[N1 + i], sheet[N2 + i]
+        n0, n1, n2 = x0 * b0 + x1 * b1 + x2 * b2, l0 * b0 + l1 * b1 + l2 * b2, m0 * b0 + m1 * b1 + m2 * b2
         sheet[N0 + i], sheet[N1 + i], sheet[N2 + i] = n0, n1, n2
         sheet[Y0 + i], sheet[Y1 + i], sheet[Y2 + i] = n1 * d2 - n2 * d1, n2 * d0 - n0 * d2, n0 * d1 - n1 * d0
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _cross(n: np.uint64, sided: float, tail: float, step: float, most: float, sheet: FloatArray) -> None:
     """Find where along the ski's straight axis the edge that is down crosses the lines."""
     for i in range(n):
@@ -117,7 +116,7 @@ def _cross(n: np.uint64, sided: float, tail: float, step: float, most: float, sh
         sheet[AT + i] = at if at < most else most
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _share(n: np.uint64, tail: float, tip: float, per_spacing: float, spacing: float, sheet: FloatArray) -> None:
     """Give each line its share of the spacing, whole but for those at tip and tail."""
     for i in range(n):
@@ -127,7 +126,7 @@ def _share(n: np.uint64, tail: float, tip: float, per_spacing: float, spacing: f
         sheet[S + i] = min(max(s, tail), tip)
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _look_up(model: Model, state: State, k: int, n: np.uint64, sheet: FloatArray, numbers: PlaceArray) -> None:
     """Look up the ski's shape, its bend and how that changes."""
     table, node, place, bend, rate = model.table, model.node, model.at, state.bend[k], state.bend_rate[k]
@@ -152,7 +151,7 @@ def _look_up(model: Model, state: State, k: int, n: np.uint64, sheet: FloatArray
         sheet[WW + i], sheet[WS + i], sheet[WT + i] = rate[B], rate[B + ONE], rate[B + TWO]
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _bend(n: np.uint64, sheet: FloatArray) -> None:
     """Bend the sections with the beam: height and rise of the base, sine and cosine of its twist, depth."""
     for i in range(n):
@@ -172,7 +171,7 @@ def _bend(n: np.uint64, sheet: FloatArray) -> None:
         sheet[SINE + i] = phi * (1.0 - q * (1.0 / 6.0 - q * (1.0 / 120.0 - q * (1.0 / 5040.0))))
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def _cut(n: np.uint64, sided: float, sheet: FloatArray) -> None:
     """Cut the base with the lines: the edge that is down, its directions, and where the base is wet."""
     _bend(n, sheet)
@@ -204,7 +203,9 @@ def _cut(n: np.uint64, sided: float, sheet: FloatArray) -> None:
         wide = lateral + fall * sine
         right, left = -(half + reach) / wide, (half - reach) / wide
         down = fall if abs(fall) > FLAT else FLAT
-        water = -edge_depth / down
+        per_fall = 1.0 / down
+        water = -edge_depth * per_fall
+        sheet[WATERLINE + i], sheet[PER_FALL + i] = water, per_fall
         # directions in the surface: across the edge (u), and along it (t)
         u0, u1, u2 = n1 * t2 - n2 * t1, n2 - n0 * t2, n0 * t1 - n1
         size = 1.0 / np.sqrt(u0 * u0 + u1 * u1 + u2 * u2)

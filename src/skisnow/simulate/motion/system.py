@@ -11,6 +11,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from .compiled import PLAIN
 from .forces import Forces
 from .model import PADDING, Model
 from .tangent import CHANNELS
@@ -34,6 +35,8 @@ class Factored(NamedTuple):
     band: FloatArray  # (2, n + 10, 6): reciprocal of D, and L below the diagonal
     border: FloatArray  # (2, n + 10, 6): border solved forwards
     corner: FloatArray  # (6, 6): Cholesky factor of the Schur complement, reciprocals on its diagonal
+    rows: FloatArray  # (2, CHANNELS, 6) working space: how the channels follow from the rigid body
+    side: FloatArray  # (CHANNELS, 6) working space
 
 
 def new_vector(size: int) -> Vector:
@@ -44,10 +47,16 @@ def new_vector(size: int) -> Vector:
 def new_factored(size: int) -> Factored:
     """Room for the factors of skis with that many unknowns."""
     padded = size + 2 * PADDING
-    return Factored(np.zeros((2, padded, 6)), np.zeros((2, padded, 6)), np.zeros((6, 6)))
+    return Factored(
+        np.zeros((2, padded, 6)),
+        np.zeros((2, padded, 6)),
+        np.zeros((6, 6)),
+        np.zeros((2, CHANNELS, 6)),
+        np.zeros((CHANNELS, 6)),
+    )
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def factor(
     model: Model, forces: Forces, rows: FloatArray, structure: float, contact: float, out: Factored
 ) -> bool:  # fmt: skip
@@ -63,7 +72,7 @@ def factor(
     for k in range(2):
         L = out.band[k]
         Y = out.border[k]
-        _rigid_tangent(forces, rows, k, contact, out.corner)
+        _rigid_tangent(forces, rows, k, contact, out.side, out.corner)
         for i in range(n):
             p = i + PADDING
             for c in range(6):
@@ -96,10 +105,11 @@ def factor(
     return cholesky(out.corner) and sound
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _rigid_tangent(forces: Forces, rows: FloatArray, k: int, contact: float, corner: FloatArray) -> None:
+@numba.njit(**PLAIN, fastmath={"contract"})
+def _rigid_tangent(
+    forces: Forces, rows: FloatArray, k: int, contact: float, side: FloatArray, corner: FloatArray
+) -> None:  # fmt: skip
     """Add what the snow's tangent of ski k puts on the rigid body, lower half."""
-    side = np.empty((CHANNELS, 6))
     for a in range(CHANNELS):
         for c in range(6):
             total = 0.0
@@ -115,7 +125,7 @@ def _rigid_tangent(forces: Forces, rows: FloatArray, k: int, contact: float, cor
             corner[r, c] += total
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def cholesky(corner: FloatArray) -> bool:
     """Cholesky factor of a symmetric matrix, lower half, in place."""
     n = len(corner)
@@ -133,7 +143,7 @@ def cholesky(corner: FloatArray) -> bool:
     return True
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def solve_corner(corner: FloatArray, right: FloatArray) -> None:
     """Solve with the factor of `cholesky`, in place."""
     n = len(corner)
@@ -147,7 +157,7 @@ def solve_corner(corner: FloatArray, right: FloatArray) -> None:
         right[a] *= corner[a, a]
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def solve(system: Factored, vector: Vector) -> None:
     """Replace the right side by the solution."""
     forwards(system, vector)
@@ -155,7 +165,7 @@ def solve(system: Factored, vector: Vector) -> None:
     backwards(system, vector)
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def forwards(system: Factored, vector: Vector) -> None:
     """Solve the skis' rows forwards, and bring the border's right side to its Schur complement."""
     last = np.uint64(system.band.shape[1] - PADDING)
@@ -189,7 +199,7 @@ def forwards(system: Factored, vector: Vector) -> None:
     rigid[5] -= r5
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def backwards(system: Factored, vector: Vector) -> None:
     """Solve the skis' rows backwards, the border's solution being known."""
     first, last = np.uint64(PADDING), np.uint64(system.band.shape[1] - PADDING)
@@ -214,7 +224,7 @@ def backwards(system: Factored, vector: Vector) -> None:
         )  # fmt: skip
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def add_band(matrix: FloatArray, vector: FloatArray, scale: float, out: FloatArray) -> None:
     """Add scale × matrix × vector, both vectors padded."""
     for i in range(len(matrix)):
@@ -228,7 +238,7 @@ def add_band(matrix: FloatArray, vector: FloatArray, scale: float, out: FloatArr
         out[p] += total
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def quadratic(matrix: FloatArray, vector: FloatArray) -> float:
     """Value of vectorᵀ × matrix × vector, the vector padded."""
     total = 0.0
@@ -241,7 +251,7 @@ def quadratic(matrix: FloatArray, vector: FloatArray) -> float:
     return total
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath={"contract"})
 def add_mass(model: Model, rigid: FloatArray, bend: FloatArray, scale: float, out: Vector) -> None:
     """Add scale × M × (rigid, bend) to `out`."""
     for a in range(6):

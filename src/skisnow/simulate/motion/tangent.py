@@ -8,13 +8,15 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from .compiled import PLAIN
+
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 CHANNELS: Final = 6
 """Columns between beam and rigid body: depth, depth × s, roll, across, across × s, forwards."""
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
+@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
 def add_tangent(  # noqa: PLR0915 - entries written out: loops over so few cost more than they
     band: FloatArray, channels: FloatArray, corner: FloatArray, k: int, A: int, B: int, s: float, w0: float,
     w1: float, w2: float, w3: float, z: float,
@@ -80,7 +82,7 @@ def add_tangent(  # noqa: PLR0915 - entries written out: loops over so few cost 
         _add_channels(channels, k, B, w2, w3, z, s, c0, c2, cy, c5, k1, k2, t5)
 
 
-@numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, inline="always")
+@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
 def _add_channels(
     channels: FloatArray, k: int, A: int, w0: float, w1: float, y: float, s: float, c0: float, c2: float, cy: float,
     c5: float, k1: float, k2: float, t5: float,
