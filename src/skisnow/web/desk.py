@@ -58,10 +58,13 @@ class Desk:
 
     def refresh(self) -> None:
         """Look at what was written since."""
-        new = self._journals.entries(self.id, after=self._last)
+        new = self._written_since()
         if new or self._campaign is None:
             self._last = new[-1].sequence if new else self._last
             self._campaign = grown(new, before=self._campaign)
+
+    def _written_since(self) -> tuple[JournalEntry, ...]:
+        return self._journals.entries(self.id, after=self._last)
 
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
         """Store an entry; when this returns it is on the disk. See `Journals.append`."""

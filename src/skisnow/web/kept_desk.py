@@ -11,7 +11,7 @@ from ..field import read_campaign
 from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..field.reading.table_forms import CORRECTIONS
 from ..field.reading.text import UnreadableTextError, decode
-from ..field.store import add_corrections, grown, kept_tables
+from ..field.store import add_corrections, kept_tables
 from ..field.store.grown import GrownRow, GrownTest
 from ..field.store.journal import JournalEntry
 from ..field.store.kept_tables import cell_key
@@ -60,13 +60,10 @@ class KeptDesk(Desk):
             raise FieldDataError(found)
         return described
 
-    def refresh(self) -> None:
-        """Look at what was written since."""
+    def _written_since(self) -> tuple[JournalEntry, ...]:
         new = self._journals.corrections(self.id, after=self._last)
-        if new or self._campaign is None:
-            self._entries += new
-            self._last = new[-1].sequence if new else self._last
-            self._campaign = grown(new, before=self._campaign)
+        self._entries += new
+        return new
 
     def test(self, file: str, name: str) -> GrownTest:
         """A test with its cells by line and column as they are now, whether or not it was ever spoken of."""

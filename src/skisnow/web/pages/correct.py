@@ -7,16 +7,12 @@ from typing import TYPE_CHECKING
 from nicegui import run, ui
 
 from ...errors import ParameterError
-from ..entry.beside import Beside
-from ..entry.changes import Places
+from ..entry.frame import sheet_of, table_links
 from ..entry.kept import KeptForm, list_tests
-from ..entry.sheet import Sheet
 from ..fields import link
 from ..kept_desk import KeptDesk
 from ..layout import framed, sentence
 from ..names import analysis, correcting, export, required_id
-from ..words import TABLES
-from .enter import who_field
 
 if TYPE_CHECKING:
     from ..settings import Lab
@@ -38,32 +34,18 @@ def add_page(lab: Lab) -> None:
             raise ParameterError("this campaign has no such table")
         with framed(desk.stored.name or "Campaign", here=HERE):
             sentence("Kept: its files stay as they came in. What is corrected here stands beside them.", "quiet")
-            _tables(desk, file)
+            further = {"Analysis": analysis("kept", desk.id), "Export": export("kept", desk.id)}
+            table_links({each: correcting(desk.id, table=each) for each in desk.tables}, file, further)
             if test in desk.tables[file].tests:
                 _test(desk, file, test)
             else:
                 list_tests(desk, file)
 
 
-def _tables(desk: KeptDesk, here: str) -> None:
-    with ui.element("nav").classes("tables").props('aria-label="Kind of test"'):
-        for file in desk.tables:
-            made = ui.link(TABLES[file], correcting(desk.id, table=file))
-            if file == here:
-                made.props('aria-current="page"')
-        ui.link("Analysis", analysis("kept", desk.id))
-        ui.link("Export", export("kept", desk.id))
-
-
 def _test(desk: KeptDesk, file: str, name: str) -> None:
-    who = who_field(desk)
-    status = ui.label("").classes("status").props("role=status aria-live=polite")
-    sheet = Sheet(desk, file, who, status)
-    with ui.element("div").classes("two"):
-        form = ui.element("section").props('aria-label="Cells"')
-        beside = Beside(sheet)
-        with ui.element("section").classes("below").props('aria-label="Changes"'):
-            places = Places(form, ui.element("div"))
-            with ui.element("div").classes("acts"):
-                link("Another test", correcting(desk.id, table=file))
+    with (
+        sheet_of(desk, file, form="Cells", below="Changes") as (sheet, beside, places),
+        ui.element("div").classes("acts"),
+    ):
+        link("Another test", correcting(desk.id, table=file))
     KeptForm(desk, sheet, beside, places).show(name)

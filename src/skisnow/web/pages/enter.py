@@ -8,17 +8,16 @@ from nicegui import ui
 
 from ...errors import ParameterError
 from ..desk import Desk
-from ..entry.beside import Beside
-from ..entry.changes import Places
+from ..entry.frame import sheet_of, table_links
 from ..entry.series import SeriesForm
-from ..entry.sheet import WHO, Sheet
 from ..entry.single import SingleForm
-from ..fields import choice, field, link
+from ..fields import link
 from ..layout import framed, heading
 from ..names import analysis, entering, required_id
 from ..words import TABLES
 
 if TYPE_CHECKING:
+    from ..entry.sheet import Sheet
     from ..settings import Lab
 
 HERE = "/"
@@ -33,38 +32,16 @@ def add_page(lab: Lab) -> None:
             raise ParameterError("this address names no table of a campaign")
         desk = Desk(lab, required_id(id_))
         with framed(desk.described.name or "Campaign", here=HERE, ahead=True):
-            _tables(id_, table)
-            who = who_field(desk)
-            status = ui.label("").classes("status").props("role=status aria-live=polite")
-            sheet = Sheet(desk, table, who, status)
-            with ui.element("div").classes("two"):
-                form = ui.element("section").props('aria-label="Entry"')
-                beside = Beside(sheet)
-                with ui.element("section").classes("below").props('aria-label="Changes, and what was entered"'):
-                    places = Places(form, ui.element("div"))
-                    _others(sheet, test)
+            further = {"Analysis": analysis("entry", id_), "Campaign": f"/describe?entry={id_}"}
+            table_links({file: entering(id_, table=file) for file in TABLES}, table, further)
+            with sheet_of(desk, table, form="Entry", below="Changes, and what was entered") as (sheet, beside, places):
+                _others(sheet, test)
             kind = SeriesForm if table == "penetration.csv" else SingleForm
             entry = kind(sheet, beside, places)
             if test and sheet.test(test).rows:
                 entry.show(test)
             else:
                 entry.begin()
-
-
-def _tables(id_: str, here: str) -> None:
-    with ui.element("nav").classes("tables").props('aria-label="Kind of test"'):
-        for file, word in TABLES.items():
-            made = ui.link(word, entering(id_, table=file))
-            if file == here:
-                made.props('aria-current="page"')
-        ui.link("Analysis", analysis("entry", id_))
-        ui.link("Campaign", f"/describe?entry={id_}")
-
-
-def who_field(desk: Desk) -> ui.select | ui.input:
-    """Who writes: one of the campaign's observers, or a name."""
-    observers = list(desk.described.observers)
-    return choice(WHO, observers, observers[0]) if observers else field(WHO)
 
 
 def _others(sheet: Sheet, test: str) -> None:

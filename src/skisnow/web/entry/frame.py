@@ -1,0 +1,57 @@
+"""What the pages of entering and of correcting share: links to the tables, who writes, the places of the form."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from nicegui import ui
+
+from ..fields import choice, field
+from ..words import TABLES
+from .beside import Beside
+from .changes import Places
+from .sheet import WHO, Sheet
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from ..desk import Desk
+
+
+def table_links(tables: Mapping[str, str], here: str, further: Mapping[str, str]) -> None:
+    """Links to the tables, addresses by file, and behind them what else there is of the campaign, by name."""
+    with ui.element("nav").classes("tables").props('aria-label="Kind of test"'):
+        for file, address in tables.items():
+            made = ui.link(TABLES[file], address)
+            if file == here:
+                made.props('aria-current="page"')
+        for name, address in further.items():
+            ui.link(name, address)
+
+
+@contextmanager
+def sheet_of(desk: Desk, file: str, *, form: str, below: str) -> Iterator[tuple[Sheet, Beside, Places]]:
+    """The sheet of a table with its places on the page; what follows stands below the changes.
+
+    Parameters
+    ----------
+    desk, file
+        Campaign and table.
+    form, below
+        What the sections of the form and of the changes are called, for who cannot see them.
+    """
+    who = _who(desk)
+    status = ui.label("").classes("status").props("role=status aria-live=polite")
+    sheet = Sheet(desk, file, who, status)
+    with ui.element("div").classes("two"):
+        place = ui.element("section").props(f'aria-label="{form}"')
+        beside = Beside(sheet)
+        with ui.element("section").classes("below").props(f'aria-label="{below}"'):
+            yield sheet, beside, Places(place, ui.element("div"))
+
+
+def _who(desk: Desk) -> ui.select | ui.input:
+    """Who writes: one of the campaign's observers, or a name."""
+    observers = list(desk.described.observers)
+    return choice(WHO, observers, observers[0]) if observers else field(WHO)
