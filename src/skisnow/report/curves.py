@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     FloatArray = npt.NDArray[np.float64]
 
-POINTS: Final = 21
-"""Points of a curve: the chords of a parabola then stray by 1/1600 of its height, less than a screen shows."""
+POINTS: Final = 31
+"""Points of a curve: the chords of a parabola then stray by 1/3600 of its height, less than a screen shows."""
 
 
 @dataclass(frozen=True, slots=True)
