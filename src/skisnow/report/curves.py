@@ -15,11 +15,12 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from ..field.records import Campaign
+    from ..field.records import Campaign, PenetrationTests
     from ..geometry import GeometryForm, Tool
 
     FloatArray = npt.NDArray[np.float64]
 
+_NOTHING: Final = (np.zeros(0), np.zeros(0))
 POINTS: Final = 31
 """Points of a curve: the chords of a parabola then stray by 1/3600 of its height, less than a screen shows."""
 
@@ -36,9 +37,12 @@ class SeriesCurve:
 
 
 def law_of_series(
-    tool: Tool, edge_angle: float, snow_hardness_N_per_mm3: float, penetration_depth: FloatArray
+    tool: Tool,
+    edge_angle: FloatArray | float,
+    snow_hardness_N_per_mm3: FloatArray | float,
+    penetration_depth: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Depth (mm) and load F = H_V V (N) of a tool at an edge angle (rad) and depths (m)."""
+    """Depth (mm) and load F = H_V V (N) of a tool at edge angles (rad) and depths (m) that go together."""
     volume = tool.displaced_volume(penetration_depth, edge_angle)
     return penetration_depth / MM, snow_hardness_N_per_mm3 * N_PER_MM3 * volume
 
@@ -50,14 +54,29 @@ def series_curves(
     tests = campaign.penetration
     if tests is None:
         return ()
+    laws = _laws(campaign, tests, rows, geometry)
     curves = []
-    for index, row in enumerate(rows):
-        series, hardness = tests.series(index), row["H_V_N_per_mm3"]
-        law: tuple[FloatArray, FloatArray] = (np.zeros(0), np.zeros(0))
-        if hardness is not None:
-            e = np.linspace(0.0, float(series.penetration_depth.max()), POINTS)
-            tool = in_form(campaign.tools[series.tool], geometry)
-            law = law_of_series(tool, row["edge_angle_deg"] * DEGREE, hardness, e)
-        numbers = (series.penetration_depth / MM, series.load, *law)
-        curves.append(SeriesCurve(series.experiment, *(tuple(np.asarray(each).tolist()) for each in numbers)))
+    for index in range(len(rows)):
+        series = tests.series(index)
+        numbers = (series.penetration_depth / MM, series.load, *laws.get(index, _NOTHING))
+        curves.append(SeriesCurve(series.experiment, *(tuple(each.tolist()) for each in numbers)))
     return tuple(curves)
+
+
+def _laws(
+    campaign: Campaign, tests: PenetrationTests, rows: Sequence[dict[str, Any]], geometry: GeometryForm
+) -> dict[int, tuple[FloatArray, FloatArray]]:
+    """The law by the index of its series: those of one tool together, for a site may have hundreds."""
+    by_tool: dict[str, list[int]] = {}
+    for index, row in enumerate(rows):
+        if row["H_V_N_per_mm3"] is not None:
+            by_tool.setdefault(tests.tool[index], []).append(index)
+    laws: dict[int, tuple[FloatArray, FloatArray]] = {}
+    for name, chosen in by_tool.items():
+        angle = np.array([rows[index]["edge_angle_deg"] * DEGREE for index in chosen])[:, None]
+        hardness = np.array([rows[index]["H_V_N_per_mm3"] for index in chosen])[:, None]
+        deepest = np.array([tests.series(index).penetration_depth.max() for index in chosen])[:, None]
+        depths = deepest * np.linspace(0.0, 1.0, POINTS)
+        drawn = law_of_series(in_form(campaign.tools[name], geometry), angle, hardness, depths)
+        laws.update(zip(chosen, zip(*drawn, strict=True), strict=True))
+    return laws

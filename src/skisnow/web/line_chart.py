@@ -58,6 +58,7 @@ class LineChart(Element, component="line_chart.js"):
         super().__init__()
         self._titles = {"x": x, "y": y}
         self._words = words
+        self._drawn: list[tuple[ChartLine, dict[str, Any]]] = []
         self._props["height"] = height
         self._props["looks"] = LOOKS
         self.show([])
@@ -74,23 +75,27 @@ class LineChart(Element, component="line_chart.js"):
         ``range_``: values at the lower and the upper end of the axis, else all of them. ``from_zero``: which axes show
         zero whatever the values are.
         """
+        self._drawn = [(line, self._plain(line)) for line in lines]
         self._props["panel"] = {
             **self._titles,
             "label": self._label(lines),
             "range": range_,
             "from_zero": from_zero,
-            "lines": [_plain(line) for line in lines],
+            "lines": [plain for _, plain in self._drawn],
         }
         self.update()
+
+    def _plain(self, line: ChartLine) -> dict[str, Any]:
+        """As it is sent; what stands there already, such as hundreds of series behind one, is not rounded again."""
+        for known, plain in self._drawn:
+            if known == line:
+                return plain
+        return {"x": _short(line.x), "y": _short(line.y), "look": line.look, "points": line.points}
 
     def _label(self, lines: Sequence[ChartLine]) -> str:
         found = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]
         extent = f": {significant(min(found))} to {significant(max(found))}" if found else ": nothing yet"
         return self._words + extent
-
-
-def _plain(line: ChartLine) -> dict[str, Any]:
-    return {"x": _short(line.x), "y": _short(line.y), "look": line.look, "points": line.points}
 
 
 def _short(values: Sequence[float | None]) -> list[float | None]:
