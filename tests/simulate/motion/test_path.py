@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from skisnow.simulate.motion.archive import new_archive
 from skisnow.simulate.motion.lines import Lines, new_lines
 from skisnow.simulate.motion.model import Snow, State, World, new_state
-from skisnow.simulate.motion.path import AHEAD, follow, surface
+from skisnow.simulate.motion.path import AHEAD, MOST_UNEVEN, follow, lay_anew, surface
 from skisnow.simulate.scenario import Profile
 
 from .flight import NO_SNOW, free_model
 
+FloatArray = npt.NDArray[np.float64]
 SNOW: Snow = NO_SNOW
 STEP = 0.02
 
@@ -48,6 +50,16 @@ def laid(world: World, state: State) -> Lines:
     return lines
 
 
+def under_axis(frame: FloatArray, state: State, boot: FloatArray) -> FloatArray:
+    """Stations at which lines go through the plane that a ski's straight axis spans with the sledge's own upwards."""
+    origin = (frame[:, :3] - state.place) @ state.turn - boot
+    left = frame[:, 6:9] @ state.turn
+    there = [
+        np.linalg.solve(np.array([[1.0, -y[0]], [0.0, -y[1]]]), e[:2])[0] for e, y in zip(origin, left, strict=True)
+    ]
+    return np.array(there)
+
+
 @pytest.mark.parametrize("pitch", [0.0, 0.35])
 def test_lines_lie_on_the_slope_across_the_skis(profile: Profile, hill: World, pitch: float) -> None:
     """As far from each other along the skis as asked, also where the slope rises from a ski that points downwards."""
@@ -63,7 +75,7 @@ def test_lines_lie_on_the_slope_across_the_skis(profile: Profile, hill: World, p
     for k in range(2):
         rows = k * 256 + (int(lines.first[k]) + np.arange(int(lines.count[k]))) % 256
         frame = lines.frame[rows]
-        along = (frame[:, :3] - state.place - state.turn @ model.middle[k]) @ state.turn[:, 0]
+        along = under_axis(frame, state, model.middle[k])
         assert along[0] < model.tail - AHEAD + 1e-9
         assert along[-1] > model.tip + AHEAD - 1e-9
         assert np.diff(along) == pytest.approx(np.full(len(along) - 1, 0.02), rel=1e-9)
@@ -98,3 +110,24 @@ def test_lines_stay_while_the_ski_goes_over_them(hill: World) -> None:
     assert min(now)[0] > 10.0 + model.tail - AHEAD - 0.1
     assert max(now)[0] > 10.0 + model.tip + AHEAD - 1e-9
     assert np.diff([place[0] for place in now]) == pytest.approx(np.full(len(now) - 1, 0.02), rel=1e-9)
+
+
+@pytest.mark.parametrize("heading", [0.0, 1.2])
+def test_lines_stay_even_under_a_ski_that_slips_sideways(hill: World, heading: float) -> None:
+    """Ten metres aside and a metre ahead, turning by 3°: lines that crossed far off would count snow twice."""
+    model, flat = free_model(), hill._replace(heights=np.zeros((1, 2)))
+    state = new_state(len(model.mass))
+    lines, archive = new_lines(256, spacing=0.02, cell=1e-3), new_archive(10, 100)
+    for step in range(1000):
+        c, s = math.cos(heading + 0.05 * math.sin(0.05 * step)), math.sin(heading + 0.05 * math.sin(0.05 * step))
+        state.turn[:] = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        state.place[:] += 0.001 * state.turn[:, 0] + 0.01 * state.turn[:, 1]
+        lay_anew(model, SNOW, lines, archive, state)
+        follow(model, SNOW, flat, lines, archive, state)
+        for k in range(2):
+            frame = lines.frame[k * 256 + (int(lines.first[k]) + np.arange(int(lines.count[k]))) % 256]
+            along = under_axis(frame, state, model.middle[k])
+            assert along[0] < model.tail - 0.1
+            assert along[-1] > model.tip + 0.1
+            # a line that has just been laid lies as far from the last as asked
+            assert np.all(np.abs(np.diff(along) - 0.02) <= 1.1 * MOST_UNEVEN * 0.02)

@@ -26,6 +26,22 @@ def test_two_seconds(contact: str) -> None:
     closes(run, contact)
 
 
+def test_a_long_slip_sideways() -> None:
+    """Straight down the slope across the skis, on the uphill edges: lines lie far from where they were laid."""
+    changes = {
+        "start.heading_deg": 90.0,
+        "start.speed_m_per_s": 0.5,
+        "sledge.edge_angle_deg": 8.0,
+        "slope.angle_deg": 20.0,
+        "snow.H_V_N_per_mm3": 0.5,
+        "snow.S_f_N_per_mm2": 0.01,
+        "run.duration_s": 2.0,
+    }
+    run = simulated_run(read_scenario("carved-46m", changes=changes))
+    assert run.place[-1, 0] > 6.0
+    closes(run, changes)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["carved-46m", "giant-slalom-67m", "carver-42m"])
 @pytest.mark.parametrize("contact", CONTACTS)

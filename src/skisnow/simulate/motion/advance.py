@@ -15,7 +15,7 @@ from .fast import REACH, Past, fast_step, new_past
 from .forces import FRICTION, NORMAL, RELEASED, SHEAR, SIDEWAYS, Forces, feel, new_forces
 from .lines import Lines
 from .model import PADDING, Model, Snow, State, World, new_state
-from .path import follow, press
+from .path import follow, lay_anew, press
 from .ros2 import GAMMA, Room, new_room, ros2_step
 from .system import Factored, factor, new_factored, quadratic
 
@@ -36,6 +36,8 @@ STEPS_PER_TANGENT: Final = 4
 EASY: Final = 1.0
 """Stiffness of the contact per length of ski, times the step's square, up to which ROS2 keeps its matrix: about a ski's
 mass per length (kg/m). With longer steps on harder snow an old matrix costs centimetres (Choice)."""
+STEPS_PER_CHECK: Final = 8
+"""Steps after which it is seen whether the lines still lie evenly."""
 LONGEST_STEP: Final = 4e-3
 """Step (s) of the error control, which is halved; a ski at 30 m/s moves 12 cm in it."""
 
@@ -88,6 +90,8 @@ def observe(
 ) -> None:
     """Look at the snow at the state reached: forces, powers, and what the snow remembers of it."""
     state, start, clock = memory.state, memory.start, memory.clock
+    if clock.counts[0] % STEPS_PER_CHECK == 0:
+        lay_anew(model, snow, lines, archive, state)
     follow(model, snow, world, lines, archive, state)
     # for a constant in place of a value Numba compiles a function anew, and more slowly
     feel(model, snow, lines, state, tangent, clock.time[0] >= 0.0, start)

@@ -31,11 +31,11 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 SmallArray: TypeAlias = npt.NDArray[np.float32]
 IntArray: TypeAlias = npt.NDArray[np.int64]
 
-BUCKET = 0.25
+BUCKET = 0.0625
 """Size (m) of the squares in which pieces are looked up."""
-LONGEST = 0.12
-"""Longest piece (m): less than half a square."""
-BUCKETS = 16384
+LONGEST = 0.06
+"""Longest piece (m): about a square."""
+BUCKETS = 32768
 SWEEP = 0.01
 """Cells that an edge leaves sideways grow until they reach as far (m): on ice it would leave them at
 every step (Choice)."""
@@ -139,11 +139,10 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
 @numba.njit(**PLAIN)
 def meets_older(archive: Archive, x: float, y: float, reach: float) -> bool:
     """Whether there is any older track within reach (m) of a place, about."""
-    a, b = int(np.floor(x / BUCKET)), int(np.floor(y / BUCKET))
-    around = 1 + int(np.ceil(reach / BUCKET))
-    for i in range(-around, around + 1):
-        for j in range(-around, around + 1):
-            if archive.head[_bucket(a + i, b + j)] >= 0:
+    around = reach + LONGEST  # pieces stand in the square of their middle
+    for i in range(int(np.floor((x - around) / BUCKET)), int(np.floor((x + around) / BUCKET)) + 1):
+        for j in range(int(np.floor((y - around) / BUCKET)), int(np.floor((y + around) / BUCKET)) + 1):
+            if archive.head[_bucket(i, j)] >= 0:
                 return True
     return False
 
@@ -156,12 +155,10 @@ def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hard
     y = 0.5 * (first + last) * cell
     reach = 0.5 * (last - first) * cell
     x0, y0, z0 = frame[0] + y * frame[6], frame[1] + y * frame[7], frame[2] + y * frame[8]
-    a, b = int(np.floor(x0 / BUCKET)), int(np.floor(y0 / BUCKET))
-    around = 1 + int(np.ceil(reach / BUCKET))
-    found = False
-    for i in range(-around, around + 1):
-        for j in range(-around, around + 1):
-            piece = archive.head[_bucket(a + i, b + j)]
+    around, found = reach + 0.5 * LONGEST + 0.5 * lines.spacing[0], False
+    for i in range(int(np.floor((x0 - around) / BUCKET)), int(np.floor((x0 + around) / BUCKET)) + 1):
+        for j in range(int(np.floor((y0 - around) / BUCKET)), int(np.floor((y0 + around) / BUCKET)) + 1):
+            piece = archive.head[_bucket(i, j)]
             while piece >= 0:
                 if _lies_on(archive, piece, x0, y0, z0, frame, reach, 0.5 * lines.spacing[0]):
                     found = _take_over(archive, piece, lines, row, first, last) or found
@@ -252,7 +249,9 @@ def make_room(
     new = (first + last) // 2 - CELLS // 2
     if fresh:
         open_window(lines, row, new)
-        if meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], max(abs(new), abs(new + CELLS)) * cell):
+        y = (new + 0.5 * CELLS) * cell
+        x0, y0 = lines.frame[row, 0] + y * lines.frame[row, 6], lines.frame[row, 1] + y * lines.frame[row, 7]
+        if meets_older(archive, x0, y0, 0.5 * CELLS * cell):
             recall(archive, lines, row, new, new + CELLS, hardness, excess)
         return
     before = lines.value[row, LOST]

@@ -52,6 +52,10 @@ NEWTON_STEPS: Final = 3
 MOST_TURN: Final = 0.3
 """Angle (rad) between a line's direction ahead and the ski beyond which the lines are laid anew (Choice)."""
 
+MOST_UNEVEN: Final = 0.25
+"""Share of their spacing by which the lines may lie nearer or farther from each other before they are laid anew
+(Choice)."""
+
 
 @numba.njit(**PLAIN)
 def surface(world: World, x: float) -> tuple[float, float]:
@@ -113,14 +117,17 @@ def _lay(
 
 @numba.njit(**PLAIN)
 def _station(model: Model, lines: Lines, state: State, k: int, number: int) -> float:
-    """Station on ski k's straight axis of its line `number`, counted from the tail."""
-    ring = len(lines.flag) // 2
-    row = k * ring + (lines.first[k] + number) % ring
-    R, y = state.turn, model.middle[k, 1]
-    total = 0.0
+    """Station at which ski k's line `number`, counted from the tail, goes through under the straight axis."""
+    R, side, frame = state.turn, model.middle[k, 1], lines.frame
+    row = k * (len(lines.flag) // 2) + (lines.first[k] + number) % (len(lines.flag) // 2)
+    along, across, line_along, line_across = 0.0, 0.0, 0.0, 0.0
     for a in range(3):
-        total += (lines.frame[row, a] - state.place[a] - R[a, 1] * y) * R[a, 0]
-    return total
+        there = frame[row, a] - state.place[a] - R[a, 1] * side
+        along += there * R[a, 0]
+        across += there * R[a, 1]
+        line_along += frame[row, 6 + a] * R[a, 0]
+        line_across += frame[row, 6 + a] * R[a, 1]
+    return along - across * line_along / line_across
 
 
 @numba.njit(**PLAIN)
@@ -151,6 +158,29 @@ def follow(model: Model, snow: Snow, world: World, lines: Lines, archive: Archiv
         while s > model.tail - AHEAD and lines.count[k] < ring:
             s -= spacing
             _lay(model, snow, world, lines, archive, state, k, s, -spacing)
+
+
+@numba.njit(**PLAIN)
+def lay_anew(model: Model, snow: Snow, lines: Lines, archive: Archive, state: State) -> None:
+    """Leave lines that have come to lie unevenly under a ski: where it has slipped far, those of other directions.
+
+    Their snow is remembered, and `follow` lays others.
+    """
+    for k in range(2):
+        if _is_uneven(model, lines, state, k):
+            _leave_all(snow, lines, archive, k)
+
+
+@numba.njit(**PLAIN)
+def _is_uneven(model: Model, lines: Lines, state: State, k: int) -> bool:
+    """Whether neighbouring lines cross the ski's axis nearer or farther from each other than they may."""
+    spacing, before = lines.spacing[0], _station(model, lines, state, k, 0)
+    for number in range(1, lines.count[k]):
+        s = _station(model, lines, state, k, number)
+        if abs(s - before - spacing) > MOST_UNEVEN * spacing:
+            return True
+        before = s
+    return False
 
 
 @numba.njit(**PLAIN)
