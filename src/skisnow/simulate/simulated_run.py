@@ -48,7 +48,9 @@ REMEDIES: Final[dict[Outcome, str]] = {
 }
 
 
-def simulated_run(scenario: Scenario, *, progress: Progress | None = None) -> Run:
+def simulated_run(
+    scenario: Scenario, *, progress: Progress | None = None, strength_along: Callable[[float], float] | None = None
+) -> Run:
     """Simulate a scenario from static equilibrium.
 
     Parameters
@@ -57,6 +59,9 @@ def simulated_run(scenario: Scenario, *, progress: Progress | None = None) -> Ru
         What to simulate.
     progress
         Is told the simulated time and the share that is done, after each output interval.
+    strength_along
+        S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places. Asked
+        once for each output interval, for both skis and all along them.
 
     Returns
     -------
@@ -86,14 +91,17 @@ def simulated_run(scenario: Scenario, *, progress: Progress | None = None) -> Ru
     record.add()
     begin = time.perf_counter()
     try:
-        outcome = _loop(setup, record, progress)
+        outcome = _loop(setup, record, progress, strength_along)
     except KeyboardInterrupt:
         outcome = "interrupted"
     return _run(setup, record, outcome, time.perf_counter() - begin)
 
 
-def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
+def _loop(
+    setup: Setup, record: Record, progress: Progress | None, strength_along: Callable[[float], float] | None
+) -> Outcome:
     """Go from output to output until something ends the run."""
+    strength = setup.snow.shear_stress
     stop, interval = setup.scenario.stop, setup.scenario.solver.output_interval
     duration = math.inf if stop.duration is None else stop.duration
     length = math.inf if stop.length is None else stop.length
@@ -111,6 +119,8 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
         was_near, nearing = nearing, speed * (until - now) > left
         if nearing:
             until = now + max(left / speed, 1e-9)
+        if strength_along is not None:
+            setup.snow = setup.snow._replace(shear_stress=strength * strength_along(record.run_length))
         trouble = setup.advance(until)
         number += until == next_output
         record.add(replace=was_near)

@@ -24,11 +24,11 @@ EVERY: Final = 10
 """A point for every tenth output: 10 Hz."""
 FINER: Final = 2.0
 """By how much elements, lines, cells and tolerance are finer than those of the identification."""
-ERRORS: Final = ("friction law", "hardness", "drift")
+ERRORS: Final = ("friction law", "varying S_f", "drift")
 MU_1: Final = 0.003
 """s/m, of a friction that rises with speed where the identification knows a constant one."""
-SOFTER: Final = 0.7
-"""True H_V over the one that the identification takes for granted."""
+WAVE: Final = 20.0
+"""Length (m) over which the true S_f falls to half of the one taken for granted, and rises again."""
 DRIFT: Final = 0.01
 """m/s, of a receiver whose places wander off in one direction: 6 to 10 cm at the end."""
 
@@ -53,13 +53,12 @@ def true_run(scenario: str, truth: Truth) -> Run:
     changes: dict[str, object] = dict(truth.values)
     if truth.error == "friction law":
         changes["friction.mu_1_s_per_m"] = MU_1
-    asked = read_scenario(scenario, changes=changes)
-    if truth.error == "hardness":
-        snow = asked.contact.snow
-        asked = replace(
-            asked, contact=replace(asked.contact, snow=replace(snow, snow_hardness=SOFTER * snow.snow_hardness))
-        )
-    return simulated_run(finer(asked))
+    asked = finer(read_scenario(scenario, changes=changes))
+    return simulated_run(asked, strength_along=_strength_along if truth.error == "varying S_f" else None)
+
+
+def _strength_along(distance: float) -> float:
+    return 0.75 + 0.25 * math.cos(2.0 * math.pi * distance / WAVE)
 
 
 def finer(asked: Scenario) -> Scenario:
