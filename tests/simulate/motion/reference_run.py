@@ -74,8 +74,11 @@ class ReferenceRun:
             lines.append(self._laid(k, s))
 
     def _station(self, k: int, line: Line) -> float:
+        """Where the line goes through the plane of the sledge's own x and z, under the ski's axis."""
         turn = self.motion.turn
-        return float((line.origin - self.motion.place - turn @ self.body.middle[k]) @ turn[:, 0])
+        origin = turn.T @ (line.origin - self.motion.place) - self.body.middle[k]
+        left = turn.T @ line.left
+        return float(origin[0] - origin[1] / left[1] * left[0])
 
     def _laid(self, k: int, s: float) -> Line:
         turn, body = self.motion.turn, self.body
