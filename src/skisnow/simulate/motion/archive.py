@@ -33,8 +33,8 @@ IntArray: TypeAlias = npt.NDArray[np.int64]
 
 BUCKET = 0.0625
 """Size (m) of the squares in which pieces are looked up."""
-LONGEST = 0.06
-"""Longest piece (m): about a square."""
+LONGEST = 0.12
+"""Longest piece (m): as wide as the track of a flat ski, which a run tells piece by piece."""
 BUCKETS = 32768
 SWEEP = 0.01
 """Cells that an edge leaves sideways grow until they reach as far (m): on ice it would leave them at
