@@ -19,6 +19,8 @@ from .scenario import Scenario
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Progress: TypeAlias = Callable[[float, float], None]
 """Takes the simulated time (s), and the share of the run that is done, 0 to 1."""
+Strength: TypeAlias = Callable[[float], float]
+"""Takes the distance run (m), and gives S_f over that of the scenario, > 0."""
 
 TIPPED: Final = math.radians(60.0)
 """Angle between the sledge and the snow's normal at which it has tipped over (Choice)."""
@@ -49,7 +51,7 @@ REMEDIES: Final[dict[Outcome, str]] = {
 
 
 def simulated_run(
-    scenario: Scenario, *, progress: Progress | None = None, strength_along: Callable[[float], float] | None = None
+    scenario: Scenario, *, progress: Progress | None = None, strength_along: Strength | None = None
 ) -> Run:
     """Simulate a scenario from static equilibrium.
 
@@ -97,9 +99,7 @@ def simulated_run(
     return _run(setup, record, outcome, time.perf_counter() - begin)
 
 
-def _loop(
-    setup: Setup, record: Record, progress: Progress | None, strength_along: Callable[[float], float] | None
-) -> Outcome:
+def _loop(setup: Setup, record: Record, progress: Progress | None, strength_along: Strength | None) -> Outcome:
     """Go from output to output until something ends the run."""
     strength = setup.snow.shear_stress
     stop, interval = setup.scenario.stop, setup.scenario.solver.output_interval

@@ -82,6 +82,12 @@ def grown(archive: Archive, pieces: int, places: int) -> Archive:
 
 
 @numba.njit(**PLAIN, inline="always")
+def _square(x: float) -> int:
+    """Number of the squares in which a coordinate lies."""
+    return int(np.floor(x / BUCKET))
+
+
+@numba.njit(**PLAIN, inline="always")
 def _bucket(a: int, b: int) -> int:
     return (a * 73856093 ^ b * 19349663) & (BUCKETS - 1)
 
@@ -127,9 +133,9 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
         archive.pool[p, 1] = lines.cells[row, FROM + i] - middle
         archive.pool[p, 2] = lines.cells[row, TO + i] - middle
     y = 0.5 * (first + last) * cell
-    a = int(np.floor((archive.frame[m, 0] + y * archive.frame[m, 6]) / BUCKET))
-    b = int(np.floor((archive.frame[m, 1] + y * archive.frame[m, 7]) / BUCKET))
-    square = _bucket(a, b)
+    square = _bucket(
+        _square(archive.frame[m, 0] + y * archive.frame[m, 6]), _square(archive.frame[m, 1] + y * archive.frame[m, 7])
+    )
     archive.before[m] = archive.head[square]
     archive.head[square] = m
     archive.used[0] = m + 1
@@ -140,8 +146,8 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
 def meets_older(archive: Archive, x: float, y: float, reach: float) -> bool:
     """Whether there is any older track within reach (m) of a place, about."""
     around = reach + LONGEST  # pieces stand in the square of their middle
-    for i in range(int(np.floor((x - around) / BUCKET)), int(np.floor((x + around) / BUCKET)) + 1):
-        for j in range(int(np.floor((y - around) / BUCKET)), int(np.floor((y + around) / BUCKET)) + 1):
+    for i in range(_square(x - around), _square(x + around) + 1):
+        for j in range(_square(y - around), _square(y + around) + 1):
             if archive.head[_bucket(i, j)] >= 0:
                 return True
     return False
@@ -156,8 +162,8 @@ def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hard
     reach = 0.5 * (last - first) * cell
     x0, y0, z0 = frame[0] + y * frame[6], frame[1] + y * frame[7], frame[2] + y * frame[8]
     around, found = reach + 0.5 * LONGEST + 0.5 * lines.spacing[0], False
-    for i in range(int(np.floor((x0 - around) / BUCKET)), int(np.floor((x0 + around) / BUCKET)) + 1):
-        for j in range(int(np.floor((y0 - around) / BUCKET)), int(np.floor((y0 + around) / BUCKET)) + 1):
+    for i in range(_square(x0 - around), _square(x0 + around) + 1):
+        for j in range(_square(y0 - around), _square(y0 + around) + 1):
             piece = archive.head[_bucket(i, j)]
             while piece >= 0:
                 if _lies_on(archive, piece, x0, y0, z0, frame, reach, 0.5 * lines.spacing[0]):

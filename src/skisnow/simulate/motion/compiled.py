@@ -9,3 +9,5 @@ PLAIN: Final[dict[str, Any]] = {"cache": True, "error_model": "numpy", "_nrt": F
 took a seventh of the time of a run. They cannot make arrays."""
 MAKING: Final[dict[str, Any]] = {**PLAIN, "_nrt": True}
 """Options of the few that make arrays; said outright, or a function would take them from the one that calls it."""
+SUMS: Final = {"contract", "reassoc", "nsz"}
+"""Freedom to add in any order: several cells in one instruction. The order is the same in every run."""

@@ -12,7 +12,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from .compiled import PLAIN
+from .compiled import PLAIN, SUMS
 
 # isort: off
 from .columns import (
@@ -38,7 +38,6 @@ from .lines import (
     KEPT,
     LOW,
     SLOPE,
-    SUMS,
     TOUCHED,
     WINDOW,
     Lines,

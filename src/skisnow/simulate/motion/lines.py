@@ -122,10 +122,6 @@ def open_window(lines: Lines, row: int, start: int) -> None:
         lines.cells[row, CENTRE + j] = 0.0
 
 
-SUMS: Final = {"contract", "reassoc", "nsz"}
-"""Freedom to add in any order: several cells in one instruction. The order is the same in every run."""
-
-
 @numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
 def anchor_of(value: FloatArray, flag: IntArray, row: int, edge: float, deep: float) -> float:
     """Where across an edge that is `deep` now holds: as before, else where it met the surface since the last look."""

@@ -21,8 +21,8 @@ from .columns import (
 )  # fmt: skip
 
 # isort: on
-from .compiled import PLAIN
-from .lines import CELLS, DEEPEST, FROM, SUMS, TO
+from .compiled import PLAIN, SUMS
+from .lines import CELLS, DEEPEST, FROM, TO
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -15,7 +15,6 @@ from .lines import ABOVE, Lines
 from .model import Model, Snow, State, World
 from .ros2 import Room
 from .system import Factored, add_band, backwards, cholesky, factor, forwards, solve_corner
-from .tangent import CHANNELS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -33,7 +32,6 @@ def settle(
 ) -> float:  # fmt: skip
     """Move `state` to equilibrium by Newton's method and return its last step (m); `calm` is working space."""
     vector = room.first
-    rows = np.zeros((2, CHANNELS, 6))
     size = 1e9
     scale = 1.0
     for _ in range(MOST_STEPS):
@@ -44,9 +42,9 @@ def settle(
         add_forces(model, world, state, start, 1.0, vector)
         add_band(model.stiffness, state.bend[0], -1.0, vector.bend[0])
         add_band(model.stiffness, state.bend[1], -1.0, vector.bend[1])
-        channel_rows(model, lines, state, rows)
+        channel_rows(model, lines, state, system.rows)
         # so stiff a system has next to no inertia: M is what keeps it definite off the snow
-        held = factor(model, start, rows, 1e6, 1e6, system)
+        held = factor(model, start, system.rows, 1e6, 1e6, system)
         if not held:
             return 1e9
         forwards(system, vector)
