@@ -111,15 +111,13 @@ def pressure_sums(line: Line, touch: Touch, snow: Snow) -> Sums:
     near = range(math.floor(touch.low / line.cell) - 1, math.floor(touch.high / line.cell) + 2)
     for j in near:
         inside.update((j * line.cell, (j + 1) * line.cell))
-        if j in line.cells:
-            inside.update((line.cells[j].start, line.cells[j].end))
     ends = sorted(y for y in inside if touch.low <= y <= touch.high)
     sums = Sums()
     for a, b in itertools.pairwise(ends):
         middle = 0.5 * (a + b)
         cell = line.cells.get(math.floor(middle / line.cell))
         lift = 0.0
-        if cell is not None and cell.start <= middle <= cell.end:
+        if cell is not None:
             centre = (math.floor(middle / line.cell) + 0.5) * line.cell
             lift = max(0.0, cell.deepest - (touch.depth + touch.fall * (centre - touch.edge)))
         _add_piece(sums, a - touch.edge, b - touch.edge, touch, lift, snow.hardness, stiff)

@@ -94,7 +94,7 @@ def quadrature(lines: Lines, low: float, high: float, depth: float, fall: float,
     place = number - lines.flag[0, WINDOW]
     inside = (place >= 0) & (place < size)
     deepest_of, start_of, end_of, _ = cells_of(lines, 0)[:, np.where(inside, place, 0)]
-    covered = inside & (x + edge >= start_of) & (x + edge <= end_of)
+    covered = inside & (end_of > start_of)  # a cell that a base has met in part counts as met all over
     now = depth + fall * x
     there = deepest_of + fall * (x + edge - (number + 0.5) * cell)
     deepest = np.where(covered & (there > now), there, now)

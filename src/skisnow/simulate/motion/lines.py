@@ -202,11 +202,13 @@ def energy_at_edge(
     j = int(np.floor(y / cell))
     at = j - start
     stiff = hardness + excess
-    before = 0.0
     i = np.uint64(at)
-    if 0 <= at < CELLS and cells[row, FROM + i] <= y <= cells[row, TO + i]:
-        before = cells[row, DEEPEST + i] + slope * (y - (j + 0.5) * cell)
-    deepest = max(before, depth)
+    before, deepest = 0.0, depth
+    if 0 <= at < CELLS:
+        known = cells[row, DEEPEST + i] + slope * (y - (j + 0.5) * cell)
+        deepest = max(known, depth)
+        if cells[row, FROM + i] <= y <= cells[row, TO + i]:
+            before = known
     pressed = max(0.0, hardness * depth - excess * (deepest - depth))
     gain = 0.5 * pressed * pressed / stiff
     if covers:

@@ -4,6 +4,9 @@ Virgin snow bears q = H_V (depth + slope x), x from the edge that is down. Where
 over a ≤ x ≤ b, it bears q - (k_u - H_V) lift, if that is above zero: over u ≤ x ≤ v. So all integrals come from those
 of 1, x, x² over what is wet, u to v, less those over a to b, and of lift, lift x and lift² over u to v: nine sums over
 a line's cells, eight cells in one instruction, and then what they make, eight lines in one.
+
+A cell that was met in part bears as if met all over, as it will once the step is accepted. Were the ground that an edge
+takes within a step virgin until then, its force would be off by the step's length times the lift beside it.
 """
 
 from __future__ import annotations
@@ -22,7 +25,7 @@ from .columns import (
 
 # isort: on
 from .compiled import PLAIN, SUMS
-from .lines import CELLS, DEEPEST, FROM, TO
+from .lines import CELLS, DEEPEST
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -47,8 +50,8 @@ def sum_cells(
     for j in range(begin, end):
         middle = origin + j * cell
         lift = cells[row, DEEPEST + j] - (surface + step * j)
-        a = max(low, cells[row, FROM + j] - edge, middle - half)
-        b = max(a, min(high, cells[row, TO + j] - edge, middle + half))
+        a = max(low, middle - half)
+        b = max(a, min(high, middle + half))
         b = b if lift > 0.0 else a
         zero = min(max(waterline + per_lift * lift, a), b)
         u, v = zero if to_right else a, b if to_right else zero
