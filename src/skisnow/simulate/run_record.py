@@ -10,10 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from .motion.forces import HELD
-from .motion.history import History, longer, new_history, note
+from .motion.history import History, longer, new_history
+from .motion.outputs import outputs_controlled, outputs_fixed
 from .motion.path import energy_in_snow
-from .run import LOST, STORED, SkiHistory
-from .run_setup import Setup
+from .run import LOST, STORED, Outcome, SkiHistory
+from .run_setup import TROUBLES, Setup
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -43,23 +44,50 @@ class Record:
         self._lost_before = energy_in_snow(setup.snow, setup.lines, setup.archive)
         self._held_first = float(setup.memory.start.power[HELD])
 
-    def add(self, *, replace: bool = False) -> None:
-        """Keep the present moment; with `replace` in place of the last one."""
-        if self._count == len(self._history.time):
-            self._history = longer(self._history)
-        setup, row = self.setup, self._count
-        note(
-            setup.model, setup.snow, setup.world, setup.lines, setup.archive, setup.memory, setup.shares,
-            self._lost_before, self._held_first, self._history, row,
-        )  # fmt: skip
-        if row:
-            self.run_length += self._arc(row - 1, row)
-        same = row > 0 and self._history.time[row] <= self._history.time[row - 1]
-        if (replace or same) and row > 1:
-            for each in self._history:
-                each[row - 1] = each[row]
+    def add(self) -> None:
+        """Keep the present moment; nothing moves, but all loops are compiled then."""
+        self.advance(np.array([self.setup.time]))
+
+    def advance(self, moments: FloatArray, *, replace: bool = False) -> Outcome | None:
+        """Let the run go on to the moments (s) and keep each, at most until one that asks for a look.
+
+        With `replace` the first takes the place of the last one kept. The outcome if the steps cannot go on.
+        """
+        setup, solver = self.setup, self.setup.scenario.solver
+        self._make_room(len(moments))
+        setup.keep_room()
+        arrays = setup.model, setup.snow, setup.world, setup.lines, setup.archive, setup.memory
+        kept = moments, setup.end, setup.shares, self._lost_before, self._held_first, self._history, self._count
+        if setup.has_fixed_steps:
+            noted, trouble = outputs_fixed(*arrays, solver.method == "fast", solver.step, *kept)
         else:
-            self._count += 1
+            noted, trouble = outputs_controlled(*arrays, solver.tolerance, *kept)
+        self._take(int(noted), replace=replace)
+        return TROUBLES.get(int(trouble))
+
+    def _make_room(self, moments: int) -> None:
+        while self._count + moments > len(self._history.time):
+            self._history = longer(self._history)
+
+    def _take(self, moments: int, *, replace: bool) -> None:
+        """Count the moments that were noted after the last one."""
+        for _ in range(moments):
+            row = self._count
+            if row:
+                self.run_length += self._arc(row - 1, row)
+            same = row > 0 and self._history.time[row] <= self._history.time[row - 1]
+            if (replace or same) and row > 1:
+                for each in self._history:
+                    each[row - 1 : -1] = each[row:].copy()
+            else:
+                self._count += 1
+            replace = False
+
+    @property
+    def last_interval(self) -> float:
+        """Time (s) between the last two moments; 0 while there is but one."""
+        time = self._history.time
+        return float(time[self._count - 1] - time[self._count - 2]) if self._count > 1 else 0.0
 
     @property
     def gains_energy(self) -> bool:

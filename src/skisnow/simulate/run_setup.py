@@ -23,6 +23,7 @@ from .motion.along import shares
 from .motion.archive import Archive, grown, new_archive
 from .motion.lines import CELL, CELLS, KEPT, SLOPE, TOUCHED, WINDOW, Lines, cells_of, new_lines
 from .motion.model import Model, Snow, World, sledge_model
+from .motion.outputs import is_roomy
 from .motion.path import AHEAD, follow
 from .motion.settle import settle
 from .run import Outcome
@@ -120,28 +121,28 @@ class Setup:
         x = float(self.memory.state.place[0])
         return self.surface_height(x), self.slope_normal(x)
 
-    def compile(self) -> None:
-        """Make sure that the loops are compiled; nothing moves."""
-        self.advance(self.time)
-
     def advance(self, until: float) -> Outcome | None:
         """Go on to the time `until` (s); the outcome if the steps cannot."""
-        self._keep_room()
+        self.keep_room()
         solver = self.scenario.solver
         arguments = (self.model, self.snow, self.world, self.lines, self.archive, self.memory)
-        if solver.fixed or solver.method == "fast":
+        if self.has_fixed_steps:
             trouble = advance_fixed(*arguments, solver.method == "fast", solver.step, until)
         else:
             trouble = advance_controlled(*arguments, solver.tolerance, until)
-        return _TROUBLES.get(int(trouble))
+        return TROUBLES.get(int(trouble))
 
-    def _keep_room(self) -> None:
+    @property
+    def has_fixed_steps(self) -> bool:
+        """Whether the error of the steps is not controlled."""
+        return self.scenario.solver.fixed or self.scenario.solver.method == "fast"
+
+    def keep_room(self) -> None:
         """Let the archive grow before it is full."""
         rows = len(self.lines.cells)
-        pieces, places = (int(n) for n in self.archive.used)
-        most_pieces, most_places = len(self.archive.cell), len(self.archive.pool)
-        if most_pieces - pieces < 2 * rows or most_places - places < rows * CELLS:
-            self.archive = grown(self.archive, 2 * most_pieces + 4 * rows, 2 * most_places + 2 * rows * CELLS)
+        if not is_roomy(self.archive, rows):
+            pieces, places = len(self.archive.cell), len(self.archive.pool)
+            self.archive = grown(self.archive, 2 * pieces + 4 * rows, 2 * places + 2 * rows * CELLS)
 
     def left_behind(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Pieces of lines with a groove: frames (k, 12), middle across, width and greatest depth (m)."""
@@ -153,7 +154,7 @@ class Setup:
         return frame, 0.5 * (low + high), high - low, depth
 
 
-_TROUBLES: Final[dict[int, Outcome]] = {
+TROUBLES: Final[dict[int, Outcome]] = {
     STEP_TOO_SMALL: "step_too_small",
     NOT_FINITE: "not_finite",
 }

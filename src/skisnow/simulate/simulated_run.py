@@ -30,6 +30,8 @@ SINKING_DEPTH: Final = 0.5
 """Depth (m) of the boots below the surface at which the sledge has sunk (Choice)."""
 SETTLED: Final = 1e-6
 """Last step (m) of Newton's method that counts as equilibrium."""
+OUTPUTS_AT_ONCE: Final = 5
+"""Outputs between which nothing is told or asked while all goes well."""
 _REACHED: Final = 1e-6
 """Run length (m) that counts as none left."""
 
@@ -60,7 +62,7 @@ def simulated_run(
     scenario
         What to simulate.
     progress
-        Is told the simulated time and the share that is done, after each output interval.
+        Is told the simulated time and the share that is done, after every five outputs at the latest.
     strength_along
         S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places. Asked
         once for each output interval, for both skis and all along them.
@@ -89,7 +91,6 @@ def simulated_run(
             f"the sledge finds no equilibrium to start from (Newton's last step was {setup.unrest:.1e} m): does its "
             "centre of mass lie between the skis, on this slope at this heading?"
         )
-    setup.compile()
     record.add()
     begin = time.perf_counter()
     try:
@@ -110,31 +111,41 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
         now = setup.time
         if now >= duration:
             return "finished"
-        next_output = (number + 1) * interval
-        until = min(next_output, duration)
         left = length - record.run_length
-        speed = setup.speed
         if left <= _REACHED:
             return "distance_reached"
-        was_near, nearing = nearing, speed * (until - now) > left
+        moments = _moments(number, interval, duration)
+        was_near, nearing = nearing, setup.speed * (moments[0] - now) > left
         if nearing:
-            until = now + max(left / speed, 1e-9)
+            moments = np.array([now + max(left / setup.speed, 1e-9)])
+        elif strength_along is not None or not _far(setup.speed, moments[-1] - now, left):
+            moments = moments[:1]
         if strength_along is not None:
             setup.snow = setup.snow._replace(shear_stress=strength * strength_along(record.run_length))
-        trouble = setup.advance(until)
-        number += until == next_output
-        record.add(replace=was_near)
+        trouble = record.advance(moments, replace=was_near)
+        number = math.floor(setup.time / interval + 1e-9)
         if record.gains_energy:
             record.drop()
             return "not_finite"
         if progress is not None:
-            progress(until, min(1.0, max(until / duration, record.run_length / length)))
+            progress(setup.time, min(1.0, max(setup.time / duration, record.run_length / length)))
         if trouble is not None:
             return trouble
-        flying = 0.0 if setup.touches else flying + until - now
+        flying = 0.0 if setup.touches else flying + record.last_interval
         ended = _ended(setup, flying)
         if ended is not None:
             return ended
+
+
+def _moments(number: int, interval: float, duration: float) -> FloatArray:
+    """The next outputs (s) after output `number`, none after the duration."""
+    times = [(number + 1 + i) * interval for i in range(OUTPUTS_AT_ONCE)]
+    return np.array([time for time in times if time <= duration] or [duration])
+
+
+def _far(speed: float, duration: float, left: float) -> bool:
+    """Whether the run cannot come to its end within a duration (s), at 10 m/s² more than its speed."""
+    return speed * duration + 5.0 * duration * duration < left
 
 
 def _ended(setup: Setup, flying: float) -> Outcome | None:

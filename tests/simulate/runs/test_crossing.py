@@ -26,9 +26,7 @@ SECONDS = 1.3
 def sledge() -> Setup:
     """On flat rigid skis, without friction, on a level."""
     ski = rigid_ski(base_height=shovel(1.2, 0.03, 1.6), running_length=1.2)
-    setup = set_up(scenario(ski=ski, hardness=0.001, unloading_ratio=10.0, speed=3.0, duration=SECONDS))
-    setup.compile()
-    return setup
+    return set_up(scenario(ski=ski, hardness=0.001, unloading_ratio=10.0, speed=3.0, duration=SECONDS))
 
 
 def turned(setup: Setup, angle: float) -> Setup:

@@ -16,7 +16,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from .compiled import PLAIN
+from .compiled import PLAIN, SUMS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
@@ -174,22 +174,18 @@ def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> N
         cells[row, TO + i] = max(cells[row, TO + i], min(high, (j + 1) * cell))
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@numba.njit(**PLAIN, fastmath=SUMS)
 def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> float:
     """Energy lost to the groove in the cells first ≤ j < last of a line (J): ½ H_V g² (1 - H_V/k_u) per area."""
-    start = lines.flag[row, WINDOW]
+    start, cells = lines.flag[row, WINDOW], lines.cells
     cell, slope = lines.value[row, CELL], 0.0 if lines.flag[row, SWEPT] == 1 else lines.value[row, SLOPE]
-    total = 0.0
-    for j in range(first, last):
-        i = np.uint64(j - start)
-        width = lines.cells[row, TO + i] - lines.cells[row, FROM + i]
-        if width > 0.0:
-            middle = 0.5 * (lines.cells[row, TO + i] + lines.cells[row, FROM + i])
-            depth = (
-                lines.cells[row, CENTRE + i] if lines.cells[row, CENTRE + i] > 0.0 else lines.cells[row, DEEPEST + i]
-            )
-            depth += slope * (middle - (j + 0.5) * cell)
-            total += width * (depth * depth + slope * slope * width * width / 12.0)
+    total, fall2 = 0.0, slope * slope / 12.0
+    for i in range(np.uint64(first - start), np.uint64(last - start)):
+        low, high, at_middle = cells[row, FROM + i], cells[row, TO + i], cells[row, CENTRE + i]
+        width = max(high - low, 0.0)
+        depth = at_middle if at_middle > 0.0 else cells[row, DEEPEST + i]
+        depth += slope * (0.5 * (high + low) - (float(start) + i + 0.5) * cell)
+        total += width * (depth * depth + fall2 * width * width)
     return 0.5 * hardness * excess / (hardness + excess) * total * lines.spacing[0]
 
 

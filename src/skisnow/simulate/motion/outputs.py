@@ -1,0 +1,89 @@
+"""From output to output in one call, until something asks for a look: each call from Python hands over all arrays anew.
+
+That costs as much as a step of the fast mode.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from .advance import GOES_ON, Memory, advance_controlled, advance_fixed
+from .archive import Archive
+from .compiled import PLAIN
+from .history import History, note
+from .lines import CELLS, TOUCHED, Lines
+from .model import Model, Snow, State, World
+from .path import surface
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+# beyond these a run may be about to end, and is looked at after each output: cosine of the lean, height of the boots
+# (m), energy of motion, height and bend over that of the start (J)
+UPRIGHT, SUNK, GAINED = 0.7, -0.2, 5.0
+
+
+@numba.njit(**PLAIN)
+def outputs_fixed(
+    model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, fast: bool, step: float,
+    moments: FloatArray, end: float, share: FloatArray, lost_before: float, held_first: float, history: History,
+    row: int,
+) -> tuple[int, int]:  # fmt: skip
+    """Take fixed steps to each of the `moments` (s) and note it from `row` on; how many were, and what it ended with.
+
+    `end`: x of the slope's end (m). The others as in `advance_fixed` and `note`.
+    """
+    for i in range(len(moments)):
+        trouble = advance_fixed(model, snow, world, lines, archive, memory, fast, step, moments[i])
+        note(model, snow, world, lines, archive, memory, share, lost_before, held_first, history, row + i)
+        if trouble != GOES_ON or not _goes_well(model, world, lines, archive, memory.state, end, history, row + i):
+            return i + 1, trouble
+    return len(moments), GOES_ON
+
+
+@numba.njit(**PLAIN)
+def outputs_controlled(
+    model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tolerance: float,
+    moments: FloatArray, end: float, share: FloatArray, lost_before: float, held_first: float, history: History,
+    row: int,
+) -> tuple[int, int]:  # fmt: skip
+    """As `outputs_fixed`, with steps whose error is controlled."""
+    for i in range(len(moments)):
+        trouble = advance_controlled(model, snow, world, lines, archive, memory, tolerance, moments[i])
+        note(model, snow, world, lines, archive, memory, share, lost_before, held_first, history, row + i)
+        if trouble != GOES_ON or not _goes_well(model, world, lines, archive, memory.state, end, history, row + i):
+            return i + 1, trouble
+    return len(moments), GOES_ON
+
+
+@numba.njit(**PLAIN)
+def _goes_well(
+    model: Model, world: World, lines: Lines, archive: Archive, state: State, end: float, history: History, row: int
+) -> bool:  # fmt: skip
+    """Whether nothing can end the run here, and the archive has room for the next output."""
+    height, gradient = surface(world, state.place[0])
+    leaning = (state.turn[2, 2] - gradient * state.turn[0, 2]) / np.sqrt(1.0 + gradient * gradient)
+    touches = 0
+    for each in range(len(lines.flag)):
+        touches |= lines.flag[each, TOUCHED]
+    gained = 0.0
+    for a in range(3):
+        gained += history.energies[row, a] - history.energies[0, a]
+    return bool(
+        touches == 1
+        and leaning > UPRIGHT
+        and state.place[2] - height > SUNK
+        and state.place[0] + model.tip < end
+        and gained < GAINED
+        and is_roomy(archive, len(lines.cells))
+    )
+
+
+@numba.njit(**PLAIN)
+def is_roomy(archive: Archive, rows: int) -> bool:
+    """Whether the archive has room for what so many rows of lines can leave from output to output."""
+    pieces, places = len(archive.cell) - archive.used[0], len(archive.pool) - archive.used[1]
+    return bool(pieces >= 2 * rows and places >= rows * CELLS)
