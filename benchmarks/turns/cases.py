@@ -49,6 +49,7 @@ DEFAULT_STEP: Final = Case("ROS2, 0.5 ms", fixed(0.5), NORMAL_REFERENCE, "15")
 CASES: Final = (
     Case("fast mode, 1 ms", fixed(1.0, method="fast"), NORMAL_REFERENCE, "40"),
     DEFAULT_STEP,
+    Case("ROS2, 1 ms", fixed(1.0), NORMAL_REFERENCE),
     Case("ROS2, error control (as it comes)", {}, NORMAL_REFERENCE),
     Case("H_V = 90 N/mm³, ROS2, 0.1 ms", HARD_SNOW | fixed(0.1), HARD_REFERENCE, "5"),
     Case("H_V = 90 N/mm³, ROS2, 0.25 ms", HARD_SNOW | fixed(0.25), HARD_REFERENCE),

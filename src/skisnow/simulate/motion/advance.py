@@ -33,7 +33,7 @@ SHORTEST_STEP: Final = 1e-7
 """Step (s) below which a run ends."""
 STEPS_PER_TANGENT: Final = 4
 """Fixed steps over which the matrix is kept: both methods are of order 2 whatever the matrix (Choice)."""
-EASY: Final = 1.0
+EASY: Final = 2.0
 """Stiffness of the contact per length of ski, times the step's square, up to which ROS2 keeps its matrix: about a ski's
 mass per length (kg/m). With longer steps on harder snow an old matrix costs centimetres (Choice)."""
 STEPS_PER_CHECK: Final = 8
