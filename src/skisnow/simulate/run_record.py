@@ -1,30 +1,30 @@
-"""What is kept of a run, output by output."""
+"""A run taken from output to output, and what is kept of it."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from .motion.advance import NOT_FINITE, STEP_TOO_SMALL
 from .motion.forces import HELD
 from .motion.history import History, longer, new_history
 from .motion.outputs import outputs_controlled, outputs_fixed
 from .motion.path import energy_in_snow
 from .run import LOST, STORED, Outcome, SkiHistory
-from .run_setup import TROUBLES, Setup
+from .run_setup import Setup
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 GAINED_SHARE, GAINED = 0.05, 10.0
 """Share of the energy turned over, and energy (J), that may seem to be gained before numbers have run away (Choice)."""
 _MECHANICAL = 3  # kinetic, potential, elastic in the skis
-
-
 _ROOM = 64
 """Moments for which a record begins with room."""
+_TROUBLES: Final[dict[int, Outcome]] = {STEP_TOO_SMALL: "step_too_small", NOT_FINITE: "not_finite"}
 
 
 @dataclass(slots=True)
@@ -63,7 +63,7 @@ class Record:
         else:
             noted, trouble = outputs_controlled(*arrays, solver.tolerance, *kept)
         self._take(int(noted), replace=replace)
-        return TROUBLES.get(int(trouble))
+        return _TROUBLES.get(int(trouble))
 
     def _make_room(self, moments: int) -> None:
         while self._count + moments > len(self._history.time):

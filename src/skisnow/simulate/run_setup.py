@@ -10,15 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..ski.beam.clamped import clamped
-from .motion.advance import (
-    NOT_FINITE,
-    STEP_TOO_SMALL,
-    Memory,
-    advance_controlled,
-    advance_fixed,
-    new_memory,
-    observe,
-)
+from .motion.advance import Memory, new_memory, observe
 from .motion.along import shares
 from .motion.archive import Archive, grown, new_archive
 from .motion.lines import CELL, CELLS, KEPT, SLOPE, TOUCHED, WINDOW, Lines, cells_of, new_lines
@@ -26,7 +18,6 @@ from .motion.model import Model, Snow, World, sledge_model
 from .motion.outputs import is_roomy
 from .motion.path import AHEAD, follow
 from .motion.settle import settle
-from .run import Outcome
 from .scenario import Plane, Scenario
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -121,17 +112,6 @@ class Setup:
         x = float(self.memory.state.place[0])
         return self.surface_height(x), self.slope_normal(x)
 
-    def advance(self, until: float) -> Outcome | None:
-        """Go on to the time `until` (s); the outcome if the steps cannot."""
-        self.keep_room()
-        solver = self.scenario.solver
-        arguments = (self.model, self.snow, self.world, self.lines, self.archive, self.memory)
-        if self.has_fixed_steps:
-            trouble = advance_fixed(*arguments, solver.method == "fast", solver.step, until)
-        else:
-            trouble = advance_controlled(*arguments, solver.tolerance, until)
-        return TROUBLES.get(int(trouble))
-
     @property
     def has_fixed_steps(self) -> bool:
         """Whether the error of the steps is not controlled."""
@@ -154,10 +134,6 @@ class Setup:
         return frame, 0.5 * (low + high), high - low, depth
 
 
-TROUBLES: Final[dict[int, Outcome]] = {
-    STEP_TOO_SMALL: "step_too_small",
-    NOT_FINITE: "not_finite",
-}
 _Piece: TypeAlias = tuple[FloatArray, float, float, float]
 
 

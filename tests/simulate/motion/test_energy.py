@@ -16,6 +16,7 @@ from skisnow.simulate.motion.lines import ANCHOR, DEPTH, EDGE, TOUCHED
 from skisnow.simulate.motion.model import PADDING, new_state
 from skisnow.simulate.motion.path import energy_in_snow, press
 from skisnow.simulate.motion.system import new_vector
+from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import Setup, set_up
 from skisnow.simulate.scenario import read_scenario
 
@@ -52,7 +53,7 @@ ELASTIC: Mapping[str, Mapping[str, object]] = {
 def elastic(request: pytest.FixtureRequest) -> Setup:
     changes = {**STILL, "snow.penetration": "elastic", **ELASTIC[request.param]}
     setup = set_up(read_scenario("carved-46m", changes=changes))
-    setup.advance(0.02)
+    Record(setup).advance(np.array([0.02]))
     return setup
 
 

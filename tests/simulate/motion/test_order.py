@@ -11,6 +11,7 @@ import numpy.typing as npt
 import pytest
 
 from skisnow.simulate.motion.model import sledge_model
+from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import Setup, set_up
 from skisnow.simulate.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulated_run
@@ -87,7 +88,7 @@ def bouncing(step: float, method: str, seconds: float) -> Setup:
     # without grip: where an edge first takes hold depends on the step
     setup.snow = setup.snow._replace(shear_stress=0.0)
     setup.memory.state.velocity[:] = 0.0, 0.0, -0.05, 0.02, 0.05, 0.0
-    setup.advance(seconds)
+    Record(setup).advance(np.array([seconds]))
     return setup
 
 

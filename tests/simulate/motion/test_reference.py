@@ -15,6 +15,7 @@ from skisnow.simulate.motion.lines import ANCHORED, CELLS, KEPT, TOUCHED, WINDOW
 from skisnow.simulate.motion.model import PADDING
 from skisnow.simulate.motion.system import factor, new_vector
 from skisnow.simulate.motion.tangent import CHANNELS
+from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import Setup, set_up
 from skisnow.simulate.scenario import read_scenario
 
@@ -29,7 +30,7 @@ COARSE: Mapping[str, object] = {"solver.fixed": True, "solver.elements": 12, "so
 def under_way(changes: Mapping[str, object], *, seconds: float = 0.03) -> Setup:
     """The built-in carved turn with changes, a few steps after its start."""
     setup = set_up(read_scenario("carved-46m", changes={**COARSE, **changes}))
-    assert setup.advance(seconds) is None
+    assert Record(setup).advance(np.array([seconds])) is None
     return setup
 
 
@@ -177,7 +178,7 @@ def test_run(name: str, tmp_path: Path) -> None:
     reference = ReferenceRun(setup)
     for _ in range(50):
         reference.step(0.5e-3)
-    setup.advance(0.025)
+    Record(setup).advance(np.array([0.025]))
     assert setup.memory.clock.counts[0] == 50
     found, known = motion_of(setup.memory.state), reference.motion
     assert np.linalg.norm(found.place - setup.scenario.start.x) > 0.1

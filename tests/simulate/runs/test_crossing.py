@@ -12,6 +12,7 @@ from skisnow.simulate.motion.advance import OF_DAMPING, OF_RELEASED, OF_SHEAR, O
 from skisnow.simulate.motion.archive import Archive, grown, leave_line
 from skisnow.simulate.motion.forces import HELD, SPRINGY
 from skisnow.simulate.motion.path import energy_in_snow
+from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import Setup, set_up
 
 from ..equilibrium.synthetic import shovel
@@ -54,8 +55,9 @@ def gone_over(setup: Setup) -> tuple[float, float]:
         return float(energy_in_snow(setup.snow, setup.lines, setup.archive))
 
     before, snow_before, work_before = stored(), in_snow(), setup.memory.clock.work.copy()
+    record = Record(setup)
     for moment in np.arange(1, round(100 * SECONDS) + 1):
-        assert setup.advance(0.01 * float(moment)) is None
+        assert record.advance(np.array([0.01 * float(moment)])) is None
     work, lost = setup.memory.clock.work - work_before, in_snow() - snow_before
     taken = lost - work[OF_SIDEWAYS] + work[OF_RELEASED] + work[OF_SHEAR] + work[OF_DAMPING]
     return lost, stored() - before + taken
