@@ -120,7 +120,7 @@ def _factor(
     return factor(model, memory.start, rows, gh * (gh + model.damping), gh * gh, memory.system)
 
 
-@numba.njit(**PLAIN)
+@numba.njit(**PLAIN, inline="always")
 def advance_fixed(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, fast: bool, step: float,
     until: float,
@@ -177,7 +177,7 @@ def _is_easy(start: Forces, lines: Lines, h: float) -> bool:
     return stiffest * h * h <= EASY
 
 
-@numba.njit(**PLAIN)
+@numba.njit(**PLAIN, inline="always")
 def advance_controlled(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tolerance: float,
     until: float,
@@ -222,7 +222,7 @@ def _on_ladder(h: float) -> float:
     return LONGEST_STEP * 2.0 ** (0.25 * np.floor(4.0 * np.log2(h / LONGEST_STEP) + 1e-6))
 
 
-@numba.njit(**PLAIN)
+@numba.njit(**PLAIN, inline="always")
 def _try_pair(model: Model, snow: Snow, world: World, lines: Lines, memory: Memory, h: float) -> float:
     """Fill `next` with the state after two steps of h/2, and return how far one step of h is off (m)."""
     if not _factor(model, lines, memory, h, GAMMA):

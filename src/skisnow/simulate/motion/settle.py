@@ -35,7 +35,8 @@ def settle(
     size = 1e9
     scale = 1.0
     for _ in range(MOST_STEPS):
-        feel(model, snow, lines, state, size > 0.0, True, start)
+        # for a constant in place of a value Numba compiles a function anew
+        feel(model, snow, lines, state, size > 0.0, size > 0.0, start)
         lines.flag[:, ABOVE] = 0  # Newton's steps are no motion: edges hold where they come to rest
         vector.rigid[:] = 0.0
         vector.bend[:] = 0.0
