@@ -12,7 +12,7 @@ import numpy.typing as npt
 from .motion.advance import NOT_FINITE, STEP_TOO_SMALL
 from .motion.forces import HELD
 from .motion.history import History, longer, new_history
-from .motion.outputs import outputs_controlled, outputs_fixed
+from .motion.outputs import advance_outputs
 from .motion.path import energy_in_snow
 from .run import LOST, STORED, Outcome, SkiHistory
 from .run_setup import Setup
@@ -56,12 +56,12 @@ class Record:
         setup, solver = self.setup, self.setup.scenario.solver
         self._make_room(len(moments))
         setup.keep_room()
-        arrays = setup.model, setup.snow, setup.world, setup.lines, setup.archive, setup.memory
-        kept = moments, setup.end, setup.shares, self._lost_before, self._held_first, self._history, self._count
-        if setup.has_fixed_steps:
-            noted, trouble = outputs_fixed(*arrays, solver.method == "fast", solver.step, *kept)
-        else:
-            noted, trouble = outputs_controlled(*arrays, solver.tolerance, *kept)
+        fixed = solver.fixed or solver.method == "fast"
+        noted, trouble = advance_outputs(
+            setup.model, setup.snow, setup.world, setup.lines, setup.archive, setup.memory, solver.method == "fast",
+            solver.step, None if fixed else solver.tolerance, moments, setup.end, setup.shares, self._lost_before,
+            self._held_first, self._history, self._count,
+        )  # fmt: skip
         self._take(int(noted), replace=replace)
         return _TROUBLES.get(int(trouble))
 

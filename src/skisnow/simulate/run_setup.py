@@ -112,11 +112,6 @@ class Setup:
         x = float(self.memory.state.place[0])
         return self.surface_height(x), self.slope_normal(x)
 
-    @property
-    def has_fixed_steps(self) -> bool:
-        """Whether the error of the steps is not controlled."""
-        return self.scenario.solver.fixed or self.scenario.solver.method == "fast"
-
     def keep_room(self) -> None:
         """Let the archive grow before it is full."""
         rows = len(self.lines.cells)

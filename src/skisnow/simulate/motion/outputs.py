@@ -27,32 +27,21 @@ UPRIGHT, SUNK, GAINED = 0.7, -0.2, 5.0
 
 
 @numba.njit(**PLAIN)
-def outputs_fixed(
+def advance_outputs(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, fast: bool, step: float,
-    moments: FloatArray, end: float, share: FloatArray, lost_before: float, held_first: float, history: History,
-    row: int,
+    tolerance: float | None, moments: FloatArray, end: float, share: FloatArray, lost_before: float,
+    held_first: float, history: History, row: int,
 ) -> tuple[int, int]:  # fmt: skip
-    """Take fixed steps to each of the `moments` (s) and note it from `row` on; how many were, and what it ended with.
+    """Go to each of the `moments` (s) and note it from `row` on; how many were, and what it ended with.
 
-    `end`: x of the slope's end (m). The others as in `advance_fixed` and `note`.
+    Steps have their error controlled by `tolerance` (m); with None they are fixed. Numba compiles what the one needs
+    and leaves the other out. `end`: x of the slope's end (m). The others as in `advance_fixed` and `note`.
     """
     for i in range(len(moments)):
-        trouble = advance_fixed(model, snow, world, lines, archive, memory, fast, step, moments[i])
-        note(model, snow, world, lines, archive, memory, share, lost_before, held_first, history, row + i)
-        if trouble != GOES_ON or not _goes_well(model, world, lines, archive, memory.state, end, history, row + i):
-            return i + 1, trouble
-    return len(moments), GOES_ON
-
-
-@numba.njit(**PLAIN)
-def outputs_controlled(
-    model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tolerance: float,
-    moments: FloatArray, end: float, share: FloatArray, lost_before: float, held_first: float, history: History,
-    row: int,
-) -> tuple[int, int]:  # fmt: skip
-    """As `outputs_fixed`, with steps whose error is controlled."""
-    for i in range(len(moments)):
-        trouble = advance_controlled(model, snow, world, lines, archive, memory, tolerance, moments[i])
+        if tolerance is None:
+            trouble = advance_fixed(model, snow, world, lines, archive, memory, fast, step, moments[i])
+        else:
+            trouble = advance_controlled(model, snow, world, lines, archive, memory, tolerance, moments[i])
         note(model, snow, world, lines, archive, memory, share, lost_before, held_first, history, row + i)
         if trouble != GOES_ON or not _goes_well(model, world, lines, archive, memory.state, end, history, row + i):
             return i + 1, trouble
