@@ -18,8 +18,11 @@ from skisnow.simulate.motion.lines import (
     ANCHORED,
     CELL,
     DEEP_ABOVE,
+    DEPTH_MARKED,
     EDGE_ABOVE,
+    EDGE_MARKED,
     KEPT,
+    MARKED,
     SLOPE,
     WINDOW,
     Lines,
@@ -28,15 +31,18 @@ from skisnow.simulate.motion.lines import (
 from skisnow.simulate.motion.model import Snow
 
 FloatArray = npt.NDArray[np.float64]
+ROUNDING = 1e-12
+"""Lift (m) that is none."""
 
 
 @dataclass
 class Cell:
-    """Deepest base extended to the cell's middle, and the part across that a base has covered (m)."""
+    """Deepest base extended to the middle of the cell, the part across that was met, deepest at the middle (m)."""
 
     deepest: float
     start: float
     end: float
+    centre: float = 0.0
 
 
 @dataclass
@@ -49,6 +55,10 @@ class Touch:
     depth: float
     fall: float
     deep: float
+
+    def base(self, y: float) -> float:
+        """Depth of the base at y, extended."""
+        return self.depth + self.fall * (y - self.edge)
 
 
 @dataclass
@@ -93,9 +103,11 @@ def lines_of(arrays: Lines) -> tuple[list[Line], list[Line]]:
         made.anchor = float(value[ANCHOR]) if flag[ANCHORED] else None
         made.above = (float(value[EDGE_ABOVE]), float(value[DEEP_ABOVE])) if flag[ABOVE] else None
         if flag[KEPT]:
-            for j, (deepest, start, end, _) in enumerate(cells_of(arrays, row).T.tolist(), int(flag[WINDOW])):
+            for j, (deepest, start, end, centre) in enumerate(cells_of(arrays, row).T.tolist(), int(flag[WINDOW])):
                 if end > start:
-                    made.cells[j] = Cell(deepest, start, end)
+                    made.cells[j] = Cell(deepest, start, end, centre)
+        if flag[MARKED]:
+            made.marked = float(value[EDGE_MARKED]), float(value[DEPTH_MARKED])
         return made
 
     left, right = (
@@ -112,16 +124,49 @@ def pressure_sums(line: Line, touch: Touch, snow: Snow) -> Sums:
     for j in near:
         inside.update((j * line.cell, (j + 1) * line.cell))
     ends = sorted(y for y in inside if touch.low <= y <= touch.high)
-    sums = Sums()
+    sums, cut = Sums(), cut_ground(line, touch)
     for a, b in itertools.pairwise(ends):
-        middle = 0.5 * (a + b)
-        cell = line.cells.get(math.floor(middle / line.cell))
-        lift = 0.0
-        if cell is not None:
-            centre = (math.floor(middle / line.cell) + 0.5) * line.cell
-            lift = max(0.0, cell.deepest - (touch.depth + touch.fall * (centre - touch.edge)))
+        j = math.floor(0.5 * (a + b) / line.cell)
+        deepest = cut[j] if j in cut else line.cells[j].deepest if j in line.cells else -math.inf
+        lift = deepest - touch.base((j + 0.5) * line.cell)
+        lift = lift if lift > ROUNDING else 0.0
         _add_piece(sums, a - touch.edge, b - touch.edge, touch, lift, snow.hardness, stiff)
     return sums
+
+
+def cut_ground(line: Line, touch: Touch) -> dict[int, float]:
+    """Ground in the cells that an edge going away from its base has cut since the snow was pressed, by number.
+
+    Extended to their middles along the base, from where it is on the mean over all that lies under the base.
+    """
+    if line.marked is None or (line.marked[0] - touch.edge) * touch.fall >= 0.0:
+        return {}
+    cut = line.marked[0] - touch.edge
+    border, end = (touch.low, touch.high) if cut > 0.0 else (touch.high, touch.low)
+    if border != touch.edge:
+        return {}
+    before = border + cut
+
+    def when_it_passed(y: float) -> float:
+        share = (y - border) / cut
+        passing = touch.base(border) + share * (line.marked[1] - touch.depth) if line.marked else 0.0
+        return max(passing, touch.base(y))
+
+    ground = {}
+    for j in range(math.floor(min(border, before) / line.cell), math.floor(max(border, before) / line.cell) + 1):
+        first, last, middle = j * line.cell, (j + 1) * line.cell, (j + 0.5) * line.cell
+        near, far, to = (min(max(y, first), last) for y in (border, before, end))
+        known = line.cells[j].deepest if j in line.cells else -math.inf
+        centre = 0.5 * (near + far)
+        here = when_it_passed(centre)
+        if first <= before <= last and (to - before) * cut >= 0.0:
+            met, new, about = abs(to - before), abs(far - near), 0.5 * (to + before)
+            there = max(known + touch.fall * (about - middle), touch.base(about))
+            here, centre = ((new * a + met * b) / (new + met) for a, b in ((here, there), (centre, about)))
+        else:
+            here = max(here, known)
+        ground[j] = here + touch.fall * (middle - centre)
+    return ground
 
 
 def _add_piece(sums: Sums, a: float, b: float, touch: Touch, lift: float, hardness: float, stiff: float) -> None:
@@ -167,20 +212,45 @@ def remember(line: Line, snow: Snow, most_cells: int) -> None:
         return
     while not line.cells and (touch.high - touch.low) / line.cell > most_cells:
         line.cell *= 2.0
-    if before is not None and (touch.edge - before[0]) * touch.fall < 0.0:
-        _sweep(line, touch, *before)
+    cut = {}
+    if before is not None:
+        line.marked, cut = before, cut_ground(line, touch)
+        line.marked = (touch.edge, touch.depth)
+        if cut:
+            _cut(line, touch, cut, *before)
+        elif (touch.edge - before[0]) * touch.fall < 0.0:
+            _sweep(line, touch, *before)
     start = touch.low
     last = math.floor(touch.high / line.cell)
+    border = touch.low if touch.fall < 0.0 else touch.high
     for j in range(math.floor(touch.low / line.cell), last + 1):
         end = touch.high if j == last else (j + 1) * line.cell
-        here = touch.depth + touch.fall * ((j + 0.5) * line.cell - touch.edge)
+        middle = (j + 0.5) * line.cell
+        here = touch.base(middle)
         cell = line.cells.setdefault(j, Cell(-math.inf, math.inf, -math.inf))
-        if here > cell.deepest:
+        if here > cell.deepest and not (cut and j == math.floor(border / line.cell)):
             cell.deepest, line.slope = here, touch.fall
         cell.start, cell.end = min(cell.start, start), max(cell.end, end)
+        if start <= middle <= end:
+            cell.centre = max(cell.centre, here)
         start = end
     line.anchor = min(max(anchor(line, touch.edge, touch.deep), touch.edge - snow.holding), touch.edge + snow.holding)
     line.above = None
+
+
+def _cut(line: Line, touch: Touch, ground: dict[int, float], edge_before: float, depth_before: float) -> None:
+    """Keep the ground that was cut."""
+    cut = edge_before - touch.edge
+    low, high = sorted((touch.edge, edge_before))
+    for j, deepest in ground.items():
+        middle = (j + 0.5) * line.cell
+        cell = line.cells.setdefault(j, Cell(-math.inf, math.inf, -math.inf))
+        cell.deepest = deepest
+        cell.start = min(cell.start, max(low, j * line.cell))
+        cell.end = max(cell.end, min(high, (j + 1) * line.cell))
+        if low <= middle <= high:
+            passing = touch.depth + (middle - touch.edge) / cut * (depth_before - touch.depth)
+            cell.centre = max(cell.centre, passing, touch.base(middle))
 
 
 def _sweep(line: Line, touch: Touch, edge_before: float, depth_before: float) -> None:
@@ -195,3 +265,5 @@ def _sweep(line: Line, touch: Touch, edge_before: float, depth_before: float) ->
         cell.deepest = max(cell.deepest, depth)
         cell.start = min(cell.start, max(low, j * line.cell))
         cell.end = max(cell.end, min(high, (j + 1) * line.cell))
+        if nearest == middle:
+            cell.centre = max(cell.centre, depth)

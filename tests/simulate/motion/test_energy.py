@@ -137,6 +137,37 @@ def test_unloading_gives_the_springy_part_back(fresh: Setup) -> None:
     assert given(power) < -100.0
 
 
+@pytest.mark.parametrize("step", [5e-6, 5e-5, 2e-4])
+@pytest.mark.parametrize(("way", "carried"), [(1.0, 0.1), (-1.0, 1.0)])
+def test_edges_that_go_aside(way: float, carried: float, step: float) -> None:
+    """By 1 mm at the same depth. Away from the base, to the left, they cut; k_u = 10 H_V.
+
+    The ground that was cut is flat, so the pressure falls from H_V d at the edge to nothing where the base has risen
+    by d H_V/k_u: a tenth of what it is on virgin snow, whatever the steps. Towards the base all ground is virgin.
+    The snow gains what it is given, sideways alone.
+    """
+    setup = set_up(
+        read_scenario("carved-46m", changes={**STILL, "sledge.edge_angle_deg": 60.0, "solver.cell_mm": 0.05})
+    )
+    out = new_forces(len(setup.model.mass), len(setup.lines.flag) // 2)
+    state, none = setup.memory.state, np.zeros_like(setup.memory.state.bend)
+    velocity = np.concatenate([state.turn.T @ [0.0, way, 0.0], np.zeros(3)])
+    moved = new_state(len(setup.model.mass))
+    moved.velocity[:] = velocity
+    forces, powers, energies = [], [], []
+    for number in range(round(1e-3 / step) + 1):
+        move(state, velocity, none, number * step, moved)
+        feel(setup.model, setup.snow, setup.lines, moved, False, True, out)
+        press(setup.snow, setup.lines, setup.archive)
+        forces.append(float(out.rigid @ np.append(state.turn[2], np.zeros(3))))
+        powers.append(given(out.power))
+        energies.append(float(out.power[SPRINGY]) + energy_in_snow(setup.snow, setup.lines, setup.archive))
+    half = len(forces) // 2
+    # the tenth of the contact that bears has three cells
+    assert forces[half:] == pytest.approx(np.full(len(forces) - half, carried * forces[0]), rel=0.04)
+    assert step * sum(powers[half + 1 :]) == pytest.approx(energies[-1] - energies[half], rel=0.02)
+
+
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_an_edge_that_holds_stores_what_it_is_given(way: float) -> None:
     """Moved across by less than its grip: the energy held grows by the work against the shear."""

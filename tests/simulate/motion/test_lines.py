@@ -188,10 +188,13 @@ def test_energy_where_an_edge_covers_or_leaves() -> None:
     lines = one_line()
     press(lines, -5e-3, 0.0, 0.0, 4e-3, 0.0)
     arguments = (lines.cells, 0, int(lines.flag[0, WINDOW]), float(lines.value[0, CELL]), float(lines.value[0, SLOPE]))
-    assert energy_at_edge(*arguments, 2e-3, 4e-3, True, H, K - H) == pytest.approx(0.5 * H * 4e-3**2, rel=1e-12)
+    assert energy_at_edge(*arguments, 2e-3, 4e-3, 1.0, True, H, K - H) == pytest.approx(0.5 * H * 4e-3**2, rel=1e-12)
     springy = 0.5 * (H * 4e-3) ** 2 / K
-    assert energy_at_edge(*arguments, -2e-3, 4e-3, False, H, K - H) == pytest.approx(springy, rel=1e-12)
-    assert energy_at_edge(*arguments, -2e-3, 4e-3, True, H, K - H) == pytest.approx(springy, rel=1e-12)
+    assert energy_at_edge(*arguments, -2e-3, 4e-3, 1.0, False, H, K - H) == pytest.approx(springy, rel=1e-12)
+    assert energy_at_edge(*arguments, -2e-3, 4e-3, 1.0, True, H, K - H) == pytest.approx(springy, rel=1e-12)
+    # an edge 0.1 mm into a cell of 1 mm that was met before cuts it from 4 to 5 mm
+    work = 0.5 * H * (1.0 - H / K) * (5e-3**2 - 4e-3**2) + 0.5 * (H * 5e-3) ** 2 / K
+    assert energy_at_edge(*arguments, -1.1e-3, 5e-3, -1.0, True, H, K - H) == pytest.approx(work, rel=1e-12)
 
 
 def groove(lines: Lines) -> dict[int, tuple[float, float, float]]:

@@ -15,7 +15,7 @@ MOST = 2.0
 
 CARVES = [(0.04, 0.2), (0.2, 0.5), (1.0, 1.0), (90.0, 10.0)]
 """H_V, S_f (N/mm³, N/mm²) that carve; 0.04 to 0.40 N/mm² were measured on slopes: the last three lie beyond."""
-SKIDS = [(0.04, 0.04), (0.2, 0.1), (1.0, 0.25)]
+SKIDS = [(0.04, 0.04), (0.2, 0.1), (1.0, 0.25), (90.0, 0.3)]
 """H_V, S_f that skid."""
 
 

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from .archive import Archive
+from .archive import Archive, set_course
 from .compiled import PLAIN
 from .equations import channel_rows, copy_state, drag_power
 from .fast import REACH, Past, fast_step, new_past
@@ -90,6 +90,7 @@ def observe(
 ) -> None:
     """Look at the snow at the state reached: forces, powers, and what the snow remembers of it."""
     state, start, clock = memory.state, memory.start, memory.clock
+    set_course(archive, state)
     if clock.counts[0] % STEPS_PER_CHECK == 0:
         lay_anew(model, snow, lines, archive, state)
     follow(model, snow, world, lines, archive, state)

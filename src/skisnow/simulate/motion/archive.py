@@ -24,8 +24,10 @@ from .lines import (
     WINDOW,
     Lines,
     energy_left,
+    ground_slope,
     open_window,
 )
+from .model import State
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 SmallArray: TypeAlias = npt.NDArray[np.float32]
@@ -36,9 +38,9 @@ BUCKET = 0.0625
 LONGEST = 0.12
 """Longest piece (m): as wide as the track of a flat ski, which a run tells piece by piece."""
 BUCKETS = 32768
-SWEEP = 0.01
-"""Cells that an edge leaves sideways grow until they reach as far (m): on ice it would leave them at
-every step (Choice)."""
+SWEEP = 0.005
+"""Cells that an edge leaves sideways grow until they reach as far (m): on ice it would leave them at every step. With
+half as much a skid on ice ends 1 cm elsewhere, with twice as much 5 cm (Choice)."""
 
 
 class Archive(NamedTuple):
@@ -47,12 +49,14 @@ class Archive(NamedTuple):
     frame: FloatArray  # (m, 12)
     cell: FloatArray  # (m,)
     slope: FloatArray  # (m,)
+    drift: FloatArray  # (m,) how far the groove goes aside for each metre ahead
     start: IntArray  # (m, 3): number of the first cell, how many, place in the pool
     pool: SmallArray  # (l, 3): deepest, covered from and to, both from the cell's middle (m)
     head: IntArray  # (BUCKETS,) newest piece of each square, -1: none
     before: IntArray  # (m,) the next older piece of its square
     used: IntArray  # (2,) pieces, places in the pool
     lost: FloatArray  # (1,) energy lost in what left the skis (J)
+    course: FloatArray  # (3, 3) in space: the sledge's place, velocity and turning now, which lead its grooves
 
 
 def new_archive(pieces: int, places: int) -> Archive:
@@ -61,12 +65,14 @@ def new_archive(pieces: int, places: int) -> Archive:
         np.zeros((pieces, 12)),
         np.zeros(pieces),
         np.zeros(pieces),
+        np.zeros(pieces),
         np.zeros((pieces, 3), np.int64),
         np.zeros((places, 3), np.float32),
         np.full(BUCKETS, -1, np.int64),
         np.zeros(pieces, np.int64),
         np.zeros(2, np.int64),
         np.zeros(1),
+        np.zeros((3, 3)),
     )
 
 
@@ -75,9 +81,10 @@ def grown(archive: Archive, pieces: int, places: int) -> Archive:
     larger = new_archive(pieces, places)
     m, places_used = (int(n) for n in archive.used)
     larger.frame[:m], larger.cell[:m], larger.slope[:m] = archive.frame[:m], archive.cell[:m], archive.slope[:m]
-    larger.start[:m], larger.before[:m] = archive.start[:m], archive.before[:m]
+    larger.drift[:m], larger.start[:m], larger.before[:m] = archive.drift[:m], archive.start[:m], archive.before[:m]
     larger.pool[:places_used] = archive.pool[:places_used]
     larger.head[:], larger.used[:], larger.lost[:] = archive.head, archive.used, archive.lost
+    larger.course[:] = archive.course
     return larger
 
 
@@ -125,14 +132,18 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
     cell = lines.value[row, CELL]
     for a in range(12):
         archive.frame[m, a] = lines.frame[row, a]
-    archive.cell[m], archive.slope[m] = cell, lines.value[row, SLOPE]
+    archive.cell[m] = cell
+    archive.slope[m] = ground_slope(lines, row)
     archive.start[m, 0], archive.start[m, 1], archive.start[m, 2] = first, last - first, place
     for j in range(first, last):
         i, p, middle = np.uint64(j - start), place + j - first, (j + 0.5) * cell
-        archive.pool[p, 0] = lines.cells[row, DEEPEST + i]
+        # what was extended to the cell's middle may be deeper than any base that came there
+        at_middle = lines.cells[row, CENTRE + i]
+        archive.pool[p, 0] = at_middle if at_middle > 0.0 else lines.cells[row, DEEPEST + i]
         archive.pool[p, 1] = lines.cells[row, FROM + i] - middle
         archive.pool[p, 2] = lines.cells[row, TO + i] - middle
     y = 0.5 * (first + last) * cell
+    archive.drift[m] = _drift(archive.course, archive.frame[m], y)
     square = _bucket(
         _square(archive.frame[m, 0] + y * archive.frame[m, 6]), _square(archive.frame[m, 1] + y * archive.frame[m, 7])
     )
@@ -140,6 +151,28 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
     archive.head[square] = m
     archive.used[0] = m + 1
     archive.used[1] = place + last - first
+
+
+@numba.njit(**PLAIN, fastmath={"contract"})
+def set_course(archive: Archive, state: State) -> None:
+    """Note how the sledge moves: which way what it leaves goes on."""
+    R, V, course = state.turn, state.velocity, archive.course
+    for a in range(3):
+        course[0, a] = state.place[a]
+        course[1, a] = R[a, 0] * V[0] + R[a, 1] * V[1] + R[a, 2] * V[2]
+        course[2, a] = R[a, 0] * V[3] + R[a, 1] * V[4] + R[a, 2] * V[5]
+
+
+@numba.njit(**PLAIN, inline="always")
+def _drift(course: FloatArray, frame: FloatArray, y: float) -> float:
+    """How far what is left at y on a line goes aside for each metre ahead; none where it moves along the line."""
+    rx, ry = frame[0] + y * frame[6] - course[0, 0], frame[1] + y * frame[7] - course[0, 1]
+    rz = frame[2] + y * frame[8] - course[0, 2]
+    vx = course[1, 0] + course[2, 1] * rz - course[2, 2] * ry
+    vy = course[1, 1] + course[2, 2] * rx - course[2, 0] * rz
+    vz = course[1, 2] + course[2, 0] * ry - course[2, 1] * rx
+    ahead, aside = vx * frame[3] + vy * frame[4] + vz * frame[5], vx * frame[6] + vy * frame[7] + vz * frame[8]
+    return ahead * aside / max(ahead * ahead, aside * aside, 1e-12)
 
 
 @numba.njit(**PLAIN)
@@ -161,7 +194,7 @@ def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hard
     y = 0.5 * (first + last) * cell
     reach = 0.5 * (last - first) * cell
     x0, y0, z0 = frame[0] + y * frame[6], frame[1] + y * frame[7], frame[2] + y * frame[8]
-    around, found = reach + 0.5 * LONGEST + 0.5 * lines.spacing[0], False
+    around, found = reach + 0.5 * LONGEST + lines.spacing[0], False
     for i in range(_square(x0 - around), _square(x0 + around) + 1):
         for j in range(_square(y0 - around), _square(y0 + around) + 1):
             piece = archive.head[_bucket(i, j)]
@@ -186,7 +219,8 @@ def _lies_on(
         return False
     half = 0.5 * archive.start[piece, 1] * archive.cell[piece]
     across = ex * other[6] + ey * other[7] + ez * other[8]
-    return abs(across - archive.start[piece, 0] * archive.cell[piece] - half) <= half + reach
+    aside = wide * abs(archive.drift[piece])
+    return abs(across - archive.start[piece, 0] * archive.cell[piece] - half) <= half + reach + aside
 
 
 @numba.njit(**PLAIN)
@@ -202,7 +236,7 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
         along = ex * other[3] + ey * other[4] + ez * other[5]
         if abs(along) > 0.5 * lines.spacing[0]:
             continue
-        y = ex * other[6] + ey * other[7] + ez * other[8]
+        y = ex * other[6] + ey * other[7] + ez * other[8] - archive.drift[piece] * along
         number = int(np.floor(y / old))
         at = number - archive.start[piece, 0]
         if at < 0 or at >= archive.start[piece, 1]:
@@ -211,7 +245,14 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
         offset = y - (number + 0.5) * old
         if offset < archive.pool[p, 1] or offset > archive.pool[p, 2]:
             continue
-        here = archive.pool[p, 0] + archive.slope[piece] * offset
+        # straight from the middle of a cell to the next one's, at a piece's end as beside it
+        first, last = archive.start[piece, 2], archive.start[piece, 2] + archive.start[piece, 1] - 1
+        near = min(p if offset > 0.0 else p - 1, last - 1)
+        slope = archive.slope[piece]
+        if last > first:
+            near = max(near, first)
+            slope = (archive.pool[near + 1, 0] - archive.pool[near, 0]) / old
+        here = archive.pool[p, 0] + slope * offset
         i = np.uint64(j - start)
         if here > max(lines.cells[row, DEEPEST + i], 0.0):
             lines.cells[row, DEEPEST + i] = lines.cells[row, CENTRE + i] = here

@@ -28,8 +28,10 @@ from .lines import (
     ABOVE,
     ANCHORED,
     CELL,
+    CELLS,
     DEEP_ABOVE,
     DEEP_NOW,
+    DEEPEST,
     DEPTH,
     EDGE,
     EDGE_ABOVE,
@@ -42,7 +44,10 @@ from .lines import (
     WINDOW,
     Lines,
     anchor_of,
+    cut_of,
     energy_at_edge,
+    ground_cut,
+    slope_cut,
 )
 from .model import PADDING, Model, Snow, State
 from .pressure import bear, sum_cells
@@ -146,11 +151,41 @@ def _press(snow: Snow, lines: Lines, count: np.uint64, look: bool, sheet: FloatA
         # a line that nothing has touched has no cells: its window lies far off
         window = flag[row, WINDOW] if flag[row, KEPT] == 1 else FAR
         cell = value[row, CELL]
-        sum_cells(sheet, i, cells, row, window, cell, per_fresh if cell == fresh else 1.0 / cell, ratio)
+        per_cell = per_fresh if cell == fresh else 1.0 / cell
+        cut = cut_of(
+            value, flag, row, edge, edge + sheet[WET_FROM + i], edge + sheet[WET_TO + i], sheet[FALLING + i]
+        )  # fmt: skip
+        if cut == 0.0:
+            sum_cells(sheet, i, cells, row, window, cell, per_cell, ratio)
+        else:
+            # the ground that the edge has cut within the step, for this look alone
+            first, last = _lay_cut(lines, sheet, i, row, window, cut, per_cell)
+            sum_cells(sheet, i, cells, row, window, cell, per_cell, ratio)
+            for j in range(first, last):
+                cells[row, DEEPEST + j] = lines.spare[j]
         # the edge holds where it first took hold, with up to its strength
         sheet[HOLD + i] = snow.shear_stress * deep * weight
         sheet[USED + i] = (anchor_of(value, flag, row, edge, deep) - edge) * per_holding
     bear(count, snow.hardness, snow.excess, sheet)
+
+
+@numba.njit(**PLAIN, fastmath={"contract"})
+def _lay_cut(
+    lines: Lines, sheet: FloatArray, i: np.uint64, row: np.uint64, window: int, cut: float, per_cell: float
+) -> tuple[np.uint64, np.uint64]:  # fmt: skip
+    """Put what the edge of line i has cut into the line's cells; which they are. What they held is in `spare`."""
+    cells, value, edge, slope = lines.cells, lines.value, sheet[EDGE_AT + i], sheet[FALLING + i]
+    depth, cell, spare = sheet[EDGE_DEEP + i], value[row, CELL], lines.spare
+    end = edge + (sheet[WET_TO + i] if cut > 0.0 else sheet[WET_FROM + i])
+    left = slope_cut(value, row, cut, depth, slope)
+    low, high = min(edge, edge + cut), max(edge, edge + cut)
+    first = np.uint64(min(max(int(np.floor(low * per_cell)) - window, 0), CELLS))
+    last = np.uint64(min(max(int(np.floor(high * per_cell)) - window + 1, 0), CELLS))
+    for j in range(first, last):
+        spare[j] = cells[row, DEEPEST + j]
+        begin = (window + np.int64(j)) * cell
+        cells[row, DEEPEST + j] = ground_cut(spare[j], begin, cell, edge, end, depth, slope, cut, left)
+    return first, last
 
 
 @numba.njit(**PLAIN, fastmath=SUMS)
@@ -335,7 +370,8 @@ def _cover_ground(snow: Snow, lines: Lines, count: np.uint64, sheet: FloatArray,
             at, moves = (wet_from, -sheet[RIGHT_MOVES + i]) if which == 0 else (wet_to, sheet[LEFT_MOVES + i])
             total += sheet[SHARE + i] * moves * energy_at_edge(
                 lines.cells, row, window, lines.value[row, CELL], lines.value[row, SLOPE], sheet[EDGE_AT + i] + at,
-                sheet[EDGE_DEEP + i] + sheet[FALLING + i] * at, moves > 0.0, snow.hardness, snow.excess,
+                sheet[EDGE_DEEP + i] + sheet[FALLING + i] * at, -1.0 if which == 0 else 1.0, moves > 0.0,
+                snow.hardness, snow.excess,
             )  # fmt: skip
     return total
 

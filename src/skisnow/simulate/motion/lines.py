@@ -5,6 +5,9 @@ base that they met. The contact is evaluated on the lines themselves, so the mem
 interpolated: nothing smears, and no rounding decides which cell is hit. Across a cell the groove is taken parallel to
 the base that meets it.
 
+An edge that goes aside leaves ground as deep as it was when it passed. Towards its base it sweeps: that ground lies
+behind it. Away from its base it cuts: that ground lies under the base, which rises from it, and carries next to none.
+
 What lines and cells leave behind goes to the archive, and comes back where a ski crosses an older track.
 """
 
@@ -25,6 +28,8 @@ NOTHING = 1e9
 """Stands for a place that nothing has touched."""
 FLAT = 1e-12
 """Fall of the depth across below which a base is level."""
+SMALL = 1e-15
+"""Width (m) that is none."""
 MARGIN = 6
 """Cells kept free on both sides of a contact."""
 
@@ -50,7 +55,7 @@ CELL, SLOPE, LOST, ANCHOR, LOW, HIGH, EDGE, DEPTH, FALL, DEEP_NOW, EDGE_ABOVE, D
 EDGE_MARKED, DEPTH_MARKED = 12, 13
 # columns of `flag`: number of the first cell, whether the cells hold anything, whether the edge holds, whether the base
 # is there, whether at the last look it was just above, whether its base was marked at the last look, whether
-# an edge has swept across it by more than a cell in a step: its ground is flat then
+# an edge has left a cell of it sideways: its ground is flat then
 WINDOW, KEPT, ANCHORED, TOUCHED, ABOVE, MARKED, SWEPT = 0, 1, 2, 3, 4, 5, 6
 CELLS = 64
 """Cells that a line keeps at a time: many more than a contact needs, few enough for the processor's cache; a multiple
@@ -73,6 +78,7 @@ class Lines(NamedTuple):
     first: IntArray  # (2,) of the ring, the line nearest the tail
     count: IntArray  # type: ignore[assignment]  # (2,) hides the tuple's own, which nothing asks for
     spacing: FloatArray  # (2,) of the lines along the path, and of fresh cells across (m)
+    spare: FloatArray  # (CELLS,) working space
 
 
 def new_lines(ring: int, *, spacing: float, cell: float) -> Lines:
@@ -86,6 +92,7 @@ def new_lines(ring: int, *, spacing: float, cell: float) -> Lines:
         np.zeros(2, np.int64),
         np.zeros(2, np.int64),
         np.array([spacing, cell]),
+        np.zeros(CELLS),
     )
 
 
@@ -133,8 +140,8 @@ def anchor_of(value: FloatArray, flag: IntArray, row: int, edge: float, deep: fl
 
 
 @numba.njit(**PLAIN, fastmath={"contract"})
-def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int) -> None:
-    """Remember the base that touches a line now; its cells must reach as far."""
+def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int, known: int) -> None:
+    """Remember the base that touches a line now; its cells must reach as far. That of place `known` is left."""
     low, high, edge = value[row, LOW], value[row, HIGH], value[row, EDGE]
     depth, slope, cell = value[row, DEPTH], value[row, FALL], value[row, CELL]
     per_cell = 1.0 / cell
@@ -145,7 +152,7 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int
         number = float(window) + i
         a, b, middle = max(low, number * cell), min(high, (number + 1.0) * cell), (number + 0.5) * cell
         here = depth + slope * (middle - edge)
-        marked = here if b >= a else -NOTHING
+        marked = here if b >= a and int(i) != known else -NOTHING
         deeper |= marked > cells[row, DEEPEST + i]
         cells[row, DEEPEST + i] = max(cells[row, DEEPEST + i], marked)
         cells[row, FROM + i] = min(cells[row, FROM + i], a if b >= a else NOTHING)
@@ -156,12 +163,17 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int
 
 
 @numba.njit(**PLAIN, fastmath={"contract"})
-def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> None:
-    """Remember the ground that the edge left sideways since it was marked last: as deep as the edge that passed."""
+def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> bool:
+    """Remember the ground that the edge left sideways since it was marked last: as deep as the edge that passed.
+
+    Whether it left a cell.
+    """
+    swept = False
     edge, before, depth, slope = value[row, EDGE], value[row, EDGE_MARKED], value[row, DEPTH], value[row, FALL]
     cell = value[row, CELL]
     rise = (depth - value[row, DEPTH_MARKED]) / (edge - before)
     low, high = min(edge, before), max(edge, before)
+    now = int(np.floor(edge / cell))
     for j in range(int(np.floor(low / cell)), int(np.floor(high / cell)) + 1):
         i = np.uint64(j - window)
         middle = (j + 0.5) * cell
@@ -172,13 +184,87 @@ def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> N
         cells[row, DEEPEST + i] = max(cells[row, DEEPEST + i], here)
         cells[row, FROM + i] = min(cells[row, FROM + i], max(low, j * cell))
         cells[row, TO + i] = max(cells[row, TO + i], min(high, (j + 1) * cell))
+        swept = swept or (j != now and cells[row, CENTRE + i] > 0.0)
+    return swept
+
+
+@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+def cut_of(
+    value: FloatArray, flag: IntArray, row: int, edge: float, low: float, high: float, slope: float
+) -> float:  # fmt: skip
+    """Width (m) that an edge which goes away from its base has cut since it was marked: > 0 to its left; or none.
+
+    `low` and `high`: where the wet base begins and ends; of a level base both edges may be down, and none cuts.
+    """
+    cut = value[row, EDGE_MARKED] - edge
+    ploughs = flag[row, MARKED] == 1 and cut * slope < 0.0
+    return cut if ploughs and (low if cut > 0.0 else high) == edge else 0.0
+
+
+@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+def slope_cut(value: FloatArray, row: int, cut: float, depth: float, slope: float) -> float:
+    """Slope of the ground that the edge has cut: as deep as the edge when it passed, or as the base there now."""
+    left = (value[row, DEPTH_MARKED] - depth) / cut
+    return left if (left - slope) * cut > 0.0 else slope
+
+
+@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+def ground_cut(
+    known: float, first: float, cell: float, edge: float, end: float, depth: float, slope: float, cut: float,
+    left: float,
+) -> float:  # fmt: skip
+    """Ground of a cell that was cut, in part perhaps, extended to the cell's middle along the base (m).
+
+    The cell begins at `first` and had the ground `known`. The wet base goes from the edge, which is `depth` deep, to
+    `end`. What counts is the mean of the ground over all that lies under the base, at the middle of that.
+    """
+    after, before, middle = first + cell, edge + cut, first + 0.5 * cell
+    if cut > 0.0:
+        new_from, new_to, met_from, met_to = max(edge, first), min(before, after), max(before, first), min(end, after)
+    else:
+        new_from, new_to, met_from, met_to = max(before, first), min(edge, after), max(end, first), min(before, after)
+    new, centre = new_to - new_from, 0.5 * (new_to + new_from)
+    ground = depth + left * (centre - edge)
+    if met_from <= before <= met_to:
+        # what lay under the base before: its ground, or the base if that is deeper now
+        met, about = met_to - met_from, 0.5 * (met_to + met_from)
+        there = max(known + slope * (about - middle), depth + slope * (about - edge))
+        share = met / max(met + new, SMALL)
+        ground, centre = ground + share * (there - ground), centre + share * (about - centre)
+    else:
+        ground = max(ground, known)
+    return ground + slope * (middle - centre)
+
+
+@numba.njit(**PLAIN, fastmath={"contract"})
+def mark_cut(cells: FloatArray, value: FloatArray, row: int, window: int, cut: float) -> int:
+    """Remember the ground that the edge has cut, as deep as the edge when it passed; the place of the edge's cell."""
+    edge, depth, slope, cell = value[row, EDGE], value[row, DEPTH], value[row, FALL], value[row, CELL]
+    end = value[row, HIGH] if cut > 0.0 else value[row, LOW]
+    left, per_cell = slope_cut(value, row, cut, depth, slope), 1.0 / cell
+    low, high = min(edge, edge + cut), max(edge, edge + cut)
+    for j in range(int(np.floor(low * per_cell)), int(np.floor(high * per_cell)) + 1):
+        i, first, middle = np.uint64(j - window), j * cell, (j + 0.5) * cell
+        known = cells[row, DEEPEST + i]
+        cells[row, DEEPEST + i] = ground_cut(known, first, cell, edge, end, depth, slope, cut, left)
+        cells[row, FROM + i] = min(cells[row, FROM + i], max(low, first))
+        cells[row, TO + i] = max(cells[row, TO + i], min(high, first + cell))
+        if low <= middle <= high:
+            cells[row, CENTRE + i] = max(cells[row, CENTRE + i], depth + left * (middle - edge))
+    return int(np.floor(edge * per_cell)) - window
+
+
+@numba.njit(**PLAIN, inline="always")
+def ground_slope(lines: Lines, row: int) -> float:
+    """Slope of the ground across a line's cells: that of the deepest base, but flat where its edge left sideways."""
+    return 0.0 if lines.flag[row, SWEPT] == 1 else lines.value[row, SLOPE]
 
 
 @numba.njit(**PLAIN, fastmath=SUMS)
 def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> float:
     """Energy lost to the groove in the cells first ≤ j < last of a line (J): ½ H_V g² (1 - H_V/k_u) per area."""
     start, cells = lines.flag[row, WINDOW], lines.cells
-    cell, slope = lines.value[row, CELL], 0.0 if lines.flag[row, SWEPT] == 1 else lines.value[row, SLOPE]
+    cell, slope = lines.value[row, CELL], ground_slope(lines, row)
     total, fall2 = 0.0, slope * slope / 12.0
     for i in range(np.uint64(first - start), np.uint64(last - start)):
         low, high, at_middle = cells[row, FROM + i], cells[row, TO + i], cells[row, CENTRE + i]
@@ -191,20 +277,30 @@ def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, 
 
 @numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
 def energy_at_edge(
-    cells: FloatArray, row: int, start: int, cell: float, slope: float, y: float, depth: float, covers: bool,
-    hardness: float, excess: float,
+    cells: FloatArray, row: int, start: int, cell: float, slope: float, y: float, depth: float, ahead: float,
+    covers: bool, hardness: float, excess: float,
 ) -> float:  # fmt: skip
     """Energy per area (J/m²) that the snow gains where an edge covers new ground, or gives back where it leaves."""
-    j = int(np.floor(y / cell))
-    at = j - start
     stiff = hardness + excess
-    i = np.uint64(at)
     before, deepest = 0.0, depth
+    number = int(np.floor(y / cell))
+    at = number - start
     if 0 <= at < CELLS:
-        known = cells[row, DEEPEST + i] + slope * (y - (j + 0.5) * cell)
-        deepest = max(known, depth)
-        if cells[row, FROM + i] <= y <= cells[row, TO + i]:
+        i = np.uint64(at)
+        low, high = cells[row, FROM + i], cells[row, TO + i]
+        known = cells[row, DEEPEST + i] + slope * (y - (number + 0.5) * cell)
+        if not covers:
+            deepest = max(known, depth)
+        elif low <= y <= high:
             before = known
+            if high >= (number + 1) * cell if ahead > 0.0 else low <= number * cell:
+                # met before as far as it goes, so what is known of it may be the edge that is here now: the ground of
+                # half a cell on
+                at = int(np.floor((y + 0.5 * ahead * cell) / cell)) - start
+                on = np.uint64(at)
+                met = 0 <= at < CELLS and cells[row, TO + on] > cells[row, FROM + on]
+                before = cells[row, CENTRE + on] if met else known
+            deepest = max(before, depth)
     pressed = max(0.0, hardness * depth - excess * (deepest - depth))
     gain = 0.5 * pressed * pressed / stiff
     if covers:

@@ -34,8 +34,10 @@ from .lines import (
     Lines,
     anchor_of,
     begin_line,
+    cut_of,
     energy_left,
     mark_cells,
+    mark_cut,
     mark_swept,
 )
 from .model import Model, Snow, State, World
@@ -52,6 +54,8 @@ NEWTON_STEPS: Final = 3
 MOST_TURN: Final = 0.3
 """Angle (rad) between a line's direction ahead and the ski beyond which the lines are laid anew (Choice)."""
 
+FURTHER: Final = 1.5
+"""How much farther than in this step an edge may go aside in the next (Choice)."""
 MOST_UNEVEN: Final = 0.25
 """Share of their spacing by which the lines may lie nearer or farther from each other before they are laid anew
 (Choice)."""
@@ -215,16 +219,22 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
             cell, start = value[row, CELL], flag[row, WINDOW]
             edge, low, high = value[row, EDGE], value[row, LOW], value[row, HIGH]
             swept = flag[row, MARKED] == 1 and (edge - value[row, EDGE_MARKED]) * value[row, FALL] < 0.0
-            if swept:
-                low, high = min(low, value[row, EDGE_MARKED]), max(high, value[row, EDGE_MARKED])
+            cut = cut_of(value, flag, row, edge, low, high, value[row, FALL])
+            if swept or cut != 0.0:
+                before = value[row, EDGE_MARKED]
+                # where it was, and where it may be after the next step: what lies there must be known then
+                further = FURTHER * (edge - before) if edge in (low, high) else 0.0
+                low, high = min(low, low + further, before), max(high, high + further, before)
             reach = MARGIN * cell
             if flag[row, KEPT] == 0 or low - reach < start * cell or high + reach >= (start + CELLS) * cell:
                 make_room(archive, lines, row, low, high, snow.hardness, snow.excess)
+            known = -1
             if swept:
-                if high - low > value[row, HIGH] - value[row, LOW] + cell:
+                if mark_swept(cells, value, row, flag[row, WINDOW]):
                     flag[row, SWEPT] = 1
-                mark_swept(cells, value, row, flag[row, WINDOW])
-            mark_cells(cells, value, row, flag[row, WINDOW])
+            elif cut != 0.0:
+                known = mark_cut(cells, value, row, flag[row, WINDOW], cut)
+            mark_cells(cells, value, row, flag[row, WINDOW], known)
             value[row, EDGE_MARKED], value[row, DEPTH_MARKED], flag[row, MARKED] = edge, value[row, DEPTH], 1
             anchor = anchor_of(value, flag, row, edge, value[row, DEEP_NOW])
             value[row, ANCHOR] = max(min(anchor, edge + snow.holding), edge - snow.holding)

@@ -11,7 +11,7 @@ takes within a step virgin until then, its force would be off by the step's leng
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numba
 import numpy as np
@@ -28,6 +28,9 @@ from .compiled import PLAIN, SUMS
 from .lines import CELLS, DEEPEST
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+ROUNDING: Final = 1e-12
+"""Lift (m) that is none: where the base is as deep as the ground, rounding would choose between two stiffnesses."""
 
 
 @numba.njit(**PLAIN, fastmath=SUMS, inline="always")
@@ -52,7 +55,7 @@ def sum_cells(
         lift = cells[row, DEEPEST + j] - (surface + step * j)
         a = max(low, middle - half)
         b = max(a, min(high, middle + half))
-        b = b if lift > 0.0 else a
+        b = b if lift > ROUNDING else a
         zero = min(max(waterline + per_lift * lift, a), b)
         u, v = zero if to_right else a, b if to_right else zero
         width, covered, both, ends = v - u, b - a, v + u, b + a
