@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import fsolve
 
-from skisnow import Run, Scenario, read_ski, rest, simulated_run
+from skisnow import Run, Scenario, read_scenario, read_ski, rest, simulated_run
 from skisnow.simulate.scenario.scenario import Solver
 
 from ..equilibrium.synthetic import snow
@@ -24,6 +24,15 @@ def at_start(given: Scenario) -> Run:
     run = simulated_run(replace(given, stop=replace(given.stop, duration=INSTANT)))
     assert run.time[0] == 0.0
     return run
+
+
+@pytest.mark.parametrize("edge_angle", [60.0, 70.0])
+def test_steep_edges_that_hold_strongly(edge_angle: float) -> None:
+    """Newton's method takes a thousand steps, and finds the place: nothing moves faster than gravity lets it."""
+    changes = {"sledge.edge_angle_deg": edge_angle, "snow.S_f_N_per_mm2": 2.0, "run.duration_s": INSTANT}
+    run = simulated_run(read_scenario("carved-46m", changes=changes))
+    assert run.outcome == "finished"
+    assert abs(float(run.velocity[-1, 2] - run.velocity[0, 2])) < GRAVITY * INSTANT
 
 
 @pytest.mark.parametrize("hardness", [0.002, 0.02, 0.2])
