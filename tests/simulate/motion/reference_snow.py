@@ -143,7 +143,7 @@ def cut_ground(line: Line, touch: Touch) -> dict[int, float]:
         return {}
     cut = line.marked[0] - touch.edge
     border, end = (touch.low, touch.high) if cut > 0.0 else (touch.high, touch.low)
-    if border != touch.edge:
+    if abs(border - touch.edge) > 1e-12:
         return {}
     before = border + cut
 
@@ -214,7 +214,8 @@ def remember(line: Line, snow: Snow, most_cells: int) -> None:
         line.cell *= 2.0
     cut = {}
     if before is not None:
-        line.marked, cut = before, cut_ground(line, touch)
+        line.marked = before
+        cut = cut_ground(line, touch)
         line.marked = (touch.edge, touch.depth)
         if cut:
             _cut(line, touch, cut, *before)
