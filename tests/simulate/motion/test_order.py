@@ -116,9 +116,10 @@ def test_bouncing_on_elastic_snow(method: str, order: float) -> None:
 
 @pytest.mark.parametrize(("edge_angle", "most"), [(45.0, 0.05e-3), (60.0, 0.5e-3)])
 def test_carve_in_hypoplastic_snow(edge_angle: float, most: float) -> None:
-    """Distance run after two seconds against steps of 1/32 ms: errors fall at least as with order 2.
+    """Distance run after two seconds against steps of 1/32 ms: from 1 to 1/2 ms at least as with order 2.
 
-    Edges rise from the ground they cover; at 60° the middle of the ski cuts by 0.1 m/s into its groove's wall.
+    Edges rise from the ground they cover; at 60° the middle of the ski cuts by 0.1 m/s into its groove's wall. With
+    shorter steps no order shows: lines and cells come and go.
     """
 
     def run_length(step_ms: float) -> float:
@@ -127,9 +128,9 @@ def test_carve_in_hypoplastic_snow(edge_angle: float, most: float) -> None:
         return simulated_run(read_scenario("carved-46m", changes=changes)).run_length
 
     exact = run_length(0.03125)
-    coarse, fine = abs(run_length(1.0) - exact), abs(run_length(0.5) - exact)
+    coarse, fine, finest = (abs(run_length(h) - exact) for h in (1.0, 0.5, 0.125))
     assert math.log2(coarse / fine) > 1.8
-    assert fine < most
+    assert max(fine, finest) < most
 
 
 def test_stiff_modes_are_damped_away() -> None:
