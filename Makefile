@@ -42,8 +42,9 @@ demo: $(VENV)/.skisnow
 	@echo
 	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser."
 
+# the same examples every time; test-all seeks others
 test: $(VENV)/.skisnow-test
-	$(BIN)/python -m pytest -n 2 -q
+	$(BIN)/python -m pytest -n 2 -q --hypothesis-profile=ci
 
 test-all: $(VENV)/.skisnow-test
 	$(BIN)/python -m pytest -n 2 -q -m 'slow or not slow'

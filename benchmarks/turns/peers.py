@@ -1,4 +1,7 @@
-"""Flexible skis in MuJoCo and Exudyn: speed with the error of their step beside it, once their frequencies are ours."""
+"""Flexible skis without snow, in MuJoCo, in Exudyn and here: speed with the error of the step beside it.
+
+The peers' skis must have the frequencies of ours.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +20,8 @@ import numpy as np
 from skisnow.ski import Ski, read_ski
 
 from ..timing import timed
+from . import own_flight
+from .cases import SCENARIO
 from .clamped_modes import first_frequencies
 
 SKI: Final = "giant-slalom"
@@ -26,6 +31,7 @@ FREQUENCY_AGREES: Final = 0.03
 """Share of our clamped frequency within which a peer's must lie (Choice: 20 segments are within 0.5 %)."""
 SWING_S: Final = 0.2
 """Time after which ends are compared: three swings of the ski."""
+OWN_STEP_MS: Final = 0.5
 MUJOCO_STEPS_MS: Final = (0.2, 0.5)
 EXUDYN_STEP_MS: Final = 1.0
 
@@ -45,7 +51,7 @@ class Peer:
     tip_off_m
         How far a tip is from where a tenth of the step puts it after `SWING_S` (m).
     frequencies
-        First clamped ones over ours.
+        First clamped ones over ours; of our own none.
     absent
         Why it was not run; empty: it was.
     """
@@ -59,12 +65,27 @@ class Peer:
 
 
 def peers(*, duration_s: float = 1.0, repeats: int = 5) -> Iterator[Peer]:
-    """Every peer that is installed; the others with the reason why they are left out."""
+    """Our own sledge in flight, and every peer that is installed; the others with the reason why they are left out."""
+    yield own(duration_s=duration_s, repeats=repeats)
     for program, measured in (("mujoco", mujoco_flight), ("exudyn", exudyn_swing)):
         if find_spec(program) is None:
             yield Peer(program, absent=f"{program} is not installed: pip install 'skisnow[peers]'")
         else:
             yield from measured(read_ski(SKI), duration_s=duration_s, repeats=repeats)
+
+
+def own(*, duration_s: float, repeats: int) -> Peer:
+    """Our sledge, which no snow bears."""
+    ends = []
+    for step_ms in (OWN_STEP_MS, OWN_STEP_MS / FINER):
+        record = own_flight.released(step_ms)
+        own_flight.flown(record, SWING_S)
+        ends.append(own_flight.tips(record))
+    starts = [own_flight.released(OWN_STEP_MS) for _ in range(repeats)]
+    seconds = min(timed(partial(own_flight.flown, record, duration_s)) for record in starts)
+    off = float(np.linalg.norm(ends[0] - ends[1], axis=1).max())
+    what = f"skisnow, the sledge of {SCENARIO} in free flight, ROS2, {OWN_STEP_MS:g} ms"
+    return Peer(what, 1e3 * OWN_STEP_MS * seconds / duration_s, duration_s / seconds, off)
 
 
 def mujoco_flight(ski: Ski, *, duration_s: float, repeats: int) -> Iterator[Peer]:

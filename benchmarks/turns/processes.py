@@ -16,7 +16,7 @@ import numpy as np
 from skisnow.simulate.batch import available_cores, run_batch
 
 from ..timing import timed
-from .cases import DEFAULT_STEP, SCENARIO, Runs
+from .cases import SCENARIO, Case, Runs
 from .one_process import peak_MB
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,6 +30,8 @@ class Batch:
 
     Attributes
     ----------
+    case
+        What was run.
     runs, workers
         How many.
     per_s, per_s_running
@@ -44,6 +46,7 @@ class Batch:
         Largest memory of a worker.
     """
 
+    case: Case
     runs: int
     workers: int
     per_s: float
@@ -59,10 +62,11 @@ class Turn:
     """From a start speed (m/s) to a row; what each worker is sent."""
 
     duration_s: float
+    changes: dict[str, object]
 
     def __call__(self, speed: float) -> dict[str, Any]:
         begin = time.time()
-        run = Runs(self.duration_s).of({**DEFAULT_STEP.changes, "start.speed_m_per_s": speed})
+        run = Runs(self.duration_s).of({**self.changes, "start.speed_m_per_s": speed})
         return {
             "outcome": run.outcome,
             "end": run.place[-1].tolist(),
@@ -73,10 +77,10 @@ class Turn:
         }
 
 
-def many(duration_s: float, *, count: int, workers: int | None = None) -> Batch:
-    """The default method at a fixed 0.5 ms, each run from another speed."""
+def many(duration_s: float, case: Case, *, count: int, workers: int | None = None) -> Batch:
+    """Many runs of a case, each from another speed."""
     speeds = [float(v) for v in np.linspace(*SPEEDS_M_PER_S, count)]
-    turn, wanted = Turn(duration_s), workers or available_cores()
+    turn, wanted = Turn(duration_s, dict(case.changes)), workers or available_cores()
     alone = min((turn(speeds[0]) for _ in range(3)), key=lambda row: row["end_time"] - row["begin"])
     start = time.perf_counter()
     rows = run_batch(speeds, turn, workers=wanted)
@@ -85,12 +89,13 @@ def many(duration_s: float, *, count: int, workers: int | None = None) -> Batch:
     running = max(row["end_time"] for row in rows) - min(row["begin"] for row in rows)
     ends = [(speeds[i], np.array(rows[i]["end"])) for i in (0, -1)]
     return Batch(
+        case,
         count,
         wanted,
         simulated / seconds,
         simulated / running,
         alone["simulated_s"] / (alone["end_time"] - alone["begin"]),
-        max(_end_off(duration_s, speed, end) for speed, end in ends),
+        max(_end_off(duration_s, case, speed, end) for speed, end in ends),
         all(turn(speed)["end"] == end.tolist() for speed, end in ends),
         max(row["peak_MB"] for row in rows),
     )
@@ -127,6 +132,6 @@ def _environment(cache: Path) -> dict[str, str]:
     return {**os.environ, "NUMBA_CACHE_DIR": str(cache)}
 
 
-def _end_off(duration_s: float, speed: float, end: np.ndarray[Any, Any]) -> float:
-    reference = Runs(duration_s).of({**DEFAULT_STEP.reference, "start.speed_m_per_s": speed})
+def _end_off(duration_s: float, case: Case, speed: float, end: np.ndarray[Any, Any]) -> float:
+    reference = Runs(duration_s).of({**case.reference, "start.speed_m_per_s": speed})
     return float(np.linalg.norm(reference.place[-1] - end))

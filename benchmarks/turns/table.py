@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -13,7 +13,7 @@ from skisnow.errors import SkisnowError
 from skisnow.simulate.batch import available_cores
 
 from . import peers, processes, speed
-from .cases import DEFAULT_STEP, HARD_SNOW, SCENARIO, Runs, fixed
+from .cases import DEFAULT_STEP, FAST, HARD_SNOW, LONG_STEP, SCENARIO, Runs, fixed
 from .speed import Speed, told
 
 CACHE_VARIABLE = "NUMBA_CACHE_DIR"
@@ -40,8 +40,11 @@ def tables(effort: Effort, cache: Path) -> Iterator[str]:
     found = speed.speeds(runs, repeats=effort.repeats)
     yield from speed_table(found)
     yield from finer_tables(runs)
-    told(f"{effort.batch} runs")
-    yield from batch_table(processes.many(effort.duration_s, count=effort.batch))
+    batches = []
+    for case in (DEFAULT_STEP, LONG_STEP, FAST):
+        told(f"{effort.batch} runs, {case.name}")
+        batches.append(processes.many(effort.duration_s, case, count=effort.batch))
+    yield from batch_table(batches)
     told("starts")
     yield from start_table(cold, cache, effort)
     told("peers")
@@ -86,15 +89,21 @@ def finer_tables(runs: Runs) -> Iterator[str]:
             yield _row("", name, f"not run: {error}", "")
 
 
-def batch_table(batch: processes.Batch) -> Iterator[str]:
-    """Many runs on all cores."""
-    yield from _head(f"{batch.runs} runs, ROS2 0.5 ms, {batch.workers} processes", "measured", "to reach")
-    yield _row("simulated seconds per second, once they run", f"{batch.per_s_running:.1f}", "28 on 2 cores")
-    yield _row("simulated seconds per second, start of the processes included", f"{batch.per_s:.1f}", "")
-    yield _row("the same over one run alone", f"{batch.per_s_running / batch.alone_per_s:.2f}", "")
-    yield _row("end off, the worse of first and last run (mm)", f"{1e3 * batch.end_off_m:.2f}", "")
-    yield _row("last digit as in one process", "the same" if batch.same_bits else "**another**", "the same")
-    yield _row("largest process (MB)", f"{batch.worker_MB:.0f}", "")
+def batch_table(batches: Sequence[processes.Batch]) -> Iterator[str]:
+    """Many runs on all cores, of several cases."""
+    first = batches[0]
+    goal = f"to reach ({DEFAULT_STEP.name})"
+    yield from _head(f"{first.runs} runs, {first.workers} processes", *(each.case.name for each in batches), goal)
+
+    def row(name: str, value: Callable[[processes.Batch], str], goal: str = "") -> str:
+        return _row(name, *(value(each) for each in batches), goal)
+
+    yield row("simulated seconds per second, once they run", lambda b: f"{b.per_s_running:.1f}", "28 on 2 cores")
+    yield row("simulated seconds per second, start of the processes included", lambda b: f"{b.per_s:.1f}")
+    yield row("the same over one run alone", lambda b: f"{b.per_s_running / b.alone_per_s:.2f}")
+    yield row("end off, the worse of first and last run (mm)", lambda b: f"{1e3 * b.end_off_m:.2f}")
+    yield row("last digit as in one process", lambda b: "the same" if b.same_bits else "**another**", "the same")
+    yield row("largest process (MB)", lambda b: f"{b.worker_MB:.0f}")
 
 
 def start_table(cold: dict[str, float], cache: Path, effort: Effort) -> Iterator[str]:
@@ -106,16 +115,17 @@ def start_table(cold: dict[str, float], cache: Path, effort: Effort) -> Iterator
     yield _row("the same with the compiled code kept (s)", f"{warm['ready_s']:.2f}", "1")
     yield _row("`skisnow simulate` of 0.01 s, compiled code kept (s)", f"{start:.2f}", "1")
     yield _row("of that: Python with NumPy and Numba (s)", f"{bare:.2f}", "")
-    yield _row("memory of one run that compiles first (MB)", f"{cold['one_run_MB']:.0f}", "400")
+    yield _row("memory of a process that compiles (MB)", f"{cold['compiling_MB']:.0f}", "400")
+    yield _row("memory of the first run of all (MB)", f"{cold['one_run_MB']:.0f}", "400")
     yield _row("memory of one run, compiled code kept (MB)", f"{warm['one_run_MB']:.0f}", "400")
-    yield _row("arrays of one run at their most (MB)", f"{warm['arrays_of_a_run_MB']:.1f}", "5")
+    yield _row("arrays of one run at their most (MB)", f"{warm['arrays_of_a_run_MB']:.1f}", "")
     yield _row("growth of the process with each further run (MB)", f"{warm['growth_per_run_MB']:.2f}", "5")
 
 
 def peer_table(found: Sequence[peers.Peer], base: Speed) -> Iterator[str]:
-    """Peers beside our default step, which has snow."""
+    """What flexible skis cost without snow, beside our default step, which has snow."""
     yield from _head(
-        "peers, no snow", "times real time", "µs per step", "tip off (mm)", "frequencies over ours", "ours"
+        "no snow", "times real time", "µs per step", "tip off (mm)", "frequencies over ours", "our turn, with snow"
     )
     for each in found:
         if each.absent:
@@ -128,7 +138,7 @@ def peer_table(found: Sequence[peers.Peer], base: Speed) -> Iterator[str]:
 
 
 def print_tables(effort: Effort) -> None:
-    """Measure with compiled code of this very source: Numba's cache does not see that a function called has changed.
+    """Measure with compiled code made for it, so that the time of compiling is one of the numbers.
 
     Call it before anything that Numba compiles is imported.
     """

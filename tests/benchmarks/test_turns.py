@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.turns import clamped_modes, one_process, peers, processes, speed, table
+from benchmarks.turns import clamped_modes, one_process, own_flight, peers, processes, speed, table
 from benchmarks.turns.cases import DEFAULT_STEP, Case, Runs, fixed
 
 from skisnow.ski import read_ski
@@ -62,10 +62,13 @@ def test_finer_in_space() -> None:
 
 
 def test_many_runs_have_the_bits_of_one() -> None:
-    batch = processes.many(SECONDS, count=2, workers=2)
+    batch = processes.many(SECONDS, DEFAULT_STEP, count=2, workers=2)
     assert batch.same_bits
     assert 0.0 < batch.end_off_m < 0.01
     assert batch.per_s < batch.per_s_running
+    lines = list(table.batch_table([batch, replace(batch, same_bits=False)]))
+    assert len({line.count("|") for line in lines if line}) == 1
+    assert any("**another**" in line for line in lines)
 
 
 def test_arrays_of_a_run_are_below_5_MB() -> None:
@@ -95,9 +98,28 @@ def test_first_clamped_frequency_of_a_uniform_beam(ski: Ski) -> None:
 
 def test_a_peer_that_is_absent_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peers, "find_spec", lambda _: None)
-    assert [each.absent for each in peers.peers()] == [
+    own, *others = peers.peers(duration_s=SECONDS, repeats=1)
+    assert not own.absent
+    assert [each.absent for each in others] == [
         f"{program} is not installed: pip install 'skisnow[peers]'" for program in ("mujoco", "exudyn")
     ]
+
+
+def test_our_sledge_flies() -> None:
+    """In 0.2 s it falls as a stone, but for what skis and air do; a sledge that is not lifted is refused."""
+    record = own_flight.released(0.5)
+    state = record.setup.memory.state
+    height, tips, rising = state.place[2], own_flight.tips(record), state.turn[2] @ state.velocity[:3]
+    own_flight.flown(record, 0.2)
+    fallen = 0.5 * 0.2**2 * -record.setup.world.gravity[2] - 0.2 * rising
+    assert height - state.place[2] == pytest.approx(fallen, rel=0.01)
+    assert tips[:, 2] - own_flight.tips(record)[:, 2] == pytest.approx(fallen, abs=0.05)  # they unbend by a centimetre
+    found = peers.own(duration_s=SECONDS, repeats=1)
+    assert 0.0 < found.tip_off_m < 0.005
+    on_snow = own_flight.released(0.5)
+    on_snow.setup.memory.state.place[2] -= own_flight.LIFTED_M
+    with pytest.raises(AssertionError, match="touches snow"):
+        own_flight.flown(on_snow, 0.002)
 
 
 @pytest.mark.skipif(importlib.util.find_spec("mujoco") is None, reason="MuJoCo is not installed: skisnow[peers]")

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from scipy.interpolate import PchipInterpolator
 
 from skisnow.errors import ParameterError
 from skisnow.ski.station_table import StationTable, evenly_spread
@@ -25,6 +26,18 @@ def test_values_stay_between_their_neighbours(values: np.ndarray, place: float) 
             low = high = values[-1]
     # the rounding of the cubic, and of the division that finds the neighbours
     assert low * (1 - 1e-9) - 1e-9 <= value <= high * (1 + 1e-9) + 1e-9
+
+
+@given(
+    st.lists(st.tuples(st.integers(1, 9), st.integers(-5, 5)), min_size=2, max_size=8),
+    arrays(float, 5, elements=st.floats(0.0, 1.0)),
+)
+def test_cubics_are_those_of_scipy(points: list[tuple[int, int]], places: np.ndarray) -> None:
+    """Steps of one to nine apart, values that rise, fall and stay."""
+    x = np.cumsum([step for step, _ in points]) / 10.0
+    y = np.array([value for _, value in points], float)
+    at = x[0] + places * (x[-1] - x[0])
+    assert StationTable(x[::-1], y[::-1]).at(at) == pytest.approx(PchipInterpolator(x, y)(at), rel=1e-12, abs=1e-13)
 
 
 def test_a_straight_line_is_kept() -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..ski.beam.clamped import clamped
+from .compilation import require_compiled
 from .motion.advance import Memory, new_memory, observe
 from .motion.along import shares
 from .motion.archive import Archive, grown, new_archive
@@ -167,6 +168,19 @@ def _under_skis(lines: Lines) -> list[_Piece]:
 
 def set_up(scenario: Scenario) -> Setup:
     """Choose the solver's numbers, lay the snow out and set the sledge down on it."""
+    require_compiled(scenario)
+    setup = laid_out(scenario)
+    model, snow, world, memory = setup.model, setup.snow, setup.world, setup.memory
+    follow(model, snow, world, setup.lines, setup.archive, memory.state)
+    setup.unrest = _settled(model, snow, world, setup.lines, memory)
+    memory.state.velocity[0] = scenario.start.speed
+    observe(model, snow, world, setup.lines, setup.archive, memory, True)
+    memory.clock.work[:] = 0.0
+    return setup
+
+
+def laid_out(scenario: Scenario) -> Setup:
+    """The sledge above the snow, before anything moves or is compiled."""
     load, depth, wavelength = _contact(scenario)
     solver = scenario.solver
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])
@@ -184,15 +198,10 @@ def set_up(scenario: Scenario) -> Setup:
     archive = new_archive(8 * ring, 4 * ring * CELLS)
     snow, world = _snow(scenario), _world(scenario)
     _place(scenario, memory, depth)
-    follow(model, snow, world, lines, archive, memory.state)
-    unrest = _settled(model, snow, world, lines, memory)
-    memory.state.velocity[0] = scenario.start.speed
-    observe(model, snow, world, lines, archive, memory, True)
-    memory.clock.work[:] = 0.0
     numbers = {"elements": float(elements), "line_spacing_m": spacing, "cell_mm": cell * 1e3, "load_N": load}
     slope = scenario.slope
     end = math.inf if isinstance(slope, Plane) else slope.ends[1]
-    return Setup(scenario, model, snow, world, lines, archive, memory, numbers, unrest, end, shares(model.node))
+    return Setup(scenario, model, snow, world, lines, archive, memory, numbers, math.inf, end, shares(model.node))
 
 
 def _settled(model: Model, snow: Snow, world: World, lines: Lines, memory: Memory) -> float:

@@ -43,11 +43,9 @@ def radius_of_least_squares_circle(along: FloatArray, across: FloatArray) -> flo
 
 
 def _pratt_curvature(x: FloatArray, y: FloatArray) -> float:
-    from scipy.linalg import eig  # slow to load, and asked for with a ski at hand only
-
     points = np.column_stack([x**2 + y**2, x, y, np.ones_like(x)])
     constraint = np.array([[0.0, 0, 0, -2], [0, 1, 0, 0], [0, 0, 1, 0], [-2, 0, 0, 0]])
-    residuals, circles = eig(np.linalg.solve(constraint, points.T @ points / len(x)))
+    residuals, circles = np.linalg.eig(np.linalg.solve(constraint, points.T @ points / len(x)))
     # the constraint has one negative direction, whose circle is imaginary: the answer is the one nearest to 0
     A, B, C, D = np.real(circles[:, np.argmin(np.abs(residuals))])
     return float(2.0 * abs(A) / np.sqrt(B**2 + C**2 - 4.0 * A * D))

@@ -32,7 +32,7 @@ from skisnow.simulate.motion.model import Snow
 
 FloatArray = npt.NDArray[np.float64]
 ROUNDING = 1e-12
-"""Lift (m) that is none."""
+"""Lift (m) that is none, and depth by which a base is no deeper."""
 
 
 @dataclass
@@ -156,15 +156,21 @@ def cut_ground(line: Line, touch: Touch) -> dict[int, float]:
     for j in range(math.floor(min(border, before) / line.cell), math.floor(max(border, before) / line.cell) + 1):
         first, last, middle = j * line.cell, (j + 1) * line.cell, (j + 0.5) * line.cell
         near, far, to = (min(max(y, first), last) for y in (border, before, end))
-        known = line.cells[j].deepest if j in line.cells else -math.inf
-        centre = 0.5 * (near + far)
-        here = when_it_passed(centre)
-        if first <= before <= last and (to - before) * cut >= 0.0:
-            met, new, about = abs(to - before), abs(far - near), 0.5 * (to + before)
-            there = max(known + touch.fall * (about - middle), touch.base(about))
-            here, centre = ((new * a + met * b) / (new + met) for a, b in ((here, there), (centre, about)))
-        else:
-            here = max(here, known)
+        cell = line.cells.get(j, Cell(-math.inf, math.inf, -math.inf))
+        met = cell.start if cut > 0.0 else cell.end
+        met = min(max(met, min(near, far)), max(near, far))
+        about = 0.5 * (met + far)
+        # width, depth at its middle, that middle: the strip that nothing had met, and that which had been met
+        pieces = [(max(abs(met - near), 1e-15), when_it_passed(0.5 * (near + met)), 0.5 * (near + met))]
+        if met != far:
+            known = cell.centre if cell.centre > 0.0 else cell.deepest + touch.fall * (about - middle)
+            pieces.append((abs(far - met), max(when_it_passed(about), known), about))
+        if first <= before <= last and (to - before) * cut > 0.0:  # and what lay under the base before
+            about = 0.5 * (to + before)
+            known = cell.deepest + touch.fall * (about - middle)
+            pieces.append((abs(to - before), max(known, touch.base(about)), about))
+        width = sum(piece[0] for piece in pieces)
+        here, centre = (sum(piece[0] * piece[i] for piece in pieces) / width for i in (1, 2))
         ground[j] = here + touch.fall * (middle - centre)
     return ground
 
@@ -230,7 +236,8 @@ def remember(line: Line, snow: Snow, most_cells: int) -> None:
         here = touch.base(middle)
         cell = line.cells.setdefault(j, Cell(-math.inf, math.inf, -math.inf))
         if here > cell.deepest and not (cut and j == math.floor(border / line.cell)):
-            cell.deepest, line.slope = here, touch.fall
+            line.slope = touch.fall if here > cell.deepest + ROUNDING else line.slope
+            cell.deepest = here
         cell.start, cell.end = min(cell.start, start), max(cell.end, end)
         if start <= middle <= end:
             cell.centre = max(cell.centre, here)

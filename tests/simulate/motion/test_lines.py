@@ -35,6 +35,7 @@ from skisnow.simulate.motion.lines import (
     cells_of,
     energy_at_edge,
     energy_left,
+    ground_cut,
     new_lines,
     open_window,
 )
@@ -222,6 +223,26 @@ def test_marks_keep_the_deepest() -> None:
     assert ends.min() == -3.5e-3
     assert ends.max() == 4.5e-3
     assert np.sum(ends[:, 1] - ends[:, 0]) == pytest.approx(8e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_an_edge_does_not_fill_ground_that_was_met_before(way: float) -> None:
+    """It went from 0.6 to 0.2 mm, 2 mm deep, with its base rising away from it: under it lies what lay there."""
+    lines = one_line()
+    ends = sorted((0.0, 4e-3 * way))
+    number = 0.0 if way > 0.0 else -1.0
+    cut = (0.2e-3 * way, 4e-3 * way, 2e-3, -0.5 * way, 0.4e-3 * way, 0.0)
+
+    def ground() -> float:
+        place = np.uint64(int(number) - int(lines.flag[0, WINDOW]))
+        return float(ground_cut(lines.cells, 0, place, number, 1e-3, *cut))
+
+    press(lines, ends[0], ends[1], 0.0, 1e-3, -0.25 * way)
+    # deeper than what lay there: as deep as the edge when it passed, and the base where it had been
+    assert ground() == pytest.approx(0.5 * (1.95e-3 + 1.85e-3), rel=1e-12)
+    press(lines, ends[0], ends[1], 0.0, 5e-3, -0.5 * way)
+    # 4.75 mm at the middle, seen as level where the edge went, at 0.4 mm
+    assert ground() == pytest.approx(0.5 * (4.70e-3 + 4.75e-3), rel=1e-12)
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])

@@ -114,12 +114,11 @@ def test_bouncing_on_elastic_snow(method: str, order: float) -> None:
     assert error(400) < (1e-6 if method == "ros2" else 5e-5)
 
 
-@pytest.mark.parametrize(("edge_angle", "most"), [(45.0, 0.05e-3), (60.0, 0.5e-3)])
+@pytest.mark.parametrize(("edge_angle", "most"), [(45.0, 0.2e-3), pytest.param(60.0, 1.5e-3, marks=pytest.mark.slow)])
 def test_carve_in_hypoplastic_snow(edge_angle: float, most: float) -> None:
-    """Distance run after two seconds against steps of 1/32 ms: from 1 to 1/2 ms at least as with order 2.
+    """Distance run after two seconds against steps of 1/32 ms: from 1 to 1/2 ms at least as with order 2, then 1.
 
-    Edges rise from the ground they cover; at 60° the middle of the ski cuts by 0.1 m/s into its groove's wall. With
-    shorter steps no order shows: lines and cells come and go.
+    Edges rise from the ground they cover; at 60° the middle of the ski cuts by 0.1 m/s into its groove's wall.
     """
 
     def run_length(step_ms: float) -> float:
@@ -130,7 +129,8 @@ def test_carve_in_hypoplastic_snow(edge_angle: float, most: float) -> None:
     exact = run_length(0.03125)
     coarse, fine, finest = (abs(run_length(h) - exact) for h in (1.0, 0.5, 0.125))
     assert math.log2(coarse / fine) > 1.8
-    assert max(fine, finest) < most
+    assert math.log2(fine / finest) > 2.0
+    assert fine < most
 
 
 def test_stiff_modes_are_damped_away() -> None:

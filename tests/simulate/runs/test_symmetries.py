@@ -81,6 +81,15 @@ def test_rounding(key: str, value: float, changes: dict[str, float]) -> None:
     assert 0.0 < moved < 1e-6
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("failure_shear_stress", [10.0, 0.3])
+def test_rounding_on_ice(failure_shear_stress: float) -> None:
+    """Where edges tremble by micrometres: the deeper of two bases that lie equally deep is not chosen by rounding."""
+    changes = {"snow.H_V_N_per_mm3": 90.0, "snow.S_f_N_per_mm2": failure_shear_stress, "run.duration_s": 3.0}
+    one, other = (simulated(**changes, **{"start.speed_m_per_s": 7.0 * (1.0 + each)}) for each in (0.0, 1e-12))
+    assert 0.0 < float(np.linalg.norm(other.place[-1] - one.place[-1])) < 1e-6
+
+
 def test_twice_the_same_bits() -> None:
     one, other = (simulated(**{"run.duration_s": 0.5}) for _ in range(2))
     for name in ("time", "place", "attitude", "velocity", "turn_radius"):

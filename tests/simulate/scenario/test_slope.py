@@ -120,6 +120,8 @@ def test_measured_gap_is_refused_unless_asked_for() -> None:
         ("x,y\n0,0\n\n1\n", "row 4, column y: '' is no finite number"),
         ("x,y\ninf,0\n", "row 2, column x: 'inf' is no finite number"),
         ("x,y\n0,0\n1,-1\n", "needs 4 points or more"),
+        ("x,y\n0,-0,000\n1,-0,200\n", "row 2: 3 cells stand under 2 names of columns"),
+        ("x,y\n0,0\n1,-0.2,7\n", "row 3: 3 cells stand under 2 names"),
     ],
 )
 def test_what_is_wrong_in_a_file_is_told_with_row_and_column(tmp_path: Path, text: str, told: str) -> None:

@@ -74,7 +74,7 @@ class FrictionLaw(abc.ABC):
         simulation that stops or starts must treat rest itself, for example by a smooth step over a small speed.
         """
         velocity = np.asarray(sliding_velocity, float)
-        speed = np.linalg.norm(velocity, axis=-1)
+        speed = np.hypot.reduce(velocity, axis=-1)  # also where squares underflow
         size = self.coefficient(speed) * np.maximum(np.asarray(normal_force, float), 0.0)
         direction = np.divide(velocity, speed[..., None], out=np.zeros(velocity.shape), where=speed[..., None] > 0)
         result: FloatArray = -size[..., None] * direction

@@ -183,8 +183,9 @@ def _lay_cut(
     last = np.uint64(min(max(int(np.floor(high * per_cell)) - window + 1, 0), CELLS))
     for j in range(first, last):
         spare[j] = cells[row, DEEPEST + j]
-        begin = (window + np.int64(j)) * cell
-        cells[row, DEEPEST + j] = ground_cut(spare[j], begin, cell, edge, end, depth, slope, cut, left)
+        cells[row, DEEPEST + j] = ground_cut(
+            cells, row, j, float(window) + j, cell, edge, end, depth, slope, cut, left
+        )  # fmt: skip
     return first, last
 
 

@@ -30,6 +30,8 @@ FLAT = 1e-12
 """Fall of the depth across below which a base is level."""
 SMALL = 1e-15
 """Width (m) that is none."""
+ROUNDING: Final = 1e-12
+"""Depth (m) that is none: of bases that lie equally deep rounding would choose the deeper."""
 MARGIN = 6
 """Cells kept free on both sides of a contact."""
 
@@ -153,7 +155,7 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int
         a, b, middle = max(low, number * cell), min(high, (number + 1.0) * cell), (number + 0.5) * cell
         here = depth + slope * (middle - edge)
         marked = here if b >= a and int(i) != known else -NOTHING
-        deeper |= marked > cells[row, DEEPEST + i]
+        deeper |= marked > cells[row, DEEPEST + i] + ROUNDING
         cells[row, DEEPEST + i] = max(cells[row, DEEPEST + i], marked)
         cells[row, FROM + i] = min(cells[row, FROM + i], a if b >= a else NOTHING)
         cells[row, TO + i] = max(cells[row, TO + i], b if b >= a else -NOTHING)
@@ -210,30 +212,37 @@ def slope_cut(value: FloatArray, row: int, cut: float, depth: float, slope: floa
 
 @numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
 def ground_cut(
-    known: float, first: float, cell: float, edge: float, end: float, depth: float, slope: float, cut: float,
-    left: float,
+    cells: FloatArray, row: int, i: np.uint64, number: float, cell: float, edge: float, end: float, depth: float,
+    slope: float, cut: float, left: float,
 ) -> float:  # fmt: skip
     """Ground of a cell that was cut, in part perhaps, extended to the cell's middle along the base (m).
 
-    The cell begins at `first` and had the ground `known`. The wet base goes from the edge, which is `depth` deep, to
-    `end`. What counts is the mean of the ground over all that lies under the base, at the middle of that.
+    It is place `i` of the row. The wet base goes from the edge, which is `depth` deep, to `end`. What counts is the
+    mean of the ground over all that lies under the base. Ground that was met before does not rise where an edge goes
+    over it: one that trembles over its own strip does not forget how deep it was.
     """
-    after, before, middle = first + cell, edge + cut, first + 0.5 * cell
+    known, at_middle, met_low, met_high = (
+        cells[row, DEEPEST + i], cells[row, CENTRE + i], cells[row, FROM + i], cells[row, TO + i],
+    )  # fmt: skip
+    first, middle, after, before = number * cell, (number + 0.5) * cell, (number + 1.0) * cell, edge + cut
     if cut > 0.0:
-        new_from, new_to, met_from, met_to = max(edge, first), min(before, after), max(before, first), min(end, after)
+        met = min(max(met_low, edge, first), before, after)
+        new_from, new_to, over_from, over_to = max(edge, first), met, met, min(before, after)
+        under_from, under_to = max(before, first), min(end, after)
     else:
-        new_from, new_to, met_from, met_to = max(before, first), min(edge, after), max(end, first), min(before, after)
-    new, centre = new_to - new_from, 0.5 * (new_to + new_from)
-    ground = depth + left * (centre - edge)
-    if met_from <= before <= met_to:
-        # what lay under the base before: its ground, or the base if that is deeper now
-        met, about = met_to - met_from, 0.5 * (met_to + met_from)
-        there = max(known + slope * (about - middle), depth + slope * (about - edge))
-        share = met / max(met + new, SMALL)
-        ground, centre = ground + share * (there - ground), centre + share * (about - centre)
-    else:
-        ground = max(ground, known)
-    return ground + slope * (middle - centre)
+        met = max(min(met_high, edge, after), before, first)
+        new_from, new_to, over_from, over_to = met, min(edge, after), max(before, first), met
+        under_from, under_to = max(end, first), min(before, after)
+    # new: as deep as the edge when it passed; gone over: that, or deeper from before; what lay under the base before:
+    # its ground, or the base if that is deeper now
+    new, over = max(new_to - new_from, SMALL), max(over_to - over_from, 0.0)
+    under = under_to - under_from if under_from <= before <= under_to else 0.0
+    at_new, at_over = 0.5 * (new_to + new_from), 0.5 * (over_to + over_from)
+    ground_new = depth + left * (at_new - edge) - slope * (at_new - middle)
+    before_over = at_middle - slope * (at_over - middle) if at_middle > 0.0 else known
+    ground_over = max(before_over, depth + left * (at_over - edge) - slope * (at_over - middle))
+    ground_under = max(known, depth + slope * (middle - edge))
+    return (new * ground_new + over * ground_over + under * ground_under) / (new + over + under)
 
 
 @numba.njit(**PLAIN, fastmath={"contract"})
@@ -244,11 +253,10 @@ def mark_cut(cells: FloatArray, value: FloatArray, row: int, window: int, cut: f
     left, per_cell = slope_cut(value, row, cut, depth, slope), 1.0 / cell
     low, high = min(edge, edge + cut), max(edge, edge + cut)
     for j in range(int(np.floor(low * per_cell)), int(np.floor(high * per_cell)) + 1):
-        i, first, middle = np.uint64(j - window), j * cell, (j + 0.5) * cell
-        known = cells[row, DEEPEST + i]
-        cells[row, DEEPEST + i] = ground_cut(known, first, cell, edge, end, depth, slope, cut, left)
-        cells[row, FROM + i] = min(cells[row, FROM + i], max(low, first))
-        cells[row, TO + i] = max(cells[row, TO + i], min(high, first + cell))
+        i, middle = np.uint64(j - window), (j + 0.5) * cell
+        cells[row, DEEPEST + i] = ground_cut(cells, row, i, j, cell, edge, end, depth, slope, cut, left)
+        cells[row, FROM + i] = min(cells[row, FROM + i], max(low, j * cell))
+        cells[row, TO + i] = max(cells[row, TO + i], min(high, (j + 1) * cell))
         if low <= middle <= high:
             cells[row, CENTRE + i] = max(cells[row, CENTRE + i], depth + left * (middle - edge))
     return int(np.floor(edge * per_cell)) - window

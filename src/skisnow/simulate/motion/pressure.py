@@ -3,7 +3,7 @@
 Virgin snow bears q = H_V (depth + slope x), x from the edge that is down. Where a cell was pressed deeper by `lift`,
 over a ≤ x ≤ b, it bears q - (k_u - H_V) lift, if that is above zero: over u ≤ x ≤ v. So all integrals come from those
 of 1, x, x² over what is wet, u to v, less those over a to b, and of lift, lift x and lift² over u to v: nine sums over
-a line's cells, eight cells in one instruction, and then what they make, eight lines in one.
+a line's cells, four cells in one instruction of 256 bits, and then what they make, four lines in one.
 
 A cell that was met in part bears as if met all over, as it will once the step is accepted. Were the ground that an edge
 takes within a step virgin until then, its force would be off by the step's length times the lift beside it.
@@ -11,7 +11,7 @@ takes within a step virgin until then, its force would be off by the step's leng
 
 from __future__ import annotations
 
-from typing import Final, TypeAlias
+from typing import TypeAlias
 
 import numba
 import numpy as np
@@ -25,12 +25,9 @@ from .columns import (
 
 # isort: on
 from .compiled import PLAIN, SUMS
-from .lines import CELLS, DEEPEST
+from .lines import CELLS, DEEPEST, ROUNDING
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
-
-ROUNDING: Final = 1e-12
-"""Lift (m) that is none: where the base is as deep as the ground, rounding would choose between two stiffnesses."""
 
 
 @numba.njit(**PLAIN, fastmath=SUMS, inline="always")

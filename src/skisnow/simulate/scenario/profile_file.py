@@ -56,6 +56,11 @@ def _points(path: Path, lines: Iterator[list[str]]) -> Iterator[tuple[float, flo
         raise ParameterError(f"{path}, row 1: there is no column {missing[0]} among {', '.join(head)}; {_ACTION}")
     places = [head.index(name) for name in COLUMNS]
     for row, cells in enumerate(lines, start=2):
+        if any(cell.strip() for cell in cells[len(head) :]):
+            raise ParameterError(
+                f"{path}, row {row}: {len(cells)} cells stand under {len(head)} names of columns, as a decimal comma "
+                f"makes them; {_ACTION}"
+            )
         if any(cell.strip() for cell in cells):
             x, y = (
                 _number(path, row, name, cells[place] if place < len(cells) else "")

@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import PchipInterpolator
 
 from ...errors import ParameterError
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Gap: TypeAlias = Literal["error", "interpolate"]
@@ -75,6 +77,8 @@ class Profile:
     _curve: PchipInterpolator = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        from scipy.interpolate import PchipInterpolator  # slow to load, and no plane asks for it
+
         for name in ("x", "height"):
             table = np.array(getattr(self, name), dtype=float)
             table.flags.writeable = False
