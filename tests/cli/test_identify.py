@@ -1,6 +1,8 @@
 """`skisnow identify` as a user meets it."""
 
 import json
+import os
+import signal
 import sys
 from importlib.resources import files
 from pathlib import Path
@@ -63,6 +65,23 @@ def test_a_report_is_written(cells: Path, tmp_path: Path, capsys: Printed) -> No
     assert {path.name for path in (out / "figures").iterdir()} == {
         f"{name}.{kind}" for name in ("residuals_photo_cells", "profiles") for kind in ("png", "svg")
     }
+
+
+@pytest.mark.parametrize("slip", [["--free", "mu0,start.speed"], ["--free", "mu_0,drag_area", "no such file.csv"]])
+def test_a_slip_in_the_command_takes_no_kept_simulation_away(slip: list[str], cells: Path, tmp_path: Path) -> None:
+    kept = tmp_path / "simulations.partial"
+    kept.write_bytes(b"what hours have found")
+    assert main(["identify", "carved-46m", *slip, str(cells), "--out", str(tmp_path), *SETS]) == 1
+    assert kept.read_bytes() == b"what hours have found"
+
+
+def test_asked_to_end_before_the_first_point_it_says_so(cells: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def ended(*_: object, **__: object) -> None:
+        os.kill(os.getpid(), signal.SIGTERM)
+        signal.pause()
+
+    monkeypatch.setattr("skisnow.identify.identify", ended)
+    assert main(["identify", "carved-46m", str(cells), "--free", "mu_0", *SETS]) == 143
 
 
 def test_too_few_points_exit_with_1_and_say_so(cells: Path, capsys: Printed) -> None:

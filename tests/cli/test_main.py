@@ -167,6 +167,7 @@ def test_a_full_disk_behind_stdout_is_a_sentence(campaign: Path) -> None:
     assert done.stderr.decode("utf-8").strip() == "skisnow: No space left on device"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_interrupted_rewrite_leaves_the_earlier_report_whole(
     campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -102,6 +102,31 @@ def test_folder_holds_summary_track_file_and_report(tmp_path: Path, capsys: Prin
     assert str(folder / "report.html") in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("replaced", "undrawn")
+def test_a_folder_never_holds_two_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ended while it writes, the folder is as it was; written anew, nothing of the earlier run is left."""
+
+    def contents() -> dict[str, bytes]:
+        return {str(each.relative_to(tmp_path)): each.read_bytes() for each in tmp_path.rglob("*") if each.is_file()}
+
+    def interrupted_here(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    (tmp_path / "mine.txt").write_text("mine", encoding="utf-8")
+    assert main(["simulate", *ASKED, "--out", str(tmp_path), "--replay"]) == 0
+    first = contents()
+    assert "replay.html" in first
+    with monkeypatch.context() as patched:
+        patched.setattr("skisnow.report.run_report.run_page", interrupted_here)
+        assert main(["simulate", *ASKED, "--set", "friction.mu_0=0.06", "--out", str(tmp_path)]) == 130
+    assert contents() == first
+    assert main(["simulate", *ASKED, "--set", "friction.mu_0=0.06", "--out", str(tmp_path)]) == 0
+    second = contents()
+    assert first.keys() - second.keys() == {"replay.html"}
+    assert second["mine.txt"] == b"mine"
+    assert all(second[name] != first[name] for name in ("summary.json", "track.csv", "run.nc", "report.html"))
+
+
 @pytest.mark.usefixtures("replaced")
 def test_without_out_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -119,6 +144,7 @@ def test_verify_repeats_the_run_finer(capsys: Printed) -> None:
     assert line.split(maxsplit=1)[1] == "40.0 to 80.0: the end moves by 0.0500 cm"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_interrupted_run_is_kept(tmp_path: Path, capsys: Printed, replaced: Replaced) -> None:
     replaced(interrupted)
     assert main(["simulate", *ASKED, "--out", str(tmp_path), "--verify"]) == 130
@@ -131,6 +157,7 @@ def test_interrupted_run_is_kept(tmp_path: Path, capsys: Printed, replaced: Repl
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+@pytest.mark.usefixtures("undrawn")
 def test_run_that_the_system_ends_is_kept_and_says_so(tmp_path: Path, replaced: Replaced) -> None:
     def ended(scenario: Scenario, **told: Any) -> Run:
         try:

@@ -229,6 +229,7 @@ def test_names_are_text_and_never_markup(campaign: Campaign, tmp_path: Path) -> 
     assert f"{_HOSTILE} site J" in [row[0] for row in reader.tables["sites"]]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_not_stated_is_said(campaign: Campaign, tmp_path: Path) -> None:
     silent = replace(
         campaign,
@@ -279,6 +280,7 @@ def test_small_campaigns_have_a_report(case: str, figures: int, campaign: Campai
     assert ("Figures left out for want of data" in visible) == (figures < 10)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_mark_says_its_sentence_its_count_and_whom_it_concerns(campaign: Campaign, tmp_path: Path) -> None:
     tests = first_series(campaign, 40)
     marked = replace(tests, cancelled=("crushed", *tests.cancelled[1:]))
@@ -288,6 +290,7 @@ def test_a_mark_says_its_sentence_its_count_and_whom_it_concerns(campaign: Campa
     assert cancelled[2:] == ["yes", "1", "0", tests.experiment[0]]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_long_tables_are_cut_with_a_sentence(campaign: Campaign, tmp_path: Path) -> None:
     tests = campaign.penetration
     assert tests is not None

@@ -100,6 +100,7 @@ def test_energies_add_up(run: Run) -> None:
     assert kinetic[1:] == pytest.approx((2720.0, 2720.0, 0.0))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_verification_is_told_where_it_was_asked(run: Run, html: str, tmp_path: Path) -> None:
     assert "Computed finer" not in html
     write_run_report(run, summary_of(run) | {"verification": CHECKED}, tmp_path)
@@ -108,6 +109,7 @@ def test_verification_is_told_where_it_was_asked(run: Run, html: str, tmp_path: 
     assert "0.125" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_run_without_a_step_says_so_and_leaves_no_figure_of_another(run: Run, tmp_path: Path) -> None:
     write_run_report(run, summary_of(run), tmp_path)
     at_once = replace(first_rows(run, 1), outcome="airborne", remedy="Start on the snow.")

@@ -78,6 +78,7 @@ def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
     assert said[-1] == "results.json"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_other_files_stay_and_those_of_an_earlier_report_go(campaign: Campaign, tmp_path: Path) -> None:
     (tmp_path / "figures").mkdir()
     mine = tmp_path / "figures" / "photo.png"

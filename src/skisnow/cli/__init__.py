@@ -9,6 +9,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from ..errors import FieldDataError, SkisnowError
+from .ending import Ended
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,9 +51,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SkisnowError as error:
         print(f"skisnow: {error}", file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         print("skisnow: interrupted; nothing half-written was left behind.", file=sys.stderr)
-        return 130
+        return 143 if isinstance(interrupt, Ended) else 130
     except BrokenPipeError:
         return _stdout_lost()
     except OSError as error:

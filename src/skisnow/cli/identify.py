@@ -88,8 +88,6 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
         from ..files import require_writable
 
         require_writable(options.out)
-        if not options.resume:
-            (options.out / KEPT).unlink(missing_ok=True)
     for text in asked.warnings:
         print(f"warning: {text}", file=sys.stderr)
     return asked
@@ -121,6 +119,7 @@ def _identified(options: argparse.Namespace) -> Identification:
             rng=np.random.default_rng(options.seed),
             workers=options.workers,
             kept=None if options.out is None else options.out / KEPT,
+            anew=not options.resume,
             told=progress,
         )
 

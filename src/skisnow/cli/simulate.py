@@ -8,6 +8,7 @@ import sys
 import time
 from contextlib import ExitStack
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from .announced import announced
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from ..simulate.run import Run
     from ..simulate.scenario import Scenario, ScenarioFile
 
+SUMMARY, REPLAY = "summary.json", "replay.html"
 LOADING = "loading and, on a machine's first run, compiling the simulator, once"
 
 
@@ -125,25 +127,34 @@ def _tell(options: argparse.Namespace, asked: ScenarioFile, found: Run, verifica
 
         print(simulate_summary(summary, title=asked.title), flush=True)
     if options.out is not None:
-        _write(options.out, found, summary)
-        if options.replay:
-            from ..web.replay import write_replay
-
-            page = write_replay(found, options.out / "replay.html", title=asked.title)
-            print(f"Replay: {page}", file=sys.stderr)
+        _write(options.out, found, summary, replay_title=asked.title if options.replay else None)
 
 
-def _write(folder: Path, found: Run, summary: dict[str, Any]) -> None:
-    from ..files import write_file
-    from ..report.run_report import write_run_report
+def _write(folder: Path, found: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
+    """Write all files beside the folder's own and move them into place: never those of two runs together."""
+    from ..files import cannot_write, move_into_place, write_file
+    from ..report.run_report import FIGURES, write_run_report
     from ..simulate.track_table import write_track
 
-    text = json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1)
-    write_file(folder / "summary.json", f"{text}\n")
-    write_track(found, folder / "track.csv")
-    with Progress() as progress:
-        page = write_run_report(found, summary, folder, progress=lambda doing: progress(f"writing {doing}"))
-    print(f"Report: {page}", file=sys.stderr)
+    figures = [f"figures/{name}.{form}" for name in FIGURES for form in ("png", "svg")]
+    try:
+        with TemporaryDirectory(prefix=".run-", dir=folder) as name:
+            stage = Path(name)
+            text = json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1)
+            write_file(stage / SUMMARY, f"{text}\n")
+            write_track(found, stage / "track.csv")
+            with Progress() as progress:
+                page = write_run_report(found, summary, stage, progress=lambda doing: progress(f"writing {doing}"))
+            if replay_title is not None:
+                from ..web.replay import write_replay
+
+                write_replay(found, stage / REPLAY, title=replay_title)
+            move_into_place(stage, folder, last=SUMMARY, stale=[*figures, REPLAY])
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    print(f"Report: {folder / page.name}", file=sys.stderr)
+    if replay_title is not None:
+        print(f"Replay: {folder / REPLAY}", file=sys.stderr)
 
 
 class _Pace:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -69,6 +70,7 @@ def collected(
     """
     if not data:
         raise ParameterError("there are no data: name one or several files")
+    _require_different([each for each in data if isinstance(each, str | Path)])
     read = [read_data(each) if isinstance(each, str | Path) else each for each in data]
     names = _Names()
     methods: list[str] = []
@@ -126,6 +128,18 @@ class _Names:
             free, number = f"{clean}-{number}", number + 1
         self._taken.add(free)
         return free
+
+
+def _require_different(paths: Sequence[str | Path]) -> None:
+    """Refuse a file that is given twice: its data would count double, and every interval be too narrow."""
+    seen: dict[bytes, str | Path] = {}
+    for path in paths:
+        if not Path(path).is_file():
+            continue  # said by its reader
+        content = hashlib.sha256(Path(path).read_bytes()).digest()
+        if content in seen:
+            raise ParameterError(f"{path} holds the same as {seen[content]}: what was measured once counts once")
+        seen[content] = path
 
 
 def _starts(table: object, runs: Sequence[str]) -> dict[str, dict[str, float]]:

@@ -15,6 +15,8 @@ from .photo_cells import PhotoCells, photo_cells_of
 from .table_file import read_table
 
 _HEAD: Final = 4096
+_OF_CAMPAIGN: Final = {"experiment", "load_N", "moment_Nm", "lever_arm_mm"}
+"""Columns of the campaign's tables that have a depth, as marks do."""
 Data: TypeAlias = Track | PhotoCells | Marks
 
 
@@ -34,6 +36,11 @@ def read_data(path: str | Path) -> Data:
         if "station_m" in head or set(CELL_COLUMNS) <= head:
             return photo_cells_of(read_table(path))
         if head & set(MARK_COLUMNS):
+            if of_campaign := sorted(head & _OF_CAMPAIGN):
+                raise ParameterError(
+                    f"{path} has a column {of_campaign[0]}: it is a table of a campaign, no marks left in the snow. "
+                    "Give its folder to `skisnow analyse`, and results.json as snow.results"
+                )
             return marks_of(read_table(path))
     from ..track.read import read_track
 

@@ -54,6 +54,7 @@ def identify(
     rng: np.random.Generator | None = None,
     workers: int | None = None,
     kept: Path | None = None,
+    anew: bool = False,
     told: Told | None = None,
 ) -> Identification:
     """Find the parameters of a scenario that fit what was measured.
@@ -86,6 +87,8 @@ def identify(
         Processes that simulate; None: as many as this process has cores.
     kept
         File in which finished simulations are kept, and looked for first; None: nowhere.
+    anew
+        Whether what an earlier search kept there is forgotten, once everything that is asked has been found right.
     told
         Is told what is being done.
 
@@ -117,6 +120,8 @@ def identify(
     read = collected(given, asked, [data] if isinstance(data, Data | str | Path) else data, keys)
     parameters = parameter_table(keys_of_runs(keys, read.runs), values_to_begin_with(asked, read, own), own)
     simulate = RunSimulation(given, tuple(track.time for track in read.tracks))
+    if anew and kept is not None:
+        kept.unlink(missing_ok=True)
     rows = KeptRows() if kept is None else KeptRows.opened(kept, fingerprint(given, read.tracks))
     say = told or _silent
     counted = _Counted(say)

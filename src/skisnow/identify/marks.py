@@ -79,6 +79,7 @@ def read_marks(path: str | Path) -> Marks:
 def marks_of(table: TableFile) -> Marks:
     """The marks of a table that was read."""
     table.require(())
+    table.require_no_slip((*COLUMNS, *SPREADS))
     columns = {}
     stated = True
     for name, spread, unit in zip(COLUMNS, SPREADS, (MM, MM, 1.0), strict=True):

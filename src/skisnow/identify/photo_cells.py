@@ -80,6 +80,7 @@ def read_photo_cells(path: str | Path) -> PhotoCells:
 def photo_cells_of(table: TableFile) -> PhotoCells:
     """The runs of a table that was read."""
     table.require(COLUMNS)
+    table.require_no_slip((*COLUMNS, "time_sd_s"))
     names = table.texts("run")
     station, time = table.numbers("station_m"), table.numbers("time_s")
     sd = table.numbers("time_sd_s", may_be_empty=True) if "time_sd_s" in table.columns else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..spreadsheet_text import number
-from ..track.text import cells_of, mark_of, text_of
+from ..track.text import cells_of, mark_of, require_width, text_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -50,6 +51,17 @@ class TableFile:
             )
         if not self.rows:
             raise ParameterError(f"{self.name} has no rows below its header")
+
+    def require_no_slip(self, known: tuple[str, ...]) -> None:
+        """Refuse a column that is named nearly like one that is known and not there: it would not be read."""
+        absent = [name for name in known if name not in self.columns]
+        for name in self.columns:
+            near = difflib.get_close_matches(name.lower(), absent, n=1, cutoff=0.75) if name not in known else []
+            if near:
+                raise ParameterError(
+                    f"{self.name}, row {self.header_row}: there is a column {name}; is {near[0]} meant? Name it so, or "
+                    "something quite different if it is not to be read"
+                )
 
     def texts(self, column: str) -> list[str]:
         """The cells of a column, which must not be empty."""
@@ -94,5 +106,6 @@ def read_table(path: Path) -> TableFile:
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
     cells = cells_of(text_of(data, str(path)), str(path))
+    require_width(cells, str(path))
     mark = mark_of((cell for row in cells.rows for cell in row), cells.separator)
     return TableFile(str(path), cells.header, tuple(zip(cells.lines, cells.rows, strict=True)), cells.header_line, mark)

@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 from ..estimate.results_text import results_json
-from ..files import cannot_write, require_writable, write_file
+from ..files import cannot_write, move_into_place, require_writable, write_file
 from ..memory import paused_collector
 from .figures import figures_of
 from .material import Material
@@ -63,7 +63,7 @@ def write_report(
     try:
         with paused_collector(), TemporaryDirectory(prefix=".report-", dir=out) as stage:
             stale = _write(Material(campaign, results), Path(stage), say)
-            _move_into_place(Path(stage), out, stale)
+            move_into_place(Path(stage), out, last=RESULTS, stale=stale)
     except OSError as error:
         raise cannot_write(out, error) from error
     return out / "report.html"
@@ -86,17 +86,6 @@ def _write(material: Material, stage: Path, say: Callable[[str], None]) -> list[
     write_file(stage / RESULTS, results_json(material.results))
     stale = [f"tables/{stem}{ending}" for stem in _other_stems(every_table.values()) for ending in (".csv", ".tex")]
     return stale + [f"figures/{left_out.name}{ending}" for left_out in missing for ending in (".svg", ".png")]
-
-
-def _move_into_place(stage: Path, out: Path, stale: list[str]) -> None:
-    """Take the old results.json away, replace file by file, bring the new results.json last."""
-    for name in (RESULTS, *stale):
-        (out / name).unlink(missing_ok=True)
-    files = sorted((path for path in stage.rglob("*") if path.is_file()), key=lambda path: path.name == RESULTS)
-    for path in files:
-        target = out / path.relative_to(stage)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        path.replace(target)
 
 
 def _silent(_text: str) -> None:

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import stdtrit
 
 from ..constants import CONFIDENCE
 from ..errors import ParameterError
@@ -81,6 +80,8 @@ def _mean(values: npt.NDArray[np.float64]) -> tuple[float, Interval | None]:
     mean = math.fsum(values.tolist()) / values.size
     if values.size < 2:
         return mean, None
+    from scipy.special import stdtrit  # slow to load, and asked for with a campaign at hand only
+
     quantile = float(stdtrit(values.size - 1, 0.5 + CONFIDENCE / 2.0))
     half = quantile * float(np.std(values, ddof=1)) / math.sqrt(values.size)
     return mean, (mean - half, mean + half)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..spreadsheet_text import number
 from .recording import FARTHEST, Recording
-from .text import Cells, cells_of, mark_of, moment
+from .text import Cells, cells_of, mark_of, moment, require_width
 from .trouble import refusal
 
 if TYPE_CHECKING:
@@ -86,16 +86,7 @@ class _Table:
         """A table whose rows are as long as its header."""
         _require_header(cells, name)
         width = len(cells.header)
-        for line, row in zip(cells.lines, cells.rows, strict=True):
-            if any(row[width:]):
-                raise refusal(
-                    "too_many_cells",
-                    name,
-                    place=f"row {line}",
-                    value=next(filter(None, row[width:])),
-                    allowed=f"{width} cells, as in the header",
-                    action="A decimal comma in a file separated by commas looks like this; separate by semicolons.",
-                )
+        require_width(cells, name)
         rows = tuple((row + ("",) * (width - len(row)))[:width] for row in cells.rows)
         known = [place for place, column in enumerate(cells.header) if column in COLUMNS]
         mark = mark_of((row[place] for place in known for row in rows), cells.separator)

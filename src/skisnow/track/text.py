@@ -96,6 +96,27 @@ def cells_of(text: str, name: str) -> Cells:
     return Cells(rows[0], numbers[0], tuple(numbers[1:]), tuple(rows[1:]), separator)
 
 
+def require_width(cells: Cells, name: str) -> None:
+    """Refuse a row that has more cells than the header.
+
+    Raises
+    ------
+    FieldDataError
+        It has, as a decimal comma in a file separated by commas makes it.
+    """
+    width = len(cells.header)
+    for line, row in zip(cells.lines, cells.rows, strict=True):
+        if any(row[width:]):
+            raise refusal(
+                "too_many_cells",
+                name,
+                place=f"row {line}",
+                value=next(filter(None, row[width:])),
+                allowed=f"{width} {'cell' if width == 1 else 'cells'}, as in the header",
+                action="A decimal comma in a file separated by commas looks like this; separate by semicolons.",
+            )
+
+
 def mark_of(cells: Iterable[str], separator: str) -> str:
     """The decimal mark of a file: a comma where it does not separate and as many numbers have one as have a point.
 

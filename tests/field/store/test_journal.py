@@ -63,6 +63,19 @@ def test_what_was_entered_is_read_as_a_campaign(store: Store, tmp_path: Path) ->
     assert campaign.problems == ()
 
 
+def test_readings_stand_in_the_order_of_their_loads_whichever_came_first(store: Store) -> None:
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5", "2.25")
+    last = journals.append(id_, reading("1", 2, "30.5", "1.9"), seen=last).sequence
+    journals.append(id_, reading("1", 3, "5", "0.7"), seen=last)
+    test = grown(journals.entries(id_)).test("penetration.csv", "1")
+    assert [row.cells["load_N"] for row in test.rows] == ["5", "20", "30.5", "40"]
+    under = test.row_under("30.50")
+    assert under is not None and under.cells["depth_mm"] == "1.9"
+    assert test.row_under("50") is None
+    assert test.next_position == 4
+
+
 def test_a_correction_keeps_the_first_reading_and_what_came_between(store: Store, tmp_path: Path) -> None:
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5", "22.5", "3")

@@ -56,9 +56,14 @@ class GrownTest:
         counting = (each for each in reversed(self.history) if each.action != "undo" and not each.is_from_file)
         return next((each for each in counting if each.sequence not in self.undone), None)
 
-    def row_at(self, position: int) -> GrownRow | None:
-        """The row at a place within the test."""
-        return next((row for row in self.rows if row.entered.position == position), None)
+    def row_under(self, load: str) -> GrownRow | None:
+        """The reading of a series under a load (N)."""
+        return next((row for row in self.rows if float(row.cells["load_N"]) == float(load)), None)
+
+    @property
+    def next_position(self) -> int:
+        """A place within the test that no row has had."""
+        return max((entry.position + 1 for entry in self.history if entry.position is not None), default=0)
 
 
 @dataclass(slots=True)
@@ -108,8 +113,14 @@ def _test(key: tuple[str, str], history: list[JournalEntry]) -> GrownTest:
     for entry in history:
         if entry.sequence not in test.undone:
             _take(test, rows, entry)
-    test.rows.sort(key=lambda row: (row.entered.position or 0, row.entered.sequence))
+    test.rows.sort(key=_order)
     return test
+
+
+def _order(row: GrownRow) -> tuple[float, int, int]:
+    """Readings that were entered stand in the order of their loads, whichever came first; rows of a file stay."""
+    position, load = row.entered.position, row.cells.get("load_N")
+    return float(load) if load and position is not None else 0.0, position or 0, row.entered.sequence
 
 
 def _take(test: GrownTest, rows: dict[int, GrownRow], entry: JournalEntry) -> None:

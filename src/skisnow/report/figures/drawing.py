@@ -7,7 +7,7 @@ import io
 import re
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from ..symbols import html
 from .style import thinning_sentence
@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from markupsafe import Markup
     from matplotlib.figure import Figure
 
-_NO_DATE: Final = {"Date": None, "Creator": None, "Format": None, "Type": None}
+_UNDATED: Final[dict[str, dict[str, Any]]] = {
+    "svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
+    "png": {"Software": None},
+}
 _FAMILY: Final = re.compile(r"'DejaVu Sans'(?!,)")
 
 
@@ -30,6 +33,11 @@ class Drawing:
     figure: Figure
     wide: bool = False
     points: int = 0
+
+    @property
+    def whole_caption(self) -> Markup:
+        """The caption, and what is said of a cloud that was thinned."""
+        return self.caption + html(thinning_sentence(self.points))
 
 
 @dataclass(frozen=True)
@@ -60,21 +68,28 @@ class Picture:
 
 def pictured(drawing: Drawing) -> Picture:
     """Draw it, the same bytes for the same data."""
-    svg, png = io.StringIO(), io.BytesIO()
+    svg = svg_of(drawing)
+    return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, _drawn_as("png", drawing))
+
+
+def svg_of(drawing: Drawing) -> str:
+    """Draw it for a page alone."""
+    # Verdana has the widths of DejaVu Sans where that is not installed
+    return _FAMILY.sub("'DejaVu Sans', Verdana, sans-serif", _drawn_as("svg", drawing).decode("utf-8"))
+
+
+def _drawn_as(form: Literal["png", "svg"], drawing: Drawing) -> bytes:
+    content = io.BytesIO()
     with warnings.catch_warnings():
         # a site's name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
         warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
         _lay_out(drawing.figure)
-        drawing.figure.savefig(svg, format="svg", metadata=_NO_DATE)
-        drawing.figure.savefig(png, format="png", metadata={"Software": None})
-    # Verdana has the widths of DejaVu Sans where that is not installed
-    text = _FAMILY.sub("'DejaVu Sans', Verdana, sans-serif", svg.getvalue())
-    caption = drawing.caption + html(thinning_sentence(drawing.points))
-    return Picture(drawing.name, caption, drawing.alt, drawing.wide, text, png.getvalue())
+        drawing.figure.savefig(content, format=form, metadata=_UNDATED[form])
+    return content.getvalue()
 
 
 def _lay_out(figure: Figure) -> None:
-    """Place the axes once for both files, which takes as long as drawing them."""
+    """Place the axes, once for both files: that takes as long as drawing them."""
     engine = figure.get_layout_engine()
     if engine is not None:
         engine.execute(figure)

@@ -1,0 +1,22 @@
+"""What tests of several rooms need."""
+
+from __future__ import annotations
+
+from itertools import count
+
+import pytest
+
+from skisnow.report.figures.drawing import Drawing, Picture
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An empty picture, each another, in place of every figure: a figure takes a second, and these tests read words."""
+    number = count()
+
+    def empty(drawing: Drawing) -> Picture:
+        svg = f'<svg xmlns="http://www.w3.org/2000/svg"><!-- {next(number)} --></svg>'
+        return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, svg.encode())
+
+    for place in ("figures", "pictures"):
+        monkeypatch.setattr(f"skisnow.report.{place}.pictured", empty)
