@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
-import os
+import json
+import multiprocessing
+import runpy
 import shutil
 import subprocess
 import sys
+import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,36 +19,67 @@ from urllib.parse import urlsplit
 import pytest
 
 if TYPE_CHECKING:
+    from multiprocessing.process import BaseProcess
+
     from playwright.sync_api import Browser, Page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 MISSING = [name for name in ("nicegui", "playwright") if importlib.util.find_spec(name) is None]
-PATIENCE_MS = 30_000  # on a busy machine; no time is asserted
+PATIENCE_MS = 60_000  # on a busy machine; no time is asserted
+DRAWING_MS = 180_000  # all figures of a report
 
 
 @dataclass
 class Served:
-    """A server process on a store, which can be killed and started again at the same address."""
+    """A server process on a store, which can be killed and started again at the same address.
+
+    The command takes seconds to load what it needs, so one process loads that and brings forth all servers; with
+    `as_command` a server is started as a person does.
+    """
 
     store: Path
-    words: tuple[str, ...] = ()
+    as_command: bool = False
     address: str = ""
-    process: subprocess.Popen[str] | None = field(default=None, repr=False)
+    process: BaseProcess | subprocess.Popen[str] | None = field(default=None, repr=False)
 
     def start(self) -> Served:
-        port = str(urlsplit(self.address).port) if self.address else "0"
-        command = [sys.executable, "-m", "skisnow", "serve", "--port", port, "--store", str(self.store), *self.words]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ})
-        assert self.process.stdout is not None
-        self.address = self.process.stdout.readline().strip()
-        assert self.address.startswith("http://"), self.process.wait(10)
+        port = (urlsplit(self.address).port if self.address else None) or 0
+        self.address = self._by_command(port) if self.as_command else self._by_fork(port)
+        assert self.address.startswith("http://")
         return self
 
+    def _by_command(self, port: int) -> str:
+        command = [sys.executable, "-m", "skisnow", "serve", "--port", str(port), "--store", str(self.store)]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        assert self.process.stdout is not None
+        with self.process.stdout as told:
+            return told.readline().strip()
+
+    def _by_fork(self, port: int) -> str:
+        context = multiprocessing.get_context("forkserver")
+        context.set_forkserver_preload(["skisnow.web.server", "skisnow.web.pages.replay", "skisnow.web.pages.analysis"])
+        hears, tells = context.Pipe(duplex=False)
+        program = str(Path(__file__).with_name("served_here.py"))
+        given = self.store, port, tells
+        process = context.Process(target=runpy.run_path, args=(program, {"given": given}, "__main__"))
+        self.process = process
+        process.start()
+        tells.close()
+        with hears:
+            return str(hears.recv())
+
     def kill(self) -> None:
-        assert self.process is not None and self.process.stdout is not None
+        assert self.process is not None
         self.process.kill()
-        self.process.wait(30)
-        self.process.stdout.close()
+        self.wait()
+
+    def wait(self) -> None:
+        """Wait until the process has ended."""
+        if isinstance(self.process, subprocess.Popen):
+            self.process.wait(30)
+        elif self.process is not None:
+            self.process.join(30)
+            assert self.process.exitcode is not None
 
     def again(self) -> Served:
         self.kill()
@@ -111,6 +145,15 @@ def page(chromium: Browser, watched: Watched) -> Iterator[Page]:
     assert watched.errors == []
 
 
+def killed_and_started_again(page: Page, served: Served) -> None:
+    """Kill the server under an open page, start it again and open the page anew."""
+    place = page.url
+    served.kill()
+    page.goto("about:blank")  # else the page comes back by itself, at the same time
+    served.start()
+    page.goto(place)
+
+
 def ready(page: Page) -> None:
     """Wait until the page is connected and waits for no answer: keys pressed before go nowhere, or are held."""
     page.locator("html:not(.not-connected):not(.holding)").wait_for()
@@ -121,3 +164,12 @@ def fill(page: Page, values: dict[str, Any]) -> None:
     ready(page)
     for label, value in values.items():
         page.get_by_label(label, exact=True).fill(str(value))
+
+
+def downloaded_results(page: Page) -> dict[str, Any]:
+    """results.json in the zip of the analysis that a page shows, whose report is drawn when it is asked for."""
+    with page.expect_download(timeout=DRAWING_MS) as download:
+        page.get_by_role("link", name="Download everything").press("Enter", timeout=DRAWING_MS)
+    with zipfile.ZipFile(download.value.path()) as packed:
+        results: dict[str, Any] = json.loads(packed.read("analysis/results.json"))
+    return results

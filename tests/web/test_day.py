@@ -18,7 +18,7 @@ from skisnow.simulate.carve_answer import answered
 from skisnow.simulate.carve_dict import answer_dict
 from skisnow.simulate.carve_question import carve_question
 
-from .conftest import Served, fill, ready
+from .conftest import Served, downloaded_results, fill, killed_and_started_again, ready
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -156,8 +156,7 @@ def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
     page.get_by_text("below the one before it").wait_for(state="detached")
     next_series(page)
     enter_series(page, "2")
-    served.again()  # killed and started again, with the page open
-    page.reload()
+    killed_and_started_again(page, served)  # what was shown as stored is stored
     page.get_by_role("heading", name="Series 2").wait_for()
     assert page.get_by_label("Depth under 80 N (mm)").input_value() == "2.9"
     next_series(page)
@@ -168,10 +167,7 @@ def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
 
     page.get_by_role("link", name="Analysis").press("Enter")
     page.get_by_text("3 penetration experiments, 2 used; 2 shear experiments, 2 used.").wait_for()
-    with page.expect_download() as download:
-        page.get_by_role("link", name="Download everything").press("Enter")
-    everything = unpacked(download.value, tmp_path / "everything")
-    by_lab = json.loads((everything / "analysis" / "results.json").read_text(encoding="utf-8"))
+    by_lab = downloaded_results(page)
 
     carve(page, served)
     summary = simulate(page, served)

@@ -54,7 +54,7 @@ def killed_while_entering(page: Page, served: Served, test: str, delay_s: float)
         page.keyboard.type(f"{number + 1}.{test}")
         page.keyboard.press("Enter")
     timer.join()
-    served.process.wait(30)
+    served.wait()
     shown, kept = shown_as_stored(page), in_the_store(served.store, test)
     assert shown.items() <= kept.items()
     wanted = {str(load): f"{number + 1}.{test}" for number, load in enumerate(LOADS)}

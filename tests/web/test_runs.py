@@ -18,10 +18,10 @@ from skisnow.units import N_PER_MM2, N_PER_MM3
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.runs import Runs
 
-from .conftest import Served
+from .conftest import Served, killed_and_started_again
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Locator, Page
 
     from skisnow.snow import SnowProperties
 
@@ -44,9 +44,7 @@ def test_a_run_that_the_server_was_killed_in_is_begun_again(page: Page, served: 
     page.get_by_role("button", name="Simulate").click()
     page.get_by_text("is in the queue.").wait_for()
     page.get_by_text("running").first.wait_for()
-    page.goto("about:blank")
-    served.again()
-    page.goto(f"{served.address}simulate")
+    killed_and_started_again(page, served)
     page.get_by_text("finished: ").wait_for(timeout=LONG_MS)
     page.get_by_role("link", name="Watch").wait_for()
     (place,) = (served.store.parent / "lab").glob("*/summary.json")
@@ -119,6 +117,16 @@ def test_a_campaign_without_experiments_gives_no_snow_and_says_so(page: Page, se
     page.get_by_text("Nothing was simulated yet.").wait_for()
 
 
+def pressed_while_it_goes_on(page: Page, button: Locator) -> None:
+    """The finger goes down, the run's progress is told anew, the finger goes up; the keyboard's focus stays as well."""
+    told = "document.querySelector('.card .progress:not(.hidden)').innerText"
+    button.hover()
+    page.mouse.down()
+    page.wait_for_function(f"before => {told} !== before", arg=page.evaluate(told))
+    button.and_(page.locator(":focus")).wait_for()
+    page.mouse.up()
+
+
 def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> None:
     page.goto(f"{served.address}simulate")
     page.get_by_text("Run", exact=True).click()
@@ -131,7 +139,7 @@ def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> 
     waiting = page.get_by_role("button", name="Cancel").first  # the newest is on top
     waiting.click()
     page.get_by_text("cancelled · It had not begun.").wait_for()
-    page.get_by_role("button", name="Cancel").click()
+    pressed_while_it_goes_on(page, page.get_by_role("button", name="Cancel"))
     page.get_by_text("What was computed until then is kept.").wait_for(timeout=LONG_MS)
     (place,) = (served.store.parent / "lab").glob("*/summary.json")
     summary = json.loads(place.read_text(encoding="utf-8"))

@@ -20,7 +20,7 @@ if "nicegui" in MISSING:
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     """One server for all questions here, none of which changes anything."""
-    lab = Served(tmp_path_factory.mktemp("lab") / "store.sqlite3").start()
+    lab = Served(tmp_path_factory.mktemp("lab") / "store.sqlite3", as_command=True).start()
     yield lab
     lab.kill()
 

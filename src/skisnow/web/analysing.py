@@ -14,7 +14,7 @@ from ..field import MARKS, read_campaign
 from ..field.marks import ALWAYS_EXCLUDE
 from ..report import write_report
 from ..report.figures import DRAWERS
-from ..report.figures.drawing import Drawing, pictured
+from ..report.figures.drawing import Drawing, svg_of
 from ..report.figures.style import journal_style, site_styles
 from ..report.material import Material
 from ..report.table_html import table_html
@@ -95,8 +95,7 @@ def figure(campaign: Campaign, results: dict[str, Any], number: int) -> Shown | 
         drawn = DRAWERS[number](material, site_styles(material))
         if not isinstance(drawn, Drawing):
             return None
-        picture = pictured(drawn)
-    return Shown(picture.name, picture.alt, str(picture.caption), picture.svg)
+        return Shown(drawn.name, drawn.alt, str(drawn.whole_caption), svg_of(drawn))
 
 
 def ready() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from base64 import b64encode
 from dataclasses import replace
 from functools import partial
@@ -41,7 +42,10 @@ class OpenAnalysis:
         self.subject = subject
         self.choice = Choice()
         self.analysed: Analysed | None = None
+        self.refused = ""
         self.closed = False
+        self.settled = asyncio.Event()
+        """Set while `analysed`, or why there is nothing, belongs to the choice."""
 
 
 class AnalysisView:
@@ -67,6 +71,7 @@ class AnalysisView:
         """Compute the numbers, then draw figure by figure; an older question's answer is dropped."""
         self._asked += 1
         asked, page = self._asked, self._page
+        page.settled.clear()
         try:
             page.subject = page.subject or await self._analyses.subject(page.kind, page.id)
             found = await page.subject.analysed(page.choice)
@@ -77,10 +82,13 @@ class AnalysisView:
                 return
             if found is not page.analysed:
                 self._show(found)
+            page.settled.set()
             await self._draw(found, asked)
         except Exception as error:
             if not self._is_old(asked):
-                self._status.set_text(told(error))
+                page.refused = told(error)
+                page.settled.set()
+                self._status.set_text(page.refused)
 
     def _is_old(self, asked: int) -> bool:
         return asked != self._asked or self._page.closed
@@ -88,9 +96,11 @@ class AnalysisView:
     def _refuse(self, refusal: Refusal) -> None:
         """Say why there is nothing; what was shown before belongs to another choice."""
         self._page.analysed = None
+        self._page.refused = f"This campaign cannot be analysed yet. {refusal.said}"
+        self._page.settled.set()
         self._tables.clear()
         self._figures.clear()
-        self._status.set_text(f"This campaign cannot be analysed yet. {refusal.said}")
+        self._status.set_text(self._page.refused)
 
     def _show(self, found: Analysed) -> None:
         first, self._page.analysed = not self._choices.default_slot.children, found

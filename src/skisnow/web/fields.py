@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
+
+FIRST: Final = "(event) => { if (event.detail < 2) emit(); }"
+"""In the browser: the second press of a double one does nothing."""
 
 
 def field(
@@ -29,9 +33,11 @@ def choice(label: str, options: Sequence[str] | dict[str, str], value: str | Non
     return made.props("outlined stack-label").classes("field")
 
 
-def button(text: str, act: Callable[..., Any] | None, kind: str = "") -> ui.button:
-    """A button; ``kind``: main or quiet."""
-    made = ui.button(text, on_click=act, color=None).props("no-caps unelevated")
+def button(text: str, act: Callable[..., Any] | None, kind: str = "", *, once: bool = False) -> ui.button:
+    """A button; ``kind``: main or quiet; ``once``: what it does is done once where it is pressed twice in a row."""
+    made = ui.button(text, on_click=None if once else act, color=None).props("no-caps unelevated")
+    if once:
+        made.on("click", act, js_handler=FIRST)
     return made.classes(f"act {kind}".strip())
 
 

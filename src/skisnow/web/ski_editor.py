@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ..errors import ParameterError
 from .fields import button, field
 from .layout import heading, sentence
 from .ski_asked import CELLS, FACTORS, SkiAsked
@@ -27,6 +28,7 @@ class SkiEditor:
         self._changed = changed
         self._typed: dict[tuple[str, int], str] = {}
         self._cells: dict[tuple[str, int], ui.input] = {}
+        self._shown: dict[tuple[str, int], str] = {}
         self._stations: tuple[float, ...] = ()
         text, table = skis.texts(name)
         heading("Edit a ski")
@@ -71,6 +73,11 @@ class SkiEditor:
         factors = {key: str(each.value or "") for key, each in self._factors.items()}
         return SkiAsked(*self._base, factors, dict(self._typed))
 
+    def require_drawn(self) -> None:
+        """Refuse to go on while the text of the file says something else than what is drawn."""
+        if self._typed_texts() != self._base:
+            raise ParameterError("the file below was changed since it was drawn; press Draw the file first")
+
     async def begin(self, name: str) -> None:
         """Begin again from a ski of the lab."""
         text, table = self._skis.texts(name)
@@ -93,17 +100,18 @@ class SkiEditor:
         await self._changed()
 
     def show(self, stations: tuple[float, ...], cells: Mapping[tuple[str, int], str]) -> None:
-        """Show what the curves are at the stations; what was typed there stays."""
+        """Show what the curves are at the stations; what was typed there stays, and what is just being typed."""
         if stations != self._stations:
             self._stations = stations
-            self._draw_table()
+            self._draw_table(cells)
         for place, each in self._cells.items():
-            if each.value != cells[place]:
+            if (each.value or "") == self._shown[place]:
+                self._shown[place] = cells[place]
                 each.set_value(cells[place])
 
-    def _draw_table(self) -> None:
+    def _draw_table(self, cells: Mapping[tuple[str, int], str]) -> None:
         self._table.clear()
-        self._cells = {}
+        self._cells, self._shown = {}, dict(cells)
         with self._table, ui.element("table").classes("cells"):
             with ui.element("thead"), ui.element("tr"):
                 for words in (STATION, *CELLS.values()):
@@ -120,11 +128,12 @@ class SkiEditor:
 
     def _cell(self, column: str, i: int, station: float) -> None:
         place = (column, i)
-        made = ui.input().props("outlined dense inputmode=decimal autocomplete=off")
+        made = ui.input(value=self._shown[place]).props("outlined dense inputmode=decimal autocomplete=off")
         made.props(f'aria-label="{CELLS[column]} at {station:.3f} m"')
         self._cells[place] = made
 
         async def typed() -> None:
+            self._shown[place] = str(made.value or "")
             if text := str(made.value or "").strip():
                 self._typed[place] = text
             else:  # emptied: as it was

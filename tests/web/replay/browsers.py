@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from ..conftest import PATIENCE_MS
+
 SOFTWARE = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
 
 
@@ -21,11 +23,17 @@ def drawing_in_software(other: Any) -> Iterator[Any]:
         browser.close()
 
 
+def slowly(page: Any) -> None:
+    """Play at a tenth of the true speed: a run of seconds is not over before a busy machine has looked."""
+    page.get_by_label("Speed of play").select_option("0.1")
+
+
 class Watched:
     """A page with all that it asked for and said."""
 
-    def __init__(self, browser: Any, address: str, *, width: int = 1280, height: int = 800) -> None:
+    def __init__(self, browser: Any, address: str, *, width: int = 960, height: int = 600) -> None:
         self.page = browser.new_page(viewport={"width": width, "height": height})
+        self.page.set_default_timeout(PATIENCE_MS)
         self.requests: list[str] = []
         self.complaints: list[str] = []
         self.page.on("request", lambda request: self.requests.append(request.url))

@@ -15,7 +15,7 @@ from skisnow.simulate.scenario import Profile
 from skisnow.web.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_replay
 
 from ...report.runs import circle_run
-from .browsers import Watched, drawing_in_software
+from .browsers import Watched, drawing_in_software, slowly
 
 TRACK = ReplayTrack(name="GNSS", place=np.array([[0.0, 0.0, 0.0], [10.0, 3.0, 0.0]]), time=np.array([0.0, 2.0]))
 SNOW = np.array([241, 245, 249])
@@ -66,8 +66,9 @@ def test_every_view_shows_snow_and_loaded_skis(seen: Watched) -> None:
 
 def test_the_picture_changes_while_it_plays(seen: Watched) -> None:
     first = seen.picture()
+    slowly(seen.page)
     seen.page.get_by_role("button", name="Play").click()
-    seen.page.wait_for_function("window.skisnowReplay.time > 0.4")
+    seen.page.wait_for_function("window.skisnowReplay.time > 0.2")
     assert (np.abs(seen.picture() - first).max(axis=2) > 30).mean() > 0.01
     seen.page.get_by_role("button", name="Pause").click()
     stopped = seen.does("return replay.time")
@@ -75,26 +76,33 @@ def test_the_picture_changes_while_it_plays(seen: Watched) -> None:
     assert seen.does("return replay.time") == stopped
 
 
-def test_a_second_of_play_is_a_second_of_the_run_or_the_chosen_part_of_it(seen: Watched) -> None:
-    """With the browser's clock in our hand: two pictures 0.3 s apart."""
-    played = """
+def played(apart_ms: float) -> str:
+    """A script that plays from the run's first second on for two pictures, the browser's clock in its hand."""
+    return f"""
         const real = window.requestAnimationFrame, waiting = [];
         window.requestAnimationFrame = (deed) => waiting.push(deed);
         replay.seek(1.0); replay.play();
-        waiting.shift()(5000); waiting.shift()(5300);
+        waiting.shift()(5000); waiting.shift()({5000 + apart_ms});
         replay.pause(); window.requestAnimationFrame = real;
         return replay.time;"""
-    assert seen.does(played) == pytest.approx(1.3, abs=1e-9)
-    seen.page.get_by_label("Speed of play").select_option("0.1")
-    assert seen.does(played) == pytest.approx(1.03, abs=1e-9)
+
+
+def test_a_second_of_play_is_a_second_of_the_run_or_the_chosen_part_of_it(seen: Watched) -> None:
+    assert seen.does(played(300.0)) == pytest.approx(1.3, abs=1e-9)
+    slowly(seen.page)
+    assert seen.does(played(300.0)) == pytest.approx(1.03, abs=1e-9)
+
+
+def test_a_page_that_was_hidden_goes_on_from_where_it_was(seen: Watched) -> None:
+    """A hidden page is given no pictures: after a minute the run has not ended unseen."""
+    assert seen.does(played(60_000.0)) == pytest.approx(2.0, abs=1e-9)
 
 
 def test_it_ends_at_the_end_and_begins_anew(seen: Watched) -> None:
     seen.does("replay.seek(3.9); replay.play()")
     seen.page.wait_for_function("!window.skisnowReplay.playing")
     assert seen.does("return replay.time") == pytest.approx(4.0)
-    seen.does("replay.play()")
-    assert seen.does("return replay.time") < 1.0
+    assert seen.does("replay.play(); return replay.time") < 1.0
 
 
 def test_nothing_is_asked_for_and_nothing_complained_about(seen: Watched, address: str) -> None:
@@ -133,7 +141,7 @@ def test_the_groove_grows_and_can_be_hidden(seen: Watched) -> None:
     assert counts == [6 * 2 * 13, 6 * 2 * 51, 6 * 2 * 101]  # a piece each second output, two skis, six corners each
     with_groove = seen.picture()
     seen.does("replay.show('groove', false)")
-    assert (np.abs(seen.picture() - with_groove).max(axis=2) > 40).sum() > 200
+    assert (np.abs(seen.picture() - with_groove).max(axis=2) > 40).mean() > 3e-4  # two thin lines
 
 
 def test_ghost_and_measured_track_are_switches(seen: Watched) -> None:
@@ -155,6 +163,7 @@ def test_exaggeration_bends_more(seen: Watched) -> None:
 
 
 def test_everything_by_keyboard(seen: Watched) -> None:
+    slowly(seen.page)
     keyboard = seen.page.keyboard
     seen.page.locator("canvas.replay-canvas").focus()
     keyboard.press("ArrowRight")
@@ -177,6 +186,12 @@ def test_everything_by_keyboard(seen: Watched) -> None:
     assert seen.does("return replay.playing")
     keyboard.press(" ")
     assert not seen.does("return replay.playing")
+
+
+def test_keys_work_where_nothing_has_the_focus(seen: Watched) -> None:
+    assert seen.does("return document.activeElement === document.body")
+    seen.page.keyboard.press("End")
+    assert seen.does("return replay.time") == pytest.approx(4.0)
 
 
 def test_every_control_has_a_name(seen: Watched) -> None:

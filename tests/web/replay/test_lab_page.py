@@ -14,6 +14,7 @@ from skisnow.simulate.scenario.values import in_sections
 from skisnow.web.replay import moving_replay_model, replay_model, replay_of_file
 
 from ...report.runs import circle_run
+from .browsers import slowly
 
 ODD = 'wide "turn" <b>'
 
@@ -39,6 +40,7 @@ def test_runs_are_listed_and_two_are_watched(served: Any, page: Any) -> None:
     page.get_by_role("button", name="Watch together").click()
     page.wait_for_function("window.skisnowReplay")
     assert page.evaluate("[skisnowReplay.run.title, skisnowReplay.ghost.title]") == ["tight", ODD]
+    slowly(page)
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("window.skisnowReplay.time > 0.2")
     page.get_by_role("button", name="Pause").click()
@@ -55,6 +57,7 @@ def test_runs_are_listed_and_two_are_watched(served: Any, page: Any) -> None:
         assert Path(download.value.path()).read_bytes() == expected
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_writes_a_replay_beside_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["simulate", "carved-46m", "--set", "run.duration_s=0.05", "--out", str(tmp_path / "run"), "--replay"]
     assert main(words) == 0

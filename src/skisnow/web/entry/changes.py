@@ -85,6 +85,11 @@ def ask_reason(
         reason.run_method("select")
 
 
+def focus_button(button: ui.button) -> None:
+    """Put the focus on a button, which knows no method for it."""
+    button.client.run_javascript(f"getHtmlElement({button.id}).focus()")
+
+
 def changes(
     sheet: Sheet, test: GrownTest, ask: ui.element, changed: Callable[[], object], *, cancelled: bool = False
 ) -> None:
@@ -114,13 +119,13 @@ def changes(
 
     def ask_cancel() -> None:
         words = f"Cancel {test.name}? Its readings are kept and take no part."
-        ask_reason(ask, words, ("Cancel the test", cancel), leave=lambda: None)
+        ask_reason(ask, words, ("Cancel the test", cancel), leave=lambda: focus_button(asks))
 
     with ui.element("div").classes("acts"):
         if test.undoable is not None:
             asking_button(f"Undo: {_done(test.undoable)}", undo)
         if not test.cancelled and not cancelled and test.rows:
-            asking_button("Cancel this test", ask_cancel)
+            asks = asking_button("Cancel this test", ask_cancel)
     _history(test)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
@@ -11,11 +12,11 @@ from ..fields import choice, field
 from ..layout import heading, sentence
 from ..names import entering
 from ..words import label
-from .changes import USUAL_REASON, Places, ask_reason, changes
+from .changes import USUAL_REASON, Places, ask_reason, changes, focus_button
 from .checking import Field, checked_fields, faults, refuse
 
 if TYPE_CHECKING:
-    from ...field.store import GrownTest
+    from ...field.store import GrownRow, GrownTest
     from .beside import Beside
     from .sheet import Sheet
 
@@ -23,18 +24,26 @@ HEAD: Final = ("experiment", "site", "spot", "tool", "edge_angle_deg")
 TOLD: Final = "(event) => lab.reading(event, emit)"
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Reading:
+    """The field of the depth under one load, the word beside it that says whether it is stored, what holds both."""
+
+    depth: ui.input
+    stored: ui.label
+    row: ui.element
+
+
 class SeriesForm:
-    """The form of one series at a time."""
+    """The form of one series at a time. Its readings are told apart by their loads (N, as text)."""
 
     def __init__(self, sheet: Sheet, beside: Beside, places: Places) -> None:
         self._sheet = sheet
         self._beside = beside
         self._places = places
         self._head: dict[str, str] = {}
-        self._fields: list[ui.input] = []
-        self._stored: list[ui.label] = []
-        self._rows: list[ui.element] = []
-        self._asking: tuple[int, str] | None = None
+        self._readings: dict[str, _Reading] = {}
+        self._asking: tuple[str, str] | None = None
+        self._refused: dict[str, str] = {}
         self._shown = ""
 
     # The head of a series
@@ -52,7 +61,8 @@ class SeriesForm:
                 name = field(label("experiment"), self._sheet.next_name())
                 site = field(label("site"), before.get("site", ""))
                 tools = sorted(described.tools)
-                tool = choice(label("tool"), tools, before.get("tool", tools[0] if tools else None))
+                last = before.get("tool")
+                tool = choice(label("tool"), tools, last if last in tools else next(iter(tools), None))
                 angle = field(label("edge_angle_deg"), before.get("edge_angle_deg", ""), numeric=True)
                 spot = field(label("spot") + ", if shear is tested there too", optional=True)
             typed: dict[str, Field] = dict(zip(HEAD, (name, site, spot, tool, angle), strict=True))
@@ -88,46 +98,45 @@ class SeriesForm:
             self._beside.follow(name, head["site"])
 
     def _focus_next(self, test: GrownTest) -> None:
-        empty = [each for each in self._fields if not each.value]
+        empty = [each.depth for each in self._readings.values() if not each.depth.value]
         if empty and not test.cancelled:
             empty[0].run_method("focus")
         else:
-            self._then.client.run_javascript(f"getHtmlElement({self._then.id}).focus()")  # a button knows no method
+            focus_button(self._then)
 
     def _draw(self, test: GrownTest) -> None:
         """Draw the series; what is typed and not stored stays."""
         unstored = self._unstored() if self._shown == test.name else {}
         self._shown = test.name
-        self._fields, self._stored, self._rows, self._asking = [], [], [], None
+        self._readings, self._asking, self._refused = {}, None, {}
         self._places.clear()
-        loads = self._loads(test)
         with self._places.form:
             heading(f"Series {test.name}")
             sentence(f"{self._head['site']} · {self._head['tool']} · {self._head['edge_angle_deg']}°", "quiet")
             if test.cancelled:
                 sentence(f"Cancelled: {test.cancelled}", "bad")
             with ui.element("div").classes("readings"):
-                for position, load in enumerate(loads):
-                    self._reading(test, position, load, unstored.get(position, ""))
+                for load in self._loads(test):
+                    self._readings[load] = self._reading(test, load, unstored.get(load, ""))
             self._ask = ui.element("div")
             self._then = asking_button("Next series", self._next, "main then")
         with self._places.below:
             self._changes = ui.element("div")
-            self._further(test, len(loads))
+            self._further(test)
         self._show_changes()
 
-    def _unstored(self) -> dict[int, str]:
-        """What is typed in fields whose reading is not stored, by position."""
-        shown = zip(self._fields, self._stored, strict=True)
-        return {place: each.value for place, (each, stored) in enumerate(shown) if each.value and not stored.text}
+    def _unstored(self) -> dict[str, str]:
+        """What is typed in fields whose reading is not stored, by load."""
+        shown = self._readings.items()
+        return {load: each.depth.value for load, each in shown if each.depth.value and not each.stored.text}
 
     def _next(self) -> bool:
         """Begin the next series, where all that is typed in this one is stored."""
         missing = self._unstored()
         if missing:
-            loads = ", ".join(f"{self._loads(self._test)[position]} N" for position in missing)
+            loads = ", ".join(f"{load} N" for load in missing)
             self._sheet.say(f"Not stored yet: {loads}. Put it right or empty the field, then go on.", "bad")
-            self._fields[min(missing)].run_method("focus")
+            self._readings[next(iter(missing))].depth.run_method("focus")
             return False
         self.begin()
         return True
@@ -144,16 +153,14 @@ class SeriesForm:
             changes(self._sheet, test, self._ask, lambda: self.show(test.name, self._head))
 
     def _loads(self, test: GrownTest) -> list[str]:
-        """The disc set's loads, and those that were entered beyond or instead of them."""
-        loads = [f"{load:g}" for load in self._sheet.desk.described.load_steps]
-        for row in test.rows:
-            position = row.entered.position or 0
-            loads += [""] * (position + 1 - len(loads))
-            loads[position] = row.cells["load_N"]
-        return loads
+        """The disc set's loads, and those that were entered beyond or instead of them, rising."""
+        steps = [f"{load:g}" for load in self._sheet.desk.described.load_steps]
+        entered = [row.cells["load_N"] for row in test.rows]
+        also = [load for load in steps if test.row_under(load) is None]
+        return sorted(dict.fromkeys([*entered, *also]), key=float)
 
-    def _reading(self, test: GrownTest, position: int, load: str, typed: str) -> None:
-        row = test.row_at(position)
+    def _reading(self, test: GrownTest, load: str, typed: str) -> _Reading:
+        row = test.row_under(load)
         with ui.element("div").classes("reading") as made:
             ui.label(f"{load} N").classes("load")
             depth = field(label("depth_mm"), row.cells["depth_mm"] if row else typed, numeric=True)
@@ -164,18 +171,16 @@ class SeriesForm:
                 made.props["data-stored"] = row.cells["depth_mm"]
             if row is not None and row.corrections:
                 stored.set_text(f"corrected from {row.entered.cells['depth_mm']}")
-        self._fields.append(depth)
-        self._stored.append(stored)
-        self._rows.append(made)
-        depth.on("keydown.enter", answering(lambda: self._entered(position, load)), js_handler=TOLD)
-        depth.on("blur", lambda: self._entered(position, load, left=True))
+        depth.on("keydown.enter", answering(lambda: self._entered(load)), js_handler=TOLD)
+        depth.on("blur", lambda: self._entered(load, left=True))
+        return _Reading(depth, stored, made)
 
-    def _further(self, test: GrownTest, position: int) -> None:
+    def _further(self, test: GrownTest) -> None:
         if test.cancelled:
             return
 
         def done() -> bool:
-            if not self._add(position, load, depth):
+            if not self._add(load, depth):
                 return False
             self.show(self._head["experiment"], self._head)
             return True
@@ -188,37 +193,49 @@ class SeriesForm:
                 depth = field("Its depth (mm)", numeric=True)
                 asking_button("Store it", done)
 
-    def _entered(self, position: int, load: str, *, left: bool = False) -> bool:
+    def _entered(self, load: str, *, left: bool = False) -> bool:
         """Take a depth: the first one is stored, another one is a correction; ``left``: its field is left already."""
-        test, made = self._test, self._fields[position]
-        row, typed = test.row_at(position), str(made.value or "").strip()
+        test, made = self._test, self._readings[load]
+        row, typed = test.row_under(load), str(made.depth.value or "").strip()
         if typed == (row.cells["depth_mm"] if row is not None else ""):
-            self._rows[position].classes(remove="refused")
+            made.row.classes(remove="refused")
+            self._refused.pop(load, None)
             return True
-        if row is not None:
-            return self._ask_correction(test, position, focus=not left)
-        stored = self._add(position, load, made)
-        if stored:
-            cell = self._test.rows[-1].cells["depth_mm"]
-            self._stored[position].set_text("stored")
-            self._rows[position].props["data-stored"] = cell
-            self._rows[position].classes(remove="refused")
-            made.set_value(cell)
-        elif self._fields[position] is made:  # the series was not drawn anew meanwhile
-            self._rows[position].classes("refused")
+        if left and typed == self._refused.get(load):  # said at its Enter; by now something else may be said
+            return False
+        taken = self._ask_correction(row, load, focus=not left) if row is not None else self._store(load, made)
+        if not taken and self._readings.get(load) is made:  # the series was not drawn anew meanwhile
+            self._refused[load] = typed
+        return taken
+
+    def _store(self, load: str, made: _Reading) -> bool:
+        """Store the first depth under a load, and show whether it is stored."""
+        stored = self._add(load, made.depth)
+        row = self._test.row_under(load)
+        if stored and row is not None:
+            cell = row.cells["depth_mm"]
+            made.stored.set_text("stored")
+            made.row.props["data-stored"] = cell
+            made.row.classes(remove="refused")
+            made.depth.set_value(cell)
+        elif self._readings.get(load) is made:  # the series was not drawn anew meanwhile
+            made.row.classes("refused")
         return stored
 
-    def _add(self, position: int, load: ui.input | str, depth: ui.input) -> bool:
+    def _add(self, load: ui.input | str, depth: ui.input) -> bool:
         """Store a reading; what cannot be is said at its field, and stays there."""
         test = self._test
         given = {"depth_mm": depth} if isinstance(load, str) else {"load_N": load, "depth_mm": depth}
         cells = checked_fields(self._sheet.form, given)
+        if cells is not None and not isinstance(load, str) and test.row_under(cells["load_N"]) is not None:
+            refuse(load, f"there is a reading under {cells['load_N']} N already; correct it in its own field")
+            cells = None
         if cells is None:
             self._sheet.say(f"Not stored: {'; '.join(faults(given.values()))}.", "bad")
             return False
         cells = {**self._head, **({"load_N": load} if isinstance(load, str) else {}), **cells}
         said = f"Stored: {cells['depth_mm']} mm under {cells['load_N']} N."
-        stored = self._sheet.add(test.name, cells, position=position, seen=test.last, said=said)
+        stored = self._sheet.add(test.name, cells, position=test.next_position, seen=test.last, said=said)
         if stored:
             self._show_changes()
             self._beside.follow(test.name, self._head["site"])
@@ -226,13 +243,11 @@ class SeriesForm:
             self._draw(self._test)
         return stored
 
-    def _ask_correction(self, test: GrownTest, position: int, *, focus: bool) -> bool:
-        row = test.row_at(position)
-        assert row is not None
-        entered = row.entered
-        cells = checked_fields(self._sheet.form, {"depth_mm": self._fields[position]})
+    def _ask_correction(self, row: GrownRow, load: str, *, focus: bool) -> bool:
+        test, entered, depth = self._test, row.entered, self._readings[load].depth
+        cells = checked_fields(self._sheet.form, {"depth_mm": depth})
         if cells is None:
-            self._sheet.say(f"Not corrected: {'; '.join(faults([self._fields[position]]))}.", "bad")
+            self._sheet.say(f"Not corrected: {'; '.join(faults([depth]))}.", "bad")
             return False
 
         def correct(why: str) -> bool:
@@ -241,10 +256,10 @@ class SeriesForm:
             self.show(test.name, self._head)
             return True
 
-        if self._asking == (position, cells["depth_mm"]):  # Enter, and then the field was left: one question is enough
+        if self._asking == (load, cells["depth_mm"]):  # Enter, and then the field was left: one question is enough
             return True
-        self._asking = (position, cells["depth_mm"])
-        words = f"{row.cells['load_N']} N: {row.cells['depth_mm']} mm becomes {cells['depth_mm']} mm."
+        self._asking = (load, cells["depth_mm"])
+        words = f"{load} N: {row.cells['depth_mm']} mm becomes {cells['depth_mm']} mm."
         act = ("Correct it", correct)
         ask_reason(
             self._ask, words, act, usual=USUAL_REASON, leave=lambda: self.show(test.name, self._head), focus=focus

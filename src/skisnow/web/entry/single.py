@@ -35,10 +35,13 @@ class SingleForm:
         self._columns = (*table.names, *OPTIONAL.get(table.file, ()), *required)
         self._numeric = {column.name for column in table.numbers}
         self._fields: dict[str, ui.input | ui.select] = {}
+        self._begun: dict[str, str] | None = None
+        """What is typed of a new row, while another one is looked at."""
+        self._is_new = False
 
     def begin(self) -> None:
-        """Ask for a new row."""
-        self._draw(self._prefilled(), None)
+        """Ask for a new row, or go on with the one that was begun."""
+        self._draw(self._begun or self._prefilled(), None)
 
     def show(self, name: str) -> None:
         """Show a test's first row, to be corrected."""
@@ -60,6 +63,10 @@ class SingleForm:
         return cells
 
     def _draw(self, cells: dict[str, str], correcting: tuple[GrownTest, GrownRow] | None) -> None:
+        if self._is_new and correcting is not None:
+            typed = {column: str(each.value) for column, each in self._fields.items() if each.value}
+            self._begun = typed if typed.items() - self._prefilled().items() else None
+        self._is_new = correcting is None
         self._places.clear()
         with self._places.form:
             heading("Correct a test" if correcting else "New test")
@@ -81,8 +88,10 @@ class SingleForm:
 
     def _field(self, column: str, cells: dict[str, str], *, fixed: bool) -> ui.input | ui.select:
         if column == "plate":
-            plates = sorted(self._sheet.desk.described.plates)
-            return choice(label(column), plates, cells.get(column) or (plates[0] if plates else None))
+            plates, value = sorted(self._sheet.desk.described.plates), cells.get(column)
+            if not plates:
+                sentence("This campaign has no plate yet: name one under Campaign.", "bad")
+            return choice(label(column), plates, value if value in plates else next(iter(plates), None))
         optional = column in OPTIONAL.get(self._sheet.file, ())
         made = field(label(column), cells.get(column, ""), numeric=column in self._numeric, optional=optional)
         if fixed and column == self._sheet.form.key:
@@ -115,6 +124,7 @@ class SingleForm:
         if not self._sheet.add(test.name, cells, position=len(test.rows), seen=test.last, said=said):
             return False
         self._beside.follow(test.name, cells["site"])
+        self._begun = None
         self.begin()
         return True
 
@@ -161,6 +171,11 @@ class SingleForm:
     def _so_far(self, test: GrownTest, row: GrownRow) -> None:
         words = [f"{label(column)} {row.cells[column]}" for column in self._columns if row.cells.get(column)]
         ui.label(" · ".join(words) + (f" · cancelled: {test.cancelled}" if test.cancelled else ""))
-        asking_button("Correct", lambda: self._draw(row.cells, (test, row)), "small").props(
+
+        def look() -> None:
+            self._draw(row.cells, (test, row))
+            self._beside.follow(test.name, row.cells["site"])
+
+        asking_button("Correct", look, "small").props(
             f'aria-label="Correct {" ".join(test.name.split())}"'.replace("'", "")
         )

@@ -43,6 +43,7 @@ def add_page(lab: Lab) -> None:
         def closed() -> None:
             open_pages.pop(key, None)
             page.closed = True
+            page.settled.set()
 
         ui.context.client.on_delete(closed)
         with framed("Analysis", here=HERE):
@@ -53,15 +54,16 @@ def add_page(lab: Lab) -> None:
 
     @app.get("/report/{key}/report.html")
     async def report(key: str) -> Response:
-        if (folder := await _report(open_pages.get(key), worker)) is None:
-            return plain_page("No such report", "Open the analysis of the campaign again.", 404)
+        page = open_pages.get(key)
+        if (folder := await _report(page, worker)) is None:
+            return _no_report(page)
         return FileResponse(folder / "report.html", headers={"content-security-policy": REPORT_POLICY})
 
     @app.get("/report/{key}/analysis.zip")
     async def everything(key: str) -> Response:
         page = open_pages.get(key)
-        if page is None or page.subject is None or (folder := await _report(page, worker)) is None:
-            return plain_page("No such report", "Open the analysis of the campaign again.", 404)
+        if page is None or (folder := await _report(page, worker)) is None or page.subject is None:
+            return _no_report(page)
         packed = io.BytesIO()
         both = [*files_below(page.subject.folder, under="campaign"), *files_below(folder, under="analysis")]
         write_zip(both, packed)
@@ -69,8 +71,16 @@ def add_page(lab: Lab) -> None:
         return Response(packed.getvalue(), media_type="application/zip", headers=headers)
 
 
+def _no_report(page: OpenAnalysis | None) -> Response:
+    if page is not None and page.refused:
+        return plain_page("No report yet", page.refused, 404)
+    return plain_page("No such report", "Open the analysis of the campaign again.", 404)
+
+
 async def _report(page: OpenAnalysis | None, worker: Worker) -> Path | None:
-    """A folder with the report of what a page shows; one for each choice, written when it is first wanted."""
+    """A folder with the report of what is chosen on a page; one for each choice, written when it is first wanted."""
+    if page is not None:
+        await page.settled.wait()
     if page is None or page.subject is None or page.analysed is None:
         return None
     out, numbers = page.subject.place / f"report-{page.analysed.key}", page.analysed.numbers

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import threading
 from typing import TYPE_CHECKING, Any, Final
@@ -13,7 +14,7 @@ from ...report.numerals import significant
 from ..fields import choice
 from ..lab_skis import LabSkis
 from ..layout import framed
-from ..line_chart import ChartLine, LineChart
+from ..line_chart import LOOKS, ChartLine, LineChart
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,6 +52,9 @@ MOVED: Final = """(event) => {
   emit(event.target.value);
 }"""
 """In the browser: were the slider drawn anew by the server, it would jump back under a quick hand."""
+COMPUTING: Final = "Computing …"
+PATIENCE_S: Final = 0.5
+"""After which it is said that what is shown belongs to where the sliders stood before (s)."""
 ABOVE_MM: Final = 3.0
 """How much of the edge above the snow the chart of depths shows (mm)."""
 FACTS: Final = {
@@ -110,7 +114,7 @@ class _Carve:
         with ui.element("div").classes("sliders"):
             for key in SLIDERS:
                 self._slider(key)
-        self._status = ui.label("Computing … On a machine's first run the solver is compiled, once.").classes("status")
+        self._status = ui.label(f"{COMPUTING} On a machine's first run the solver is compiled, once.").classes("status")
         self._status.props("role=status")
         self._facts = ui.element("div").classes("table")
         self._named: list[str] = []
@@ -147,7 +151,10 @@ class _Carve:
         try:
             while self._waiting:
                 self._waiting = False
-                found = await run.io_bound(self._solver.answers, self._questions())
+                answers = asyncio.ensure_future(run.io_bound(self._solver.answers, self._questions()))
+                if not (await asyncio.wait((answers,), timeout=PATIENCE_S))[0]:
+                    self._status.set_text(COMPUTING)
+                found = await answers
                 if isinstance(found, str):
                     self._status.set_text(found)
                 elif found is not None:
@@ -172,7 +179,7 @@ class _Carve:
                 self._cells = _table(names)
         for key, (_, unit) in FACTS.items():
             for cell, answer in zip(self._cells[key], answers, strict=True):
-                cell.set_text(f"{significant(answer[key])} {unit}")
+                cell.set_text("–" if answer[key] is None else f"{significant(answer[key])} {unit}")
         for key, each in self._charts.items():
             lines = [
                 ChartLine(a["station_m"], a[key], number) for number, a in enumerate(answers) if a[key] is not None
@@ -198,8 +205,9 @@ def _table(names: list[str]) -> dict[str, list[ui.label]]:
     cells: dict[str, list[ui.label]] = {}
     with ui.element("table"):
         with ui.element("thead"), ui.element("tr"):
-            for text in ("", *names):
-                with ui.element("th").props("scope=col"):
+            ui.element("th").props("scope=col")
+            for number, text in enumerate(names):
+                with ui.element("th").props("scope=col").style(f"color: {LOOKS[number]['colour']}"):
                     ui.label(text)
         with ui.element("tbody"):
             for key, (words, _) in FACTS.items():
@@ -207,7 +215,7 @@ def _table(names: list[str]) -> dict[str, list[ui.label]]:
                     with ui.element("th").props("scope=row"):
                         ui.label(words)
                     cells[key] = []
-                    for _ in names:
-                        with ui.element("td").classes("n"):
+                    for number in range(len(names)):
+                        with ui.element("td").classes("n").style(f"color: {LOOKS[number]['colour']}"):
                             cells[key].append(ui.label(""))
     return cells

@@ -56,16 +56,30 @@ def add_page(lab: Lab) -> None:
                     ui.navigate.to(entering(id_))
 
             with ui.element("div").classes("acts end"):
-                button("Store and enter tests", done, "main")
+                button("Store and enter tests", done, "main", once=True)
 
 
 def _stored(lab: Lab, desk: Desk | None, text: str) -> str:
     if desk is None:
         return Journals(lab.store).begin(text)
+    _require_used_names(desk, tomllib.loads(text))
     if text != desk.campaign.description:
         entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: text})
         desk.write_down(entry, seen=desk.campaign.described)
     return desk.id
+
+
+def _require_used_names(desk: Desk, described: dict[str, Any]) -> None:
+    """Refuse a description without the tools and plates that tests were made with."""
+    for kind in ("tool", "plate"):
+        known = {each["name"] for each in described.get(kind, ())}
+        for test in desk.campaign.tests.values():
+            gone = {row.cells[kind] for row in test.rows if kind in row.cells} - known
+            if gone:
+                raise ParameterError(
+                    f"test {test.name} was made with the {kind} {min(gone)}: leave that name as it is, and give"
+                    f" another {kind} an entry of its own"
+                )
 
 
 class DescriptionForm:
@@ -133,16 +147,21 @@ class _Entries:
             _show_lengths(shape, lengths)
 
     def values(self) -> list[dict[str, Any]]:
-        """The entries that have a name."""
+        """The entries that have a name; one with lengths alone is refused."""
         found = []
-        for name, shape, lengths in self._rows:
+        for number, (name, shape, lengths) in enumerate(self._rows, start=1):
             if not (name.value or "").strip():
+                if any((each.value or "").strip() for each in lengths.values()):
+                    raise ParameterError(f"{self._kind} {number} has lengths and no name; give it one, or empty them")
                 continue
             entry: dict[str, Any] = {"name": name.value.strip()}
             if shape is not None:
                 entry["shape"] = shape.value
             used = SHAPES[shape.value].argument_of_key if shape is not None else lengths
-            entry |= {key: typed_number(key, lengths[key].value or "") for key in used}
+            entry |= {
+                key: typed_number(f"{LENGTHS_OF_SHAPES[key]} of {entry['name']}", lengths[key].value or "")
+                for key in used
+            }
             found.append(entry)
         return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import app, background_tasks, run, ui
@@ -19,6 +20,8 @@ from ..snow_of_campaign import require_scenario, snow_of_campaign
 from ..trouble import told
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ..settings import Lab
 
 PATH: Final = "/simulate"
@@ -27,6 +30,8 @@ GIVEN: Final = "as in the scenario"
 GIVEN_BY_NAME: Final = ("ski.file", "snow.results")
 SNOW_FILE: Final = "snow.json"
 EVERY_S: Final = 1.0
+OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.published")
+_COMMA: Final = re.compile(r"[-+]?\d*,\d+")
 
 
 def add_page(lab: Lab) -> None:
@@ -40,7 +45,7 @@ def add_page(lab: Lab) -> None:
         with framed("Simulate", here=PATH):
             status = ui.label("").classes("status").props("role=status")
             form = _Form(lab, runs, status)
-            button("Simulate", form.ask, "main")
+            button("Simulate", form.ask, "main", once=True)
             history = _History(runs)
         ui.timer(EVERY_S, history.show)
 
@@ -72,30 +77,35 @@ class _Form:
         from ...simulate.scenario.keys import SCENARIO_KEYS, SECTIONS
 
         values = scenario_file(str(self._scenario.value)).values
+        kept = self._changed()
         self._place.clear()
         self._fields, self._before = {}, {}
         with self._place:
             for section in SECTIONS:
-                with ui.element("details"):
+                is_kept = any(name.startswith(f"{section}.") for name in kept)
+                with ui.element("details").props("open" if is_kept else ""):
                     with ui.element("summary"):
                         ui.label(section.capitalize())
                     with ui.element("div").classes("keys"):
                         for name, key in SCENARIO_KEYS.items():
                             if name.startswith(f"{section}."):
-                                self._key(name, values.get(name), f"{key.meaning}; {key.allowed}")
+                                self._key(name, values.get(name), f"{key.meaning}; {key.allowed}", kept.get(name))
 
-    def _key(self, name: str, value: Any, words: str) -> None:
-        self._before[name] = _written(value)
-        self._fields[name] = field(name.split(".", 1)[1], self._before[name])
+    def _key(self, name: str, value: Any, words: str, kept: str | None) -> None:
+        self._before[name] = before = _written(value)
+        self._fields[name] = field(name.split(".", 1)[1], before if kept is None else kept)
         self._fields[name].props(f'aria-label="{name}"')
         sentence(words, "quiet")
 
+    def _changed(self) -> dict[str, str]:
+        """What was typed in place of the scenario's own values."""
+        typed = {name: str(each.value or "").strip() for name, each in self._fields.items()}
+        return {name: _with_point(text) for name, text in typed.items() if text != self._before[name]}
+
     async def ask(self) -> None:
         """Put the simulation into the queue, when its values can be read."""
-        typed = {name: str(each.value or "").strip() for name, each in self._fields.items()}
-        changes = {name: text for name, text in typed.items() if text and text != self._before[name]}
         try:
-            job = await self._asked(str(self._scenario.value), changes)
+            job = await self._asked(str(self._scenario.value), self._changed())
         except SkisnowError as error:
             self._status.set_text(f"Not begun: {told(error)}")
             self._status.classes(add="bad")
@@ -106,6 +116,14 @@ class _Form:
     async def _asked(self, scenario: str, changes: dict[str, str]) -> Job:
         ski, snow = str(self._ski.value), str(self._snow.value)
         given = []
+        for name, text in changes.items():
+            if not text:
+                raise ParameterError(f"{name} is empty; the scenario has {self._before[name]}")
+            if snow != GIVEN and name in OF_SNOW:
+                raise ParameterError(
+                    f"{name} was changed, and the snow is that of a campaign. Put {self._before[name] or 'nothing'} "
+                    f"back, or choose Snow: {GIVEN}"
+                )
         if ski != GIVEN:
             word = self._skis.word(ski)
             changes["ski.name" if word == ski else "ski.file"] = word
@@ -142,6 +160,11 @@ def _snows(lab: Lab) -> dict[str, str]:
     return entered | {f"kept-{stored.id}": f"{stored.name} ({stored.id})" for stored in lab.store.list()}
 
 
+def _with_point(text: str) -> str:
+    """A number with a decimal comma as the command line takes it; anything else as it is."""
+    return text.replace(",", ".") if _COMMA.fullmatch(text) else text
+
+
 def _written(value: Any) -> str:
     """A value as the command line takes it."""
     if value is None:
@@ -154,40 +177,28 @@ def _written(value: Any) -> str:
 
 
 class _History:
-    """The queue and what was simulated, drawn again only when something changed."""
+    """The queue and what was simulated. A card stays the same while its run goes on: a press on it is never lost."""
 
     def __init__(self, runs: Runs) -> None:
         self._runs = runs
-        self._shown: object = None
+        self._cards: dict[str, _Card] = {}
         heading("Queue and history")
-        self._place = ui.element("div").props("aria-live=polite")
+        self._nothing = sentence("Nothing was simulated yet.", "quiet")
+        self._place = ui.element("div")
         self.show()
 
     def show(self) -> None:
-        """Draw what is so now."""
+        """Show what is so now."""
         jobs = self._runs.jobs()
-        now = (jobs, self._runs.progress)
-        if now == self._shown:
-            return
-        self._shown = now
-        self._place.clear()
-        with self._place:
-            if not jobs:
-                sentence("Nothing was simulated yet.", "quiet")
-            for job in jobs:
-                self._job(job)
-
-    def _job(self, job: Job) -> None:
-        with ui.element("section").classes("card"):
-            heading(job.name, 3)
-            state = f"running: {self._runs.progress}" if job.state == "running" else job.state
-            changed = ", ".join(f"{key} = {value}" for key, value in job.changes.items() if key not in GIVEN_BY_NAME)
-            sentence(" · ".join(filter(None, (job.scenario, changed, job.given, state, job.said))), "quiet")
-            with ui.element("div").classes("acts"):
-                if job.state in ("waiting", "running"):
-                    button("Cancel", lambda: self._cancel(job.name)).props(f'aria-label="Cancel {job.name}"')
-                if (self._runs.folder / job.name / RUN_FILE).is_file():
-                    link("Watch", show_address(job.name), "main").props(f'aria-label="Watch {job.name}"')
+        self._nothing.set_visibility(not jobs)
+        for name in self._cards.keys() - {job.name for job in jobs}:
+            self._cards.pop(name).place.delete()
+        for index, job in enumerate(jobs):
+            if job.name not in self._cards:
+                with self._place:
+                    self._cards[job.name] = card = _Card(self._runs, job, self._cancel)
+                card.place.move(target_index=index)
+            self._cards[job.name].show(job)
 
     def _cancel(self, name: str) -> None:
         try:
@@ -195,3 +206,25 @@ class _History:
         except ParameterError as error:
             ui.notify(str(error))
         self.show()
+
+
+class _Card:
+    """One run of the list, and what can be done with it."""
+
+    def __init__(self, runs: Runs, job: Job, cancel: Callable[[str], None]) -> None:
+        self._runs = runs
+        with ui.element("section").classes("card") as self.place:
+            heading(job.name, 3)
+            self._words = sentence("", "quiet").props("aria-live=polite")
+            self._progress = sentence("", "quiet progress")  # a number that rises each second is not read aloud
+            with ui.element("div").classes("acts"):
+                self._cancel = button("Cancel", lambda: cancel(job.name)).props(f'aria-label="Cancel {job.name}"')
+                self._watch = link("Watch", show_address(job.name), "main").props(f'aria-label="Watch {job.name}"')
+
+    def show(self, job: Job) -> None:
+        changed = ", ".join(f"{key} = {value}" for key, value in job.changes.items() if key not in GIVEN_BY_NAME)
+        self._words.set_text(" · ".join(filter(None, (job.scenario, changed, job.given, job.state, job.said))))
+        self._progress.set_text(self._runs.progress if job.state == "running" else "")
+        self._progress.set_visibility(bool(self._progress.text))
+        self._cancel.set_visibility(job.state in ("waiting", "running"))
+        self._watch.set_visibility((self._runs.folder / job.name / RUN_FILE).is_file())

@@ -76,7 +76,7 @@ class _Skis:
         with ui.element("div").classes("fields"):
             self._name = field("New name")
         with ui.element("div").classes("acts"):
-            button("Save in the lab", self._save, "main")
+            button("Save in the lab", self._save, "main", once=True)
             button("Download the file", self._download)
         self._saved = ui.label("").classes("status").props("role=status")
 
@@ -123,6 +123,7 @@ class _Skis:
     async def _save(self) -> None:
         name, asked = " ".join(str(self._name.value or "").split()), self._editor.asked()
         try:
+            self._editor.require_drawn()
             await run.io_bound(self._keep, name, asked)
         except SkisnowError as error:
             _say(self._saved, f"Not saved: {told(error)}", bad=True)
@@ -143,6 +144,7 @@ class _Skis:
 
     async def _download(self) -> None:
         try:
+            self._editor.require_drawn()
             files = await run.io_bound(_files, self._editor.asked())
         except SkisnowError as error:
             _say(self._saved, told(error), bad=True)
@@ -174,9 +176,10 @@ def _lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
 def _table(drawn: list[SkiDrawing]) -> None:
     with ui.element("table"):
         with ui.element("thead"), ui.element("tr"):
-            for text in ("", *(each.name for each in drawn)):
-                with ui.element("th").props("scope=col"):
-                    ui.label(text)
+            ui.element("th").props("scope=col")
+            for number, each in enumerate(drawn):
+                with ui.element("th").props("scope=col").style(f"color: {LOOKS[number]['colour']}"):
+                    ui.label(each.name)
         with ui.element("tbody"):
             for key in drawn[0].facts:
                 with ui.element("tr"):

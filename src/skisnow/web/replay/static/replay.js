@@ -10,6 +10,7 @@ import { composed, filmType, recording, saved } from "./takeaway.js";
 
 const STEP = 0.05; // s that an arrow key goes
 const LARGE_STEP = 0.5;
+const LONGEST = 1000; // ms of play in one picture: a page that was hidden meanwhile goes on from where it was
 
 /**
  * Show a run in an element.
@@ -123,7 +124,7 @@ class Player {
     let before = null;
     const next = (now) => {
       if (!this.playing) return;
-      const gone = before === null ? 0 : now - before;
+      const gone = before === null ? 0 : Math.min(now - before, LONGEST);
       this.time = Math.min(this.time + (this.rate * gone) / 1000, this.end);
       before = now;
       if (gone > 0 && !this.film && this.sharpness.took(gone)) this.resize();
@@ -227,7 +228,8 @@ class Player {
       saved(await this.picture(), `${fileName(this.run.title)}-${this.time.toFixed(2)}s.png`);
       this.say("The picture is saved.");
     });
-    root.addEventListener("keydown", (event) => this.#key(event));
+    const isMeant = (target) => target === document.body || root.contains(target); // where nothing has the focus, too
+    document.addEventListener("keydown", (event) => isMeant(event.target) && this.#key(event));
     this.#fingers();
   }
 
