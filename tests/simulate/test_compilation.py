@@ -10,7 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from skisnow import machine_code
 from skisnow.simulate import compilation
+
+from ..test_machine_code import DAMAGES, Damage
 
 PROGRAM = r"""
 import hashlib, json, re, resource, sys
@@ -70,69 +73,49 @@ def test_first_run_on_a_machine(tmp_path: Path) -> None:
     assert again == first[::-1]
 
 
-def in_folder(path: Path) -> compilation._Kept:
-    """With one thing that Numba kept."""
-    (path / "settle.settle-29.py311.nbi").write_bytes(b"")
-    return compilation._Kept(path)
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where code is kept in this test, with two files of it."""
+    there = tmp_path / "0123-abc"
+    for module in (machine_code, compilation):
+        monkeypatch.setattr(module, "folder", lambda: there)
+    for name in ("settle-1.nbc", "feel-2.nbc"):
+        machine_code.keep(there / name, name.encode())
+    return there
 
 
-def names(path: Path) -> set[str]:
-    """Of all files but the notes."""
-    return {each.name for each in path.iterdir() if each.suffix != ".json"}
+def test_what_was_made_is_written_down(folder: Path) -> None:
+    assert compilation.parts_made() == set()
+    compilation._write_down(["forces", "paths"])
+    assert compilation.parts_made() == {"forces", "paths"}
+    (folder / "feel-2.nbc").unlink()
+    assert compilation.parts_made() == set()
 
 
-def test_what_was_made_is_written_down(tmp_path: Path) -> None:
-    kept = in_folder(tmp_path)
-    assert kept.parts() == set()
-    kept.add(["forces"])
-    kept.add(["paths", "rest"])
-    assert kept.parts() == {"forces", "paths", "rest"}
-    (tmp_path / "settle.settle-29.py311.nbi").unlink()  # somebody has emptied the folder but for the note
-    assert kept.parts() == set()
+@pytest.mark.parametrize("name", ["made", "feel-2.nbc"])
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+def test_damage_is_seen_before_a_run(name: str, damage: Damage, folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+    machine_code.keep(folder / "feel-2.nbc", bytes(200))
+    compilation._write_down(["forces" * 20])
+    whole = (folder / name).read_bytes()
+    (folder / name).write_bytes(damage(whole))
+    assert compilation.parts_made() == set()
+    assert len(caplog.records) == 1
+    assert not (folder / name).exists()
 
 
-def test_other_code_is_thrown_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    kept = in_folder(tmp_path)
-    for name in ("settle.settle-29.py311.1.nbc", "settle.pyc"):
-        (tmp_path / name).write_bytes(b"")
-    kept.throw_away_older()  # nothing tells what it was made from
-    assert names(tmp_path) == {"settle.pyc"}
-    kept = in_folder(tmp_path)  # made by a run for itself: nothing was noted but the state
-    kept.throw_away_older()
-    assert names(tmp_path) == {"settle.pyc", "settle.settle-29.py311.nbi"}
-    kept.add(["forces"])
-    kept.throw_away_older()
-    assert kept.parts() == {"forces"}
-    monkeypatch.setattr(compilation, "_machine", lambda: "another")
-    kept.throw_away_older()  # another machine of the same home, with the same program
-    assert names(tmp_path) == {"settle.pyc", "settle.settle-29.py311.nbi"}
-    assert kept.parts() == set()
-    monkeypatch.setattr(compilation, "_state", lambda: "changed")
-    kept.throw_away_older()
-    assert names(tmp_path) == {"settle.pyc"}
+def test_a_note_of_another_kind_counts_for_nothing(folder: Path) -> None:
+    machine_code.keep(folder / "made", b"{")
+    assert compilation.parts_made() == set()
 
 
-@pytest.mark.parametrize("content", [b"", b"[]", b'{"state": 1}', b"\xff", b'{"made": 3}'])
-def test_a_spoiled_note_counts_for_nothing(tmp_path: Path, content: bytes) -> None:
-    kept = in_folder(tmp_path)
-    kept.add(["forces"])
-    (note,) = tmp_path.glob("*.json")
-    note.write_bytes(content)
-    assert kept.parts() == set()
-    kept.throw_away_older()
-    assert names(tmp_path) == set()
-    assert compilation._read(note)["made"] == []
-
-
-def test_a_process_that_fails_is_not_noted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The processes see that the program is not in the state they were asked for. What a run then keeps stays."""
-    monkeypatch.setattr(compilation, "_state", lambda: "not this")
-    for _ in range(2):
-        kept = in_folder(tmp_path)
-        with pytest.raises(subprocess.CalledProcessError):
-            compilation._make(kept, (("forces", "paths"), ("fixed",)))
-        assert kept.parts() == set()
-    assert names(tmp_path) == {"settle.settle-29.py311.nbi"}
+def test_a_process_that_fails_is_not_noted(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The processes see that the program is not in the state they were asked for."""
+    monkeypatch.setattr(compilation, "SOURCES", "not this")
+    with pytest.raises(subprocess.CalledProcessError):
+        compilation._make((("forces", "paths"), ("fixed",)))
+    assert compilation.parts_made() == set()
+    assert not (folder / "made").exists()
 
 
 @pytest.mark.parametrize("trouble", [OSError("read-only"), subprocess.CalledProcessError(1, "python")])
@@ -141,11 +124,11 @@ def test_trouble_is_left_to_the_run(trouble: Exception, monkeypatch: pytest.Monk
 
     asked = []
 
-    def failing(_: object, waves: object) -> None:
+    def failing(waves: object) -> None:
         asked.append(waves)
         raise trouble
 
     monkeypatch.setattr(compilation, "_make", failing)
-    monkeypatch.setattr(compilation._Kept, "parts", lambda _: set())
+    monkeypatch.setattr(compilation, "parts_made", set)
     compilation._require.__wrapped__("fixed")
     assert asked == [(("forces", "paths"), ("rest", "look"), ("fixed",))]

@@ -12,9 +12,10 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
+
+from ...machine_code import compiled
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -22,7 +23,7 @@ SUMS = 8
 """Length of the array that `add_interval` fills; see there."""
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@compiled(error_model="numpy", inline="always")
 def _add_linear(
     sums: FloatArray, start: float, length: float, p0: float, p1: float, by_depth: float, by_groove: float
 ) -> None:
@@ -49,7 +50,7 @@ def _add_linear(
     sums[7] += by_groove * s2
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def add_interval(
     sums: FloatArray,
     start: float,

@@ -13,10 +13,10 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from ...ski.beam.banded import HALF_BANDWIDTH
 from ..contact.strip import SUMS, add_interval
 
@@ -127,14 +127,14 @@ class Section(NamedTuple):
     rise: float  # of the strip against the base, per length
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@compiled(error_model="numpy", inline="always")
 def _base_depth(xi: float, section: Section) -> float:
     """Depth ε of the base at ξ (m): a straight line, but for the bevelled strip along the edge."""
     bevel = max(0.0, section.strip - xi / section.cosine) * section.rise
     return section.corner - xi * section.tangent - bevel
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _column_of(linked: Linked, source: int) -> int:
     """First border unknown of a source station; links it if it is new."""
     if linked.column[source] == 0:
@@ -144,7 +144,7 @@ def _column_of(linked: Linked, source: int) -> int:
     return linked.column[source]
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@compiled(error_model="numpy", inline="always")
 def _link(pulls: FloatArray, column: int, xi: float, square: float, force: float, moment: float) -> None:
     """Note what a deeper groove at ξ does: force and ∫p ξ by the depth and the twist of the station that cut it."""
     k = column - BORDER
@@ -154,7 +154,7 @@ def _link(pulls: FloatArray, column: int, xi: float, square: float, force: float
     pulls[k + 1, 1] -= xi * square * moment
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _across_following_edge(
     sums: FloatArray,
     pulls: FloatArray,
@@ -185,7 +185,7 @@ def _across_following_edge(
             _link(pulls, far_column, place[k + 1], square, far, far_moment)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _pass_along_edge(groove: Groove, place: FloatArray, station: int, section: Section) -> None:
     """Deepen the groove where this station lies deeper."""
     for k in range(len(place)):
@@ -195,7 +195,7 @@ def _pass_along_edge(groove: Groove, place: FloatArray, station: int, section: S
             groove.source[k] = station
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _across_following_path(
     sums: FloatArray,
     pulls: FloatArray,
@@ -228,7 +228,7 @@ def _across_following_path(
         low = max(low, high)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _pass_along_path(groove: Groove, offset: float, station: int, section: Section, edge_angle: float) -> None:
     """Put this station's base into the outline: it covers the steps to its right that are less deep."""
     left = -offset
@@ -252,7 +252,7 @@ def _pass_along_path(groove: Groove, offset: float, station: int, section: Secti
     groove.steps[0] = kept
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _start(stiffness: FloatArray, u: FloatArray, out: System) -> None:
     """The beam alone: its banded matrix and its elastic forces; everything else zero."""
     size = len(u)
@@ -271,7 +271,7 @@ def _start(stiffness: FloatArray, u: FloatArray, out: System) -> None:
     out.border_residual[:] = 0.0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _link_rows(sections: Sections, conditions: Conditions, u: FloatArray, linked: Linked, out: System) -> None:
     """The equations of the linked stations: their unknowns are what beam and boot give them, edge depth and twist."""
     cosine = np.cos(conditions.edge_angle)
@@ -312,7 +312,7 @@ class Load(NamedTuple):
     bite: float  # depth of the edge where it is below the surface
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@compiled(error_model="numpy", inline="always")
 def _section(
     sections: Sections, conditions: Conditions, i: int, u: FloatArray, border: FloatArray, boot_cosine: float
 ) -> Section:
@@ -332,7 +332,7 @@ def _section(
     return Section(half, sine, cosine, sine / cosine, corner, corner - strip * rise, 2.0 * half * cosine, strip, rise)
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@compiled(error_model="numpy", inline="always")
 def _load(
     section: Section, conditions: Conditions, sums: FloatArray, stress: float, sine: float, cosine: float
 ) -> Load:
@@ -369,7 +369,7 @@ def _load(
     )
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@compiled(error_model="numpy", inline="always")
 def _add_to_border(out: System, load: Load, weight: float, s: float, stress: float) -> None:
     right, corner = out.border_residual, out.corner
     held = 1.0 if load.bite > 0.0 else 0.0
@@ -385,7 +385,7 @@ def _add_to_border(out: System, load: Load, weight: float, s: float, stress: flo
     corner[2, 2] += weight * load.bite
 
 
-@numba.njit(cache=True, error_model="numpy", inline="always")
+@compiled(error_model="numpy", inline="always")
 def _add_to_beam(
     out: System, sections: Sections, load: Load, i: int, stress: float, cosine: float, lever: float, twists: float
 ) -> None:
@@ -415,7 +415,7 @@ def _add_to_beam(
                 out.matrix[j, jb - j + HALF_BANDWIDTH] -= by_b
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _add_pulls(
     out: System, sections: Sections, pulls: FloatArray, used: int, i: int, cosine: float, lever: float, twists: float
 ) -> None:
@@ -435,7 +435,7 @@ def _add_pulls(
                 out.columns[c, j] -= weight * (normal + turn)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def assemble(
     sections: Sections, conditions: Conditions, stiffness: FloatArray, u: FloatArray, border: FloatArray, out: System
 ) -> None:

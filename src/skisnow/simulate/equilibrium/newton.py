@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from ...ski.beam.banded import factor, solve
 from .assembly import BORDER, Conditions, Sections, System, assemble
 
@@ -37,7 +37,7 @@ class Factored(NamedTuple):
     order: npt.NDArray[np.int64]  # (p,) rows exchanged
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _factor_dense(matrix: FloatArray) -> npt.NDArray[np.int64]:
     """LU factors with row pivots in place; not finite where singular."""
     n = len(matrix)
@@ -60,7 +60,7 @@ def _factor_dense(matrix: FloatArray) -> npt.NDArray[np.int64]:
     return order
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _solve_dense(factors: FloatArray, order: npt.NDArray[np.int64], right: FloatArray) -> None:
     """Solve in place with the factors of `_factor_dense`."""
     n = len(right)
@@ -75,7 +75,7 @@ def _solve_dense(factors: FloatArray, order: npt.NDArray[np.int64], right: Float
         right[i] /= factors[i, i]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _factored(system: System) -> Factored:
     """Factor the bordered system: the beam first, then what is left of the border."""
     p, n = system.used[0], len(system.residual)
@@ -97,7 +97,7 @@ def _factored(system: System) -> Factored:
     return Factored(matrix, influence, rows, schur, order)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _correction(at: Factored, system: System, step: FloatArray, border_step: FloatArray) -> bool:
     """Newton correction for the residuals of `system`; False where the equations are singular."""
     n, p = len(step), len(at.schur)
@@ -118,7 +118,7 @@ def _correction(at: Factored, system: System, step: FloatArray, border_step: Flo
     return bool(np.all(np.isfinite(y)) and np.all(np.isfinite(step)))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _length_of(
     sections: Sections, conditions: Conditions, step: FloatArray, border_step: FloatArray, stress: float
 ) -> float:
@@ -138,7 +138,7 @@ def _length_of(
     return np.sqrt(total / n + by_stress * by_stress)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def newton(
     sections: Sections, conditions: Conditions, stiffness: FloatArray, u: FloatArray, border: FloatArray,
     system: System, spare: System, tolerance: float, most: int,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .archive import Archive, set_course
 from .compiled import PLAIN
 from .equations import channel_rows, copy_state, drag_power
@@ -84,7 +84,7 @@ def new_memory(size: int, ring: int) -> Memory:
     )
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def observe(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tangent: bool
 ) -> None:
@@ -111,7 +111,7 @@ def observe(
         clock.power[a] = now[a]
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _factor(
     model: Model, lines: Lines, memory: Memory, h: float, gamma: float
 ) -> bool:  # fmt: skip
@@ -121,7 +121,7 @@ def _factor(
     return factor(model, memory.start, rows, gh * (gh + model.damping), gh * gh, memory.system)
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def advance_fixed(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, fast: bool, step: float,
     until: float,
@@ -166,7 +166,7 @@ def advance_fixed(
     return GOES_ON
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _is_easy(start: Forces, lines: Lines, h: float) -> bool:
     """Whether the contact is soft enough for a step h (s) that its matrix may be kept."""
     stiffest = 0.0
@@ -178,7 +178,7 @@ def _is_easy(start: Forces, lines: Lines, h: float) -> bool:
     return stiffest * h * h <= EASY
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def advance_controlled(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, tolerance: float,
     until: float,
@@ -214,7 +214,7 @@ def advance_controlled(
     return GOES_ON
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _on_ladder(h: float) -> float:
     """The longest step of a ladder of steps, four to an octave, that is not above h (s).
 
@@ -223,7 +223,7 @@ def _on_ladder(h: float) -> float:
     return LONGEST_STEP * 2.0 ** (0.25 * np.floor(4.0 * np.log2(h / LONGEST_STEP) + 1e-6))
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def _try_pair(model: Model, snow: Snow, world: World, lines: Lines, memory: Memory, h: float) -> float:
     """Fill `next` with the state after two steps of h/2, and return how far one step of h is off (m)."""
     if not _factor(model, lines, memory, h, GAMMA):
@@ -247,7 +247,7 @@ def _try_pair(model: Model, snow: Snow, world: World, lines: Lines, memory: Memo
     return _difference(memory.trial, memory.next, h) / 3.0
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _difference(one: State, other: State, h: float) -> float:
     """Largest difference of place (m): of the boots, of ends a metre off that turn with them, of the skis' bend."""
     worst = 0.0
@@ -264,7 +264,7 @@ def _difference(one: State, other: State, h: float) -> float:
     return worst
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _is_finite(state: State) -> bool:
     total = 0.0
     for a in range(6):
@@ -277,7 +277,7 @@ def _is_finite(state: State) -> bool:
     return bool(np.isfinite(total))
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def mechanical_energy(model: Model, world: World, state: State) -> tuple[float, float, float]:
     """Kinetic, potential and the skis' elastic energy (J)."""
     V = state.velocity

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import PLAIN
 from .forces import Forces
 from .model import PADDING, Model, State
@@ -21,7 +21,7 @@ def shares(node: FloatArray) -> FloatArray:
     return np.asarray(np.append(half, 0.0) + np.append(0.0, half))
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def along_skis(model: Model, state: State, start: Forces, share: FloatArray, out: FloatArray) -> None:
     """Fill `out` (5, 2, m): edge depth (m), force and shear per length (N/m), bending (m), twist (rad) at the nodes.
 

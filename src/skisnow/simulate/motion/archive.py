@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import MAKING, PLAIN
 from .lines import (
     CELL,
@@ -88,18 +88,18 @@ def grown(archive: Archive, pieces: int, places: int) -> Archive:
     return larger
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def _square(x: float) -> int:
     """Number of the squares in which a coordinate lies."""
     return int(np.floor(x / BUCKET))
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def _bucket(a: int, b: int) -> int:
     return (a * 73856093 ^ b * 19349663) & (BUCKETS - 1)
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def put_away(archive: Archive, lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> None:
     """Archive the cells first ≤ j < last of a line where a base has been, and count the energy lost there."""
     archive.lost[0] += energy_left(lines, row, first, last, hardness, excess)
@@ -117,13 +117,13 @@ def put_away(archive: Archive, lines: Lines, row: int, first: int, last: int, ha
         j = end
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def _covered(lines: Lines, row: int, place: int) -> bool:
     i = np.uint64(place)
     return lines.cells[row, TO + i] > lines.cells[row, FROM + i]
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> None:
     m, place = archive.used[0], archive.used[1]
     if m >= len(archive.cell) or place + last - first > len(archive.pool):
@@ -153,7 +153,7 @@ def _add(archive: Archive, lines: Lines, row: int, first: int, last: int) -> Non
     archive.used[1] = place + last - first
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def set_course(archive: Archive, state: State) -> None:
     """Note how the sledge moves: which way what it leaves goes on."""
     R, V, course = state.turn, state.velocity, archive.course
@@ -163,7 +163,7 @@ def set_course(archive: Archive, state: State) -> None:
         course[2, a] = R[a, 0] * V[3] + R[a, 1] * V[4] + R[a, 2] * V[5]
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def _drift(course: FloatArray, frame: FloatArray, y: float) -> float:
     """How far what is left at y on a line goes aside for each metre ahead; none where it moves along the line."""
     rx, ry = frame[0] + y * frame[6] - course[0, 0], frame[1] + y * frame[7] - course[0, 1]
@@ -175,7 +175,7 @@ def _drift(course: FloatArray, frame: FloatArray, y: float) -> float:
     return ahead * aside / max(ahead * ahead, aside * aside, 1e-12)
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def meets_older(archive: Archive, x: float, y: float, reach: float) -> bool:
     """Whether there is any older track within reach (m) of a place, about."""
     around = reach + LONGEST  # pieces stand in the square of their middle
@@ -186,7 +186,7 @@ def meets_older(archive: Archive, x: float, y: float, reach: float) -> bool:
     return False
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> bool:
     """Bring older tracks into the cells first ≤ j < last of a line, and tell whether there were any."""
     cell = lines.value[row, CELL]
@@ -207,7 +207,7 @@ def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hard
     return found
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def _lies_on(
     archive: Archive, piece: int, x: float, y: float, z: float, frame: FloatArray, reach: float, wide: float
 ) -> bool:
@@ -223,7 +223,7 @@ def _lies_on(
     return abs(across - archive.start[piece, 0] * archive.cell[piece] - half) <= half + reach + aside
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int, last: int) -> bool:
     cell, old, start = lines.value[row, CELL], archive.cell[piece], lines.flag[row, WINDOW]
     frame, other = lines.frame[row], archive.frame[piece]
@@ -261,7 +261,7 @@ def _take_over(archive: Archive, piece: int, lines: Lines, row: int, first: int,
     return found
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def look_ahead(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
     """Give a fresh line the older tracks that lie on it, if there are any."""
     if not meets_older(archive, lines.frame[row, 0], lines.frame[row, 1], 0.5 * CELLS * lines.value[row, CELL]):
@@ -271,7 +271,7 @@ def look_ahead(archive: Archive, lines: Lines, row: int, hardness: float, excess
         lines.flag[row, KEPT] = 0
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def make_room(
     archive: Archive, lines: Lines, row: int, low: float, high: float, hardness: float, excess: float
 ) -> None:  # fmt: skip
@@ -319,7 +319,7 @@ def make_room(
         recall(archive, lines, row, new, start, hardness, excess)
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _move_window(lines: Lines, row: int, by: int) -> None:
     """Move a line's cells down by so many places, and empty those that become free; |by| < cells."""
     for column in range(4):
@@ -333,7 +333,7 @@ def _move_window(lines: Lines, row: int, by: int) -> None:
                 about[i] = about[i + by] if i + by >= 0 else nothing
 
 
-@numba.njit(**MAKING)
+@compiled(**MAKING)
 def _coarsen(lines: Lines, row: int) -> None:
     """Double the size of a line's cells."""
     start, cell, slope = lines.flag[row, WINDOW], lines.value[row, CELL], lines.value[row, SLOPE]
@@ -356,7 +356,7 @@ def _coarsen(lines: Lines, row: int) -> None:
         lines.cells[row, CENTRE + each] = centre[each] if both[each] == 2 else 0.0
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def leave_line(archive: Archive, lines: Lines, row: int, hardness: float, excess: float) -> None:
     """Archive a line that the ski has left."""
     if lines.flag[row, KEPT] == 1:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-PLAIN: Final[dict[str, Any]] = {"cache": True, "error_model": "numpy", "_nrt": False}
+PLAIN: Final[dict[str, Any]] = {"error_model": "numpy", "_nrt": False}
 """Options of functions that only read and write arrays they are given: without counting references to them, which
 took a seventh of the time of a run. They cannot make arrays."""
 MAKING: Final[dict[str, Any]] = {**PLAIN, "_nrt": True}

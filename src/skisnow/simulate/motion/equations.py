@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import PLAIN
 from .forces import Forces
 from .lines import Lines
@@ -24,7 +24,7 @@ from .tangent import CHANNELS
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def add_forces(model: Model, world: World, state: State, snow: Forces, scale: float, out: Vector) -> None:
     """Add scale × all generalised forces but stiffness and damping."""
     R, v = state.turn, state.velocity
@@ -80,7 +80,7 @@ def add_forces(model: Model, world: World, state: State, snow: Forces, scale: fl
     out.rigid[5] += scale * (snow.rigid[5] + c[0] * g1 - c[1] * g0 - (v[3] * p4 - v[4] * p3) - (v[0] * p1 - v[1] * p0))
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def drag_power(world: World, velocity: FloatArray) -> float:
     """Power (W) that the air takes at the centre of pressure."""
     high = world.drag_height
@@ -88,7 +88,7 @@ def drag_power(world: World, velocity: FloatArray) -> float:
     return world.drag * (a0 * a0 + a1 * a1 + a2 * a2) ** 1.5
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def channel_rows(model: Model, lines: Lines, state: State, rows: FloatArray) -> None:
     """Fill in how depth, roll and place across of each ski's sections follow from the rigid body: (2, CHANNELS, 6)."""
     ring = len(lines.flag) // 2
@@ -118,7 +118,7 @@ def channel_rows(model: Model, lines: Lines, state: State, rows: FloatArray) -> 
         rows[k, 5, 3], rows[k, 5, 4], rows[k, 5, 5] = y * d2 - z * d1, z * d0, -y * d0
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def move(state: State, rigid: FloatArray, bend: FloatArray, scale: float, out: State) -> None:
     """Fill `out` with place, turn and bend after scale × the increments, in the frame of `state`."""
     R = state.turn
@@ -145,7 +145,7 @@ def move(state: State, rigid: FloatArray, bend: FloatArray, scale: float, out: S
             out.bend[k, i] = state.bend[k, i] + scale * bend[k, i]
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def copy_pose(source: State, target: State) -> None:
     """Copy place, turn and bend. Loops: Numba compiles the assignment of arrays together with words for its errors."""
     for a in range(3):
@@ -157,7 +157,7 @@ def copy_pose(source: State, target: State) -> None:
             target.bend[k, i] = source.bend[k, i]
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def copy_state(source: State, target: State) -> None:
     """Copy a state."""
     copy_pose(source, target)

@@ -13,10 +13,10 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import PLAIN
 from .equations import add_forces, move
 from .forces import Forces
@@ -46,7 +46,7 @@ def new_past(size: int) -> Past:
     return Past(vectors[0], vectors[1], vectors[2], np.zeros(1), vectors[3], np.zeros(6))
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def fast_step(  # noqa: PLR0912 - one pass over the unknowns for each of its sums
     model: Model, world: World, state: State, start: Forces, system: Factored, h: float, past: Past, out: State
 ) -> None:  # fmt: skip
@@ -106,7 +106,7 @@ def fast_step(  # noqa: PLR0912 - one pass over the unknowns for each of its sum
     past.step[0] = h
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def _turned(x: float, y: float, z: float, v0: float, v1: float, v2: float) -> tuple[float, float, float]:
     """A vector turned by a small rotation vector, to its second order."""
     a0, a1, a2 = y * v2 - z * v1, z * v0 - x * v2, x * v1 - y * v0

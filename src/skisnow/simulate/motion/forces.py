@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import PLAIN, SUMS
 
 # isort: off
@@ -98,7 +98,7 @@ def new_forces(size: int, ring: int) -> Forces:
     )
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, look: bool, out: Forces) -> None:
     """Fill `out` with the forces at a state, with `tangent` also their tangent, with `look` powers and touches."""
     out.rigid[:] = 0.0
@@ -131,7 +131,7 @@ def feel(model: Model, snow: Snow, lines: Lines, state: State, tangent: bool, lo
                 _add_tangents(model, snow, k, count, out)
 
 
-@numba.njit(**PLAIN, fastmath=SUMS)
+@compiled(**PLAIN, fastmath=SUMS)
 def _press(snow: Snow, lines: Lines, count: np.uint64, look: bool, sheet: FloatArray, numbers: PlaceArray) -> None:
     """Let the snow answer the sections that lie in it; the others get no force."""
     cells, value, flag = lines.cells, lines.value, lines.flag
@@ -169,7 +169,7 @@ def _press(snow: Snow, lines: Lines, count: np.uint64, look: bool, sheet: FloatA
     bear(count, snow.hardness, snow.excess, sheet)
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _lay_cut(
     lines: Lines, sheet: FloatArray, i: np.uint64, row: np.uint64, window: int, cut: float, per_cell: float
 ) -> tuple[np.uint64, np.uint64]:  # fmt: skip
@@ -189,7 +189,7 @@ def _lay_cut(
     return first, last
 
 
-@numba.njit(**PLAIN, fastmath=SUMS)
+@compiled(**PLAIN, fastmath=SUMS)
 def _push(  # noqa: PLR0915 - one loop over many lines at a time
     model: Model, snow: Snow, state: State, k: int, count: np.uint64, sheet: FloatArray, rigid: FloatArray
 ) -> None:  # fmt: skip
@@ -257,7 +257,7 @@ def _push(  # noqa: PLR0915 - one loop over many lines at a time
     rigid[5] += left2 * g1 + up2 * g2 - side * f0
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _bend(count: np.uint64, sheet: FloatArray, numbers: PlaceArray, force: FloatArray) -> None:
     """Add the forces on the beam."""
     for i in range(count):
@@ -272,7 +272,7 @@ def _bend(count: np.uint64, sheet: FloatArray, numbers: PlaceArray, force: Float
         force[B + TWO] += z * turn
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _record(lines: Lines, k: int, count: np.uint64, out: Forces) -> None:
     """Write down what each section bears, and where the base touches its line."""
     sheet, section, value, flag = out.sheet, out.section, lines.value, lines.flag
@@ -293,7 +293,7 @@ def _record(lines: Lines, k: int, count: np.uint64, out: Forces) -> None:
     out.sections[k] = filled
 
 
-@numba.njit(**PLAIN, fastmath=SUMS)
+@compiled(**PLAIN, fastmath=SUMS)
 def _sum_powers(
     model: Model, snow: Snow, state: State, spacing: float, count: np.uint64, sheet: FloatArray, power: FloatArray
 ) -> None:  # fmt: skip
@@ -356,7 +356,7 @@ def _sum_powers(
     power[RELEASED] += released
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _cover_ground(snow: Snow, lines: Lines, count: np.uint64, sheet: FloatArray, numbers: PlaceArray) -> float:
     """Power (W) that the snow gains where the base's edges cover ground sideways, less what it gives back."""
     total = 0.0
@@ -377,7 +377,7 @@ def _cover_ground(snow: Snow, lines: Lines, count: np.uint64, sheet: FloatArray,
     return total
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _add_tangents(model: Model, snow: Snow, k: int, count: np.uint64, out: Forces) -> None:
     """Add minus the tangent of the sections in contact."""
     sheet, dof = out.sheet, model.dof

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .advance import (
     OF_DAMPING,
     OF_DRAG,
@@ -65,7 +65,7 @@ def longer(history: History) -> History:
     return History(*(np.concatenate([each, np.zeros_like(each)]) for each in history))
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def note(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, share: FloatArray,
     lost_before: float, held_first: float, history: History, row: int,
@@ -94,7 +94,7 @@ def note(
         history.boot_depth[row, k] = _at_boot(model.node, history.along[row, 0, k])
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _note_edge(model: Model, world: World, state: State, k: int, edge: FloatArray) -> None:
     """Fill in the edge that is down at the boot, brought to the slope's surface (m)."""
     boot = int(np.rint(-model.tail / (model.tip - model.tail) * (len(model.table) - 1)))
@@ -109,7 +109,7 @@ def _note_edge(model: Model, world: World, state: State, k: int, edge: FloatArra
     edge[2] = surface(world, edge[0])[0]
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _at_boot(node: FloatArray, values: FloatArray) -> float:
     """Value at station 0, interpolated between the nodes, which go from tip to tail."""
     i = 0

@@ -15,10 +15,10 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import PLAIN, SUMS
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -103,7 +103,7 @@ def cells_of(lines: Lines, row: int) -> FloatArray:
     return lines.cells[row, : 4 * CELLS].reshape(4, CELLS)
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def begin_line(lines: Lines, row: int, frame: FloatArray) -> None:
     """Make a row a line of virgin snow."""
     for a in range(12):
@@ -119,7 +119,7 @@ def begin_line(lines: Lines, row: int, frame: FloatArray) -> None:
     lines.flag[row, SWEPT] = 0
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def open_window(lines: Lines, row: int, start: int) -> None:
     """Give a line empty cells from number `start` on."""
     lines.flag[row, WINDOW] = start
@@ -131,7 +131,7 @@ def open_window(lines: Lines, row: int, start: int) -> None:
         lines.cells[row, CENTRE + j] = 0.0
 
 
-@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+@compiled(**PLAIN, fastmath={"contract"}, inline="always")
 def anchor_of(value: FloatArray, flag: IntArray, row: int, edge: float, deep: float) -> float:
     """Where across an edge that is `deep` now holds: as before, else where it met the surface since the last look."""
     if flag[row, ANCHORED] == 1:
@@ -141,7 +141,7 @@ def anchor_of(value: FloatArray, flag: IntArray, row: int, edge: float, deep: fl
     return edge
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int, known: int) -> None:
     """Remember the base that touches a line now; its cells must reach as far. That of place `known` is left."""
     low, high, edge = value[row, LOW], value[row, HIGH], value[row, EDGE]
@@ -164,7 +164,7 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int
         value[row, SLOPE] = slope
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> bool:
     """Remember the ground that the edge left sideways since it was marked last: as deep as the edge that passed.
 
@@ -190,7 +190,7 @@ def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> b
     return swept
 
 
-@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+@compiled(**PLAIN, fastmath={"contract"}, inline="always")
 def cut_of(
     value: FloatArray, flag: IntArray, row: int, edge: float, low: float, high: float, slope: float
 ) -> float:  # fmt: skip
@@ -203,14 +203,14 @@ def cut_of(
     return cut if ploughs and (low if cut > 0.0 else high) == edge else 0.0
 
 
-@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+@compiled(**PLAIN, fastmath={"contract"}, inline="always")
 def slope_cut(value: FloatArray, row: int, cut: float, depth: float, slope: float) -> float:
     """Slope of the ground that the edge has cut: as deep as the edge when it passed, or as the base there now."""
     left = (value[row, DEPTH_MARKED] - depth) / cut
     return left if (left - slope) * cut > 0.0 else slope
 
 
-@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+@compiled(**PLAIN, fastmath={"contract"}, inline="always")
 def ground_cut(
     cells: FloatArray, row: int, i: np.uint64, number: float, cell: float, edge: float, end: float, depth: float,
     slope: float, cut: float, left: float,
@@ -245,7 +245,7 @@ def ground_cut(
     return (new * ground_new + over * ground_over + under * ground_under) / (new + over + under)
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def mark_cut(cells: FloatArray, value: FloatArray, row: int, window: int, cut: float) -> int:
     """Remember the ground that the edge has cut, as deep as the edge when it passed; the place of the edge's cell."""
     edge, depth, slope, cell = value[row, EDGE], value[row, DEPTH], value[row, FALL], value[row, CELL]
@@ -262,13 +262,13 @@ def mark_cut(cells: FloatArray, value: FloatArray, row: int, window: int, cut: f
     return int(np.floor(edge * per_cell)) - window
 
 
-@numba.njit(**PLAIN, inline="always")
+@compiled(**PLAIN, inline="always")
 def ground_slope(lines: Lines, row: int) -> float:
     """Slope of the ground across a line's cells: that of the deepest base, but flat where its edge left sideways."""
     return 0.0 if lines.flag[row, SWEPT] == 1 else lines.value[row, SLOPE]
 
 
-@numba.njit(**PLAIN, fastmath=SUMS)
+@compiled(**PLAIN, fastmath=SUMS)
 def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, excess: float) -> float:
     """Energy lost to the groove in the cells first ≤ j < last of a line (J): ½ H_V g² (1 - H_V/k_u) per area."""
     start, cells = lines.flag[row, WINDOW], lines.cells
@@ -283,7 +283,7 @@ def energy_left(lines: Lines, row: int, first: int, last: int, hardness: float, 
     return 0.5 * hardness * excess / (hardness + excess) * total * lines.spacing[0]
 
 
-@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+@compiled(**PLAIN, fastmath={"contract"}, inline="always")
 def energy_at_edge(
     cells: FloatArray, row: int, start: int, cell: float, slope: float, y: float, depth: float, ahead: float,
     covers: bool, hardness: float, excess: float,

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .advance import GOES_ON, Memory, advance_controlled, advance_fixed
 from .archive import Archive
 from .compiled import PLAIN
@@ -26,7 +26,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 UPRIGHT, SUNK, GAINED = 0.7, -0.2, 5.0
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def advance_outputs(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, memory: Memory, fast: bool, step: float,
     tolerance: float | None, moments: FloatArray, end: float, share: FloatArray, lost_before: float,
@@ -48,7 +48,7 @@ def advance_outputs(
     return len(moments), GOES_ON
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _goes_well(
     model: Model, world: World, lines: Lines, archive: Archive, state: State, end: float, history: History, row: int
 ) -> bool:  # fmt: skip
@@ -71,7 +71,7 @@ def _goes_well(
     )
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def is_roomy(archive: Archive, rows: int) -> bool:
     """Whether the archive has room for what so many rows of lines can leave from output to output."""
     pieces, places = len(archive.cell) - archive.used[0], len(archive.pool) - archive.used[1]

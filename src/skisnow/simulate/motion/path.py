@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .archive import Archive, leave_line, look_ahead, make_room
 from .compiled import MAKING, PLAIN
 from .lines import (
@@ -61,7 +61,7 @@ MOST_UNEVEN: Final = 0.25
 (Choice)."""
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def surface(world: World, x: float) -> tuple[float, float]:
     """Height of the slope (m) and its gradient at x."""
     if len(world.heights) == 1:
@@ -77,7 +77,7 @@ def surface(world: World, x: float) -> tuple[float, float]:
     return height + (at - i - f) * h * gradient, gradient
 
 
-@numba.njit(**MAKING)
+@compiled(**MAKING)
 def _lay(
     model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, state: State, k: int, s: float, way: float
 ) -> None:  # fmt: skip
@@ -119,7 +119,7 @@ def _lay(
     look_ahead(archive, lines, row, snow.hardness, snow.excess)
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _station(model: Model, lines: Lines, state: State, k: int, number: int) -> float:
     """Station at which ski k's line `number`, counted from the tail, goes through under the straight axis."""
     R, side, frame = state.turn, model.middle[k, 1], lines.frame
@@ -134,7 +134,7 @@ def _station(model: Model, lines: Lines, state: State, k: int, number: int) -> f
     return along - across * line_along / line_across
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def follow(model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, state: State) -> None:
     """Take up the lines that the skis have left, lay those they will meet."""
     ring = len(lines.flag) // 2
@@ -164,7 +164,7 @@ def follow(model: Model, snow: Snow, world: World, lines: Lines, archive: Archiv
             _lay(model, snow, world, lines, archive, state, k, s, -spacing)
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def lay_anew(model: Model, snow: Snow, lines: Lines, archive: Archive, state: State) -> None:
     """Leave lines that have come to lie unevenly under a ski: where it has slipped far, those of other directions.
 
@@ -175,7 +175,7 @@ def lay_anew(model: Model, snow: Snow, lines: Lines, archive: Archive, state: St
             _leave_all(snow, lines, archive, k)
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _is_uneven(model: Model, lines: Lines, state: State, k: int) -> bool:
     """Whether neighbouring lines cross the ski's axis nearer or farther from each other than they may."""
     spacing, before = lines.spacing[0], _station(model, lines, state, k, 0)
@@ -187,7 +187,7 @@ def _is_uneven(model: Model, lines: Lines, state: State, k: int) -> bool:
     return False
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _has_turned(lines: Lines, state: State, k: int) -> bool:
     ring = len(lines.flag) // 2
     row = k * ring + lines.first[k] % ring
@@ -197,7 +197,7 @@ def _has_turned(lines: Lines, state: State, k: int) -> bool:
     return abs(np.arctan2(across, ahead)) > MOST_TURN
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def _leave_all(snow: Snow, lines: Lines, archive: Archive, k: int) -> None:
     ring = len(lines.flag) // 2
     for c in range(lines.count[k]):
@@ -205,7 +205,7 @@ def _leave_all(snow: Snow, lines: Lines, archive: Archive, k: int) -> None:
     lines.count[k] = 0
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def press(snow: Snow, lines: Lines, archive: Archive) -> None:
     """Let the snow remember the bases that touch its lines now, and where the edges hold."""
     ring = len(lines.flag) // 2
@@ -241,7 +241,7 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
             flag[row, ANCHORED], flag[row, ABOVE] = 1, 0
 
 
-@numba.njit(**PLAIN)
+@compiled(**PLAIN)
 def energy_in_snow(snow: Snow, lines: Lines, archive: Archive) -> float:
     """Energy lost to the grooves so far (J), those under the skis included."""
     ring = len(lines.flag) // 2

@@ -13,9 +13,10 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
+
+from ...machine_code import compiled
 
 # isort: off
 from .columns import (
@@ -30,7 +31,7 @@ from .lines import CELLS, DEEPEST, ROUNDING
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
-@numba.njit(**PLAIN, fastmath=SUMS, inline="always")
+@compiled(**PLAIN, fastmath=SUMS, inline="always")
 def sum_cells(
     sheet: FloatArray, i: np.uint64, cells: FloatArray, row: np.uint64, start: int, cell: float, per_cell: float,
     ratio: float,
@@ -72,7 +73,7 @@ def sum_cells(
     sheet[L0 + i], sheet[L1 + i], sheet[L2 + i] = l0, l1, l2
 
 
-@numba.njit(**PLAIN, fastmath=SUMS)
+@compiled(**PLAIN, fastmath=SUMS)
 def bear(count: np.uint64, hardness: float, excess: float, sheet: FloatArray) -> None:
     """Make force, moment and stiffness of the sums, for the lines that are wet; the others get no force.
 

@@ -12,10 +12,10 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import PLAIN
 from .equations import add_forces, move
 from .forces import Forces, feel
@@ -43,7 +43,7 @@ def new_room(size: int) -> Room:
     return Room(new_vector(size), new_vector(size), new_vector(size), new_vector(size), new_state(size))
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def ros2_step(
     model: Model, snow: Snow, world: World, lines: Lines, state: State, start: Forces, stage: Forces,
     system: Factored, h: float, room: Room, out: State,

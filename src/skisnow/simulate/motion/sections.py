@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import PLAIN
 
 # isort: off
@@ -35,7 +35,7 @@ ROW, ELEMENT, FRONT, REAR = ZERO, ONE, TWO, np.uint64(3)
 """Columns of `numbers`: the line, the section's element, places of its unknowns before and behind."""
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def find_sections(
     model: Model, one_sided: float, lines: Lines, state: State, skis: FloatArray, k: int, begin: int, n: np.uint64,
     sheet: FloatArray, numbers: PlaceArray,
@@ -69,7 +69,7 @@ def find_sections(
     _cut(n, 1.0 / one_sided, sheet)
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _take_lines(
     lines: Lines, k: int, begin: int, n: np.uint64, c0: float, c1: float, c2: float, skis: FloatArray,
     sheet: FloatArray, numbers: PlaceArray,
@@ -101,7 +101,7 @@ def _take_lines(
         sheet[Y0 + i], sheet[Y1 + i], sheet[Y2 + i] = n1 * d2 - n2 * d1, n2 * d0 - n0 * d2, n0 * d1 - n1 * d0
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _cross(n: np.uint64, sided: float, tail: float, step: float, most: float, sheet: FloatArray) -> None:
     """Find where along the ski's straight axis the edge that is down crosses the lines."""
     for i in range(n):
@@ -116,7 +116,7 @@ def _cross(n: np.uint64, sided: float, tail: float, step: float, most: float, sh
         sheet[AT + i] = at if at < most else most
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _share(n: np.uint64, tail: float, tip: float, per_spacing: float, spacing: float, sheet: FloatArray) -> None:
     """Give each line its share of the spacing, whole but for those at tip and tail."""
     for i in range(n):
@@ -126,7 +126,7 @@ def _share(n: np.uint64, tail: float, tip: float, per_spacing: float, spacing: f
         sheet[S + i] = min(max(s, tail), tip)
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _look_up(model: Model, state: State, k: int, n: np.uint64, sheet: FloatArray, numbers: PlaceArray) -> None:
     """Look up the ski's shape, its bend and how that changes."""
     table, node, place, bend, rate = model.table, model.node, model.at, state.bend[k], state.bend_rate[k]
@@ -151,7 +151,7 @@ def _look_up(model: Model, state: State, k: int, n: np.uint64, sheet: FloatArray
         sheet[WW + i], sheet[WS + i], sheet[WT + i] = rate[B], rate[B + ONE], rate[B + TWO]
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _bend(n: np.uint64, sheet: FloatArray) -> None:
     """Bend the sections with the beam: height and rise of the base, sine and cosine of its twist, depth."""
     for i in range(n):
@@ -171,7 +171,7 @@ def _bend(n: np.uint64, sheet: FloatArray) -> None:
         sheet[SINE + i] = phi * (1.0 - q * (1.0 / 6.0 - q * (1.0 / 120.0 - q * (1.0 / 5040.0))))
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _cut(n: np.uint64, sided: float, sheet: FloatArray) -> None:
     """Cut the base with the lines: the edge that is down, its directions, and where the base is wet."""
     _bend(n, sheet)

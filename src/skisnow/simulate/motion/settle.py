@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import MAKING
 from .equations import add_forces, channel_rows, copy_pose, move
 from .forces import Forces, feel
@@ -26,7 +26,7 @@ SETTLED: Final = 1e-10
 """Last Newton step (m) that counts as equilibrium."""
 
 
-@numba.njit(**MAKING)
+@compiled(**MAKING)
 def settle(
     model: Model, snow: Snow, world: World, lines: Lines, state: State, start: Forces, system: Factored, room: Room,
     calm: State,
@@ -70,7 +70,7 @@ def settle(
     return size
 
 
-@numba.njit(**MAKING)
+@compiled(**MAKING)
 def _solve_free(corner: FloatArray, right: FloatArray) -> None:
     """Solve for height, roll and pitch alone, from the Cholesky factor of the whole corner."""
     whole = np.zeros((6, 6))

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from typing import NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import PLAIN
 from .forces import Forces
 from .model import PADDING, Model
@@ -56,7 +56,7 @@ def new_factored(size: int) -> Factored:
     )
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def factor(
     model: Model, forces: Forces, rows: FloatArray, structure: float, contact: float, out: Factored
 ) -> bool:  # fmt: skip
@@ -105,7 +105,7 @@ def factor(
     return cholesky(out.corner) and sound
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def _rigid_tangent(
     forces: Forces, rows: FloatArray, k: int, contact: float, side: FloatArray, corner: FloatArray
 ) -> None:  # fmt: skip
@@ -125,7 +125,7 @@ def _rigid_tangent(
             corner[r, c] += total
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def cholesky(corner: FloatArray) -> bool:
     """Cholesky factor of a symmetric matrix, lower half, in place."""
     n = len(corner)
@@ -143,7 +143,7 @@ def cholesky(corner: FloatArray) -> bool:
     return True
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def solve_corner(corner: FloatArray, right: FloatArray) -> None:
     """Solve with the factor of `cholesky`, in place."""
     n = len(corner)
@@ -157,7 +157,7 @@ def solve_corner(corner: FloatArray, right: FloatArray) -> None:
         right[a] *= corner[a, a]
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def solve(system: Factored, vector: Vector) -> None:
     """Replace the right side by the solution."""
     forwards(system, vector)
@@ -165,7 +165,7 @@ def solve(system: Factored, vector: Vector) -> None:
     backwards(system, vector)
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def forwards(system: Factored, vector: Vector) -> None:
     """Solve the skis' rows forwards, and bring the border's right side to its Schur complement."""
     last = np.uint64(system.band.shape[1] - PADDING)
@@ -199,7 +199,7 @@ def forwards(system: Factored, vector: Vector) -> None:
     rigid[5] -= r5
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def backwards(system: Factored, vector: Vector) -> None:
     """Solve the skis' rows backwards, the border's solution being known."""
     first, last = np.uint64(PADDING), np.uint64(system.band.shape[1] - PADDING)
@@ -224,7 +224,7 @@ def backwards(system: Factored, vector: Vector) -> None:
         )  # fmt: skip
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def add_band(matrix: FloatArray, vector: FloatArray, scale: float, out: FloatArray) -> None:
     """Add scale × matrix × vector, both vectors padded."""
     for i in range(len(matrix)):
@@ -238,7 +238,7 @@ def add_band(matrix: FloatArray, vector: FloatArray, scale: float, out: FloatArr
         out[p] += total
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def quadratic(matrix: FloatArray, vector: FloatArray) -> float:
     """Value of vectorᵀ × matrix × vector, the vector padded."""
     total = 0.0
@@ -251,7 +251,7 @@ def quadratic(matrix: FloatArray, vector: FloatArray) -> float:
     return total
 
 
-@numba.njit(**PLAIN, fastmath={"contract"})
+@compiled(**PLAIN, fastmath={"contract"})
 def add_mass(model: Model, rigid: FloatArray, bend: FloatArray, scale: float, out: Vector) -> None:
     """Add scale × M × (rigid, bend) to `out`."""
     for a in range(6):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from ...machine_code import compiled
 from .compiled import PLAIN
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -16,7 +16,7 @@ CHANNELS: Final = 6
 """Columns between beam and rigid body: depth, depth × s, roll, across, across × s, forwards."""
 
 
-@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+@compiled(**PLAIN, fastmath={"contract"}, inline="always")
 def add_tangent(  # noqa: PLR0915 - entries written out: loops over so few cost more than they
     band: FloatArray, channels: FloatArray, corner: FloatArray, k: int, A: int, B: int, s: float, w0: float,
     w1: float, w2: float, w3: float, z: float,
@@ -82,7 +82,7 @@ def add_tangent(  # noqa: PLR0915 - entries written out: loops over so few cost 
         _add_channels(channels, k, B, w2, w3, z, s, c0, c2, cy, c5, k1, k2, t5)
 
 
-@numba.njit(**PLAIN, fastmath={"contract"}, inline="always")
+@compiled(**PLAIN, fastmath={"contract"}, inline="always")
 def _add_channels(
     channels: FloatArray, k: int, A: int, w0: float, w1: float, y: float, s: float, c0: float, c2: float, cy: float,
     c5: float, k1: float, k2: float, t5: float,

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from typing import Final, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
+
+from ...machine_code import compiled
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
@@ -39,7 +40,7 @@ def dense(matrix: FloatArray) -> FloatArray:
     return full
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def factor(matrix: FloatArray) -> None:
     """Replace the banded matrix by its LU factors, in place."""
     size = matrix.shape[0]
@@ -54,7 +55,7 @@ def factor(matrix: FloatArray) -> None:
                         matrix[i, 5 + k + j - i] -= ratio * matrix[k, 5 + j]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def solve(factors: FloatArray, right: FloatArray, columns: int) -> None:
     """Solve for the first `columns` columns of `right` (size, ≥ columns), in place, with the factors of `factor`."""
     size = factors.shape[0]
@@ -74,7 +75,7 @@ def solve(factors: FloatArray, right: FloatArray, columns: int) -> None:
             right[i, c] *= pivot
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def multiplied(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Product of a banded matrix with a vector (size,)."""
     size = matrix.shape[0]
