@@ -13,8 +13,9 @@ import pytest
 
 import skisnow
 from skisnow.simulate.run import Run
-from skisnow.simulate.run_summary import summary_dict
+from skisnow.simulate.run_summary import run_warnings, summary_dict
 from skisnow.simulate.scenario import scenario_file
+from skisnow.simulate.simulated_run import REMEDIES
 
 from .straight_run import STRAIGHT, straight_run
 
@@ -22,7 +23,7 @@ SCHEMA = json.loads((files(skisnow.simulate) / "schemas" / "summary.schema.json"
 ASKED = scenario_file("carved-46m", changes=STRAIGHT)
 CONTRACT = {
     *("outcome", "remedy", "run_length_m", "simulated_s", "wall_s", "steps", "rejected_steps", "energies"),
-    *("energy_balance_error", "scenario", "provenance"),
+    *("energy_balance_error", "scenario", "provenance", "turn_radius_median_m", "turn_radius_p5_m"),
 }
 ENERGIES = {
     *("kinetic_J", "potential_J", "elastic_ski_J", "elastic_snow_J"),
@@ -84,6 +85,44 @@ def test_least_radius_keeps_its_side() -> None:
     radius = np.full(len(run.time), math.inf)
     radius[3:6] = (20.0, -12.0, 15.0)
     assert summary_dict(replace(run, turn_radius=radius))["least_turn_radius_m"] == -12.0
+
+
+def test_radius_of_the_turn_is_not_that_of_its_start() -> None:
+    """Left out: the first half second, what is slower than 1 m/s, and what is straight. Without their sign."""
+    run = straight_run(ASKED.scenario)
+    radius, velocity = np.full(len(run.time), -20.0), run.velocity.copy()
+    radius[run.time < 0.5 - 1e-9] = 0.01
+    radius[-30:-10] = 0.02
+    velocity[-30:-10] = (0.9, 0.0, 0.0)
+    radius[-10:] = math.inf
+    counted = np.flatnonzero((run.time >= 0.5 - 1e-9) & (np.arange(len(run.time)) < len(run.time) - 30))
+    radius[counted[:20]] = 12.0  # 20 of 121 moments
+    assert len(counted) == 121
+    found = summary_dict(replace(run, turn_radius=radius, velocity=velocity))
+    assert (found["turn_radius_median_m"], found["turn_radius_p5_m"]) == (20.0, 12.0)
+    none = summary_dict(run)
+    assert (none["turn_radius_median_m"], none["turn_radius_p5_m"]) == (None, None)
+
+
+def opened(joule: float) -> Run:
+    """A run of which so much energy has gone unaccounted for."""
+    run = straight_run(ASKED.scenario)
+    return replace(run, energies=run.energies | {"damping": np.linspace(0.0, joule, len(run.time))})
+
+
+def test_an_open_balance_is_warned_of() -> None:
+    over = straight_run(ASKED.scenario).energy_turned_over
+    assert run_warnings(opened(0.019 * over)) == ()
+    (told,) = summary_dict(opened(0.03 * over), warnings=("another",))["warnings"][1:]
+    assert told.startswith(f"the balance of energy is open by 2.9 % of what was turned over, {0.03 * over:.3g} J")
+    still = replace(at_rest(), energies=at_rest().energies | {"damping": np.linspace(0.0, 0.9, 201)})
+    assert still.energy_balance_error == 1.0
+    assert run_warnings(still) == ()  # less than 1 J
+
+
+def test_energy_open_is_an_outcome_of_the_schema() -> None:
+    found = summary_dict(replace(opened(1e4), outcome="energy_open", remedy=REMEDIES["energy_open"]), ASKED.values)
+    jsonschema.validate(found, SCHEMA)
 
 
 def test_what_is_not_finite_is_null() -> None:

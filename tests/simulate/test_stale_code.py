@@ -82,10 +82,10 @@ def test_damage_is_repaired_with_a_word(program: Program, first: str, name: str,
 
 def test_an_edited_law_changes_the_run(program: Program, first: str) -> None:
     (kept,) = program.cache.glob("*/*-*")
-    program.edit("simulate/motion/pressure.py", "force = share *", "force = 3.0 * share *")
+    program.edit("simulate/motion/pressure.py", "force = share *", "force = 1.05 * share *")
     assert program.told(*RUN)[0] != first
     assert not kept.exists()
-    program.edit("simulate/motion/pressure.py", "force = 3.0 * share *", "force = share *")
+    program.edit("simulate/motion/pressure.py", "force = 1.05 * share *", "force = share *")
     assert program.told(*RUN)[0] == first
 
 

@@ -117,7 +117,7 @@ def _verified(found: Run, progress: Progress) -> dict[str, Any]:
 
 
 def _tell(options: argparse.Namespace, asked: ScenarioFile, found: Run, verification: dict[str, Any] | None) -> None:
-    from ..simulate.run_summary import summary_dict
+    from ..simulate.run_summary import run_warnings, summary_dict
 
     summary = summary_dict(found, asked.values, files=asked.files, warnings=asked.warnings, verification=verification)
     if options.json:
@@ -126,6 +126,8 @@ def _tell(options: argparse.Namespace, asked: ScenarioFile, found: Run, verifica
         from ..report.simulate_summary import simulate_summary
 
         print(simulate_summary(summary, title=asked.title), flush=True)
+    for text in run_warnings(found):
+        print(f"warning: {text}", file=sys.stderr)
     if options.out is not None:
         _write(options.out, found, summary, replay_title=asked.title if options.replay else None)
 

@@ -265,6 +265,11 @@ def _warned(track: Measured, row: Row) -> list[str]:
     if "x_m" not in row:
         return [f"{track.name}: no run can be simulated with these values: {row.get('reason', '')}"]
     found = []
+    if row["outcome"] == "energy_open":
+        found.append(
+            f"{track.name}: the balance of energy of the simulated run stays open by more than a tenth: what was found "
+            "rests on a run that is not to be trusted. Take smaller steps, or the error control"
+        )
     if row["reached"] < len(track.time):
         found.append(
             f"{track.name}: the simulated run ends early ({row['outcome'].replace('_', ' ')}); "

@@ -11,6 +11,7 @@ from markupsafe import Markup
 
 from ..files import require_writable, write_file
 from ..simulate.carve_dict import finite
+from ..simulate.run_summary import run_warnings
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .numerals import counted, significant, whole
 from .pictures import write_pictures
@@ -113,7 +114,6 @@ def _strength(run: Run) -> str:
 def outcome_sentences(run: Run) -> list[Markup]:
     """How it ended, what to do, and the numbers that people ask for first."""
     sentences = [prose("Outcome: {outcome}. {remedy}", outcome=run.outcome.replace("_", " "), remedy=run.remedy)]
-    radius = run.turn_radius[np.isfinite(run.turn_radius)]
     sentences.append(
         prose(
             "{length} m in {time} s, from {first} to {last} m/s, at most {most} m/s.",
@@ -124,9 +124,10 @@ def outcome_sentences(run: Run) -> list[Markup]:
     )  # fmt: skip
     sentences.append(
         prose(
-            "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m.",
+            "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m, "
+            "5 % of the time below {least} m.",
             first=_number(float(run.heading[0]) / DEGREE), last=_number(float(run.heading[-1]) / DEGREE),
-            radius=_number(float(np.median(radius)) if radius.size else None),
+            radius=_number(run.turn_radius_quantile(0.5)), least=_number(run.turn_radius_quantile(0.05)),
         )
     )  # fmt: skip
     deepest = float(np.nanmax(run.skis.edge_depth)) / MM
@@ -138,6 +139,8 @@ def _balance(run: Run) -> list[Markup]:
     error = run.energy_balance_error
     if error is None or finite(error) is None:
         return []
+    if told := run_warnings(run):
+        return [prose("Warning: {told}.", told=each) for each in told]
     return [prose("The balance of energy closes within {error} %.", error=_number(100.0 * error, 2))]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ..simulate.run import WARNED_SHARE
 from .numerals import significant
 
 if TYPE_CHECKING:
@@ -45,22 +46,23 @@ def _rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         "speed",
         (f"{_plain(end['speed_m_per_s'])} m/s at the end, {_plain(summary['greatest_speed_m_per_s'])} m/s at most"),
     )
-    yield "least turn radius", _radius(summary["least_turn_radius_m"])
+    yield "turn radius", _radius(summary)
     yield "energy balance", _balance(summary["energy_balance_error"])
     yield "steps", f"{summary['steps']}, {summary['rejected_steps']} rejected"
     yield "computed in", _computed(summary)
 
 
-def _radius(radius: float | None) -> str:
-    return "none, the run is straight" if radius is None else f"{_plain(abs(radius))} m to the {_side(radius)}"
-
-
-def _side(radius: float) -> str:
-    return "left" if radius > 0.0 else "right"
+def _radius(summary: Mapping[str, Any]) -> str:
+    median, least = summary["turn_radius_median_m"], summary["turn_radius_p5_m"]
+    if median is None:
+        return "none, the run is straight or was over within half a second"
+    return f"median {_plain(median)} m, 5 % of the time below {_plain(least)} m"
 
 
 def _balance(error: float | None) -> str:
-    return "nothing was turned over" if error is None else f"closes within {_plain(100.0 * error, 2)} %"
+    if error is None:
+        return "nothing was turned over"
+    return f"{'closes within' if error <= WARNED_SHARE else 'open by'} {_plain(100.0 * error, 2)} %"
 
 
 def _computed(summary: Mapping[str, Any]) -> str:

@@ -18,11 +18,17 @@ Outcome: TypeAlias = Literal[
     "tipped_over",
     "airborne",
     "sunk",
+    "energy_open",
     "step_too_small",
     "not_finite",
     "interrupted",
 ]
 
+WARNED_SHARE, OPEN_SHARE, LEAST_OPEN = 0.02, 0.1, 1.0
+"""Shares of the energy turned over by which the balance may be open before a run warns of it, and before its end is
+`energy_open`; and the energy (J) below which neither counts."""
+STEADY_SPEED, STEADY_FROM = 1.0, 0.5
+"""Speed (m/s) above which, and time (s) from which on, a run's turn radius counts: before, it is that of the start."""
 STORED: Final = ("kinetic", "potential", "elastic_ski", "elastic_snow")
 LOST: Final = ("penetration", "shear", "friction", "drag", "damping")
 
@@ -159,6 +165,24 @@ class Run:
     def energy_balance_error(self) -> float | None:
         """|energy at the end + losses - energy at the start| as a share of what was turned over; None if that is 0."""
         over = self.energy_turned_over
+        return self.open_energy / over if over > 0.0 else None
+
+    @property
+    def open_energy(self) -> float:
+        """|energy at the end + losses - energy at the start| (J)."""
         change = sum(float(self.energies[name][-1] - self.energies[name][0]) for name in STORED)
         lost = sum(float(self.energies[name][-1]) for name in LOST)
-        return abs(change + lost) / over if over > 0.0 else None
+        return abs(change + lost)
+
+    def is_open_by(self, share: float) -> bool:
+        """Whether the balance of energy is open by more than a share of what was turned over, and by more than 1 J."""
+        error = self.energy_balance_error
+        open_energy = self.open_energy
+        # where the losses outweigh what there was, below zero, no share can say how much is open
+        return open_energy > LEAST_OPEN and (error is None or error > share)
+
+    def turn_radius_quantile(self, share: float) -> float | None:
+        """Quantile of the turn radius (m), without its sign, once the start is over; None of a straight run."""
+        steady = (self.speed > STEADY_SPEED) & (self.time - self.time[0] >= STEADY_FROM)
+        radius = np.abs(self.turn_radius[steady & np.isfinite(self.turn_radius)])
+        return float(np.quantile(radius, share)) if radius.size else None

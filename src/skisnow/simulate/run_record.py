@@ -9,7 +9,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .motion.advance import NOT_FINITE, STEP_TOO_SMALL
+from .motion.advance import NOT_FINITE, PAUSED, STEP_TOO_SMALL
 from .motion.forces import HELD
 from .motion.history import History, longer, new_history
 from .motion.outputs import advance_outputs
@@ -57,12 +57,15 @@ class Record:
         self._make_room(len(moments))
         setup.keep_room()
         fixed = solver.fixed or solver.method == "fast"
-        noted, trouble = advance_outputs(
-            setup.model, setup.snow, setup.world, setup.lines, setup.archive, setup.memory, solver.method == "fast",
-            solver.step, None if fixed else solver.tolerance, moments, setup.end, setup.shares, self._lost_before,
-            self._held_first, self._history, self._count,
-        )  # fmt: skip
-        self._take(int(noted), replace=replace)
+        noted, trouble = 0, PAUSED
+        while trouble == PAUSED:  # between two calls an interrupt is heard
+            more, trouble = advance_outputs(
+                setup.model, setup.snow, setup.world, setup.lines, setup.archive, setup.memory, solver.method == "fast",
+                solver.step, None if fixed else solver.tolerance, moments[noted:], setup.end, setup.shares,
+                self._lost_before, self._held_first, self._history, self._count + noted,
+            )  # fmt: skip
+            noted += int(more)
+        self._take(noted, replace=replace)
         return _TROUBLES.get(int(trouble))
 
     def _make_room(self, moments: int) -> None:

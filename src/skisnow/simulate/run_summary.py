@@ -14,7 +14,7 @@ import numpy as np
 
 from ..units import DEGREE
 from .carve_dict import finite, snow_dict
-from .run import LOST, STORED, Run
+from .run import LOST, STORED, WARNED_SHARE, Run
 from .scenario.values import in_sections, scenario_values
 
 SCHEMA_VERSION: Final = 1
@@ -61,7 +61,7 @@ def summary_dict(
         "snow": snow_dict(run.scenario.contact.snow),
         "ski": {"name": run.scenario.ski.name, "source": run.scenario.ski.source},
         **checked,
-        "warnings": list(warnings),
+        "warnings": [*warnings, *run_warnings(run)],
         "provenance": _provenance(files),
     }
 
@@ -92,12 +92,33 @@ def least_turn_radius(run: Run) -> float | None:
     return float(known[np.argmin(np.abs(known))]) if known.size else None
 
 
+def radii_dict(run: Run) -> dict[str, float | None]:
+    """Median and 5 % quantile of the turn radius (m), without its sign and once the start is over; None if straight."""
+    return {
+        "turn_radius_median_m": run.turn_radius_quantile(0.5),
+        "turn_radius_p5_m": run.turn_radius_quantile(0.05),
+    }
+
+
+def run_warnings(run: Run) -> tuple[str, ...]:
+    """What about the numbers of a run is to be told, in words: a balance of energy that stays open."""
+    if not run.is_open_by(WARNED_SHARE):
+        return ()
+    error = run.energy_balance_error
+    share = "" if error is None else f"{100.0 * error:.2g} % of what was turned over, "
+    return (
+        f"the balance of energy is open by {share}{run.open_energy:.3g} J: where and how fast the run ends is less "
+        "certain than its digits say. Take smaller steps or a smaller tolerance, and see how far the end moves",
+    )
+
+
 def _moments(run: Run) -> dict[str, Any]:
     known = run.speed[np.isfinite(run.speed)]
     return {
         "end": end_dict(run),
         "greatest_speed_m_per_s": float(known.max()) if known.size else None,
         "least_turn_radius_m": least_turn_radius(run),
+        **radii_dict(run),
     }
 
 

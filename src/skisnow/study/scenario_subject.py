@@ -15,7 +15,7 @@ from ..simulate.carve_answer import Sources
 from ..simulate.carve_dict import finite
 from ..simulate.input_keys import InputKey
 from ..simulate.run import Run
-from ..simulate.run_summary import end_dict, energies_dict, least_turn_radius
+from ..simulate.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
 from ..simulate.scenario import ScenarioFile
 from ..simulate.scenario.given import (
     PATH_KEYS,
@@ -41,6 +41,8 @@ RESULTS: Final = (
     "end_heading_deg",
     "greatest_speed_m_per_s",
     "least_turn_radius_m",
+    "turn_radius_median_m",
+    "turn_radius_p5_m",
     "greatest_edge_depth_mm",
     "kinetic_start_J",
     "kinetic_J",
@@ -162,12 +164,13 @@ def _row(asked: ScenarioFile, run: Run) -> Row:
         "simulated_s": finite(run.simulated_s),
         "greatest_speed_m_per_s": float(known.max()) if known.size else None,
         "least_turn_radius_m": least_turn_radius(run),
+        **radii_dict(run),
         "greatest_edge_depth_mm": float(depth.max()) / MM if depth.size else None,
         **energies,
         "energy_balance_error": finite(run.energy_balance_error),
         "steps": int(run.steps),
         "rejected_steps": int(run.rejected_steps),
         "ski_name": run.scenario.ski.name,
-        "warnings": "; ".join(asked.warnings),
+        "warnings": "; ".join((*asked.warnings, *run_warnings(run))),
         "reason": run.remedy,
     }

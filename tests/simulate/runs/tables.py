@@ -92,12 +92,11 @@ def flying() -> Iterable[Row]:
             (np.array([energy(of)]) for of in (start, flight)),
         ]
         drifts.append([float(np.linalg.norm(b - a) / np.linalg.norm(a)) for a, b in pairs])
-    order = [math.log2(coarse / fine) for coarse, fine in zip(*drifts, strict=True)]
-    for name, drift, seen in zip(("momentum", "angular momentum", "energy"), drifts[1], order, strict=True):
-        found = f"{drift:.1e} of it after 50 ms in 400 steps, falling with the power {seen:.1f} of the step"
+    for name, coarse, fine in zip(("momentum", "angular momentum", "energy"), *drifts, strict=True):
+        found = f"{fine:.1e} of it after 50 ms in 400 steps, {coarse:.1e} in 200: no error of the steps"
         yield (
             f"free flight, tumbling, the skis swinging: {name}",
-            "kept, but for the steps",
+            "kept, but for what bent skis weigh in it, which the model leaves out",
             found,
             "motion/test_free_flight",
         )

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import signal
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from skisnow import Run, read_scenario, simulated_run
+from skisnow.errors import ParameterError
+from skisnow.simulate.motion.advance import PAUSED
+from skisnow.simulate.motion.outputs import advance_outputs
+from skisnow.simulate.run_record import Record
+from skisnow.simulate.run_setup import set_up
 from skisnow.simulate.scenario import Plane, Profile, Scenario
 from skisnow.simulate.scenario.scenario import Start
+from skisnow.simulate.simulated_run import computed_run
 
 from ..equilibrium.synthetic import shovel
 from .sledges import rigid_ski, scenario
@@ -134,6 +142,103 @@ def test_too_large_a_step_ends_as_not_finite(changes: dict[str, object]) -> None
     assert np.all(np.diff(run.time) > 0.0)
     assert np.isfinite(run.place).all()
     assert run.speed.max() < 2.0 * run.speed[0]  # what was computed before it ran away is kept, not the nonsense
+
+
+def test_a_diverged_step_is_not_laid_into_the_snow() -> None:
+    """The second step bends a ski by kilometres: its groove had no end."""
+    changes = {
+        "solver.method": "fast", "solver.step_ms": 2.0, "snow.H_V_N_per_mm3": 90.0, "snow.S_f_N_per_mm2": 10.0,
+    }  # fmt: skip
+    assert simulated_run(read_scenario("carved-46m", changes=changes)).outcome == "not_finite"
+
+
+def test_open_energy_is_no_finish(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The end of a run that gives a tenth too little or too much does not stand, whatever it was."""
+    given = read_scenario("carved-46m", changes={"run.duration_s": 0.05})
+    setup = set_up(given)
+    record = Record(setup)
+    record.add()
+    record.advance(np.array([0.05]))
+    closed = computed_run(setup, record, "finished", 0.1)
+    assert (closed.outcome, closed.is_open_by(0.02)) == ("finished", False)
+    kept = Record.histories
+
+    def opened(self: Record) -> dict[str, Any]:
+        found = kept(self)
+        found["energies"]["damping"] += 0.12 * closed.energy_turned_over * found["time"] / found["time"][-1]
+        return found
+
+    monkeypatch.setattr(Record, "histories", opened)
+    for outcome in ("finished", "distance_reached", "tipped_over", "airborne"):
+        run = computed_run(setup, record, outcome, 0.1)
+        assert run.outcome == "energy_open"
+        assert "Take smaller steps" in run.remedy
+    assert computed_run(setup, record, "interrupted", 0.1).outcome == "interrupted"
+
+
+def test_fast_steps_are_fixed() -> None:
+    """Which is said to who asks for the contrary."""
+    assert read_scenario("carved-46m", changes={"solver.method": "fast"}).solver.fixed
+    with pytest.raises(ParameterError, match=r"solver\.fixed is false beside solver\.method = \"fast\""):
+        read_scenario("carved-46m", changes={"solver.method": "fast", "solver.fixed": False})
+
+
+@pytest.mark.parametrize("changes", [{"solver.fixed": True}, {"solver.method": "fast"}], ids=["ros2", "fast"])
+def test_pauses_change_no_bit(changes: dict[str, object], monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same steps with one output and with ten, between which none pauses."""
+    given = read_scenario("carved-46m", changes={"run.duration_s": 0.5, "solver.step_ms": 0.2, **changes})
+    ended: list[int] = []
+
+    def told(*arguments: Any) -> Any:
+        found = advance_outputs(*arguments)
+        ended.append(found[1])
+        return found
+
+    monkeypatch.setattr("skisnow.simulate.run_record.advance_outputs", told)
+    whole, pieces = (simulated_run(replace(given, solver=replace(given.solver, output_interval=x))) for x in (0.5, 0.1))
+    assert ended.count(PAUSED) == 2  # of 2500 steps
+    assert np.array_equal(whole.place[-1], pieces.place[-1])
+
+
+def test_error_control_pauses(monkeypatch: pytest.MonkeyPatch) -> None:
+    changes = {"run.duration_s": 0.05, "run.output_ms": 50.0, "solver.tolerance_mm": 1e-8, "solver.step_ms": 0.001}
+    ended: list[int] = []
+
+    def told(*arguments: Any) -> Any:
+        found = advance_outputs(*arguments)
+        ended.append(found[1])
+        return found
+
+    monkeypatch.setattr("skisnow.simulate.run_record.advance_outputs", told)
+    run = simulated_run(read_scenario("carved-46m", changes=changes))
+    assert run.outcome == "finished"
+    assert ended.count(PAUSED) == (run.steps // 2 + run.rejected_steps) // 1000 > 0
+
+
+def test_an_interrupt_is_heard_inside_of_an_output() -> None:
+    """A second of simulated time in steps of a microsecond takes a minute; the signal comes after a moment."""
+    given = read_scenario(
+        "carved-46m", changes={"run.output_ms": 1000.0, "solver.fixed": True, "solver.step_ms": 0.001}
+    )
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("skisnow.simulate.run_record.advance_outputs", signalled(advance_outputs))
+        run = simulated_run(given)
+    assert run.outcome == "interrupted"
+    assert len(run.time) == 1
+
+
+def signalled(function: Any) -> Any:
+    """The same, with Ctrl-C from the system in its second call after that of the start."""
+    calls = 0
+
+    def called(*arguments: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        if calls == 3:
+            signal.raise_signal(signal.SIGINT)
+        return function(*arguments)
+
+    return called
 
 
 def test_interrupted() -> None:

@@ -282,3 +282,18 @@ def test_nothing_is_warned_of_where_friction_and_drag_are_off() -> None:
 def test_angles_are_not_radians() -> None:
     """An edge angle of 90 degrees is refused, not one of 1.57."""
     assert read_scenario("carved-46m", changes={"edge_angle_deg": 85}).sledge.edge_angle == math.radians(85.0)
+
+
+@pytest.mark.parametrize("name", scenario_names())
+def test_a_built_in_scenario_is_not_warned_of_itself(name: str) -> None:
+    """Its file says where it lies beyond what was measured. What a user makes of it is."""
+    assert scenario_file(name).warnings == ()
+    assert scenario_file(name, changes={"start.speed_m_per_s": 8.0}).warnings == ()
+    assert len(scenario_file(name, changes={"friction.mu_0": 0.011}).warnings) == 1
+
+
+def test_a_copy_of_a_built_in_scenario_is_warned_of(tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    path.write_text(scenario_text("carved-46m"), encoding="utf-8")
+    (told,) = scenario_file(path).warnings
+    assert "coefficient of friction 0.01 is outside" in told

@@ -22,8 +22,8 @@ from .system import Factored, factor, new_factored, quadratic
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
 
-# what `advance` ends with
-GOES_ON, STEP_TOO_SMALL, NOT_FINITE = 0, 1, 2
+# what `advance` ends with; paused: called again it goes on, with the same bits as if it had not stopped
+GOES_ON, STEP_TOO_SMALL, NOT_FINITE, PAUSED = 0, 1, 2, 3
 # entries of `work`: energy (J) that shear, friction, drag and damping took, was given sideways, released, done by the
 # normal force
 OF_SHEAR, OF_FRICTION, OF_SIDEWAYS, OF_RELEASED, OF_NORMAL, OF_DRAG, OF_DAMPING = 0, 1, 2, 3, 4, 5, 6
@@ -36,8 +36,13 @@ STEPS_PER_TANGENT: Final = 4
 EASY: Final = 2.0
 """Stiffness of the contact per length of ski, times the step's square, up to which ROS2 keeps its matrix: about a ski's
 mass per length (kg/m). With longer steps on harder snow an old matrix costs centimetres (Choice)."""
+STEPS_AT_ONCE: Final = 1000
+"""Steps after which it pauses, some tenths of a second: compiled code hears neither Ctrl-C nor a request to end."""
 STEPS_PER_CHECK: Final = 8
 """Steps after which it is seen whether the lines still lie evenly."""
+FARTHEST: Final = 1.0
+"""Way (m) and turn (rad) of the sledge in a step, and bend (m, rad) of a ski, beyond which a run has diverged: at
+100 m/s the longest step makes half of it. The snow is not asked to remember such a state."""
 LONGEST_STEP: Final = 4e-3
 """Step (s) of the error control, which is halved; a ski at 30 m/s moves 12 cm in it."""
 
@@ -133,6 +138,7 @@ def advance_fixed(
         return GOES_ON
     steps = max(1, int(np.ceil(left / step - 1e-9)))
     h = left / steps
+    steps, whole = min(steps, STEPS_AT_ONCE), steps
     if clock.counts[0] > 0 and abs(h - clock.time[1]) < 1e-9 * h:
         h = clock.time[1]  # but for rounding the same: the matrix may be kept
     else:
@@ -156,14 +162,14 @@ def advance_fixed(
                 memory.next,
             )  # fmt: skip
         copy_state(memory.next, memory.state)
-        clock.time[0] = until if i == steps - 1 else clock.time[0] + h
+        clock.time[0] = until if i == whole - 1 else clock.time[0] + h
         clock.time[2] = h
         clock.counts[0] += 1
         clock.counts[2] += 1
-        if not _is_finite(memory.state):
+        if not _is_sound(memory.state, h):
             return NOT_FINITE
         observe(model, snow, world, lines, archive, memory, clock.counts[2] % STEPS_PER_TANGENT == 0)
-    return GOES_ON
+    return GOES_ON if steps == whole else PAUSED
 
 
 @compiled(**PLAIN)
@@ -184,8 +190,11 @@ def advance_controlled(
     until: float,
 ) -> int:  # fmt: skip
     """Take pairs of steps; their error of place, against one step of twice the length, stays below `tolerance` (m)."""
-    clock = memory.clock
+    clock, tries = memory.clock, 0
     while clock.time[0] < until:
+        if tries == STEPS_AT_ONCE:
+            return PAUSED
+        tries += 1
         left = until - clock.time[0]
         h = min(clock.time[1], left)
         if h > 0.5 * left and h < left:
@@ -237,7 +246,7 @@ def _try_pair(model: Model, snow: Snow, world: World, lines: Lines, memory: Memo
         model, snow, world, lines, memory.state, memory.start, memory.stage, memory.system, 0.5 * h, memory.room,
         memory.half,
     )  # fmt: skip
-    if not (_is_finite(memory.half) and _is_finite(memory.trial)):
+    if not (_is_sound(memory.half, h) and _is_sound(memory.trial, h)):
         return np.nan
     feel(model, snow, lines, memory.half, h < 0.0, h < 0.0, memory.half_start)
     ros2_step(
@@ -259,22 +268,25 @@ def _difference(one: State, other: State, h: float) -> float:
     for k in range(2):
         for i in range(PADDING, one.bend.shape[1] - PADDING, 3):
             worst = max(worst, abs(one.bend[k, i] - other.bend[k, i]))
-    if not _is_finite(one) or not _is_finite(other):
+    if not _is_sound(one, h) or not _is_sound(other, h):
         return np.nan
     return worst
 
 
 @compiled(**PLAIN)
-def _is_finite(state: State) -> bool:
-    total = 0.0
+def _is_sound(state: State, h: float) -> bool:
+    """Whether a state after a step h (s) is finite and has not diverged."""
+    total, farthest = 0.0, 0.0
     for a in range(6):
+        farthest = max(farthest, abs(h * state.velocity[a]))
         total += state.velocity[a]
     for a in range(3):
         total += state.place[a] + state.turn[a, 0] + state.turn[a, 1] + state.turn[a, 2]
     for k in range(2):
         for i in range(state.bend.shape[1]):
+            farthest = max(farthest, abs(state.bend[k, i]))
             total += state.bend[k, i]
-    return bool(np.isfinite(total))
+    return bool(np.isfinite(total) and farthest <= FARTHEST)
 
 
 @compiled(**PLAIN, fastmath={"contract"})

@@ -147,8 +147,8 @@ def mark_cells(cells: FloatArray, value: FloatArray, row: np.uint64, window: int
     low, high, edge = value[row, LOW], value[row, HIGH], value[row, EDGE]
     depth, slope, cell = value[row, DEPTH], value[row, FALL], value[row, CELL]
     per_cell = 1.0 / cell
-    first = (int(np.floor(low * per_cell)) - window) & ~7
-    last = (int(np.floor(high * per_cell)) - window) | 7
+    first = max((int(np.floor(low * per_cell)) - window) & ~7, 0)
+    last = max(min((int(np.floor(high * per_cell)) - window) | 7, CELLS - 1), -1)
     deeper = 0
     for i in range(np.uint64(first), np.uint64(last + 1)):
         number = float(window) + i
@@ -176,7 +176,7 @@ def mark_swept(cells: FloatArray, value: FloatArray, row: int, window: int) -> b
     rise = (depth - value[row, DEPTH_MARKED]) / (edge - before)
     low, high = min(edge, before), max(edge, before)
     now = int(np.floor(edge / cell))
-    for j in range(int(np.floor(low / cell)), int(np.floor(high / cell)) + 1):
+    for j in range(max(int(np.floor(low / cell)), window), min(int(np.floor(high / cell)) + 1, window + CELLS)):
         i = np.uint64(j - window)
         middle = (j + 0.5) * cell
         passed = min(max(middle, low), high)
@@ -252,7 +252,7 @@ def mark_cut(cells: FloatArray, value: FloatArray, row: int, window: int, cut: f
     end = value[row, HIGH] if cut > 0.0 else value[row, LOW]
     left, per_cell = slope_cut(value, row, cut, depth, slope), 1.0 / cell
     low, high = min(edge, edge + cut), max(edge, edge + cut)
-    for j in range(int(np.floor(low * per_cell)), int(np.floor(high * per_cell)) + 1):
+    for j in range(max(int(np.floor(low * per_cell)), window), min(int(np.floor(high * per_cell)) + 1, window + CELLS)):
         i, middle = np.uint64(j - window), (j + 0.5) * cell
         cells[row, DEEPEST + i] = ground_cut(cells, row, i, j, cell, edge, end, depth, slope, cut, left)
         cells[row, FROM + i] = min(cells[row, FROM + i], max(low, j * cell))

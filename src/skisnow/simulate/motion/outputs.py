@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...machine_code import compiled
-from .advance import GOES_ON, Memory, advance_controlled, advance_fixed
+from .advance import GOES_ON, PAUSED, Memory, advance_controlled, advance_fixed
 from .archive import Archive
 from .compiled import PLAIN
 from .history import History, note
@@ -34,6 +34,8 @@ def advance_outputs(
 ) -> tuple[int, int]:  # fmt: skip
     """Go to each of the `moments` (s) and note it from `row` on; how many were, and what it ended with.
 
+    Paused, it is to be called again for the moments that are left.
+
     Steps have their error controlled by `tolerance` (m); with None they are fixed. Numba compiles what the one needs
     and leaves the other out. `end`: x of the slope's end (m). The others as in `advance_fixed` and `note`.
     """
@@ -42,6 +44,8 @@ def advance_outputs(
             trouble = advance_fixed(model, snow, world, lines, archive, memory, fast, step, moments[i])
         else:
             trouble = advance_controlled(model, snow, world, lines, archive, memory, tolerance, moments[i])
+        if trouble == PAUSED:
+            return i, trouble
         note(model, snow, world, lines, archive, memory, share, lost_before, held_first, history, row + i)
         if trouble != GOES_ON or not _goes_well(model, world, lines, archive, memory.state, end, history, row + i):
             return i + 1, trouble

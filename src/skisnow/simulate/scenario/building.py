@@ -31,6 +31,8 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
         A key is missing, two say the same or do not go together, or a file that one names cannot be read.
     """
     values = {name: given.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()}
+    if values["solver.method"] == "fast":
+        values["solver.fixed"] = given.values.get("solver.fixed", True)
     for name in REQUIRED:
         if values[name] is None:
             raise ParameterError(f"{name} is missing: {SCENARIO_KEYS[name].meaning}. It has no default")

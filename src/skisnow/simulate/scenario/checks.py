@@ -45,6 +45,11 @@ def _numbers(scenario: Scenario) -> Iterator[str]:
     yield from _outside("the damping ratio", scenario.damping_ratio, 0.0, 1.0)
     yield from _outside("the start's speed", scenario.start.speed, 0.0, 100.0, 1.0, "m/s")
     yield from _outside("gravity", scenario.gravity, 1e-6, 100.0, 1.0, "m/s²")
+    if solver.method == "fast" and not solver.fixed:
+        yield (
+            'solver.fixed is false beside solver.method = "fast", which has no control of the error: its steps are '
+            'fixed. Leave solver.fixed out or write true, or take solver.method = "ros2"'
+        )
     for name, value in (("duration", scenario.stop.duration), ("length", scenario.stop.length)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             yield f"the run's {name} is {value:g}; it must be a finite number above 0"

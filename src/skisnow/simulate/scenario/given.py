@@ -30,6 +30,7 @@ _REPLACED_BY_VALUE: Final = {
     ("slope.kind", "plane"): ("slope.profile", "slope.profile_gap"),
     ("slope.kind", "profile"): ("slope.angle_deg",),
     ("snow.penetration", "elastic"): ("snow.unloading_ratio",),
+    ("solver.method", "fast"): ("solver.fixed",),
 }
 
 _BUILT_IN = files(__package__.rpartition(".")[0]) / "scenarios"
@@ -70,7 +71,8 @@ class GivenScenario:
         ----------
         changes
             By full names, or by names without their section. What the scenario says in another way gives room: a
-            named snow replaces H_V and S_f, a ski's file its name, elastic snow the unloading ratio.
+            named snow replaces H_V and S_f, a ski's file its name, elastic snow the unloading ratio, fast steps the
+            word on whether they are fixed.
         folder
             Where relative paths among the changes start; None: the current folder.
 

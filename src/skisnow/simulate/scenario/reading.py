@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
@@ -105,9 +106,15 @@ def resolved(given: GivenScenario, *, sources: Sources | None = None) -> Scenari
         As `read_scenario`.
     """
     scenario, told = _built(given, sources or Sources())
-    return ScenarioFile(
-        given.title, _in_force(given, scenario), scenario, files_of(given), (*told, *suspicions(scenario))
-    )
+    own = _own_suspicions(given.title) if given.file is None else ()
+    warned = (*told, *(each for each in suspicions(scenario) if each not in own))
+    return ScenarioFile(given.title, _in_force(given, scenario), scenario, files_of(given), warned)
+
+
+@cache
+def _own_suspicions(name: str) -> tuple[str, ...]:
+    """What a built-in scenario itself would be suspected of; its file says so, and why."""
+    return suspicions(_built(given_scenario(name), Sources())[0])
 
 
 def _built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, ...]]:

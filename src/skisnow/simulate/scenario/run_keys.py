@@ -92,7 +92,7 @@ SOLVER_KEYS: Final = (
     InputKey(
         name="solver.fixed",
         kind="switch",
-        meaning="whether the step stays as it is, without control of the error",
+        meaning="whether the step stays as it is, without control of the error; left out with method = fast: true",
         default=_SOLVER.fixed,
         origin="choice: a step that is too long is wrong without a sign",
     ),
