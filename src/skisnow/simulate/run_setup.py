@@ -140,7 +140,7 @@ _Piece: TypeAlias = tuple[FloatArray, float, float, float]
 
 
 def _archived(archive: Archive) -> list[_Piece]:
-    pieces, places = (int(n) for n in archive.used)
+    pieces, places = (int(n) for n in archive.used[:2])
     if not pieces:
         return []
     first, count, place = archive.start[:pieces].T
