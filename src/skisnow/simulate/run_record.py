@@ -79,7 +79,7 @@ class Record:
             if row:
                 self.run_length += self._arc(row - 1, row)
             same = row > 0 and self._history.time[row] <= self._history.time[row - 1]
-            if (replace or same) and row > 1:
+            if same or (replace and row > 1):
                 for each in self._history:
                     each[row - 1 : -1] = each[row:].copy()
             else:

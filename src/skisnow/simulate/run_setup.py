@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass
 from typing import Final, TypeAlias
@@ -39,8 +40,13 @@ SMALLEST_CELL, LARGEST_CELL = 10e-6, 8e-3
 """Sizes (m) of cells."""
 FLOATING_DEPTH: Final = 0.1
 """Depth (m) by which a flat base must carry the sledge, or it has sunk from the start (Choice)."""
-SOFT_START: Final = 10e9
-"""Hardness (N/m³) from which on the start is found in stages: Newton's method does not reach it from afar."""
+SOFT_START: Final = 0.2e9
+"""Hardness (N/m³) above which the start is found on softer snow first, which then hardens: Newton's method does not
+always reach that of hard snow from afar."""
+MOST_STAGES: Final = 40
+"""Tries on the way from softer to hard snow: one is the rule."""
+AT_REST: Final = 1e-6
+"""Last step (m) of Newton's method that counts as equilibrium."""
 PROFILE_STEP: Final = 0.02
 """Spacing (m) of a profile's table."""
 
@@ -134,7 +140,7 @@ _Piece: TypeAlias = tuple[FloatArray, float, float, float]
 
 
 def _archived(archive: Archive) -> list[_Piece]:
-    pieces, places = (int(n) for n in archive.used)
+    pieces, places = (int(n) for n in archive.used[:2])
     if not pieces:
         return []
     first, count, place = archive.start[:pieces].T
@@ -205,15 +211,30 @@ def laid_out(scenario: Scenario) -> Setup:
 
 
 def _settled(model: Model, snow: Snow, world: World, lines: Lines, memory: Memory) -> float:
-    """Set the sledge down, on hard snow by way of softer ones, and return Newton's last step (m)."""
-    unrest = math.inf
-    stages = np.geomspace(min(snow.hardness, SOFT_START), snow.hardness, 8 if snow.hardness > SOFT_START else 1)
-    for hardness in stages:
-        softer = snow._replace(hardness=float(hardness), excess=float(snow.excess * hardness / snow.hardness))
-        unrest = float(
-            settle(model, softer, world, lines, memory.state, memory.start, memory.system, memory.room, memory.next)
-        )
-    return unrest
+    """Set the sledge down, on hard snow by way of softer ones, and return Newton's last step (m) or inf."""
+    state, softening = memory.state, max(1.0, snow.hardness / SOFT_START)
+
+    def last_step(hardened: float) -> float:
+        factor = softening ** (hardened - 1.0)
+        softer = snow._replace(hardness=factor * snow.hardness, excess=factor * snow.excess)
+        return float(settle(model, softer, world, lines, state, memory.start, memory.system, memory.room, memory.next))
+
+    reached = 1.0 if softening == 1.0 else 0.0
+    unrest, stride = last_step(reached), 1.0
+    if not unrest <= AT_REST:
+        return math.inf
+    for _ in range(MOST_STAGES):
+        if reached == 1.0:
+            return unrest
+        kept, target = copy.deepcopy(state), min(reached + stride, 1.0)
+        unrest = last_step(target)
+        if unrest <= AT_REST:
+            reached, stride = target, 2.0 * stride
+        else:
+            stride /= 3.0
+            for mine, before in zip(state, kept, strict=True):
+                mine[:] = before
+    return math.inf
 
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:

@@ -14,8 +14,9 @@ import numpy.typing as npt
 from ..errors import SolverError
 from .run import OPEN_SHARE, Groove, Outcome, Run
 from .run_record import Record
-from .run_setup import Setup, set_up
+from .run_setup import AT_REST, Setup, set_up
 from .scenario import Scenario
+from .standing import why_no_start
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Progress: TypeAlias = Callable[[float, float], None]
@@ -29,8 +30,6 @@ LONGEST_FLIGHT: Final = 0.3
 """Time (s) with both skis off the snow after which it is airborne (Choice)."""
 SINKING_DEPTH: Final = 0.5
 """Depth (m) of the boots below the surface at which the sledge has sunk (Choice)."""
-SETTLED: Final = 1e-6
-"""Last step (m) of Newton's method that counts as equilibrium."""
 OUTPUTS_AT_ONCE: Final = 5
 """Outputs between which nothing is told or asked while all goes well."""
 _COMPUTED_WRONG: Final = ("step_too_small", "not_finite", "interrupted")
@@ -89,14 +88,11 @@ def simulated_run(
     """
     setup = set_up(scenario)
     record = Record(setup)
-    if setup.height < -SINKING_DEPTH or (setup.unrest > SETTLED and setup.sinks):
+    if setup.height < -SINKING_DEPTH or (setup.unrest > AT_REST and setup.sinks):
         record.add()
         return computed_run(setup, record, "sunk", 0.0)
-    if setup.unrest > SETTLED:
-        raise SolverError(
-            f"the sledge finds no equilibrium to start from (Newton's last step was {setup.unrest:.1e} m): does its "
-            "centre of mass lie between the skis, on this slope at this heading?"
-        )
+    if setup.unrest > AT_REST:
+        raise SolverError(why_no_start(setup))
     record.add()
     begin = time.perf_counter()
     try:

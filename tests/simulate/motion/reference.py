@@ -286,7 +286,7 @@ def _section(
     crosses = rows.across + s * rows.across_s - aside * rows.forwards + float(u @ m) * deflection
     out.tangent += k0 * np.outer(sinks, sinks) + k2 * np.outer(rolls, rolls)
     out.tangent += k1 * (np.outer(sinks, rolls) + np.outer(rolls, sinks))
-    if abs(used) < 1.0:
+    if abs(used) < 1.0 + 1e-6:  # at rest with all of its grip in use it holds
         out.tangent += hold / snow.holding * np.outer(crosses, crosses)
 
 

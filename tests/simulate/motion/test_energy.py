@@ -12,6 +12,7 @@ import pytest
 from skisnow.simulate.motion.advance import observe
 from skisnow.simulate.motion.equations import add_forces, drag_power, move
 from skisnow.simulate.motion.forces import HELD, NORMAL, RELEASED, SHEAR, SIDEWAYS, SPRINGY, feel, new_forces
+from skisnow.simulate.motion.history import _accounts
 from skisnow.simulate.motion.lines import ANCHOR, DEPTH, EDGE, TOUCHED
 from skisnow.simulate.motion.model import PADDING, new_state
 from skisnow.simulate.motion.path import energy_in_snow, press
@@ -196,6 +197,37 @@ def test_an_edge_that_yields_takes_its_hold_along(way: float) -> None:
         used = (lines.value[deep, ANCHOR] - lines.value[deep, EDGE]) / holding
         # lines lie along the skis as they were laid, 1 % aside of straight across at the most
         assert used == pytest.approx(np.full(len(deep), -way * behind), abs=0.02)
+
+
+@pytest.mark.parametrize("lift", np.geomspace(1e-5, 2e-3, 12).tolist())
+def test_a_ski_that_its_groove_hardly_bears(fresh: Setup, lift: float) -> None:
+    """Lifted until next to nothing bears, then off: a force that is rounding gives next to nothing sideways."""
+    setup, out = copy.deepcopy(fresh), new_forces(len(fresh.model.mass), len(fresh.lines.flag) // 2)
+    state = setup.memory.state
+    state.place[:] += lift * state.turn[:, 2]
+    state.velocity[:] = 8.0, 5.0, 0.3, 1.0, 1.0, 2.0
+    feel(setup.model, setup.snow, setup.lines, state, False, True, out)
+    whole = float(np.abs(out.rigid[:3]).sum())
+    # a force F on bases of 34° gives F tan 34° times the speed across, and where edges cover ground as much again
+    assert abs(float(out.power[SIDEWAYS])) < 10.0 * (whole + 1.0) * 5.0
+    assert np.isfinite(out.rigid).all()
+
+
+def test_accounts_keep_their_sum() -> None:
+    """And neither is below nothing, unless both together are."""
+    for penetration, shear in (
+        (3.0, 4.0),
+        (-1.0, 5.0),
+        (5.0, -1.0),
+        (-1e-9, 0.0),
+        (0.0, 0.0),
+        (7.0, -6.0),
+        (-2.0, 2.0),
+    ):
+        found = _accounts(penetration, shear)
+        assert sum(found) == pytest.approx(penetration + shear, abs=1e-15)
+        assert min(found) >= min(0.0, penetration + shear)
+    assert _accounts(3.0, 4.0) == (3.0, 4.0)
 
 
 def test_drag_takes_its_power() -> None:

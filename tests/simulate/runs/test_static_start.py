@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,13 @@ import pytest
 from scipy.optimize import fsolve
 
 from skisnow import Run, Scenario, read_scenario, read_ski, rest, simulated_run
+from skisnow.errors import SolverError
+from skisnow.simulate.motion.equations import add_forces
+from skisnow.simulate.motion.model import PADDING
+from skisnow.simulate.motion.system import add_band, new_vector
+from skisnow.simulate.run_setup import set_up
 from skisnow.simulate.scenario.scenario import Solver
+from skisnow.simulate.standing import why_no_start
 
 from ..equilibrium.synthetic import snow
 from .sledges import GRAVITY, load, rigid_ski, scenario, total_mass
@@ -26,9 +33,60 @@ def at_start(given: Scenario) -> Run:
     return run
 
 
+def out_of_balance(changes: Mapping[str, object]) -> float:
+    """Force left over at the start (N, or N m), held directions aside: the largest on the sledge and on the skis."""
+    still = {"start.speed_m_per_s": 0.0, **changes}
+    setup = set_up(read_scenario("carved-46m", changes=still))
+    assert setup.unrest < 1e-6
+    model, state, left = setup.model, setup.memory.state, new_vector(len(setup.model.mass))
+    add_forces(model, setup.world, state, setup.memory.start, 1.0, left)
+    for k in range(2):
+        add_band(model.stiffness, state.bend[k], -1.0, left.bend[k])
+    return float(max(np.abs(left.rigid[2:5]).max(), np.abs(left.bend[:, PADDING:-PADDING]).max()))
+
+
+HARD_STARTS = ((60.0, 1.0), (50.0, 5.0), (45.0, 10.0), (40.0, 20.0), (45.0, 20.0), (40.0, 90.0), (-60.0, 90.0))
+
+
+@pytest.mark.parametrize(("edge_angle", "hardness"), [*HARD_STARTS, (0.0, 0.002), (70.0, 0.2)])
+def test_edges_on_hard_snow_find_their_balance(edge_angle: float, hardness: float) -> None:
+    """Of 800 N nothing is left but rounding."""
+    assert out_of_balance({"sledge.edge_angle_deg": edge_angle, "snow.H_V_N_per_mm3": hardness}) < 1e-5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("edge_angle", [0, 2, 5, 10, 20, 30, 40, 45, 50, 60, 70, 80, -20, -45, -70])
+def test_every_edge_on_every_snow_finds_its_balance(edge_angle: float) -> None:
+    for hardness in (0.002, 0.02, 0.04, 0.2, 1.0, 5.0, 10.0, 20.0, 40.0, 90.0):
+        for heading in (-30.0, 0.0, 60.0):
+            changes = {"sledge.edge_angle_deg": edge_angle, "snow.H_V_N_per_mm3": hardness}
+            assert out_of_balance({**changes, "start.heading_deg": heading}) < 1e-3, (hardness, heading)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"start.heading_deg": 90.0, "slope.angle_deg": 30.0}, ["to the right of", "centre_of_mass_height"]),
+        ({"start.heading_deg": -90.0, "slope.angle_deg": 30.0}, ["to the left of", "stance_width"]),
+        ({"slope.angle_deg": 50.0, "start.heading_deg": 0.0}, ["0.903 m before", "centre_of_mass_forward"]),
+    ],
+)
+def test_a_sledge_whose_weight_passes_beside_its_skis(changes: dict[str, object], words: list[str]) -> None:
+    high = {"sledge.centre_of_mass_height_m": 0.8, **changes}
+    with pytest.raises(SolverError) as told:
+        simulated_run(read_scenario("carved-46m", changes=high))
+    assert all(word in str(told.value) for word in words)
+
+
+def test_weight_over_the_skis_is_not_blamed() -> None:
+    text = why_no_start(set_up(read_scenario("carved-46m")))
+    assert "falls between the skis" in text
+    assert "cannot stand" not in text
+
+
 @pytest.mark.parametrize("edge_angle", [60.0, 70.0])
 def test_steep_edges_that_hold_strongly(edge_angle: float) -> None:
-    """Newton's method takes a thousand steps, and finds the place: nothing moves faster than gravity lets it."""
+    """Nothing moves faster than gravity lets it."""
     changes = {"sledge.edge_angle_deg": edge_angle, "snow.S_f_N_per_mm2": 2.0, "run.duration_s": INSTANT}
     run = simulated_run(read_scenario("carved-46m", changes=changes))
     assert run.outcome == "finished"
@@ -95,8 +153,10 @@ def test_rigid_edged_with_half_the_weight_each() -> None:
     assert depth == pytest.approx(np.full_like(depth, expected), rel=3e-4)  # it leans by 1e-9 rad: 0.5 µm of 1.6 mm
 
 
-@pytest.mark.parametrize("edge_deg", [0.0, 40.0])
-@pytest.mark.parametrize("hardness", [0.04, 0.2, 5.0])
+@pytest.mark.parametrize(
+    ("edge_deg", "hardness"),
+    [(0.0, 0.04), (0.0, 0.2), (0.0, 5.0), (40.0, 0.04), (40.0, 0.2), (40.0, 5.0), (45.0, 20.0), (60.0, 90.0)],
+)
 def test_flexible_as_at_rest(edge_deg: float, hardness: float) -> None:
     """`rest` knows the same ski by other equations on a mesh of its own. The skis weigh next to nothing here."""
     ski = read_ski("giant-slalom")

@@ -37,6 +37,33 @@ def test_mirror(changes: dict[str, float]) -> None:
         assert other.energies[name] == pytest.approx(energy, abs=1e-6), name
 
 
+ICE = {"snow.H_V_N_per_mm3": 20.0, "snow.S_f_N_per_mm2": 0.3}
+ACROSS = {"snow.S_f_N_per_mm2": 0.05, "sledge.edge_angle_deg": 10.0, "start.heading_deg": 80.0}
+
+
+@pytest.mark.parametrize(
+    ("changes", "duration"),
+    [
+        ({**CARVES, **ICE}, 0.3),
+        ({**CARVES, **ICE}, 0.5e-3),
+        ({**CARVES, "snow.S_f_N_per_mm2": 0.02}, 1.0),
+        (ACROSS, 1.0),
+    ],
+)
+def test_mirrored_skids(changes: dict[str, float], duration: float) -> None:
+    """Windows of cells, pieces of older tracks and the order of the skis are the same from both sides."""
+    given = {**changes, "run.duration_s": duration}
+    one, other = simulated(**given, **FIXED), simulated(**mirrored(given), **FIXED)
+    assert other.place == pytest.approx(one.place * [1.0, -1.0, 1.0], abs=1e-11)
+
+
+@pytest.mark.parametrize("hardness", [0.03, 0.3])
+def test_straight_down_stays_straight(hardness: float) -> None:
+    changes = {"sledge.edge_angle_deg": 0.0, "start.heading_deg": 0.0, "snow.H_V_N_per_mm3": hardness}
+    run = simulated(**changes, **{"run.duration_s": 1.0}, **FIXED)
+    assert np.abs(run.place[:, 1]).max() < 1e-12
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("changes", [CARVES, SKIDS], ids=["carves", "skids"])
 def test_mirror_of_the_whole_run(changes: dict[str, float]) -> None:

@@ -38,6 +38,8 @@ EASY: Final = 2.0
 mass per length (kg/m). With longer steps on harder snow an old matrix costs centimetres (Choice)."""
 STEPS_AT_ONCE: Final = 1000
 """Steps after which it pauses, some tenths of a second: compiled code hears neither Ctrl-C nor a request to end."""
+BEARS: Final = 1e-6
+"""Force (N) from which on a line counts as bearing: less is rounding."""
 STEPS_PER_CHECK: Final = 8
 """Steps after which it is seen whether the lines still lie evenly."""
 FARTHEST: Final = 1.0
@@ -179,7 +181,7 @@ def _is_easy(start: Forces, lines: Lines, h: float) -> bool:
     for k in range(2):
         met = 0
         for i in range(start.sections[k]):
-            met += 1 if start.section[k, i, 1] > 0.0 else 0
+            met += 1 if start.section[k, i, 1] > BEARS else 0
         stiffest = max(stiffest, start.corner[k, 0, 0] / (max(met, 1) * lines.spacing[0]))
     return stiffest * h * h <= EASY
 

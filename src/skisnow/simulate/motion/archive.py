@@ -38,6 +38,8 @@ BUCKET = 0.0625
 LONGEST = 0.12
 """Longest piece (m): as wide as the track of a flat ski, which a run tells piece by piece."""
 BUCKETS = 32768
+ALL = 1 << 62
+"""Number of a piece that none has."""
 SWEEP = 0.005
 """Cells that an edge leaves sideways grow until they reach as far (m): on ice it would leave them at every step. With
 half as much a skid on ice ends 1 cm elsewhere, with twice as much 5 cm (Choice)."""
@@ -54,7 +56,7 @@ class Archive(NamedTuple):
     pool: SmallArray  # (l, 3): deepest, covered from and to, both from the cell's middle (m)
     head: IntArray  # (BUCKETS,) newest piece of each square, -1: none
     before: IntArray  # (m,) the next older piece of its square
-    used: IntArray  # (2,) pieces, places in the pool
+    used: IntArray  # (3,) pieces, places in the pool; pieces from this one on are not recalled yet
     lost: FloatArray  # (1,) energy lost in what left the skis (J)
     course: FloatArray  # (3, 3) in space: the sledge's place, velocity and turning now, which lead its grooves
 
@@ -70,7 +72,7 @@ def new_archive(pieces: int, places: int) -> Archive:
         np.zeros((places, 3), np.float32),
         np.full(BUCKETS, -1, np.int64),
         np.zeros(pieces, np.int64),
-        np.zeros(2, np.int64),
+        np.array([0, 0, ALL], np.int64),
         np.zeros(1),
         np.zeros((3, 3)),
     )
@@ -79,7 +81,7 @@ def new_archive(pieces: int, places: int) -> Archive:
 def grown(archive: Archive, pieces: int, places: int) -> Archive:
     """The same archive with room for more."""
     larger = new_archive(pieces, places)
-    m, places_used = (int(n) for n in archive.used)
+    m, places_used = (int(n) for n in archive.used[:2])
     larger.frame[:m], larger.cell[:m], larger.slope[:m] = archive.frame[:m], archive.cell[:m], archive.slope[:m]
     larger.drift[:m], larger.start[:m], larger.before[:m] = archive.drift[:m], archive.start[:m], archive.before[:m]
     larger.pool[:places_used] = archive.pool[:places_used]
@@ -104,16 +106,32 @@ def put_away(archive: Archive, lines: Lines, row: int, first: int, last: int, ha
     """Archive the cells first ≤ j < last of a line where a base has been, and count the energy lost there."""
     archive.lost[0] += energy_left(lines, row, first, last, hardness, excess)
     start = lines.flag[row, WINDOW]
-    most = max(1, int(LONGEST / lines.value[row, CELL]))
     j = first
     while j < last:
         if not _covered(lines, row, j - start):
             j += 1
             continue
         end = j
-        while end < last and end - j < most and _covered(lines, row, end - start):
+        while end < last and _covered(lines, row, end - start):
             end += 1
-        _add(archive, lines, row, j, end)
+        _add_pieces(archive, lines, row, j, end)
+        j = end
+
+
+@compiled(**PLAIN)
+def _add_pieces(archive: Archive, lines: Lines, row: int, first: int, last: int) -> None:
+    """Archive the cells first ≤ j < last, cut in pieces that are the same counted from the left or from the right."""
+    most, whole = max(1, int(LONGEST / lines.value[row, CELL])), last - first
+    pieces = (whole + most - 1) // most
+    pieces += 1 - pieces % 2  # an odd number: what is over goes to the middle
+    each = whole // pieces
+    over = whole - each * pieces
+    j = first
+    for piece in range(pieces):
+        outer = min(piece, pieces - 1 - piece)  # of so many pairs and the middle, the outer ones take one more each
+        end = j + each + (1 if outer < over // 2 or (over % 2 == 1 and 2 * piece == pieces - 1) else 0)
+        if end > j:
+            _add(archive, lines, row, j, end)
         j = end
 
 
@@ -199,7 +217,9 @@ def recall(archive: Archive, lines: Lines, row: int, first: int, last: int, hard
         for j in range(_square(y0 - around), _square(y0 + around) + 1):
             piece = archive.head[_bucket(i, j)]
             while piece >= 0:
-                if _lies_on(archive, piece, x0, y0, z0, frame, reach, 0.5 * lines.spacing[0]):
+                if piece < archive.used[2] and _lies_on(
+                    archive, piece, x0, y0, z0, frame, reach, 0.5 * lines.spacing[0]
+                ):
                     found = _take_over(archive, piece, lines, row, first, last) or found
                 piece = archive.before[piece]
     if found:
@@ -293,7 +313,7 @@ def make_room(
         first, last = int(np.floor(low / cell)) - MARGIN, int(np.floor(high / cell)) + MARGIN
         if start <= first and last < start + CELLS:
             return
-    new = (first + last) // 2 - CELLS // 2
+    new = _mirrored_half(first + last + 1) - CELLS // 2
     if fresh:
         open_window(lines, row, new)
         y = (new + 0.5 * CELLS) * cell
@@ -319,6 +339,12 @@ def make_room(
         recall(archive, lines, row, new, start, hardness, excess)
 
 
+@compiled(**PLAIN, inline="always")
+def _mirrored_half(number: int) -> int:
+    """Half of a number, cut towards zero: of cells that are counted from the left or from the right the same."""
+    return number // 2 if number >= 0 else -(-number // 2)
+
+
 @compiled(**PLAIN)
 def _move_window(lines: Lines, row: int, by: int) -> None:
     """Move a line's cells down by so many places, and empty those that become free; |by| < cells."""
@@ -339,7 +365,7 @@ def _coarsen(lines: Lines, row: int) -> None:
     start, cell, slope = lines.flag[row, WINDOW], lines.value[row, CELL], lines.value[row, SLOPE]
     deepest, low, high = np.full(CELLS, -NOTHING), np.full(CELLS, NOTHING), np.full(CELLS, -NOTHING)
     centre, both = np.zeros(CELLS), np.zeros(CELLS, np.int64)
-    new = int(np.floor(start / 2)) - CELLS // 4
+    new = _mirrored_half(start + CELLS // 2) - CELLS // 2
     for j in range(start, start + CELLS):
         i, target = np.uint64(j - start), int(np.floor(j / 2))
         if lines.cells[row, TO + i] > lines.cells[row, FROM + i]:

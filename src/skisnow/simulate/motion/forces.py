@@ -58,6 +58,9 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 PlaceArray: TypeAlias = npt.NDArray[np.uint64]
 
 FAR = 1 << 40
+YIELDS = 1.0 + 1e-6
+"""Share of its grip at which an edge counts as yielding in the tangent: one at rest with all of it in use holds,
+and rounding does not choose."""
 
 # entries of `power`
 SHEAR, FRICTION, SIDEWAYS, RELEASED, SPRINGY, HELD, NORMAL = 0, 1, 2, 3, 4, 5, 6
@@ -210,9 +213,9 @@ def _push(  # noqa: PLR0915 - one loop over many lines at a time
             sheet[N0 + i], sheet[N1 + i], sheet[N2 + i], sheet[T0 + i], sheet[T1 + i], sheet[T2 + i],
         )  # fmt: skip
         fall, k1, k2, reach = sheet[FALLING + i], sheet[K1 + i], sheet[K2 + i], sheet[REACH + i]
-        # centre of pressure, on the base
+        # centre of pressure, on the base where it is wet: of a force that is rounding alone M/F would be anywhere
         F, M = sheet[FORCE + i], sheet[MOMENT + i]
-        off = M / (F if F > 0.0 else 1.0)
+        off = max(min(M / (F if F > 0.0 else 1.0), sheet[WET_TO + i]), sheet[WET_FROM + i])
         h0 = s + off * (sheet[Y0 + i] - fall * n0)
         h1, h2 = k1 + off * (sheet[Y1 + i] - fall * n1), k2 + off * (sheet[Y2 + i] - fall * n2)
         z, h = sheet[Z + i], sheet[LENGTH + i]
@@ -389,6 +392,6 @@ def _add_tangents(model: Model, snow: Snow, k: int, count: np.uint64, out: Force
             out.band, out.channels, out.corner, k, dof[e, 0], dof[e, 1], sheet[S + i], sheet[W0 + i], sheet[W1 + i],
             sheet[W2 + i], sheet[W3 + i], sheet[Z + i], sheet[N2 + i] + climb * sheet[T2 + i], sheet[U2 + i],
             sheet[STIFF0 + i], sheet[STIFF1 + i], sheet[STIFF2 + i], sheet[REACH + i] * sheet[LATERAL + i],
-            1.0 / np.sqrt(1.0 - sine * sine), sheet[HOLD + i] / snow.holding if abs(sheet[USED + i]) < 1.0 else 0.0,
+            1.0 / np.sqrt(1.0 - sine * sine), sheet[HOLD + i] / snow.holding if abs(sheet[USED + i]) < YIELDS else 0.0,
             climb, sheet[ASIDE + i],
         )  # fmt: skip

@@ -84,14 +84,27 @@ def note(
     energies[0], energies[1], energies[2] = mechanical_energy(model, world, state)
     left = energy_in_snow(snow, lines, archive) - lost_before
     energies[3] = power[SPRINGY] + power[HELD]
-    energies[4] = left - work[OF_SIDEWAYS] + work[OF_RELEASED]
-    energies[5] = work[OF_SHEAR] - (power[HELD] - held_first)
+    energies[4], energies[5] = _accounts(
+        left - work[OF_SIDEWAYS] + work[OF_RELEASED], work[OF_SHEAR] - (power[HELD] - held_first)
+    )
     energies[6], energies[7], energies[8] = work[OF_FRICTION], work[OF_DRAG], work[OF_DAMPING]
     energies[9] = power[HELD]
     along_skis(model, state, memory.start, share, history.along[row])
     for k in range(2):
         _note_edge(model, world, state, k, history.edge[row, k])
         history.boot_depth[row, k] = _at_boot(model.node, history.along[row, 0, k])
+
+
+@compiled(**PLAIN)
+def _accounts(penetration: float, shear: float) -> tuple[float, float]:
+    """Losses to penetration and to shear (J), neither negative, their sum as it is.
+
+    An edge that is pressed deeper holds more: what its hold gains so is paid by what presses. And what sideways motion
+    stressed and then lifts the skis comes from the shear, which pays for sideways motion.
+    """
+    by_press = min(shear, 0.0)
+    lifted = min(penetration + by_press, 0.0)
+    return penetration + by_press - lifted, shear - by_press + lifted
 
 
 @compiled(**PLAIN)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...machine_code import compiled
-from .archive import Archive, leave_line, look_ahead, make_room
+from .archive import ALL, Archive, leave_line, look_ahead, make_room
 from .compiled import MAKING, PLAIN
 from .lines import (
     ABOVE,
@@ -136,7 +136,7 @@ def _station(model: Model, lines: Lines, state: State, k: int, number: int) -> f
 
 @compiled(**PLAIN)
 def follow(model: Model, snow: Snow, world: World, lines: Lines, archive: Archive, state: State) -> None:
-    """Take up the lines that the skis have left, lay those they will meet."""
+    """Take up the lines that the skis have left, then lay those they will meet: both meet what either left."""
     ring = len(lines.flag) // 2
     spacing = lines.spacing[0]
     for k in range(2):
@@ -152,6 +152,7 @@ def follow(model: Model, snow: Snow, world: World, lines: Lines, archive: Archiv
             last = (lines.first[k] + lines.count[k] - 1) % ring
             leave_line(archive, lines, k * ring + last, snow.hardness, snow.excess)
             lines.count[k] -= 1
+    for k in range(2):
         if lines.count[k] == 0:
             _lay(model, snow, world, lines, archive, state, k, 0.0, spacing)
         s = _station(model, lines, state, k, lines.count[k] - 1)
@@ -210,6 +211,7 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
     """Let the snow remember the bases that touch its lines now, and where the edges hold."""
     ring = len(lines.flag) // 2
     value, flag, cells = lines.value, lines.flag, lines.cells
+    archive.used[2] = archive.used[0]  # neither ski meets what the other leaves now
     for k in range(2):
         for c in range(lines.count[k]):
             row = k * ring + (lines.first[k] + c) % ring
@@ -239,6 +241,7 @@ def press(snow: Snow, lines: Lines, archive: Archive) -> None:
             anchor = anchor_of(value, flag, row, edge, value[row, DEEP_NOW])
             value[row, ANCHOR] = max(min(anchor, edge + snow.holding), edge - snow.holding)
             flag[row, ANCHORED], flag[row, ABOVE] = 1, 0
+    archive.used[2] = ALL
 
 
 @compiled(**PLAIN)
