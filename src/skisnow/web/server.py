@@ -59,7 +59,13 @@ def serve(lab: Lab, *, host: str, port: int, token: str | None, tell: Callable[[
     with _listening(host, port) as listener:
         app = lab_application(lab, host=host, token=token)
         config = uvicorn.Config(
-            app, log_level="critical", access_log=False, server_header=False, ws_max_size=4_000_000, lifespan="on"
+            app,
+            log_level="critical",
+            access_log=False,
+            server_header=False,
+            ws_max_size=4_000_000,
+            ws_ping_interval=None,  # the pages' sockets have a heartbeat of their own, which is more patient
+            lifespan="on",
         )
         _Announced(config, lambda: tell(_address(listener, host))).run(sockets=[listener])
 

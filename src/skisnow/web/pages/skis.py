@@ -12,6 +12,7 @@ from ..fields import button, choice, field
 from ..lab_skis import FILE, TABLE, LabSkis, texts_of_ski
 from ..layout import framed, heading, sentence
 from ..line_chart import LOOKS, ChartLine, LineChart
+from ..patience import BUILD_S
 from ..ski_asked import SkiAsked, SkiFound, ski_found
 from ..ski_editor import SkiEditor
 from ..trouble import told
@@ -39,7 +40,7 @@ def add_page(lab: Lab) -> None:
     """Add the page to the application."""
     skis = LabSkis(lab.runs)
 
-    @ui.page(PATH)
+    @ui.page(PATH, response_timeout=BUILD_S)
     async def show_skis() -> None:
         with framed("Skis", here=PATH):
             page = _Skis(skis)
