@@ -15,6 +15,7 @@ from .guard import Access, Guard
 from .layout import KEEPING, SCRIPT, STYLES
 from .pages import INNER, PAGES
 from .patience import RECONNECT_S, use_heartbeat
+from .socket_events import answer_quietly
 from .transfer import add_transfer
 from .trouble import add_error_pages, log_to
 
@@ -57,6 +58,7 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
         reconnect_timeout=RECONNECT_S,
     )
     pages_app.on_startup(use_heartbeat)
+    answer_quietly()
     pages_app.config.socket_io_js_transports = ["websocket"]
     return Guard(outer, Access(host, token, lab.limits.upload_bytes))
 

@@ -10,6 +10,7 @@ import uvicorn
 from ..errors import ParameterError
 from .application import lab_application
 from .guard import is_loopback
+from .slow_requests import PatientToAPoint
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -65,6 +66,7 @@ def serve(lab: Lab, *, host: str, port: int, token: str | None, tell: Callable[[
             server_header=False,
             ws_max_size=4_000_000,
             ws_ping_interval=None,  # the pages' sockets have a heartbeat of their own, which is more patient
+            http=PatientToAPoint,
             lifespan="on",
         )
         _Announced(config, lambda: tell(_address(listener, host))).run(sockets=[listener])
