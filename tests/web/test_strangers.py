@@ -138,3 +138,35 @@ def test_half_a_request_is_not_waited_for(sent: bytes) -> None:
 
     heard = asyncio.run(talk())
     assert heard.count(b"hi") == (1 if b"\r\n\r\nGET" in sent else 0)
+
+
+def upload(lab: Served, path: str, name: str, content: bytes, **fields: str) -> tuple[int, str]:
+    parts = urlsplit(lab.address)
+    connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=300)
+    texts = "".join(
+        f'--cut\r\nContent-Disposition: form-data; name="{key}"\r\n\r\n{text}\r\n' for key, text in fields.items()
+    )
+    head = f'--cut\r\nContent-Disposition: form-data; name="file{"s" if path == "/import" else ""}"; filename="{name}"'
+    body = texts.encode() + head.encode() + b"\r\n\r\n" + content + b"\r\n--cut--\r\n"
+    own = {"Origin": lab.address.rstrip("/"), "Content-Type": "multipart/form-data; boundary=cut"}
+    connection.request("POST", path, body=body, headers=own)
+    answer = connection.getresponse()
+    found = answer.status, answer.read().decode()
+    connection.close()
+    return found
+
+
+def test_a_track_that_ends_its_reader_does_not_end_the_lab(lab: Served) -> None:
+    depth = 200_000
+    content = b"<?xml version='1.0'?>" + depth * b"<gpx>" + depth * b"</gpx>"
+    status, text = upload(lab, "/replay/track", "deep.gpx", content, azimuth="180")
+    assert status == 400
+    assert "This was not taken in" in text
+    assert asked(lab, "/")[0] == 200
+
+
+def test_a_zip_that_is_none_is_refused_by_its_reader(lab: Served) -> None:
+    status, text = upload(lab, "/import", "campaign.zip", b"PK\x03\x04 and nothing")
+    assert status == 400
+    assert "zip file is damaged" in text
+    assert asked(lab, "/")[0] == 200

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
-from uvicorn.protocols.http.auto import AutoHTTPProtocol
+if TYPE_CHECKING:
+    from uvicorn.protocols.http.h11_impl import H11Protocol as _Protocol
+else:
+    from uvicorn.protocols.http.auto import AutoHTTPProtocol as _Protocol
 
 HEAD_S: Final = 20.0
 """For the head of a request, from the connection or from its first byte on (Choice)."""
 BODY_S: Final = 120.0
 """For the next piece of a body (Choice): a phone that sleeps while it sends."""
 HEAD_BYTES: Final = 65_536
-
-if TYPE_CHECKING:
-    _Protocol = Any
-else:
-    _Protocol = AutoHTTPProtocol
 
 
 class PatientToAPoint(_Protocol):
@@ -32,7 +30,7 @@ class PatientToAPoint(_Protocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Begin to wait for a request."""
-        super().connection_made(transport)
+        super().connection_made(cast("asyncio.Transport", transport))
         self._wait(self.head_s)
 
     def data_received(self, data: bytes) -> None:

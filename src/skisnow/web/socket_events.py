@@ -8,7 +8,6 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import core
-from socketio.exceptions import ConnectionRefusedError as Refused
 
 from .trouble import LOG
 
@@ -38,12 +37,12 @@ def _quiet(name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
         try:
             answer = handler(*given)
             return await answer if inspect.isawaitable(answer) else answer
-        except Refused:
-            raise
         except Exception as error:  # whatever a stranger sends
+            if type(error).__module__ == "socketio.exceptions":  # the framework's own refusal, which its page waits for
+                raise
             LOG.info("a socket sent a malformed %s (%s)", name, type(error).__name__)
         if name == "connect":
-            raise Refused("this is no page of the lab")
+            raise ConnectionRefusedError
         return None
 
     return answered
