@@ -23,18 +23,17 @@
   const telling = new Map(); // readings that the lab has not answered yet, by their numbers
 
   const fieldsets = () => document.querySelectorAll("fieldset.lab");
-  const isOpen = () => [...fieldsets()].some((each) => !each.disabled);
 
   // The connection
 
   async function connected() {
-    if (!watched) begun();
-    else if (isLost) await goneOn();
+    if (isLost) await goneOn();
     isLost = false;
     fieldsets().forEach((each) => (each.disabled = false));
     document.documentElement.classList.remove("not-connected");
     if (left?.isConnected) left.focus();
     left = null;
+    if (!watched) begun();
     if (held.length && !writing && !resuming) writeHeld();
   }
 
@@ -52,6 +51,7 @@
   async function goneOn() {
     await kept.tellAgain();
     telling.forEach((emit) => emit());
+    if (resuming) emitEvent("resent", kept.readings());
     if (waiting) again?.();
   }
 
@@ -67,6 +67,7 @@
 
   // The lab has answered what was sent again: those that it could not store are said in full.
   function resent(answers) {
+    if (!resuming) return; // asked twice
     answers.forEach(([number]) => kept.settled(number));
     resuming = false;
     if (!waiting || asked === 0) resume(answers.map(([, why]) => why).filter(Boolean));
@@ -99,14 +100,13 @@
   // What is typed on while an answer is on its way
 
   function isHeld(event) {
-    if (!(waiting || writing || isLost) || !event.isTrusted || event.target.closest?.("a, summary")) return false;
-    return true;
+    return (waiting || writing || isLost) && event.isTrusted && !event.target.closest?.("a, summary");
   }
 
   function keyPressed(event) {
     const writes = event.key.length === 1 || HELD.includes(event.key);
     if (!writes || event.ctrlKey || event.metaKey || event.altKey || !isHeld(event)) return;
-    if (event.key === "Tab" && !held.length && !watched) return; // no way out of a page that never opens else
+    if (event.key === "Tab" && !held.length && (!watched || isLost)) return; // no way out of a page that never opens else
     event.preventDefault();
     event.stopImmediatePropagation();
     held.push(event.key === "Tab" && event.shiftKey ? "Back" : event.key);
@@ -128,12 +128,17 @@
     asked += 1;
     say("unused", "");
     const number = asked;
-    timer = setTimeout(() => answered(number, false), PATIENCE_MS);
+    timer = setTimeout(giveUp, PATIENCE_MS);
     const once = kept.once();
     again = () => emit({ number, once });
     again.isEnter = isEnter;
     again();
     save();
+  }
+
+  function giveUp() {
+    if (isLost) timer = setTimeout(giveUp, PATIENCE_MS); // it is asked again when the lab is back
+    else answered(asked, false);
   }
 
   function answered(number, fine) {
