@@ -19,6 +19,7 @@ from starlette.types import Message, Scope
 from starlette.websockets import WebSocket
 
 from skisnow.web.guard import COOKIE, Access, Guard, is_loopback
+from skisnow.web.token_page import Tries
 
 HOST = "127.0.0.1:8765"
 OWN = {"origin": f"http://{HOST}"}
@@ -180,3 +181,35 @@ def test_nothing_external_may_be_loaded_or_framed() -> None:
 def test_what_counts_as_loopback() -> None:
     assert [is_loopback(host) for host in ("127.0.0.1", "127.9.9.9", "::1", "localhost")] == [True] * 4
     assert not any(is_loopback(host) for host in ("0.0.0.0", "::", "192.168.0.1", "example.org"))
+
+
+@pytest.mark.parametrize("headers", [{"host": "["}, {"host": "[::1"}, {"origin": "http://["}, {"origin": "http://[x]"}])
+def test_what_is_no_address_is_a_bad_request(headers: dict[str, str]) -> None:
+    for lab in (Client(), Client(token="snow in may")):
+        assert lab.ask(**headers).status == 400
+        assert lab.post(b"x", **{**OWN, **headers}).status == 400
+        assert not lab.is_spoken_to(**{**OWN, **headers})
+
+
+def test_an_address_may_try_ten_tokens_a_minute() -> None:
+    clock = [100.0]
+    tries = Tries(lambda: clock[0])
+    assert [tries.wait_s("192.168.1.7") for _ in range(10)] == [0.0] * 10
+    clock[0] = 130.0
+    assert tries.wait_s("192.168.1.7") == 30.0
+    assert tries.wait_s("192.168.1.8") == 0.0
+    clock[0] = 160.0
+    assert tries.wait_s("192.168.1.7") == 0.0
+    same_network = [tries.wait_s(f"2001:db8::{i}") for i in range(11)]
+    assert same_network == [0.0] * 10 + [60.0]
+
+
+def test_too_many_tries_are_told_when_to_try_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skisnow.web.token_page._WAIT_S", 0.0)
+    lab = Client(token="snow in may")
+    wrong = [lab.post(b"token=snow+in+june", path="/token", **OWN).status for _ in range(10)]
+    assert wrong == [403] * 10
+    right = lab.post(b"token=snow+in+may", path="/token", **OWN)
+    assert right.status == 429
+    assert 1 <= int(right.headers["retry-after"]) <= 60
+    assert "set-cookie" not in right.headers

@@ -11,6 +11,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from skisnow.cli import main
+
 from .conftest import MISSING, Served
 
 if "nicegui" in MISSING:
@@ -64,6 +66,13 @@ def test_a_port_that_is_taken_is_said(served: Served, tmp_path: Path) -> None:
     port = str(urlsplit(served.address).port)
     done = command("--port", port, store=tmp_path / "other.sqlite3")
     assert done.returncode == 1 and "Traceback" not in done.stderr and "in use" in done.stderr
+
+
+@pytest.mark.parametrize("port", ["99999", "-1", "80a"])
+def test_a_port_that_is_none_is_said(port: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["serve", f"--port={port}"])
+    assert f"'{port}' is no port; a whole number from 1 to 65535 is" in capsys.readouterr().err
 
 
 def test_no_trace_reaches_a_page(served: Served) -> None:

@@ -74,6 +74,17 @@ def whole_number(word: str) -> int:
         raise argparse.ArgumentTypeError(f"{word!r} is no whole number; write one such as 160") from None
 
 
+def port_number(word: str) -> int:
+    """A port to listen on: a whole number from 0 to 65535."""
+    try:
+        port = int(word)
+    except ValueError:
+        port = -1
+    if not 0 <= port <= 65_535:
+        raise argparse.ArgumentTypeError(f"{word!r} is no port; a whole number from 1 to 65535 is, or 0 for a free one")
+    return port
+
+
 def seed_number(word: str) -> int:
     """A seed: a whole number from 0 to 2⁶³ - 1, so that it can stand in every file."""
     try:

@@ -81,15 +81,15 @@ class Analyses:
         self._opening = asyncio.Lock()
 
     def known(self, kind: str, id_: str) -> Subject | None:
-        """The campaign, where it was looked at before and nothing was entered since.
+        """The campaign, where it was looked at before and nothing was entered since; None otherwise.
 
         Raises
         ------
         StoreError
             The store has no such campaign.
         """
-        found = self._subjects.get((kind, id_))
-        return found[1] if found is not None and found[0] == self._state(kind, id_) else None
+        found, state = self._subjects.get((kind, id_)), self._state(kind, id_)
+        return found[1] if found is not None and found[0] == state else None
 
     async def subject(self, kind: str, id_: str) -> Subject:
         """The campaign in the state that the store has it in.

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+import json
+from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+from weakref import WeakKeyDictionary
 
-from nicegui import ui
+from nicegui import Client, ui
 
 from .fields import button
 
@@ -19,6 +23,38 @@ if TYPE_CHECKING:
 ASK: Final = "() => lab.ask(emit)"
 ENTER: Final = "(event) => lab.enter(event, emit)"
 ONWARD: Final = "(event) => lab.onward(event)"
+LONGEST: Final = 200
+"""Of a number that the browser gives to what it sends."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What the browser says of what it sends.
+
+    Attributes
+    ----------
+    number
+        Of the question that the page waits for; None where nobody waits.
+    once
+        What tells a thing that is sent again from a new one.
+    text
+        What is typed in the field, where it is sent along.
+    """
+
+    number: int | None = None
+    once: str | None = None
+    text: str | None = None
+
+
+_NOTHING: Final = Asked()
+_ASKED: ContextVar[Asked] = ContextVar("asked", default=_NOTHING)
+_ANSWERS: Final = WeakKeyDictionary[Client, dict[int, bool]]()
+"""Of each page the answers to its questions: what was asked again is answered again, and not done again."""
+
+
+def asked() -> Asked:
+    """What is being answered now."""
+    return _ASKED.get()
 
 
 def answering(act: Act) -> Callable[[GenericEventArguments], None]:
@@ -31,15 +67,44 @@ def answering(act: Act) -> Callable[[GenericEventArguments], None]:
     """
     client = ui.context.client  # the place that asked may be gone when the act is done
 
-    def answered(asked: GenericEventArguments) -> None:
-        fine = False
+    def answered(event: GenericEventArguments) -> None:
+        what, known = _asked_of(event.args), _ANSWERS.setdefault(client, {})
+        fine = known.get(what.number, False) if what.number is not None else False
         try:
-            fine = act() is not False
+            if what.number is None or what.number not in known:
+                fine = _done(act, what)
         finally:
-            if isinstance(asked.args, int):  # the question's number; nobody waits where there is none
-                client.run_javascript(f"lab.answered({asked.args}, {'true' if fine else 'false'})")
+            if what.number is not None:
+                known[what.number] = fine
+            _tell(client, what, fine=fine)
 
     return answered
+
+
+def _done(act: Act, what: Asked) -> bool:
+    before = _ASKED.set(what)
+    try:
+        return act() is not False
+    finally:
+        _ASKED.reset(before)
+
+
+def _tell(client: Client, what: Asked, *, fine: bool) -> None:
+    if what.number is not None:
+        client.run_javascript(f"lab.answered({what.number}, {'true' if fine else 'false'})")
+    elif what.once is not None:
+        client.run_javascript(f"lab.told({json.dumps(what.once)})")
+
+
+def _asked_of(said: Any) -> Asked:
+    """What came from the browser; anything else than expected counts as not said."""
+    given = said if isinstance(said, dict) else {}
+    number, once, text = (given.get(key) for key in ("number", "once", "text"))
+    return Asked(
+        number if isinstance(number, int) else None,
+        once if isinstance(once, str) and len(once) <= LONGEST else None,
+        text if isinstance(text, str) else None,
+    )
 
 
 def asking_button(text: str, act: Act, kind: str = "") -> ui.button:

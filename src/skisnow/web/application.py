@@ -12,8 +12,10 @@ from nicegui import ui
 from starlette.responses import FileResponse
 
 from .guard import Access, Guard
-from .layout import SCRIPT, STYLES
+from .layout import KEEPING, SCRIPT, STYLES
 from .pages import INNER, PAGES
+from .patience import RECONNECT_S, use_heartbeat
+from .socket_events import answer_quietly
 from .transfer import add_transfer
 from .trouble import add_error_pages, log_to
 
@@ -42,11 +44,21 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     outer = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)
     outer.add_api_route(STYLES, lambda: _own("lab.css", "text/css"), include_in_schema=False)
     outer.add_api_route(SCRIPT, lambda: _own("lab.js", "text/javascript"), include_in_schema=False)
+    outer.add_api_route(KEEPING, lambda: _own("kept.js", "text/javascript"), include_in_schema=False)
     add_transfer(outer, lab)
     for name in (*PAGES, *INNER):
         import_module(f".pages.{name}", __package__).add_page(lab)
     add_error_pages(outer)
-    ui.run_with(outer, title="skisnow", language="en-US", tailwind=False, show_welcome_message=False)
+    ui.run_with(
+        outer,
+        title="skisnow",
+        language="en-US",
+        tailwind=False,
+        show_welcome_message=False,
+        reconnect_timeout=RECONNECT_S,
+    )
+    pages_app.on_startup(use_heartbeat)
+    answer_quietly()
     pages_app.config.socket_io_js_transports = ["websocket"]
     return Guard(outer, Access(host, token, lab.limits.upload_bytes))
 

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
-FIRST: Final = "(event) => { if (event.detail < 2) emit(); }"
-"""In the browser: the second press of a double one does nothing."""
+FIRST: Final = "(event) => { if (event.detail < 2) emit(kept.once()); }"
+"""In the browser: the second press of a double one does nothing. Sent along: what tells it from a press of its own."""
 
 
 def field(

@@ -17,11 +17,13 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse, Response
 
-from .token_page import TOKEN_PATH, answer_to_token, token_page
+from .token_page import TOKEN_PATH, Tries, answer_to_token, token_page, too_many_tries
 
 if TYPE_CHECKING:
     from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+STATUS: Final = "skisnow.status"
+"""Key of a request's scope: the status that it is answered with, whatever the framework says."""
 COOKIE: Final = "skisnow_lab"
 _SAFE: Final = frozenset({"GET", "HEAD", "OPTIONS"})
 _LOOPBACK_NAMES: Final = frozenset({"localhost", "127.0.0.1", "::1"})
@@ -82,7 +84,13 @@ class Access:
         object.__setattr__(self, "_names", _LOOPBACK_NAMES | names)
 
     def knows(self, host: str) -> bool:
-        """Whether a request may name this host: our own names, and where others may come, any bare address."""
+        """Whether a request may name this host: our own names, and where others may come, any bare address.
+
+        Raises
+        ------
+        ValueError
+            This is no host.
+        """
         name = (urlsplit(f"//{host}").hostname or "").lower()
         if name in self._names:
             return True
@@ -122,6 +130,7 @@ class Guard:
     def __init__(self, app: ASGIApp, access: Access) -> None:
         self.app = app
         self.access = access
+        self.tries = Tries()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer, refuse, or pass on."""
@@ -135,9 +144,9 @@ class Guard:
         if scope["type"] == "websocket":
             await self._web_socket(scope, receive, send, refused=answer is not None)
         elif answer is not None:
-            await answer(scope, receive, _with_headers(send))
+            await answer(scope, receive, _with_headers(send, scope))
         else:
-            await self.app(scope, _limited(receive, self.access.body_bytes), _with_headers(send))
+            await self.app(scope, _limited(receive, self.access.body_bytes), _with_headers(send, scope))
 
     async def _web_socket(self, scope: Scope, receive: Receive, send: Send, *, refused: bool) -> None:
         if refused or not self.access.is_let_in(Headers(scope=scope)):
@@ -148,10 +157,14 @@ class Guard:
 
     def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
         host, origin = headers.get("host", ""), headers.get("origin")
-        if not self.access.knows(host):
+        try:
+            is_own, sent_by = self.access.knows(host), None if origin is None else urlsplit(origin).netloc
+        except ValueError:  # such as "["
+            return PlainTextResponse("The Host or the Origin of this request is no address.", 400)
+        if not is_own:
             return PlainTextResponse("This address is not one of the lab's.", 421)
         needs_origin = scope["type"] == "websocket" or scope["method"] not in _SAFE
-        if (origin is None and needs_origin) or (origin is not None and urlsplit(origin).netloc != host):
+        if (origin is None and needs_origin) or (origin is not None and sent_by != host):
             return PlainTextResponse("Asked for by another site: refused.", 403)
         size = headers.get("content-length", "0")
         if not size.isdecimal() or int(size) > self.access.body_bytes:
@@ -160,15 +173,22 @@ class Guard:
 
     async def _token_asked(self, scope: Scope, receive: Receive) -> Response:
         if scope["method"] == "POST" and scope["path"] == TOKEN_PATH:
+            wait_s = self.tries.wait_s((scope.get("client") or ("",))[0])
+            if wait_s > 0:
+                return too_many_tries(wait_s)
             return await answer_to_token(scope, receive, self.access.is_token, (COOKIE, self.access.cookie))
         return token_page(401)
 
 
-def _with_headers(send: Send) -> Send:
-    """Add the security headers to what is answered; a stricter policy of a page's own stays."""
+def _with_headers(send: Send, scope: Scope) -> Send:
+    """Add the security headers to what is answered; a stricter policy of a page's own stays.
+
+    The framework answers 500 for every page that could not be shown; what the page itself says comes before that.
+    """
 
     async def sent(message: Message) -> None:
         if message["type"] == "http.response.start":
+            message["status"] = scope.get(STATUS, message["status"])
             headers = MutableHeaders(scope=message)
             for name, value in HEADERS.items():
                 headers.setdefault(name, value)

@@ -4,7 +4,8 @@
   "use strict";
 
   const HELD = ["Enter", "Backspace", "Tab"]; // besides all keys that write a letter
-  const PATIENCE_MS = 15000; // an answer that has not come by then is not coming
+  const PATIENCE_MS = 150000; // an answer that has not come by then is not coming: the connection is given up before
+  const CONNECT_MS = 90000; // the framework loads the page anew where the lab has not taken a call by then
   const PAUSE_MS = 250; // a hand that types on is quicker, one that has seen a refusal is slower
   const LOST = "The lab does not answer. What is shown as stored is stored. The fields open again by themselves.";
   const held = []; // keys typed while an answer is on its way
@@ -16,26 +17,79 @@
   let timer = 0;
   let watched = false;
   let left = null; // the field in which the connection was lost
+  let isLost = false;
+  let again = null; // asks once more what was asked last
+  let resuming = false; // readings of before are being told to the lab
+  const telling = new Map(); // readings that the lab has not answered yet, by their numbers
 
   const fieldsets = () => document.querySelectorAll("fieldset.lab");
-  const isOpen = () => [...fieldsets()].some((each) => !each.disabled);
 
   // The connection
 
-  function connected() {
+  async function connected() {
+    if (isLost) await goneOn();
+    isLost = false;
     fieldsets().forEach((each) => (each.disabled = false));
     document.documentElement.classList.remove("not-connected");
     if (left?.isConnected) left.focus();
     left = null;
-    if (!watched) window.socket.on("disconnect", lost);
+    if (!watched) begun();
+    if (held.length && !writing && !resuming) writeHeld();
+  }
+
+  function begun() {
     watched = true;
+    window.socket.on("disconnect", lost);
+    window.socket.io.timeout(CONNECT_MS);
+    const unanswered = kept.readings();
+    resuming = unanswered.length > 0;
+    if (resuming) emitEvent("resent", unanswered);
+    else if (!waiting) resume();
+  }
+
+  // What was on its way when the connection was lost may have been lost: the lab knows each thing by its number.
+  async function goneOn() {
+    await kept.tellAgain();
+    telling.forEach((emit) => emit());
+    if (resuming) emitEvent("resent", kept.readings());
+    if (waiting) again?.();
   }
 
   function lost() {
+    isLost = true;
     left = document.activeElement;
+    save();
+    left?.blur?.();
     fieldsets().forEach((each) => (each.disabled = true));
     document.documentElement.classList.add("not-connected");
     say("connection", LOST);
+  }
+
+  // The lab has answered what was sent again: those that it could not store are said in full.
+  function resent(answers) {
+    if (!resuming) return; // asked twice
+    answers.forEach(([number]) => kept.settled(number));
+    resuming = false;
+    if (!waiting || asked === 0) resume(answers.map(([, why]) => why).filter(Boolean));
+  }
+
+  // What was typed before the page was loaded anew goes where it was typed, or is said.
+  async function resume(refusals = []) {
+    const before = kept.restore();
+    if (before.held.length && (before.ready || before.ahead)) held.unshift(...before.held);
+    else if (before.held.length) before.without.push(before.held.map(inWords).join(""));
+    if (before.without.length) refusals.push(`Typed before and not stored: ${before.without.join("; ")}`);
+    if (refusals.length) say("unused", refusals.join(" "));
+    await pause(0); // the fields tell what was put back before a key comes
+    waiting = false;
+    refused = false;
+    if (!writing) writeHeld();
+  }
+
+  // Enter in a form is not done before it is answered: after a reload it is pressed again, and stored once.
+  function save() {
+    const pressed = waiting && again?.isEnter ? ["Enter"] : [];
+    kept.save({ held: [...pressed, ...held], ahead: !watched }, left ?? document.activeElement);
   }
 
   function say(place, words) {
@@ -46,17 +100,17 @@
   // What is typed on while an answer is on its way
 
   function isHeld(event) {
-    if (!(waiting || writing) || !event.isTrusted || event.target.closest?.("a, summary")) return false;
-    return isOpen() || !watched; // where the connection was lost nothing is held: it may take long
+    return (waiting || writing || isLost) && event.isTrusted && !event.target.closest?.("a, summary");
   }
 
   function keyPressed(event) {
     const writes = event.key.length === 1 || HELD.includes(event.key);
     if (!writes || event.ctrlKey || event.metaKey || event.altKey || !isHeld(event)) return;
-    if (event.key === "Tab" && !held.length && !watched) return; // no way out of a page that never opens else
+    if (event.key === "Tab" && !held.length && (!watched || isLost)) return; // no way out of a page that never opens else
     event.preventDefault();
     event.stopImmediatePropagation();
     held.push(event.key === "Tab" && event.shiftKey ? "Back" : event.key);
+    save();
   }
 
   function textComes(event) {
@@ -64,36 +118,56 @@
     if (own || !isHeld(event)) return;
     event.preventDefault();
     if (event.data) held.push(...event.data);
+    save();
   }
 
-  function ask(emit) {
+  function ask(emit, isEnter = false) {
     if (waiting) return; // pressed twice
     waiting = true;
     tellHolding();
     asked += 1;
     say("unused", "");
     const number = asked;
-    timer = setTimeout(() => answered(number, false), PATIENCE_MS);
-    emit(number);
+    timer = setTimeout(giveUp, PATIENCE_MS);
+    const once = kept.once();
+    again = () => emit({ number, once });
+    again.isEnter = isEnter;
+    again();
+    save();
+  }
+
+  function giveUp() {
+    if (isLost) timer = setTimeout(giveUp, PATIENCE_MS); // it is asked again when the lab is back
+    else answered(asked, false);
   }
 
   function answered(number, fine) {
     if (number !== asked) return; // nobody waits for it any more
+    if (number === 0) return resuming || resume();
     clearTimeout(timer);
     waiting = false;
     refused = !fine;
+    if (fine) kept.done();
+    save();
     if (!writing) writeHeld();
+  }
+
+  function told(number) {
+    telling.delete(number);
+    kept.settled(number);
+    save();
   }
 
   async function writeHeld() {
     writing = true;
-    while (held.length && !waiting && !refused) {
+    while (held.length && !waiting && !refused && !isLost) {
       refused = !write(held[0]);
       if (!refused) held.shift();
       await pause(0); // the field tells its text before the next key comes
     }
     if (refused && !waiting) await letRunOut();
     writing = false;
+    save();
     tellHolding();
   }
 
@@ -152,7 +226,7 @@
     const isMissing = (field) => !field.value && !("optional" in field.dataset);
     const next = behind(event.target, event.currentTarget).find(isMissing);
     if (next) next.focus();
-    else ask(emit);
+    else ask(emit, true);
   }
 
   // In a form that only the button sends: on to the next field.
@@ -170,18 +244,35 @@
     const field = event.target;
     const row = field.closest(".reading");
     const typed = field.value.trim();
-    const before = row.dataset.stored ?? (row.classList.contains("refused") ? undefined : row.dataset.sent);
+    const before = beforeOf(row);
     if (before !== undefined && typed !== before) return ask(emit);
-    if (typed) row.dataset.sent = typed;
-    emit();
+    tell(row, typed, emit);
     const next = behind(field, row.parentElement).find((each) => !each.value);
     const button = field.closest(".lab").querySelector(".then");
     (next ?? (typed ? button : null))?.focus();
   }
 
+  // A reading is left: it counts as told, unless the connection closed its field, or only the window was left.
+  function leaving(event, emit) {
+    if (!isLost && event.target !== document.activeElement) tell(event.target.closest(".reading"), event.target.value.trim(), emit);
+  }
+
+  const beforeOf = (row) =>
+    row.dataset.stored ?? (row.classList.contains("refused") ? undefined : row.dataset.sent);
+
+  function tell(row, typed, emit) {
+    if (!typed || beforeOf(row) !== undefined) return emit();
+    row.dataset.sent = typed;
+    const once = kept.reading(row, typed);
+    telling.set(once, () => emit({ once, text: typed }));
+    telling.get(once)();
+  }
+
   window.addEventListener("keydown", keyPressed, true);
   window.addEventListener("beforeinput", textComes, true);
+  window.addEventListener("input", () => setTimeout(save), true);
+  window.addEventListener("pagehide", save);
   document.documentElement.classList.add("not-connected");
   tellHolding();
-  window.lab = { ask, answered, connected, enter, onward, reading };
+  window.lab = { ask, answered, connected, enter, leaving, onward, reading, resent, told };
 })();

@@ -15,12 +15,13 @@ if TYPE_CHECKING:
 
 STYLES = "/lab.css"
 SCRIPT = "/lab.js"
+KEEPING = "/kept.js"
 CONNECTED = "lab.connected()"
 CONNECTING = "Connecting to the lab. The fields open as soon as it answers."
 
 
 @contextmanager
-def framed(title: str, *, here: str = "", ahead: bool = False) -> Iterator[None]:
+def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = False) -> Iterator[None]:
     """Put what follows into the frame of the lab. Fields and buttons are open while the browser is connected.
 
     Parameters
@@ -31,9 +32,12 @@ def framed(title: str, *, here: str = "", ahead: bool = False) -> Iterator[None]
         ``PATH`` of the page in the navigation that this one belongs to.
     ahead
         What is typed before the page is connected goes into the field that the page then puts the focus in.
+    keeps
+        What is typed and not stored yet is there again when the page is loaded anew; so it is where ``ahead``.
     """
     ui.page_title(f"{title} · skisnow")
     ui.add_head_html(f'<link rel="stylesheet" href="{STYLES}">')
+    ui.add_head_html(f'<script src="{KEEPING}"{" data-keeps" if keeps or ahead else ""}></script>')
     ui.add_head_html(f'<script src="{SCRIPT}"{" data-ahead" if ahead else ""}></script>')
     client = ui.context.client
     client.run_javascript(CONNECTED)  # before all else that the page has to say: no focus goes into a closed field

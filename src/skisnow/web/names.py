@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import re
-from typing import Final
+from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
 from ..errors import StoreError
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
 _ID: Final = re.compile(r"[0-9a-f]{4,64}")
 
 
-def entering(id_: str, *, table: str = "", test: str = "") -> str:
-    """Where a campaign is entered; with a table and a test: where that test is."""
-    return f"/enter/{id_}" + _asking(table, test)
+def entering(id_: str, *, table: str = "", test: str = "", head: Mapping[str, str] | None = None) -> str:
+    """Where a campaign is entered; with a table and a test: where that test is; head: what one without rows has."""
+    return f"/enter/{id_}" + _asking(table, test, **(head or {}))
 
 
 def correcting(id_: str, *, table: str = "", test: str = "") -> str:
@@ -21,8 +24,9 @@ def correcting(id_: str, *, table: str = "", test: str = "") -> str:
     return f"/correct/{id_}" + _asking(table, test)
 
 
-def _asking(table: str, test: str) -> str:
-    words = [f"{key}={quote(value, safe='')}" for key, value in (("table", table), ("test", test)) if value]
+def _asking(table: str, test: str, **further: str) -> str:
+    asked = {"table": table, "test": test, **further}
+    words = [f"{key}={quote(value, safe='')}" for key, value in asked.items() if value]
     return "?" + "&".join(words) if words else ""
 
 

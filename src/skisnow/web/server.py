@@ -10,6 +10,7 @@ import uvicorn
 from ..errors import ParameterError
 from .application import lab_application
 from .guard import is_loopback
+from .slow_requests import PatientToAPoint
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,7 +60,14 @@ def serve(lab: Lab, *, host: str, port: int, token: str | None, tell: Callable[[
     with _listening(host, port) as listener:
         app = lab_application(lab, host=host, token=token)
         config = uvicorn.Config(
-            app, log_level="critical", access_log=False, server_header=False, ws_max_size=4_000_000, lifespan="on"
+            app,
+            log_level="critical",
+            access_log=False,
+            server_header=False,
+            ws_max_size=4_000_000,
+            ws_ping_interval=None,  # the pages' sockets have a heartbeat of their own, which is more patient
+            http=PatientToAPoint,
+            lifespan="on",
         )
         _Announced(config, lambda: tell(_address(listener, host))).run(sockets=[listener])
 

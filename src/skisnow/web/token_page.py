@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import ipaddress
+import math
+import time
+from collections import OrderedDict, deque
 from typing import TYPE_CHECKING, Final
 from urllib.parse import parse_qs
 
@@ -18,6 +22,10 @@ TOKEN_PATH: Final = "/token"
 _LONGEST: Final = 2000
 _WAIT_S: Final = 0.5
 """After a wrong token, so that guessing takes long (Choice)."""
+TRIES: Final = 10
+WITHIN_S: Final = 60.0
+"""An address may try so many tokens in so many seconds (Choice)."""
+_MOST_ADDRESSES: Final = 10_000
 
 _PAGE: Final = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Token · skisnow</title>
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -31,9 +39,47 @@ border:2px solid #333;border-radius:6px}}button{{background:#0b4f8a;color:#fff;b
 <button>Open the lab</button></form></main></html>"""
 
 
+class Tries:
+    """The tries of the last minute, by address. Right ones count, too: nobody needs ten in a minute."""
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+        self._now = now
+        self._of = OrderedDict[str, deque[float]]()
+
+    def wait_s(self, address: str) -> float:
+        """Count a try; how long its address must wait (s), 0 where it may be looked at."""
+        now, times = self._now(), self._of.setdefault(_network(address), deque())
+        self._of.move_to_end(_network(address))
+        while len(self._of) > _MOST_ADDRESSES:
+            self._of.popitem(last=False)
+        while times and times[0] <= now - WITHIN_S:
+            times.popleft()
+        if len(times) >= TRIES:
+            return times[0] + WITHIN_S - now
+        times.append(now)
+        return 0.0
+
+
+def _network(address: str) -> str:
+    """What one person has: an address, or of IPv6 the 64 bits that a network has."""
+    try:
+        known = ipaddress.ip_address(address)
+    except ValueError:
+        return address
+    return address if known.version == 4 else str(ipaddress.ip_network((int(known) >> 64 << 64, 64)))
+
+
 def token_page(status: int, said: str = "The lab asks for the token that it was started with.") -> Response:
     """The form, with a sentence above it."""
     return HTMLResponse(_PAGE.format(said=said, path=TOKEN_PATH), status, headers={"cache-control": "no-store"})
+
+
+def too_many_tries(wait_s: float) -> Response:
+    """The form, with how long to wait."""
+    seconds = math.ceil(wait_s)
+    answer = token_page(429, f"That were {TRIES} tries in a minute. Wait {seconds} seconds, then try again.")
+    answer.headers["retry-after"] = str(seconds)
+    return answer
 
 
 async def answer_to_token(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import shutil
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
@@ -15,9 +16,11 @@ from starlette.responses import RedirectResponse, Response
 
 from ..errors import ParameterError, SkisnowError, StoreError
 from ..field.store import Journals, export_corrected, grown, write_campaign
+from .confined import BOUNDS, confined
 from .names import required_id
 from .trouble import plain_page, told
-from .unpacking import Unpacking, campaign_folder, files_below, write_zip
+from .unpacking import files_below, write_zip
+from .uploaded import add_uploaded
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,17 +62,11 @@ def _added(lab: Lab, uploads: Sequence[UploadFile]) -> str:
     if not uploads:
         raise ParameterError("no file was chosen; choose the files of a campaign, its folder, or a zip of it")
     with TemporaryDirectory(prefix="skisnow-upload-") as name:
-        unpacking = Unpacking(Path(name) / "campaign", lab.limits)
-        unpacking.folder.mkdir()
-        for upload in uploads:
-            if (upload.filename or "").lower().endswith(".zip"):
-                unpacking.take_zip(upload.file)
-            else:
-                unpacking.take(upload.filename or "", upload.file)
-        folder = campaign_folder(unpacking.folder)
-        if not (folder / "campaign.toml").is_file():
-            raise ParameterError("there is no campaign.toml in it; choose the folder of a campaign, or a zip of it")
-        return lab.store.add(folder).id
+        names = [upload.filename or "" for upload in uploads]
+        for number, upload in enumerate(uploads):
+            with (Path(name) / str(number)).open("xb") as file:
+                shutil.copyfileobj(upload.file, file)
+        return confined(BOUNDS, add_uploaded, lab.store.path, name, names, lab.limits)
 
 
 async def _packed(write: Writing, id_: str) -> Response:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Final
 from nicegui import app, ui
 from starlette.responses import HTMLResponse, Response
 
-from ..errors import FieldDataError, SkisnowError
+from ..errors import FieldDataError, ParameterError, SkisnowError, StoreError
+from .guard import STATUS
 from .layout import framed, sentence
 
 if TYPE_CHECKING:
@@ -73,6 +74,8 @@ def _notified(error: Exception) -> None:
 
 
 def _page(error: Exception) -> None:
+    if isinstance(error, StoreError | ParameterError):
+        ui.context.client.request.scope[STATUS] = 404
     with framed("This page cannot be shown"):
         sentence(told(error), "bad")
 
@@ -87,4 +90,6 @@ async def _not_found(_: Request, __: Exception) -> Response:
 
 
 async def _failed(_: Request, error: Exception) -> Response:
+    if isinstance(error, SkisnowError):  # the page itself says it
+        return plain_page("This cannot be shown", told(error), 500)
     return plain_page("This cannot be shown", f"Something went wrong. Reference: {reported(error)}.", 500)

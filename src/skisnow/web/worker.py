@@ -30,7 +30,7 @@ class Worker:
         if self._pool is None:
             # never by fork: the server has threads
             context = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=_end_with_the_server)
+            self._pool = ProcessPoolExecutor(1, mp_context=context, initializer=end_with_the_server)
         return await asyncio.get_running_loop().run_in_executor(self._pool, work, *args)
 
     def end(self) -> None:
@@ -39,7 +39,7 @@ class Worker:
             self._pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _end_with_the_server() -> None:
+def end_with_the_server() -> None:
     """Leave Ctrl-C to the server, and do not outlive it if it is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()

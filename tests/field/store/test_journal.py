@@ -1,6 +1,7 @@
 """A campaign that is being entered: nothing is overwritten, and its files are read as any campaign's."""
 
 import sqlite3
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -192,3 +193,17 @@ def test_what_comes_later_can_be_put_on_top(store: Store) -> None:
     assert grown(later, before=early) == grown(journals.entries(id_))
     assert [row.cells["depth_mm"] for row in early.test("penetration.csv", "1").rows] == ["1.5", "2.25"]
     assert len(early.tests) == 1
+
+
+def test_an_entry_that_is_sent_again_is_written_down_once(store: Store) -> None:
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5")
+    sent = replace(reading("1", 1, "40", "2.25"), once="browser-7")
+    first = journals.append(id_, sent, seen=last)
+    assert journals.append(id_, sent, seen=last) == first  # and it is not overtaken by itself
+    assert journals.append(id_, replace(sent, position=9), seen=first.sequence) == first
+    assert [entry.once for entry in journals.entries(id_)[1:]] == [None, "browser-7"]
+    other, _ = campaign_with(journals)
+    assert journals.append(other, sent, seen=0).sequence > first.sequence
+    assert journals.begin(TOML, once="page-1") == journals.begin(TOML, once="page-1")
+    assert len(journals.list()) == 3

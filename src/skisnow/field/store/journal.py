@@ -13,6 +13,7 @@ import json
 import secrets
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from hashlib import sha256
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from sqlalchemy import ColumnElement, Connection, RowMapping, and_, func, insert, select
@@ -33,6 +34,7 @@ DESCRIPTION: Final = "campaign.toml"
 """The file, and the only cell, of an entry that describes the campaign."""
 
 
+_PLAIN: Final = ("action", "file", "test", "position", "about", "who", "why", "once")
 _IN_ENTRY: Final = journal.c.id.not_in(select(campaign.c.id))
 """Of a journal; that of a kept campaign says what is corrected in it."""
 
@@ -59,6 +61,8 @@ class NewEntry:
         The sequence of the entry that is corrected or undone.
     who, why
         As corrections.csv has them; why a test was cancelled.
+    once
+        Any text that the writer gives to this entry alone: sent again, it is not written down a second time.
     """
 
     action: Action
@@ -69,6 +73,7 @@ class NewEntry:
     about: int | None = None
     who: str = ""
     why: str = ""
+    once: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,10 +106,15 @@ class Journals:
         self._engine = store.engine
         self._path = store.path
 
-    def begin(self, description: str, *, who: str = "") -> str:
-        """Begin a campaign with the text of its campaign.toml; gives the journal's id."""
-        id_ = secrets.token_hex(6)
+    def begin(self, description: str, *, who: str = "", once: str | None = None) -> str:
+        """Begin a campaign with the text of its campaign.toml; gives the journal's id.
+
+        With the same ``once`` again it gives the id of the campaign that was begun the first time.
+        """
+        id_ = secrets.token_hex(6) if once is None else sha256(once.encode()).hexdigest()[:12]
         with database_told(self._path, "could not be written"), writing(self._engine) as connection:
+            if once is not None and connection.execute(select(journal.c.id).where(journal.c.id == id_)).first():
+                return id_
             connection.execute(insert(journal).values(id=id_, begun_at=_now()))
             entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: description}, who=who)
             _write(connection, id_, entry)
@@ -155,7 +165,7 @@ class Journals:
             return tuple(_entry(row) for row in rows)
 
     def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
-        """Write an entry down; when this returns it is on the disk.
+        """Write an entry down; when this returns it is on the disk. One that is there already is given back.
 
         Parameters
         ----------
@@ -175,6 +185,8 @@ class Journals:
         """
         with database_told(self._path, "could not be written"), writing(self._engine) as connection:
             _require(connection, id)
+            if (known := _written_before(connection, id, entry)) is not None:
+                return known
             _refuse_overtaken(connection, id, entry, seen)
             _require_subject(connection, id, entry)
             return _write(connection, id, entry)
@@ -202,6 +214,8 @@ class Journals:
         """
         with database_told(self._path, "could not be written"), writing(self._engine) as connection:
             _require_kept(connection, id)
+            if (known := _written_before(connection, id, entry)) is not None:
+                return known
             _refuse_overtaken(connection, id, entry, seen)
             if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
                 connection.execute(insert(journal).values(id=id, begun_at=_now()))
@@ -241,6 +255,15 @@ def _of_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
     return and_(columns.journal_id == id_, columns.file == entry.file, columns.test == entry.test)
 
 
+def _written_before(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry | None:
+    """The entry as it was written down when it was sent the first time."""
+    if entry.once is None:
+        return None
+    found = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.once == entry.once)
+    row = connection.execute(found).mappings().first()
+    return None if row is None else _entry(row)
+
+
 def _refuse_overtaken(connection: Connection, id_: str, entry: NewEntry, seen: int) -> None:
     found = select(journal_entry).where(_of_test(id_, entry), journal_entry.c.sequence > seen)
     row = connection.execute(found.order_by(journal_entry.c.sequence.desc())).mappings().first()
@@ -261,7 +284,7 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
 
 
 def _write(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry:
-    values = {name: getattr(entry, name) for name in ("action", "file", "test", "position", "about", "who", "why")}
+    values = {name: getattr(entry, name) for name in _PLAIN}
     at = _now()
     cells = json.dumps(dict(entry.cells), ensure_ascii=False)
     written = connection.execute(insert(journal_entry).values(journal_id=id_, at=at, cells=cells, **values))

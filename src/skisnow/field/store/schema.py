@@ -24,7 +24,7 @@ from sqlalchemy import (
     Text,
 )
 
-REVISION: Final = "0002"
+REVISION: Final = "0003"
 """Newest migration; tests hold it against the migrations themselves."""
 
 APPLICATION_ID: Final = 0x536B6953
@@ -105,8 +105,11 @@ journal_entry = Table(
     Column("about", Integer, ForeignKey("journal_entry.sequence")),
     Column("cells", Text, nullable=False),
     Column("why", Text, nullable=False),
+    Column("once", Text),
     CheckConstraint("action IN ('describe', 'add', 'correct', 'cancel', 'undo')", name="known_action"),
     CheckConstraint("(about IS NULL) = (action IN ('describe', 'add', 'cancel'))", name="about_an_entry"),
     Index(None, "journal_id", "file", "test"),
+    Index(None, "journal_id", "once", unique=True),
 )
-"""Entries are only ever added. ``about``: the entry that is corrected or undone; ``cells``: a JSON object of texts."""
+"""Entries are only ever added. ``about``: the entry that is corrected or undone; ``cells``: a JSON object of texts;
+``once``: what tells an entry that is sent again from a new one."""

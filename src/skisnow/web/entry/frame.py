@@ -54,4 +54,12 @@ def sheet_of(desk: Desk, file: str, *, form: str, below: str) -> Iterator[tuple[
 def _who(desk: Desk) -> ui.select | ui.input:
     """Who writes: one of the campaign's observers, or a name."""
     observers = list(desk.described.observers)
-    return choice(WHO, observers, observers[0]) if observers else field(WHO)
+    with ui.element("div").classes("who") as place:
+        made = choice(WHO, observers, observers[0]) if observers else field(WHO)
+
+    def tell() -> None:
+        place.props["data-who"] = str(made.value or "")
+
+    made.on_value_change(tell)
+    tell()
+    return made

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ..answering import answering, asking_button, form
+from ..answering import answering, asked, asking_button, form
 from ..fields import choice, field
 from ..layout import heading, sentence
 from ..names import entering
 from ..words import label
 from .changes import USUAL_REASON, Places, ask_reason, changes, focus_button
 from .checking import Field, checked_fields, faults, refuse
+from .resent import HEAD
 
 if TYPE_CHECKING:
     from ...field.store import GrownRow, GrownTest
     from .beside import Beside
     from .sheet import Sheet
 
-HEAD: Final = ("experiment", "site", "spot", "tool", "edge_angle_deg")
 TOLD: Final = "(event) => lab.reading(event, emit)"
+LEFT: Final = "(event) => lab.leaving(event, emit)"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,13 +87,19 @@ class SeriesForm:
 
     # The readings
 
+    def follow_resent(self, series: set[str]) -> None:
+        """Show the series anew where it has readings that came again from the browser."""
+        if self._shown in series:
+            self.show(self._shown, self._head)
+
     def show(self, name: str, head: dict[str, str] | None = None) -> None:
         """Show a series with its readings, to be gone on with."""
         test = self._sheet.test(name)
         if head is None:
             head = {column: test.rows[0].cells.get(column, "") for column in HEAD}
         self._head = head
-        ui.navigate.history.replace(entering(self._sheet.desk.id, table=self._sheet.file, test=name))
+        begun = None if test.rows else {column: text for column, text in head.items() if column != "experiment"}
+        ui.navigate.history.replace(entering(self._sheet.desk.id, table=self._sheet.file, test=name, head=begun))
         self._draw(test)
         self._focus_next(test)
         if test.rows:
@@ -115,7 +123,8 @@ class SeriesForm:
             sentence(f"{self._head['site']} · {self._head['tool']} · {self._head['edge_angle_deg']}°", "quiet")
             if test.cancelled:
                 sentence(f"Cancelled: {test.cancelled}", "bad")
-            with ui.element("div").classes("readings"):
+            with ui.element("div").classes("readings") as readings:
+                readings.props["data-head"] = json.dumps(self._head)
                 for load in self._loads(test):
                     self._readings[load] = self._reading(test, load, unstored.get(load, ""))
             self._ask = ui.element("div")
@@ -162,6 +171,7 @@ class SeriesForm:
     def _reading(self, test: GrownTest, load: str, typed: str) -> _Reading:
         row = test.row_under(load)
         with ui.element("div").classes("reading") as made:
+            made.props["data-load"] = load
             ui.label(f"{load} N").classes("load")
             depth = field(label("depth_mm"), row.cells["depth_mm"] if row else typed, numeric=True)
             depth.props(f'aria-label="Depth under {load} N (mm)"')
@@ -172,7 +182,7 @@ class SeriesForm:
             if row is not None and row.corrections:
                 stored.set_text(f"corrected from {row.entered.cells['depth_mm']}")
         depth.on("keydown.enter", answering(lambda: self._entered(load)), js_handler=TOLD)
-        depth.on("blur", lambda: self._entered(load, left=True))
+        depth.on("blur", answering(lambda: self._entered(load, left=True)), js_handler=LEFT)
         return _Reading(depth, stored, made)
 
     def _further(self, test: GrownTest) -> None:
@@ -196,6 +206,8 @@ class SeriesForm:
     def _entered(self, load: str, *, left: bool = False) -> bool:
         """Take a depth: the first one is stored, another one is a correction; ``left``: its field is left already."""
         test, made = self._test, self._readings[load]
+        if (sent := asked().text) is not None and sent != str(made.depth.value or "").strip():
+            made.depth.set_value(sent)  # what was typed was lost on its way, and is sent again
         row, typed = test.row_under(load), str(made.depth.value or "").strip()
         if typed == (row.cells["depth_mm"] if row is not None else ""):
             made.row.classes(remove="refused")

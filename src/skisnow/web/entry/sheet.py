@@ -9,6 +9,7 @@ from nicegui import ui
 from ...errors import ParameterError, StoreError
 from ...field.store import NewEntry, OvertakenError
 from ...field.store.cells import FORMS
+from ..answering import asked
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,11 +45,23 @@ class Sheet:
         return str(max(numbers, default=0) + 1)
 
     def add(self, name: str, cells: Mapping[str, str], *, position: int, seen: int, said: str) -> bool:
-        """Store a row; whether it is stored."""
+        """Store a row; whether it is stored, now or when it was sent before."""
         entry = NewEntry(
-            action="add", file=self.file, test=name, cells=cells, position=position, who=self._who.value or ""
+            action="add",
+            file=self.file,
+            test=name,
+            cells=cells,
+            position=position,
+            who=self._who.value or "",
+            once=asked().once,
         )
         return self._write(entry, seen, said)
+
+    def stored_before(self) -> str | None:
+        """The name of the test that was stored when what is asked for now was sent before."""
+        once = asked().once
+        sent = (entry for test in self.tests() for entry in test.history if once is not None and entry.once == once)
+        return next((entry.test for entry in sent), None)
 
     def correct(self, test: GrownTest, row: int, cells: Mapping[str, str], why: str) -> bool:
         """Store a correction of the row that was entered under this sequence."""

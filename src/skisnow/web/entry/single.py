@@ -116,14 +116,19 @@ class SingleForm:
             return False
         key = self._sheet.form.key
         test = self._sheet.test(cells[key])
+        if (before := self._sheet.stored_before()) is not None:
+            return self._stored(before, cells["site"])
         if test.history and (fault := self._second_row_fault(test, cells)):
             refuse(self._fields[key], fault)
             self._sheet.say(f"Not stored: {fault}.", "bad")
             return False
-        said = f"Stored: test {test.name}."
-        if not self._sheet.add(test.name, cells, position=len(test.rows), seen=test.last, said=said):
+        if not self._sheet.add(test.name, cells, position=len(test.rows), seen=test.last, said=""):
             return False
-        self._beside.follow(test.name, cells["site"])
+        return self._stored(test.name, cells["site"])
+
+    def _stored(self, name: str, site: str) -> bool:
+        self._sheet.say(f"Stored: test {name}.")
+        self._beside.follow(name, site)
         self._begun = None
         self.begin()
         return True

@@ -13,6 +13,7 @@ from ..fields import link
 from ..kept_desk import KeptDesk
 from ..layout import framed, sentence
 from ..names import analysis, correcting, export, required_id
+from ..patience import BUILD_S
 
 if TYPE_CHECKING:
     from ..settings import Lab
@@ -23,7 +24,7 @@ HERE = "/"
 def add_page(lab: Lab) -> None:
     """Add the page to the application."""
 
-    @ui.page("/correct/{id_}")
+    @ui.page("/correct/{id_}", response_timeout=BUILD_S)
     async def correct(id_: str, table: str = "", test: str = "") -> None:
         desk = await run.io_bound(KeptDesk, lab, required_id(id_))
         if desk is None:  # the lab is being closed
@@ -32,7 +33,7 @@ def add_page(lab: Lab) -> None:
         file = table or next(iter(desk.tables), "")
         if file not in desk.tables:
             raise ParameterError("this campaign has no such table")
-        with framed(desk.stored.name or "Campaign", here=HERE):
+        with framed(desk.stored.name or "Campaign", here=HERE, keeps=True):
             sentence("Kept: its files stay as they came in. What is corrected here stands beside them.", "quiet")
             further = {"Analysis": analysis("kept", desk.id), "Export": export("kept", desk.id)}
             table_links({each: correcting(desk.id, table=each) for each in desk.tables}, file, further)

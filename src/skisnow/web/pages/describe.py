@@ -20,6 +20,8 @@ from ..names import entering, required_id
 from ..typed import typed_number
 
 if TYPE_CHECKING:
+    from nicegui.events import GenericEventArguments
+
     from ..settings import Lab
 
 HERE: Final = "/"
@@ -45,23 +47,25 @@ def add_page(lab: Lab) -> None:
             with form(""):
                 described = DescriptionForm(tomllib.loads(desk.campaign.description) if desk else {})
 
-            def done() -> None:
+            def done(pressed: GenericEventArguments) -> None:
+                once = pressed.args if isinstance(pressed.args, str) else None
                 try:
-                    id_ = _stored(lab, desk, described.text())
+                    id_ = _stored(lab, desk, described.text(), once)
                 except SkisnowError as error:
                     status.set_text(f"Not stored: {error}")
                     status.classes(add="bad")
                     status.run_method("scrollIntoView")
                 else:
+                    ui.run_javascript("kept.over()")
                     ui.navigate.to(entering(id_))
 
             with ui.element("div").classes("acts end"):
                 button("Store and enter tests", done, "main", once=True)
 
 
-def _stored(lab: Lab, desk: Desk | None, text: str) -> str:
+def _stored(lab: Lab, desk: Desk | None, text: str, once: str | None) -> str:
     if desk is None:
-        return Journals(lab.store).begin(text)
+        return Journals(lab.store).begin(text, once=once)
     _require_used_names(desk, tomllib.loads(text))
     if text != desk.campaign.description:
         entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: text})

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from nicegui import ui
 
 from ...errors import ParameterError
+from ...field.store.cells import checked_cell
 from ..desk import Desk
 from ..entry.frame import sheet_of, table_links
+from ..entry.resent import FILE, take_resent
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
 from ..fields import link
@@ -17,6 +19,8 @@ from ..names import analysis, entering, required_id
 from ..words import TABLES
 
 if TYPE_CHECKING:
+    from ..entry.beside import Beside
+    from ..entry.changes import Places
     from ..entry.sheet import Sheet
     from ..settings import Lab
 
@@ -27,7 +31,15 @@ def add_page(lab: Lab) -> None:
     """Add the page to the application."""
 
     @ui.page("/enter/{id_}")
-    def enter(id_: str, table: str = "penetration.csv", test: str = "") -> None:
+    def enter(
+        id_: str,
+        table: str = "penetration.csv",
+        test: str = "",
+        site: str = "",
+        spot: str = "",
+        tool: str = "",
+        edge_angle_deg: str = "",
+    ) -> None:
         if table not in TABLES:
             raise ParameterError("this address names no table of a campaign")
         desk = Desk(lab, required_id(id_))
@@ -36,12 +48,34 @@ def add_page(lab: Lab) -> None:
             table_links({file: entering(id_, table=file) for file in TABLES}, table, further)
             with sheet_of(desk, table, form="Entry", below="Changes, and what was entered") as (sheet, beside, places):
                 _others(sheet, test)
-            kind = SeriesForm if table == "penetration.csv" else SingleForm
-            entry = kind(sheet, beside, places)
-            if test and sheet.test(test).rows:
-                entry.show(test)
-            else:
-                entry.begin()
+            head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
+            _begin(sheet, test, head, (beside, places))
+
+
+def _begin(sheet: Sheet, test: str, head: dict[str, str], where: tuple[Beside, Places]) -> None:
+    """Show the form of a test, or of a new one."""
+    entry: SeriesForm | SingleForm
+    if sheet.file == FILE:
+        entry = series = SeriesForm(sheet, *where)
+        take_resent(sheet.desk, series.follow_resent)
+        if test and not sheet.test(test).history and _is_head(sheet, head):
+            series.show(test, head)  # begun, and loaded anew before its first reading
+            return
+    else:
+        entry = SingleForm(sheet, *where)
+        take_resent(sheet.desk, lambda _: None)
+    if test and sheet.test(test).rows:
+        entry.show(test)
+    else:
+        entry.begin()
+
+
+def _is_head(sheet: Sheet, head: dict[str, str]) -> bool:
+    try:
+        said = {column: checked_cell(sheet.form, column, text) for column, text in head.items()}
+    except ParameterError:
+        return False
+    return said == head and head["tool"] in sheet.desk.described.tools
 
 
 def _others(sheet: Sheet, test: str) -> None:

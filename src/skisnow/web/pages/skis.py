@@ -8,10 +8,12 @@ from nicegui import run, ui
 
 from ...errors import SkisnowError
 from ...report.ski_drawing import SkiDrawing, ski_drawing
+from ..confined import OF_A_SKI, confined
 from ..fields import button, choice, field
-from ..lab_skis import FILE, TABLE, LabSkis, texts_of_ski
+from ..lab_skis import FILE, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..layout import framed, heading, sentence
 from ..line_chart import LOOKS, ChartLine, LineChart
+from ..patience import BUILD_S
 from ..ski_asked import SkiAsked, SkiFound, ski_found
 from ..ski_editor import SkiEditor
 from ..trouble import told
@@ -39,11 +41,15 @@ def add_page(lab: Lab) -> None:
     """Add the page to the application."""
     skis = LabSkis(lab.runs)
 
-    @ui.page(PATH)
+    @ui.page(PATH, response_timeout=BUILD_S)
     async def show_skis() -> None:
         with framed("Skis", here=PATH):
             page = _Skis(skis)
         await page.draw()
+
+
+def _checked_apart(text: str, table: str) -> None:
+    confined(OF_A_SKI, check_ski_texts, text, table)
 
 
 class _Skis:
@@ -65,6 +71,7 @@ class _Skis:
                 }
             with ui.element("section").props('aria-label="Editor"'):
                 self._editor = SkiEditor(skis, names[0], self._follow)
+                self._checked = skis.texts(names[0])
                 self._saving()
         self._first.on_value_change(self.draw)
         self._second.on_value_change(self.draw)
@@ -96,6 +103,7 @@ class _Skis:
         number, asked = self._asked, self._editor.asked()
         words = [str(each) for each in (self._first.value, self._second.value) if each != NOTHING]
         try:
+            await self._check(asked)
             found = await run.io_bound(self._found, words, asked)
         except SkisnowError as error:
             if number == self._asked:
@@ -107,6 +115,13 @@ class _Skis:
         _say(self._status, " ".join(each.warned for each in skis if each.warned), bad=False)
         self._editor.show(edited.station, edited.cells)
         self._show([ski_drawing(each.ski) for each in skis])
+
+    async def _check(self, asked: SkiAsked) -> None:
+        """Read a text that was not read before where it can do no harm."""
+        texts = (asked.text, asked.table)
+        if texts != self._checked:
+            await run.io_bound(_checked_apart, *texts)
+            self._checked = texts
 
     def _found(self, words: list[str], asked: SkiAsked) -> tuple[list[SkiFound], SkiFound]:
         edited = ski_found(asked)

@@ -20,8 +20,13 @@ from ..typed import typed_number
 from .replay import measured_track
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeAlias
+
     from ...track.track import Track
     from .replay import Replay, ReplayTrack
+
+    Count: TypeAlias = Callable[[Path, "Placing"], int]
 
 FOLDER: Final = "tracks"
 ABOUT: Final = "about.json"
@@ -64,8 +69,17 @@ class TrackFolders:
         found = sorted(self._folder.glob(f"*/{ABOUT}"), key=lambda place: -place.stat().st_mtime)
         return [place.parent.name for place in found if not place.parent.name.startswith(".")]
 
-    def keep(self, content: IO[bytes], placing: Placing) -> tuple[str, int]:
+    def keep(self, content: IO[bytes], placing: Placing, *, count: Count | None = None) -> tuple[str, int]:
         """Keep a track that can be read and placed; gives its name and how many points it has.
+
+        Parameters
+        ----------
+        content
+            The file.
+        placing
+            What puts it beside a run.
+        count
+            How it is looked at; None: `points_of_track`, here.
 
         Raises
         ------
@@ -88,15 +102,13 @@ class TrackFolders:
             suffix = PurePosixPath(placing.called.lower()).suffix
             place = made / (_FILE + (suffix if suffix in SUFFIXES else ""))
             _copy(content, place)
-            track = _placed(_read(place, placing), placing, slope_angle=0.0)
-            _require_few(track)
-            measured_track(track)  # it has places enough
+            n_points = (count or points_of_track)(place, placing)
             write_file(made / ABOUT, json.dumps(asdict(placing), ensure_ascii=False, indent=1))
             name = f"{_plain(placing.called)}-{secrets.token_hex(2)}"
             made.rename(self._folder / name)
         finally:
             shutil.rmtree(made, ignore_errors=True)
-        return name, len(track.time)
+        return name, n_points
 
     def beside(self, name: str, replay: Replay) -> ReplayTrack:
         """A track in the axes of a run.
@@ -113,6 +125,14 @@ class TrackFolders:
         angle = replay.tilt if replay.profile is None else None
         track = _placed(_read(place, placing), placing, slope_angle=angle)
         return measured_track(track, starts_at=placing.starts_at_s)
+
+
+def points_of_track(place: Path, placing: Placing) -> int:
+    """The number of points of a track that can be drawn beside a run; errors as in `TrackFolders.keep`."""
+    track = _placed(_read(place, placing), placing, slope_angle=0.0)
+    _require_few(track)
+    measured_track(track)  # it has places enough
+    return len(track.time)
 
 
 def _require(placing: Placing) -> None:

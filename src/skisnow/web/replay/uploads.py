@@ -12,8 +12,9 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from ...errors import ParameterError, SkisnowError
+from ..confined import BOUNDS, confined
 from ..trouble import plain_page, told
-from .tracks import Placing, number_of
+from .tracks import Placing, number_of, points_of_track
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -46,4 +47,5 @@ def _kept(tracks: TrackFolders, form: FormData) -> tuple[str, int]:
         raise ParameterError("no file was chosen; choose the file of a track")
     azimuth = number_of(str(form.get("azimuth", "")), "the direction of the fall line")
     start = number_of(str(form.get("start", "")), "the time at the first point")
-    return tracks.keep(upload.file, Placing(upload.filename[:200], azimuth, start or 0.0))
+    placing = Placing(upload.filename[:200], azimuth, start or 0.0)
+    return tracks.keep(upload.file, placing, count=lambda *what: confined(BOUNDS, points_of_track, *what))

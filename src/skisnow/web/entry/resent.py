@@ -1,0 +1,91 @@
+"""Readings that the browser kept because nobody answered: they are stored when it comes back, each once."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import ui
+
+from ...errors import ParameterError, StoreError
+from ...field.store import NewEntry
+from ...field.store.cells import FORMS, checked_cell
+from ..answering import LONGEST
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from nicegui.events import GenericEventArguments
+
+    from ..desk import Desk
+
+FILE: Final = "penetration.csv"
+HEAD: Final = ("experiment", "site", "spot", "tool", "edge_angle_deg")
+"""What a series has once."""
+READING: Final = ("load_N", "depth_mm")
+MOST: Final = 10_000
+
+
+def take_resent(desk: Desk, changed: Callable[[set[str]], object]) -> None:
+    """Let the page take readings that were typed before it was loaded.
+
+    Parameters
+    ----------
+    desk
+        The campaign.
+    changed
+        Called with the names of the series that have a reading more.
+    """
+    client = ui.context.client
+
+    def take(event: GenericEventArguments) -> None:
+        given = event.args if isinstance(event.args, list) else []
+        answers, series = [], set[str]()
+        for record in given[:MOST]:
+            once, why = _once(record), "this is no reading"
+            try:
+                series.add(_stored(desk, record, once))
+                why = ""
+            except (StoreError, ParameterError) as error:
+                why = str(error)
+            answers.append((once, f"Not stored: {_words(record)}: {why}." if why else ""))
+        changed(series)
+        client.run_javascript(f"lab.resent({json.dumps(answers)})")
+
+    ui.on("resent", take)
+
+
+def _once(record: Any) -> str:
+    once = record.get("once") if isinstance(record, dict) else None
+    return once if isinstance(once, str) and 0 < len(once) <= LONGEST else ""
+
+
+def _cells(record: Any) -> dict[str, str]:
+    said = record.get("cells") if isinstance(record, dict) else None
+    return {column: str(said.get(column) or "") for column in (*HEAD, *READING)} if isinstance(said, dict) else {}
+
+
+def _words(record: Any) -> str:
+    cells = _cells(record)
+    return f"{cells['depth_mm']} mm under {cells['load_N']} N in series {cells['experiment']}" if cells else "a reading"
+
+
+def _stored(desk: Desk, record: Any, once: str) -> str:
+    """Store a reading; gives the name of its series."""
+    said = _cells(record)
+    if not once or not said:
+        raise ParameterError("this is no reading")
+    cells = {column: checked_cell(FORMS[FILE], column, text) for column, text in said.items()}
+    if cells["tool"] not in desk.described.tools:
+        raise ParameterError(f"the campaign has no tool {cells['tool']!r}")
+    test = desk.test(FILE, cells["experiment"])
+    there = test.row_under(cells["load_N"])
+    if there is not None and there.entered.once != once:
+        raise ParameterError(f"a reading of {there.cells['depth_mm']} mm is there already")
+    if test.rows and test.rows[0].cells["site"] != cells["site"]:
+        raise ParameterError(f"that series is at the site {test.rows[0].cells['site']}")
+    who = str(record.get("who") or "")[:LONGEST]
+    place = test.next_position
+    entry = NewEntry(action="add", file=FILE, test=test.name, cells=cells, position=place, who=who, once=once)
+    desk.write_down(entry, seen=test.last)
+    return test.name

@@ -1,0 +1,144 @@
+// What is typed and not stored yet, kept in the browser: it outlives a reload of the page and a restart of the lab.
+// A reading is kept under a number of its own until the lab says what became of it; the text of fields is kept for each
+// page of this tab, with the field that it is typed in and the keys that were held.
+(() => {
+  "use strict";
+
+  const READING = "skisnow.reading.";
+  const PAGE = "skisnow.page.";
+  const keeps = "keeps" in document.currentScript.dataset;
+  const typed = new WeakSet(); // fields that somebody wrote in
+  let here = ""; // the page that was kept last
+  let isOver = false;
+  let restored = false; // nothing is written over what was kept before it was put back
+
+  // A browser may forbid its storage: then nothing is kept, and all else goes on.
+  const quietly = (act) => { try { return act(); } catch { return null; } };
+  const read = (store, key) => quietly(() => JSON.parse(window[store].getItem(key)));
+  const keep = (store, key, value) => quietly(() => window[store].setItem(key, JSON.stringify(value)));
+  const forget = (store, key) => quietly(() => window[store].removeItem(key));
+
+  const place = () => location.pathname + location.search;
+  const before = read("sessionStorage", PAGE + place()) ?? {}; // what was kept when the page was loaded
+
+  // Numbers
+
+  function tab() {
+    let name = read("sessionStorage", "skisnow.tab");
+    if (!name) {
+      name = [...crypto.getRandomValues(new Uint8Array(8))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+      keep("sessionStorage", "skisnow.tab", name);
+    }
+    return name;
+  }
+
+  let numbered = 0;
+  const opened = Date.now(); // a tab that was copied counts on from the same number, but not at the same time
+
+  const newOnce = () => `${tab()}-${opened}-${(numbered += 1)}`;
+
+  // The number of what this page asks to be stored: the same until it is stored, also after a reload.
+  function once() {
+    const page = read("sessionStorage", PAGE + place()) ?? {};
+    if (!page.once) keep("sessionStorage", PAGE + place(), { ...page, once: (page.once = newOnce()) });
+    return page.once;
+  }
+
+  // Readings
+
+  const campaign = () => location.pathname.match(/^\/enter\/([0-9a-f]+)/)?.[1] ?? "";
+
+  function reading(row, depth) {
+    const number = newOnce();
+    const head = JSON.parse(row.parentElement.dataset.head);
+    const cells = { ...head, load_N: row.dataset.load, depth_mm: depth };
+    const who = document.querySelector(".who")?.dataset.who ?? "";
+    keep("localStorage", READING + number, { once: number, at: Date.now(), campaign: campaign(), who, cells });
+    return number;
+  }
+
+  const settled = (number) => forget("localStorage", READING + number);
+
+  // Those of this campaign that nobody has answered, in the order in which they were typed.
+  function readings() {
+    const keys = quietly(() => Object.keys(window.localStorage)) ?? [];
+    const found = keys.filter((key) => key.startsWith(READING)).map((key) => read("localStorage", key));
+    return found.filter((each) => each && each.campaign === campaign()).sort((a, b) => a.at - b.at);
+  }
+
+  // Fields
+
+  const nameOf = (field) => field?.getAttribute("aria-label") || field?.innerText?.trim() || "";
+  const thens = () => document.querySelectorAll("button.then");
+  const fields = () => [...document.querySelectorAll("fieldset.lab :is(input, textarea):not([type=file])")];
+  const focusable = (element) => element?.closest("input, textarea, button");
+  const isStored = (field, text) => field.closest(".reading")?.dataset.stored === text.trim().replace(",", ".");
+
+  function save(state, focused) {
+    if (isOver) return;
+    if (!restored) return saveHeld(state);
+    if (here && here !== place()) forget("sessionStorage", PAGE + here); // another form of the same page
+    here = place();
+    const written = fields().filter((each) => keeps && typed.has(each) && !each.readOnly && !isStored(each, each.value));
+    const texts = Object.fromEntries(written.map((each) => [nameOf(each), each.value]));
+    const kept = { once: read("sessionStorage", PAGE + here)?.once, texts, at: nameOf(focusable(focused)), ...state };
+    if (kept.once || kept.held?.length || written.length) keep("sessionStorage", PAGE + here, kept);
+    else forget("sessionStorage", PAGE + here);
+  }
+
+  // The page is left again before it was connected: to what was kept before comes what was held since.
+  function saveHeld({ held, ahead }) {
+    if (!held.length) return;
+    keep("sessionStorage", PAGE + place(), { ahead, ...before, held: [...(before.held ?? []), ...held] });
+  }
+
+  // What this page asked for is stored: what was typed for it is no longer kept.
+  function done() {
+    forget("sessionStorage", PAGE + place());
+  }
+
+  function write(field, text) {
+    const kind = field.matches("textarea") ? HTMLTextAreaElement : HTMLInputElement;
+    Object.getOwnPropertyDescriptor(kind.prototype, "value").set.call(field, text);
+    field.dispatchEvent(new Event("input", { bubbles: true }));
+  }
+
+  // The page is left, and all that was typed in it is stored.
+  function over() {
+    done();
+    isOver = true;
+  }
+
+  // Put back what was typed; what has no field any more is given back in words. `ready`: the focus is where it was.
+  function restore() {
+    const kept = before;
+    const byName = Object.fromEntries([...fields(), ...thens()].map((each) => [nameOf(each), each]));
+    const without = [];
+    for (const [name, text] of Object.entries(kept.texts ?? {})) {
+      const field = byName[name];
+      if (!field || field.readOnly) without.push(`${name}: ${text}`);
+      else if (!isStored(field, text) && field.value !== text) write(field, text);
+    }
+    const focus = byName[kept.at];
+    const ready = Boolean(kept.at && focus?.checkVisibility());
+    if (ready && (kept.held?.length || kept.at in (kept.texts ?? {}))) {
+      focus.focus();
+      focus.setSelectionRange?.(focus.value.length, focus.value.length);
+    }
+    restored = true;
+    return { held: kept.held ?? [], ahead: Boolean(kept.ahead), ready, without };
+  }
+
+  // The connection was lost: tell the lab once more what the fields hold, in case that it was lost, too.
+  async function tellAgain() {
+    const written = fields().filter((field) => typed.has(field) && !field.readOnly);
+    const texts = written.map((each) => each.value);
+    written.forEach((each, i) => write(each, `${texts[i]} `)); // the framework tells what is different alone
+    await new Promise((told) => setTimeout(told));
+    written.forEach((each, i) => write(each, texts[i]));
+    await new Promise((told) => setTimeout(told));
+  }
+
+  window.addEventListener("input", (event) => typed.add(event.target), true);
+  window.kept = { keeps, once, reading, readings, settled, save, done, over, restore, tellAgain };
+})();

@@ -1,0 +1,236 @@
+"""One side stands still, or the lab is killed, or the page is loaded anew, while a hand types on: nothing is lost."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import os
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
+
+import pytest
+
+from skisnow.field.store import Journals, Store, grown
+
+from .conftest import Served, fill, ready
+from .test_typing import begun, depths
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+if not hasattr(signal, "SIGSTOP"):
+    pytest.skip("no process can be stopped here", allow_module_level=True)
+
+STALL_S = 60.0
+UNANSWERED = "Object.keys(localStorage).filter((key) => key.startsWith('skisnow.reading'))"
+
+
+@contextmanager
+def stopped(served: Served, seconds: float) -> Iterator[None]:
+    """The lab's process stands still while a hand types, and then for the rest of these seconds."""
+    assert served.process is not None and served.process.pid is not None
+    os.kill(served.process.pid, signal.SIGSTOP)
+    until = time.monotonic() + seconds
+    try:
+        yield
+        time.sleep(max(0.0, until - time.monotonic()))
+    finally:
+        os.kill(served.process.pid, signal.SIGCONT)
+
+
+def of_seconds(*normal: float) -> pytest.MarkDecorator:
+    slow = [seconds for seconds in (2.0, 8.0, 20.0, STALL_S) if seconds not in normal]
+    return pytest.mark.parametrize("seconds", [*normal, *(pytest.param(s, marks=pytest.mark.slow) for s in slow)])
+
+
+def rows(served: Served, file: str, *columns: str) -> list[list[str]]:
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        tests = grown(Journals(store).entries(head.id)).of_file(file)
+    return [[row.cells[column] for column in columns] for test in tests for row in test.rows]
+
+
+def opened(page: Page, served: Served, table: str = "") -> None:
+    page.goto(begun(served) + table)
+    page.get_by_label("Site", exact=True).and_(page.locator(":focus")).wait_for()
+    ready(page)
+
+
+def test_the_heartbeat_outlasts_a_stall(served: Served) -> None:
+    """What the server tells a socket that opens: the browser gives it up after both together, in ms."""
+    parts = urlsplit(served.address)
+    connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=30)
+    connection.request("GET", "/_nicegui_ws/socket.io/?EIO=4&transport=polling")
+    said = json.loads(connection.getresponse().read().decode().removeprefix("0"))
+    connection.close()
+    assert said["pingTimeout"] > 1000 * STALL_S
+    assert said["pingInterval"] <= 30_000  # or a connection that broke would not be noticed for long
+
+
+@of_seconds(8.0)
+def test_a_series_while_the_lab_stands_still(page: Page, served: Served, seconds: float) -> None:
+    opened(page, served)
+    page.keyboard.type("A\n30\n1.5\n")
+    page.get_by_text("Stored: 1.5 mm under 20 N.").wait_for()
+    page.evaluate("window.isSamePage = true")
+    with stopped(served, seconds):
+        page.keyboard.type("2.15\n2,6\n\n45\n1.9\n2.")
+    page.keyboard.type("7\n3.3\n")
+    page.get_by_text("Stored: 3.3 mm under 60 N.").wait_for()
+    assert depths(served) == {"1": ["1.5", "2.15", "2.6"], "2": ["1.9", "2.7", "3.3"]}
+    assert page.evaluate("window.isSamePage")
+    assert page.evaluate(UNANSWERED) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seconds", [2.0, 8.0, 20.0, STALL_S])
+@pytest.mark.parametrize(
+    ("file", "typed", "columns", "found"),
+    [
+        (
+            "shear.csv",
+            ("A\n90\n6\n250\n30\n8\n36\n", "7\n33\n"),
+            ("depth_mm", "lever_arm_mm", "moment_Nm"),
+            [["6", "250", "30"], ["8", "250", "36"], ["7", "250", "33"]],
+        ),
+        ("density.csv", ("A\n310\n320\n", "330\n"), ("snow_density_kg_per_m3",), [["310"], ["320"], ["330"]]),
+        ("drop_cone.csv", ("A\n31\n32\n", "33\n"), ("drop_cone_depth_mm",), [["31"], ["32"], ["33"]]),
+    ],
+)
+def test_single_tests_while_the_lab_stands_still(
+    page: Page,
+    served: Served,
+    seconds: float,
+    file: str,
+    typed: tuple[str, str],
+    columns: tuple[str, ...],
+    found: list[list[str]],
+) -> None:
+    opened(page, served, f"?table={file}")
+    with stopped(served, seconds):
+        page.keyboard.type(typed[0])
+    page.keyboard.type(typed[1])
+    page.get_by_text("Stored: test ").wait_for()
+    page.wait_for_function("() => document.querySelectorAll('.so-far li').length === 3")
+    assert rows(served, file, *columns) == found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seconds", [8.0, STALL_S])
+def test_a_browser_that_stands_still(page: Page, served: Served, seconds: float) -> None:
+    opened(page, served)
+    page.keyboard.type("A\n30\n1.5\n2.1")
+    page.evaluate("window.isSamePage = true")
+    page.set_default_timeout(120_000)
+    page.evaluate("(ms) => { const end = Date.now() + ms; while (Date.now() < end); }", 1000 * seconds)
+    page.keyboard.type("5\n2.6\n")
+    page.get_by_text("Stored: 2.6 mm under 60 N.").wait_for()
+    assert depths(served) == {"1": ["1.5", "2.15", "2.6"]}
+    assert page.evaluate("window.isSamePage")
+
+
+def killed_while(page: Page, served: Served, typed: str) -> None:
+    """Kill the lab, type on, and start it again; the page comes back by itself."""
+    page.evaluate("window.isSamePage = true")
+    served.kill()
+    page.locator("html.not-connected").wait_for()
+    page.keyboard.type(typed)
+    served.start()
+    page.wait_for_function("!window.isSamePage")
+    ready(page)
+
+
+def test_a_lab_that_is_killed_in_a_series(page: Page, served: Served) -> None:
+    """Even before its first reading; what is typed meanwhile goes where it was typed."""
+    opened(page, served)
+    page.keyboard.type("A\n30\n1.")
+    page.get_by_label("Depth under 20 N (mm)").and_(page.locator(":focus")).wait_for()
+    ready(page)
+    killed_while(page, served, "5\n2.15\n2.")
+    assert page.get_by_label("Depth under 60 N (mm)").input_value() == "2."
+    page.get_by_text("A · ski piece · 30°").wait_for()
+    page.keyboard.type("6\n")
+    page.get_by_text("Stored: 2.6 mm under 60 N.").wait_for()
+    assert depths(served) == {"1": ["1.5", "2.15", "2.6"]}
+
+
+def test_readings_that_nobody_answered_are_sent_again(page: Page, served: Served) -> None:
+    """They are lost on their way when the lab, which stands still, is killed."""
+    opened(page, served)
+    page.keyboard.type("A\n30\n1.5\n")
+    page.get_by_text("Stored: 1.5 mm under 20 N.").wait_for()
+    with stopped(served, 0.0):
+        page.keyboard.type("2.15\n2.6\n")
+        page.wait_for_function(f"{UNANSWERED}.length === 2")
+        killed_while(page, served, "")
+    page.locator(".reading:nth-child(3) .stored", has_text="stored").wait_for()
+    assert depths(served) == {"1": ["1.5", "2.15", "2.6"]}
+    assert page.evaluate(UNANSWERED) == []
+
+
+def test_half_typed_text_outlives_a_reload_and_a_restart(page: Page, served: Served) -> None:
+    opened(page, served, "?table=shear.csv")
+    fill(page, {"Site": "B", "Depth (mm)": "6", "Moment (N m)": "30,"})
+    page.reload()
+    ready(page)
+    for name, text in (("Site", "B"), ("Depth (mm)", "6"), ("Moment (N m)", "30,")):
+        assert page.get_by_label(name, exact=True).input_value() == text
+    page.goto(page.url.split("?")[0])
+    ready(page)
+    page.keyboard.type("A\n30\n1.5\n2.1")
+    page.get_by_text("Stored: 1.5 mm under 20 N.").wait_for()
+    served.again()
+    page.get_by_label("Depth under 40 N (mm)").and_(page.locator(":focus:enabled")).wait_for()
+    ready(page)
+    page.keyboard.type("5\n")
+    page.get_by_text("Stored: 2.15 mm under 40 N.").wait_for()
+    assert depths(served) == {"1": ["1.5", "2.15"]}
+
+
+def test_a_campaign_that_is_described_while_the_lab_is_killed_is_begun_once(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}describe")
+    fill(page, {"Name of the campaign": "one", "Name of plate 1": "plate", "Length (mm) of plate 1": "100"})
+    page.keyboard.press("Tab")
+    with stopped(served, 0.0):
+        page.get_by_role("button", name="Store and enter tests").click()
+        killed_while(page, served, "")
+    assert page.get_by_label("Name of plate 1", exact=True).input_value() == "plate"
+    page.get_by_label("Name of the campaign", exact=True).press("End")
+    page.keyboard.type("!")
+    page.get_by_role("button", name="Store and enter tests").click()
+    page.get_by_role("heading", name="New series").wait_for()
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        assert grown(Journals(store).entries(head.id)).description.startswith('name = "one!"')
+    page.goto(f"{served.address}describe")
+    ready(page)
+    assert page.get_by_label("Name of the campaign", exact=True).input_value() == ""
+
+
+@pytest.mark.parametrize("was_stored", [False, True])
+def test_a_test_that_was_sent_when_the_lab_was_killed_is_stored_once(
+    page: Page, served: Served, was_stored: bool
+) -> None:
+    """The answer does not come; Enter is pressed again by the page, and what was typed on follows it."""
+    opened(page, served, "?table=density.csv")
+    page.keyboard.type("A\n310")
+    ready(page)
+    if was_stored:
+        page.evaluate("['update', 'run_javascript'].forEach((message) => socket.off(message))")
+        page.keyboard.type("\n320\n")
+        while not rows(served, "density.csv", "sample"):
+            page.wait_for_timeout(50)
+        killed_while(page, served, "33")
+    else:
+        with stopped(served, 0.0):
+            page.keyboard.type("\n320\n")
+            page.locator("html.holding").wait_for()
+            killed_while(page, served, "33")
+    page.get_by_text("Stored: test 2.").wait_for()
+    ready(page)
+    assert page.get_by_label("Density (kg/m³)").input_value() == "33"
+    assert rows(served, "density.csv", "sample", "snow_density_kg_per_m3") == [["1", "310"], ["2", "320"]]
