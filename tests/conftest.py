@@ -9,6 +9,13 @@ import pytest
 from skisnow.report.figures.drawing import Drawing, Picture
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark what drives a browser."""
+    for item in items:
+        if "chromium" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.browser)
+
+
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """An empty picture, each another, in place of every figure: a figure takes a second, and these tests read words."""
