@@ -6,8 +6,8 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 DEMO ?= demo
 SEED ?= 1
-# the same examples every time; test-all seeks others
-QUICK := -n 2 -q --hypothesis-profile=ci
+# the same examples every time (test-all seeks others); neighbours stay in one process, which has what they share
+QUICK := -n 2 --dist worksteal -q --hypothesis-profile=ci
 
 .PHONY: help demo test test-repeating test-all lint docs bench clean
 
@@ -52,7 +52,7 @@ test-repeating: $(VENV)/.skisnow-test
 	$(BIN)/python .ci/repeating.py $(QUICK)
 
 test-all: $(VENV)/.skisnow-test
-	$(BIN)/python -m pytest -n 2 -q -m 'slow or not slow'
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m 'slow or not slow'
 
 lint: $(VENV)/.skisnow-dev
 	$(BIN)/ruff check

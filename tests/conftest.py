@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from itertools import count
 
 import pytest
+
+# read when NumPy is loaded: small matrices in several threads wait for each other longer than they compute, and two
+# processes test at once
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from skisnow.report.figures.drawing import Drawing, Picture
 
