@@ -6,8 +6,10 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 DEMO ?= demo
 SEED ?= 1
+# the same examples every time (test-all seeks others); neighbours stay in one process, which has what they share
+QUICK := -n 2 --dist worksteal -q --hypothesis-profile=ci
 
-.PHONY: help demo test test-all lint docs bench clean
+.PHONY: help demo test test-repeating test-all lint docs bench clean
 
 help:
 	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, with reports in $(DEMO)/"
@@ -42,12 +44,15 @@ demo: $(VENV)/.skisnow
 	@echo
 	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser."
 
-# the same examples every time; test-all seeks others
 test: $(VENV)/.skisnow-test
-	$(BIN)/python -m pytest -n 2 -q --hypothesis-profile=ci
+	$(BIN)/python -m pytest $(QUICK)
+
+# for .ci/run: a browser test that failed has a second try
+test-repeating: $(VENV)/.skisnow-test
+	$(BIN)/python .ci/repeating.py $(QUICK)
 
 test-all: $(VENV)/.skisnow-test
-	$(BIN)/python -m pytest -n 2 -q -m 'slow or not slow'
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m 'slow or not slow'
 
 lint: $(VENV)/.skisnow-dev
 	$(BIN)/ruff check

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+import os
 from itertools import count
 
 import pytest
 
+# read when NumPy is loaded: small matrices in several threads wait for each other longer than they compute, and two
+# processes test at once
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from skisnow.report.figures.drawing import Drawing, Picture
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark what drives a browser."""
+    for item in items:
+        if "chromium" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.browser)
 
 
 @pytest.fixture

@@ -164,7 +164,9 @@ def test_a_full_disk_behind_stdout_is_a_sentence(campaign: Path) -> None:
     with Path("/dev/full").open("wb") as full:
         done = run_program("analyse", str(campaign), "--json", "--resamples", "100", stdout=full)
     assert done.returncode == 1
-    assert done.stderr.decode("utf-8").strip() == "skisnow: No space left on device"
+    *before, last = done.stderr.decode("utf-8").splitlines()
+    assert last == "skisnow: No space left on device"
+    assert not [line for line in before if "skisnow" in line or "Traceback" in line]  # progress, on a busy machine
 
 
 @pytest.mark.usefixtures("undrawn")

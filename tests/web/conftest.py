@@ -10,13 +10,17 @@ import shutil
 import subprocess
 import sys
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 import pytest
+
+from skisnow.field.store import Store
+from skisnow.field.store.engine import writing
+from skisnow.field.store.schema import metadata
 
 if TYPE_CHECKING:
     from multiprocessing.process import BaseProcess
@@ -34,13 +38,20 @@ class Served:
     """A server process on a store, which can be killed and started again at the same address.
 
     The command takes seconds to load what it needs, so one process loads that and brings forth all servers; with
-    `as_command` a server is started as a person does.
+    `as_command` a server is started as a person does. Pictures of a report are empty but with `are_drawn`.
     """
 
     store: Path
     as_command: bool = False
+    are_drawn: bool = False
     address: str = ""
     process: BaseProcess | subprocess.Popen[str] | None = field(default=None, repr=False)
+    was_killed: bool = False
+
+    @property
+    def lab(self) -> Path:
+        """The folder of its skis and runs."""
+        return self.store.parent / "lab"
 
     def start(self) -> Served:
         port = (urlsplit(self.address).port if self.address else None) or 0
@@ -60,7 +71,7 @@ class Served:
         context.set_forkserver_preload(["skisnow.web.server", "skisnow.web.pages.replay", "skisnow.web.pages.analysis"])
         hears, tells = context.Pipe(duplex=False)
         program = str(Path(__file__).with_name("served_here.py"))
-        given = self.store, port, tells
+        given = self.store, port, tells, self.are_drawn
         process = context.Process(target=runpy.run_path, args=(program, {"given": given}, "__main__"))
         self.process = process
         process.start()
@@ -70,6 +81,7 @@ class Served:
 
     def kill(self) -> None:
         assert self.process is not None
+        self.was_killed = True
         self.process.kill()
         self.wait()
 
@@ -85,12 +97,64 @@ class Served:
         self.kill()
         return self.start()
 
+    def is_as_started(self) -> bool:
+        """Whether no test has killed it, and nothing that one has left is still computed."""
+        alive = not isinstance(self.process, subprocess.Popen) and self.process is not None and self.process.is_alive()
+        jobs = (json.loads(place.read_text(encoding="utf-8")) for place in self.lab.glob("*/job.json"))
+        return alive and not self.was_killed and all(job["state"] not in {"waiting", "running"} for job in jobs)
 
-@pytest.fixture
-def served(tmp_path: Path) -> Iterator[Served]:
+    def empty(self) -> None:
+        """Take everything out of store and folder, under the running server."""
+        with Store.open(self.store) as store, writing(store.engine) as connection:
+            for table in reversed(metadata.sorted_tables):
+                connection.execute(table.delete())
+        for each in self.lab.iterdir():
+            if each.is_dir():
+                shutil.rmtree(each)
+
+
+@dataclass
+class Servers:
+    """The server that tests share, one after another; a new one after a test that it did not survive."""
+
+    folders: Callable[[], Path]
+    lab: Served | None = None
+
+    def one(self) -> Served:
+        """It runs, and nothing is in its store."""
+        if self.lab is not None and self.lab.is_as_started():
+            self.lab.empty()
+        else:
+            self.end()
+            self.lab = Served(self.folders() / "store.sqlite3").start()
+        return self.lab
+
+    def end(self) -> None:
+        if self.lab is not None:
+            self.lab.kill()
+
+
+@pytest.fixture(scope="session")
+def servers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servers]:
     if "nicegui" in MISSING:
         pytest.skip("NiceGUI is not installed: pip install 'skisnow[web]'")
-    lab = Served(tmp_path / "store.sqlite3").start()
+    every = Servers(lambda: tmp_path_factory.mktemp("served"))
+    yield every
+    every.end()
+
+
+@pytest.fixture
+def served(servers: Servers) -> Served:
+    """A lab in which nothing was entered yet; a test may kill it."""
+    return servers.one()
+
+
+@pytest.fixture
+def served_with_figures(tmp_path: Path) -> Iterator[Served]:
+    """A lab of its own that draws."""
+    if "nicegui" in MISSING:
+        pytest.skip("NiceGUI is not installed: pip install 'skisnow[web]'")
+    lab = Served(tmp_path / "store.sqlite3", are_drawn=True).start()
     yield lab
     lab.kill()
 
@@ -157,6 +221,14 @@ def killed_and_started_again(page: Page, served: Served) -> None:
 def ready(page: Page) -> None:
     """Wait until the page is connected and waits for no answer: keys pressed before go nowhere, or are held."""
     page.locator("html:not(.not-connected):not(.holding)").wait_for()
+
+
+def settled(page: Page) -> None:
+    """Wait until colours have faded in and nothing moves any more, but for what always does."""
+    page.wait_for_function(
+        """document.getAnimations().every(each =>
+             each.playState !== "running" || each.effect.getComputedTiming().endTime === Infinity)"""
+    )
 
 
 def fill(page: Page, values: dict[str, Any]) -> None:

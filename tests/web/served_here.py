@@ -1,12 +1,39 @@
-"""The program of a process that has loaded the lab already; given are a store, a port and where to tell the address."""
+"""The program of a process that has loaded the lab already; given are a store, a port, where to tell the address, and
+whether figures are drawn.
+
+The process that draws for the lab runs this file, too, under another name: nothing stands here that takes long to load.
+"""
 
 from __future__ import annotations
 
-from skisnow.field.store import Store
-from skisnow.web.server import serve
-from skisnow.web.settings import Lab
+import os
+
+UNDRAWN = "SKISNOW_TESTS_UNDRAWN"
+
+
+def leave_figures_empty() -> None:
+    """An empty picture in place of every figure."""
+    from unittest.mock import patch
+
+    from skisnow.report.figures.drawing import Drawing, Picture
+
+    svg = '<svg xmlns="http://www.w3.org/2000/svg"/>'
+
+    def empty(drawing: Drawing) -> Picture:
+        return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, svg.encode())
+
+    patch("skisnow.report.figures.pictured", empty).start()
+    patch("skisnow.web.analysing.svg_of", lambda _: svg).start()
+
 
 if __name__ == "__main__":
-    place, port, tells = globals()["given"]
+    from skisnow.field.store import Store
+    from skisnow.web.server import serve
+    from skisnow.web.settings import Lab
+
+    place, port, tells, are_drawn = globals()["given"]
+    os.environ[UNDRAWN] = "" if are_drawn else "1"
     with Store.open(place) as store:
         serve(Lab(store, place.parent / "lab"), host="127.0.0.1", port=port, token=None, tell=tells.send)
+elif os.environ.get(UNDRAWN):
+    leave_figures_empty()

@@ -78,7 +78,10 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
     page.locator("details[open] table").get_by_text(str(first["experiment"]), exact=True).wait_for()
 
 
-def test_the_numbers_are_there_with_the_page_until_something_is_entered(page: Page, served: Served) -> None:
+def test_the_numbers_are_there_with_the_page_until_something_is_entered(
+    page: Page, served_with_figures: Served
+) -> None:
+    served = served_with_figures
     with Store.open(served.store) as store:
         journals = Journals(store)
         id_ = journals.begin(DESCRIPTION)
@@ -95,6 +98,9 @@ def test_the_numbers_are_there_with_the_page_until_something_is_entered(page: Pa
     page.goto(served.address.rstrip("/") + path)
     page.get_by_text("1 penetration experiment, 1 used; 0 shear experiments, 0 used.").first.wait_for()
     assert "1 penetration experiment, 1 used" in html(served, path)
+    drawn = page.locator("figure img").first
+    drawn.wait_for()
+    assert len(drawn.get_attribute("src") or "") > 5000 and drawn.evaluate("each => each.decode().then(() => true)")
     with Store.open(served.store) as store:
         cancelled = NewEntry(action="cancel", file="penetration.csv", test="1", why="the tool slipped")
         Journals(store).append(id_, cancelled, seen=last)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from .conftest import Served
+from .conftest import Served, settled
 from .test_day import create, enter_series
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def test_all_text_stands_out(page: Page, served: Served) -> None:
         page.goto(place)
         page.locator("h1").wait_for()
         page.locator("h2").first.wait_for()
-        page.wait_for_timeout(500)  # colours fade in
+        settled(page)
         found = page.evaluate(COLOURS)
         assert len(found) > 5
         assert [row for row in found if contrast(row[1], row[2]) < LEAST] == [], place

@@ -6,6 +6,7 @@ import io
 import json
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PIL import Image
 
+from skisnow.field.store import Journals, Store, grown
+from skisnow.field.store.description import Description, description_text
 from skisnow.report.numerals import significant
 from skisnow.simulate.carve_answer import answered
 from skisnow.simulate.carve_dict import answer_dict
@@ -34,7 +37,28 @@ SERIES = {
 LOADS = ("20", "40", "60", "80")
 
 
+TOOL: dict[str, str | float] = {"name": "ski piece", "shape": "ski", "length_mm": 200.0, "width_mm": 62.0}
+PLATE: dict[str, str | float] = {"name": "plate", "length_mm": 100.0}
+VALUES: dict[str, str | float | tuple[str, ...] | tuple[float, ...]] = {
+    "name": 'The day <b>"of" & tests</b>',
+    "place": "a slope",
+    "observers": ("Ada", "Bo"),
+    "load_steps_N": tuple(map(float, LOADS)),
+    "gauge_resolution_mm": 0.01,
+    "moment_uncertainty_Nm": 0.5,
+}
+
+
 def create(page: Page, served: Served) -> None:
+    """Open what `describe` makes, from the store: as good for tests of what comes after, and there at once."""
+    text = description_text(Description(VALUES, [TOOL], [PLATE]))
+    with Store.open(served.store) as store:
+        id_ = Journals(store).begin(text)
+    page.goto(f"{served.address}enter/{id_}")
+    page.get_by_role("heading", name="New series").wait_for()
+
+
+def describe(page: Page, served: Served) -> None:
     page.goto(served.address)
     page.get_by_role("link", name="New campaign").press("Enter")
     page.get_by_role("heading", name="New campaign").wait_for()
@@ -149,7 +173,12 @@ def unpacked(download: Download, place: Path) -> Path:
 
 
 def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
-    create(page, served)
+    describe(page, served)
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        found = tomllib.loads(grown(Journals(store).entries(head.id)).description)
+    listed = {key: list(value) if isinstance(value, tuple) else value for key, value in VALUES.items()}
+    assert found == {**listed, "tool": [TOOL], "plate": [PLATE]}
     enter_series(page, "1")
     page.get_by_text("below the one before it").wait_for()  # the mark in words, while the error stands
     correct_the_typing_error(page)

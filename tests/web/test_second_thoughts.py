@@ -115,8 +115,8 @@ def test_pressed_twice_is_done_once(page: Page, served: Served) -> None:
 def test_a_value_that_is_being_typed_is_not_drawn_over(page: Page, served: Served) -> None:
     page.goto(f"{served.address}skis")
     page.get_by_label("EI (N m²) at 0.000 m", exact=True).wait_for()
+    page.get_by_role("row", name="EI at the boot").wait_for()  # the last of the page's own first drawing
     ready(page)
-    page.wait_for_timeout(500)  # the page's own first drawing has come: no hand types before that
     page.get_by_label("EI (N m²) at 0.000 m", exact=True).fill("500")
     page.get_by_label("GJ (N m²) at 0.000 m", exact=True).select_text()  # leaves the other, which is drawn now
     page.keyboard.type("18")

@@ -132,7 +132,7 @@ def kill_many(nursery: Nursery, folder: Path, tmp_path: Path, n_kills: int) -> C
     def whole_s(index: int) -> float:
         """How long an import takes that nobody kills."""
         durations = []
-        for _ in range(5):
+        for _ in range(3):
             start_anew(index)
             code, word, duration_s = nursery.trial(place, folder, diary, None)
             assert (code, word) == (0, "closed")
@@ -167,8 +167,8 @@ def kill_many(nursery: Nursery, folder: Path, tmp_path: Path, n_kills: int) -> C
 
 
 def test_killed_at_many_moments(nursery: Nursery, folder: Path, tmp_path: Path) -> None:
-    seen = kill_many(nursery, folder, tmp_path, 30)
-    assert seen.total() - seen["half-written log", False] == 30
+    seen = kill_many(nursery, folder, tmp_path, 14)
+    assert seen.total() - seen["half-written log", False] == 14
     assert seen["writing", False] >= 1, seen  # killed while the transaction was open
 
 

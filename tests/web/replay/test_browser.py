@@ -39,16 +39,43 @@ def address(replay: Replay, tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture
-def seen(browser: Any, address: str) -> Iterator[Watched]:
+def fresh(browser: Any, address: str) -> Iterator[Watched]:
+    """A page that was just opened."""
     watched = Watched(browser, address)
     yield watched
     watched.close()
+
+
+@pytest.fixture(scope="module")
+def shared(browser: Any, address: str) -> Iterator[Watched]:
+    watched = Watched(browser, address)
+    yield watched
+    watched.close()
+
+
+@pytest.fixture
+def seen(shared: Watched) -> Watched:
+    """A page as it was opened, but for how near the cameras are: opening one takes longer than most tests."""
+    shared.page.get_by_label("Speed of play").select_option("1")
+    shared.does(
+        """replay.pause(); replay.exaggerate(1); replay.look("boot");
+           for (const name in replay.shown) replay.show(name, true);
+           replay.seek(0); document.activeElement.blur();"""
+    )
+    return shared
 
 
 def coloured(picture: Any) -> int:
     """Pixels with the warm colours of force, which nothing else has."""
     red, green, blue = picture[..., 0], picture[..., 1], picture[..., 2]
     return int(((red > 150) & (red - blue > 70) & (green < 240)).sum())
+
+
+def pictures_later(seen: Watched) -> None:
+    """Some pictures of the browser later, in which a page that plays would have moved on."""
+    seen.page.evaluate(
+        "async () => { for (let i = 0; i < 5; i++) await new Promise(done => requestAnimationFrame(done)); }"
+    )
 
 
 def test_every_view_shows_snow_and_loaded_skis(seen: Watched) -> None:
@@ -72,7 +99,7 @@ def test_the_picture_changes_while_it_plays(seen: Watched) -> None:
     assert (np.abs(seen.picture() - first).max(axis=2) > 30).mean() > 0.01
     seen.page.get_by_role("button", name="Pause").click()
     stopped = seen.does("return replay.time")
-    seen.page.wait_for_timeout(150)
+    pictures_later(seen)
     assert seen.does("return replay.time") == stopped
 
 
@@ -105,13 +132,13 @@ def test_it_ends_at_the_end_and_begins_anew(seen: Watched) -> None:
     assert seen.does("replay.play(); return replay.time") < 1.0
 
 
-def test_nothing_is_asked_for_and_nothing_complained_about(seen: Watched, address: str) -> None:
+def test_nothing_is_asked_for_and_nothing_complained_about(fresh: Watched, address: str) -> None:
     for view in ("boot", "above", "edge", "free"):
-        seen.does(f"replay.look('{view}'); replay.exaggerate(7); replay.seek(1.0)")
-    seen.page.wait_for_timeout(200)
-    asked = [each for each in seen.requests if not each.startswith(("blob:", "data:"))]
+        fresh.does(f"replay.look('{view}'); replay.exaggerate(7); replay.seek(1.0)")
+    pictures_later(fresh)
+    asked = [each for each in fresh.requests if not each.startswith(("blob:", "data:"))]
     assert asked == [address]
-    assert seen.complaints == []
+    assert fresh.complaints == []
 
 
 def test_edges_in_the_browser_are_those_of_the_library(seen: Watched, replay: Replay) -> None:
@@ -133,15 +160,15 @@ def test_readings_are_the_runs_numbers_with_units(seen: Watched) -> None:
     assert "(mm)" in legend
 
 
-def test_the_groove_grows_and_can_be_hidden(seen: Watched) -> None:
-    seen.does("replay.look('above'); replay.nearer(8); replay.show('ghost', false); replay.show('track', false)")
+def test_the_groove_grows_and_can_be_hidden(fresh: Watched) -> None:
+    fresh.does("replay.look('above'); replay.nearer(8); replay.show('ghost', false); replay.show('track', false)")
     counts = []
     for time in (0.5, 2.0, 4.0):
-        counts.append(seen.does(f"replay.seek({time}); return replay.stage.groove.mesh.geometry.drawRange.count"))
+        counts.append(fresh.does(f"replay.seek({time}); return replay.stage.groove.mesh.geometry.drawRange.count"))
     assert counts == [6 * 2 * 13, 6 * 2 * 51, 6 * 2 * 101]  # a piece each second output, two skis, six corners each
-    with_groove = seen.picture()
-    seen.does("replay.show('groove', false)")
-    assert (np.abs(seen.picture() - with_groove).max(axis=2) > 40).mean() > 3e-4  # two thin lines
+    with_groove = fresh.picture()
+    fresh.does("replay.show('groove', false)")
+    assert (np.abs(fresh.picture() - with_groove).max(axis=2) > 40).mean() > 3e-4  # two thin lines
 
 
 def test_ghost_and_measured_track_are_switches(seen: Watched) -> None:
@@ -188,10 +215,10 @@ def test_everything_by_keyboard(seen: Watched) -> None:
     assert not seen.does("return replay.playing")
 
 
-def test_keys_work_where_nothing_has_the_focus(seen: Watched) -> None:
-    assert seen.does("return document.activeElement === document.body")
-    seen.page.keyboard.press("End")
-    assert seen.does("return replay.time") == pytest.approx(4.0)
+def test_keys_work_where_nothing_has_the_focus(fresh: Watched) -> None:
+    assert fresh.does("return document.activeElement === document.body")
+    fresh.page.keyboard.press("End")
+    assert fresh.does("return replay.time") == pytest.approx(4.0)
 
 
 def test_every_control_has_a_name(seen: Watched) -> None:
@@ -203,35 +230,35 @@ def test_every_control_has_a_name(seen: Watched) -> None:
     assert unnamed == []
 
 
-def test_dragging_turns_and_the_wheel_comes_nearer(seen: Watched) -> None:
-    box = seen.page.locator("canvas.replay-canvas").bounding_box()
+def test_dragging_turns_and_the_wheel_comes_nearer(fresh: Watched) -> None:
+    box = fresh.page.locator("canvas.replay-canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    seen.page.mouse.move(x, y)
-    before = seen.does("return replay.stage.follower.camera.position.length()")
-    seen.page.mouse.down()
-    seen.page.mouse.move(x + 80, y - 40)
-    seen.page.mouse.up()
-    assert seen.does("return replay.stage.follower.view") == "free"
-    zoom = seen.does("return replay.stage.follower.zoom.free")
-    seen.page.mouse.wheel(0, -300)
-    seen.page.wait_for_function(f"window.skisnowReplay.stage.follower.zoom.free < {zoom}")
+    fresh.page.mouse.move(x, y)
+    before = fresh.does("return replay.stage.follower.camera.position.length()")
+    fresh.page.mouse.down()
+    fresh.page.mouse.move(x + 80, y - 40)
+    fresh.page.mouse.up()
+    assert fresh.does("return replay.stage.follower.view") == "free"
+    zoom = fresh.does("return replay.stage.follower.zoom.free")
+    fresh.page.mouse.wheel(0, -300)
+    fresh.page.wait_for_function(f"window.skisnowReplay.stage.follower.zoom.free < {zoom}")
     assert before > 0.0
 
 
-def test_picture_and_film_are_files(seen: Watched, tmp_path: Path) -> None:
+def test_picture_and_film_are_files(fresh: Watched, tmp_path: Path) -> None:
     from PIL import Image
 
-    seen.does("replay.seek(3.4)")
-    with seen.page.expect_download() as download:
-        seen.page.get_by_role("button", name="Picture (PNG)").click()
+    fresh.does("replay.seek(3.4)")
+    with fresh.page.expect_download() as download:
+        fresh.page.get_by_role("button", name="Picture (PNG)").click()
     download.value.save_as(tmp_path / "turn.png")
     with Image.open(tmp_path / "turn.png") as image:
         assert image.width >= 1280
         assert coloured(np.asarray(image.convert("RGB")).astype(int)) > 300
-    film = seen.page.get_by_role("button", name="Film (WebM)")
+    film = fresh.page.get_by_role("button", name="Film (WebM)")
     if film.is_disabled():
         pytest.skip("this Chromium records no WebM film")
-    with seen.page.expect_download() as download:
+    with fresh.page.expect_download() as download:
         film.click()
     download.value.save_as(tmp_path / "turn.webm")
     content = (tmp_path / "turn.webm").read_bytes()

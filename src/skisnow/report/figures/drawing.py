@@ -93,4 +93,12 @@ def _lay_out(figure: Figure) -> None:
     engine = figure.get_layout_engine()
     if engine is not None:
         engine.execute(figure)
-        figure.set_layout_engine("none")
+        _set_no_engine(figure)
+
+
+def _set_no_engine(figure: Figure) -> None:
+    """Leave the axes where they are. With any engine, the one called "none" too, each file is drawn twice."""
+    from matplotlib import rc_context
+
+    with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
+        figure.set_layout_engine(None)
