@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ import numpy.typing as npt
 
 from ..constants import CONFIDENCE
 from ..errors import ParameterError
+from ..given import GivenError, read_json
 from ..units import N_PER_MM2, N_PER_MM3
 from .properties import Interval, SnowProperties
 
@@ -90,11 +90,9 @@ def _mean(values: npt.NDArray[np.float64]) -> tuple[float, Interval | None]:
 def _results(path: Path) -> dict[str, Any]:
     advice = "give the results.json that `skisnow analyse` wrote"
     try:
-        results = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read ({error.strerror or error}); {advice}") from error
-    except ValueError as error:  # no JSON, or no UTF-8
-        raise ParameterError(f"{path} is not JSON ({error}); {advice}") from error
+        results = read_json(path)
+    except GivenError as error:
+        raise ParameterError(f"{error} Needed is the results.json that `skisnow analyse` wrote") from error
     if not isinstance(results, dict) or not {"penetration", "shear"} <= results.keys():
         raise ParameterError(f"{path} has no entries 'penetration' and 'shear'; {advice}")
     return results

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ParameterError
+from ..given import json_value
 from ..simulate.batch_file import Row
 from ..simulate.input_keys import InputKey
 
@@ -95,7 +96,7 @@ def _row(place: str, columns: Sequence[str], cells: Sequence[str], keys: Mapping
     for name, cell in zip(columns, cells, strict=True):
         try:
             row[name] = _value(name, cell, keys)
-        except ValueError:
+        except (ValueError, TypeError):
             raise ParameterError(f"{place}: {name} is {cell!r}; it must be a number. Correct or remove it") from None
     return row
 
@@ -120,7 +121,7 @@ def _value(name: str, cell: str, keys: Mapping[str, InputKey]) -> Any:
     if is_text:
         return cell
     if cell.startswith("["):
-        return [float(each) for each in json.loads(cell)]
+        return [float(each) for each in json_value(cell)]
     if cell in ("true", "false"):
         return cell == "true"
     return int(cell) if name in keys and keys[name].kind == "whole number" else float(cell)

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 from sqlalchemy import ColumnElement, Connection, RowMapping, and_, func, insert, select
 
 from ...errors import StoreError
+from ...given import json_value
 from .engine import database_told, reading, writing
 from .rows import TIME
 from .schema import campaign, journal, journal_entry
@@ -272,4 +273,4 @@ def _write(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry:
 
 def _entry(row: RowMapping) -> JournalEntry:
     values: dict[str, Any] = {str(name): value for name, value in row.items() if name not in ("journal_id", "cells")}
-    return JournalEntry(**values, cells=json.loads(row["cells"]))
+    return JournalEntry(**values, cells=json_value(row["cells"]))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -11,6 +10,7 @@ import numpy.typing as npt
 from scipy.io import netcdf_file
 
 from ...errors import ParameterError
+from ...given import json_value
 from ...simulate.scenario import Plane, Profile, read_profile
 from ...ski import read_ski, ski_named
 from ...units import DEGREE
@@ -77,7 +77,7 @@ def _arrays(file: Any) -> dict[str, FloatArray]:
 
 def _scenario(file: Any) -> dict[str, Any]:
     """Its values under full names."""
-    sections = json.loads(file.scenario.decode("utf-8"))
+    sections = json_value(file.scenario.decode("utf-8"))
     return {f"{section}.{key}": value for section, table in sections.items() for key, value in table.items()}
 
 
