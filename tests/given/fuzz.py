@@ -68,6 +68,7 @@ STUDY = b"""out = "table.csv"
 ski = "slalom"
 published = "race-piste"
 load_N = 800
+unloading_ratio = 10
 [latin_hypercube]
 n = 5
 seed = 1
@@ -198,9 +199,8 @@ def broken(kind: Kind, folder: Path, *, seed: int, number: int) -> list[tuple[by
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 kind.read(path)
-        except SkisnowError as error:
-            if len(str(error)) > 20_000:
-                found.append((data, f"a message of {len(str(error))} characters"))
+        except SkisnowError:
+            continue
         except Exception:
             found.append((data, traceback.format_exc()))
     return found

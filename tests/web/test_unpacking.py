@@ -181,7 +181,7 @@ def test_names_that_no_disk_takes(folder: Path, name: str, told: str) -> None:
 
 
 def test_a_full_disk_is_not_taken_for_a_damaged_zip(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(self: Path, mode: str) -> None:
+    def full(_self: Path, _mode: str) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(Path, "open", full)

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from .words import seed_number
+from .words import MOST_RESAMPLES, seed_number, whole_number
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -24,7 +24,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--json", action="store_true", help="print results.json instead of the summary")
     parser.add_argument("--seed", type=seed_number, help="seed of the bootstrap, a whole number from 0 on")
     parser.add_argument(
-        "--resamples", type=int, metavar="N", help="bootstrap resamples of whole experiments, 100 or more"
+        "--resamples",
+        type=whole_number(100, MOST_RESAMPLES),
+        metavar="N",
+        help="bootstrap resamples of whole experiments, 100 or more",
     )
     parser.set_defaults(run=run)
 

@@ -42,13 +42,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument(
         "--fall-line-azimuth-deg",
-        type=number("degrees"),
+        type=number("degrees", lowest=-360, highest=360),
         metavar="DEG",
         help="compass direction of the fall line: puts a track in latitude and longitude into a simulated run's frame",
     )
     parser.add_argument(
         "--slope-angle-deg",
-        type=number("degrees"),
+        type=number("degrees", lowest=0, highest=75),
         metavar="DEG",
         help="inclination of the plane slope, with --fall-line-azimuth-deg; left out: x stays horizontal",
     )

@@ -25,13 +25,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("file", type=Path, metavar="FILE", help="CSV, GPX, FIT, NMEA, UBX or RTKLIB .pos")
     parser.add_argument(
         "--window-s",
-        type=number("s"),
+        type=number("s", lowest=0, highest=86_400, above=True),
         metavar="S",
         help="length of the smoothing's window; left out, eight intervals between points, at least 0.8 s",
     )
     parser.add_argument(
         "--noise-m",
-        type=number("m"),
+        type=number("m", lowest=0, highest=1_000, above=True),
         metavar="M",
         help="standard deviation of a coordinate; left out, from the scatter about the smoothed track",
     )

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 _UNITS = {"": CM, "cm": CM, "mm": MM, "m": 1.0, "in": 25.4 * MM, "inch": 25.4 * MM, "inches": 25.4 * MM, '"': 25.4 * MM}
 _MOST_BYTES = 1 << 22
+_LARGEST = 1e9
 _LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z\"]*)\s*")
 
 
@@ -132,6 +133,6 @@ def _length(path: Path, board: dict[str, Any], key: str) -> float:
     """A length in m; a number without unit is in cm, as in MonkeyCAM."""
     value = board.get(key)
     read = None if isinstance(value, bool) else _LENGTH.fullmatch(str(value))
-    if read is None or read[2].lower() not in _UNITS:
+    if read is None or read[2].lower() not in _UNITS or not abs(float(read[1])) <= _LARGEST:
         refuse(path, f"board: {key}", value, "a number in cm or a text such as '161cm', '2mm', '4in'", "Correct it")
     return float(read[1]) * _UNITS[read[2].lower()]

@@ -15,6 +15,8 @@ from ..given import GivenError, read_json
 from ..units import N_PER_MM2, N_PER_MM3
 from .properties import Interval, SnowProperties
 
+_LARGEST = 1e9
+
 
 def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowProperties:
     """Read the snow of an analysed campaign from its results.json.
@@ -51,6 +53,8 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
         raise ParameterError(f"{path} has no used penetration experiment{asked}; {known}")
     if not (np.all(hardness > 0) and np.all(stress >= 0) and (stress.size == 0 or np.any(stress > 0))):
         raise ParameterError(f"{path}: H_V of a used experiment must be above 0, and S_f of one at least")
+    if not (np.all(hardness >= 1.0 / _LARGEST) and np.all(hardness <= _LARGEST) and np.all(stress <= _LARGEST)):
+        raise ParameterError(f"{path}: H_V and S_f of a used experiment must lie from 1e-9 to 1e9 N/mm³ and N/mm²")
     H_V, H_V_interval = _mean(np.log(hardness))
     S_f, S_f_interval = _mean(stress) if stress.size else (None, None)
     return SnowProperties(
