@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from .out_folder import ready
 from .words import MOST_RESAMPLES, seed_number, whole_number
 
 
@@ -37,7 +38,6 @@ def run(options: argparse.Namespace) -> int:
     from ..estimate import analyse, results_dict
     from ..estimate.results_text import results_json
     from ..field import read_campaign
-    from ..files import require_writable
     from ..memory import paused_collector
     from .progress import Progress
 
@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     with Progress() as progress, paused_collector():
         campaign = read_campaign(options.campaign, progress=progress)
         if options.out is not None:
-            require_writable(options.out)
+            ready(options.out)
         analysis = analyse(campaign, geometry=options.geometry, progress=progress, **chosen)
         results = results_dict(analysis)
         if options.out is not None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
+from .out_folder import ready
 from .progress import Progress
 from .words import MOST_RESAMPLES, MOST_WORKERS, seed_number, whole_number
 
@@ -93,9 +94,7 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
             require_emcee()
         asked = scenario_file(options.scenario, changes=_changes(options))
     if options.out is not None:
-        from ..files import require_writable
-
-        require_writable(options.out)
+        ready(options.out)
     for text in asked.warnings:
         print(f"warning: {text}", file=sys.stderr)
     return asked

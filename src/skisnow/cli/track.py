@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .announced import announced
+from .out_folder import ready
 from .progress import Progress
 from .words import number
 
@@ -43,9 +44,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(options: argparse.Namespace) -> int:
     """Read, look, print, draw."""
     if options.out is not None:
-        from ..files import require_writable
-
-        require_writable(options.out)
+        ready(options.out)
     with announced(f"reading {options.file}"):
         from ..track.read import read_track
 

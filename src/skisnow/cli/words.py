@@ -47,7 +47,7 @@ def _meant(name: str, options: Iterable[str]) -> str:
 
 
 def number(
-    unit: str, *, lowest: float = -math.inf, highest: float = math.inf, above: bool = False, infinite: bool = False
+    unit: str, *, lowest: float = -math.inf, highest: float = math.inf, above: bool = False
 ) -> Callable[[str], float]:
     """A reader of numbers that says how to write one.
 
@@ -56,21 +56,17 @@ def number(
     unit
         In which the number is; empty where it has none.
     lowest, highest
-        Ends of what is allowed; what a table of keys says of a number is not repeated here.
+        Ends of what is allowed; left out where a table of keys says it, which is asked before the work begins.
     above
         Whether the lowest itself is left out.
-    infinite
-        Whether inf has a meaning.
     """
-    ends = f" {'above' if above else 'from'} {lowest:g} to {highest:g}" if highest < math.inf else ""
+    ranged = highest < math.inf
 
     def read(word: str) -> float:
         value = written(word)
-        sound = (infinite and value == math.inf) or math.isfinite(value)
-        if not (sound and lowest <= value <= highest) or (above and value == lowest):
-            allowed = f"a {'' if ends else 'finite '}number{ends}{' or inf' if infinite else ''}"
-            in_unit = f" in {unit}" if unit else ""
-            raise argparse.ArgumentTypeError(f"{_shown(word)} is not allowed; allowed is {allowed}{in_unit}")
+        if ranged and (not lowest <= value <= highest or (above and value == lowest)):
+            ends = f"{'above' if above else 'from'} {lowest:g} to {highest:g}"
+            raise argparse.ArgumentTypeError(f"{_shown(word)} is not allowed; allowed is a number {ends} in {unit}")
         return value
 
     def written(word: str) -> float:
@@ -87,14 +83,16 @@ def number(
     return read
 
 
-def whole_number(lowest: int, highest: int, *, or_zero: bool = False) -> Callable[[str], int]:
-    """A reader of whole numbers within a range; ``or_zero``: 0 is allowed, too."""
+def whole_number(
+    lowest: float = -math.inf, highest: float = math.inf, *, or_zero: bool = False
+) -> Callable[[str], int]:
+    """A reader of whole numbers within a range, see `number`; ``or_zero``: 0 is allowed, too."""
 
     def read(word: str) -> int:
         try:
             value = int(word)
         except ValueError:
-            example = f"write one such as {max(lowest, 1)}"
+            example = f"write one such as {int(lowest) if lowest > 0 else 160}"
             raise argparse.ArgumentTypeError(f"{_shown(word)} is no whole number; {example}") from None
         if not (lowest <= value <= highest or (or_zero and value == 0)):
             allowed = f"{'0, or ' if or_zero else ''}{lowest} to {highest}"

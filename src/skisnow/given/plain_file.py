@@ -35,6 +35,14 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
     return data
 
 
+def is_file(path: str | Path) -> bool:
+    """Whether there is a file of such a name; no error where none can have it."""
+    try:
+        return Path(path).is_file()
+    except (OSError, ValueError):
+        return False
+
+
 def plain_text(path: str | Path, *, most_bytes: int) -> str:
     """Read a file as UTF-8 text, with or without byte order mark; lines end with a line feed, however they did.
 

@@ -14,6 +14,7 @@ from ..errors import ParameterError
 from ..given import json_value
 from ..simulate.batch_file import Row
 from ..simulate.input_keys import InputKey
+from ..spreadsheet_text import guarded, unguarded
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,7 +109,7 @@ def _cell(value: Any) -> str:
         return "true" if value else "false"
     if isinstance(value, list | tuple):
         return json.dumps(list(value))
-    return value if isinstance(value, str) else repr(value)
+    return guarded(value) if isinstance(value, str) else repr(value)
 
 
 _TEXTS = ("outcome", "ski_name", "warnings", "reason", "study")
@@ -119,7 +120,7 @@ def _value(name: str, cell: str, keys: Mapping[str, InputKey]) -> Any:
     if cell == "":
         return "" if name in ("warnings", "reason") else None
     if is_text:
-        return cell
+        return unguarded(cell)
     if cell.startswith("["):
         return [float(each) for each in json_value(cell)]
     if cell in ("true", "false"):

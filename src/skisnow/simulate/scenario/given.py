@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ...errors import ParameterError
-from ...given import MOST_TOML_BYTES, GivenError, plain_text, toml_values
+from ...given import MOST_TOML_BYTES, GivenError, is_file, plain_text, toml_values
 from ..input_keys import InputValue, meant, nearest
 from .keys import SCENARIO_KEYS, SECTIONS
 
@@ -133,7 +133,7 @@ def given_scenario(name_or_path: str | Path) -> GivenScenario:
     if word in scenario_names():
         return _given(word, None, scenario_text(word))
     path = Path(name_or_path)
-    if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or path.is_file()):
+    if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
         raise ParameterError(
             f"there is no scenario named {word!r}. {nearest(word, scenario_names())}. Any other scenario is read from "
             "a file ending in .toml"
