@@ -185,7 +185,7 @@ def read_damaged(folder: Path, tmp_path: Path, *, seed: int, number: int) -> int
             told += bool(store.verify())
             for read in (store.list, Journals(store).list, lambda store=store: Journals(store).entries(journal)):
                 with suppress(StoreError):
-                    read()  # type: ignore[operator]
+                    read()
             with suppress(StoreError):
                 store.export(id_, out)
         assert not out.exists() or contents(out) == SMALL

@@ -61,8 +61,8 @@ def _of_contents(connection: Connection, progress: Progress) -> Iterator[Finding
             users = select(campaign_file.c.campaign_id, campaign_file.c.path).where(campaign_file.c.sha256 == sha256)
             message = f"the bytes no longer have the SHA-256 {sha256}; add the original folder again to repair it"
             named = connection.execute(users).all() if isinstance(sha256, str) else []
-            for campaign_id, path in named or [(None, None)]:
-                yield Finding(_words(campaign_id), _words(path), message)
+            places = [(_words(campaign_id), _words(path)) for campaign_id, path in named]
+            yield from (Finding(*place, message) for place in places or [(None, None)])
         done += size if isinstance(size, int) else 0
         progress(done, total)
 
