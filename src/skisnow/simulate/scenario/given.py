@@ -224,8 +224,9 @@ def change_of(word: str) -> tuple[str, object]:
         raise ParameterError(f"{word!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35")
     name = full_name(name)
     try:
-        value = toml_values(f"value = {text}")["value"]
-    except (GivenError, KeyError):
+        values = toml_values(f"value = {text}")
+    except GivenError:
         return name, text
+    value = values["value"] if values.keys() == {"value"} else text  # a second line would say more than one value
     is_text = SCENARIO_KEYS[name].kind == "text"
     return name, text if is_text and not isinstance(value, str) else value
