@@ -12,6 +12,7 @@ ITS_OWN = {
     Path("given/toml_text.py"),
     Path("given/json_text.py"),
     Path("simulate/compilation.py"),  # a note of this program beside its machine code
+    Path("machine_code.py"),
 }
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scipy.io import netcdf_file
 
 from ...errors import ParameterError, SkisnowError
-from ...given import json_value
+from ...given import GivenError, json_value
 from ...simulate.scenario import Plane, Profile, read_profile
 from ...ski import read_ski, ski_named
 from ...units import DEGREE
@@ -61,6 +61,8 @@ def replay_of_file(
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
         setting = _setting(path, values, outcome, spacing, ski)
         return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track)
+    except GivenError as error:
+        raise ParameterError(f"{path} is no run.nc of skisnow: {error} Simulate it again with --out") from error
     except SkisnowError:
         raise
     except OSError as error:
