@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterable
 from pathlib import Path
 
 from .errors import OutputError
@@ -53,27 +52,6 @@ def require_writable(folder: str | Path) -> None:
             pass
     except OSError as error:
         raise cannot_write(folder, error) from error
-
-
-def move_into_place(stage: Path, folder: Path, *, last: str, stale: Iterable[str]) -> None:
-    """Move all files of a stage, which lies in the folder, there, file by file.
-
-    Parameters
-    ----------
-    stage, folder
-        From where to where; other files of the folder stay.
-    last
-        The file that says by its presence that all others are there: taken away first, moved last.
-    stale
-        Files that only an earlier writing can have left where the stage has none: they are taken away.
-    """
-    for name in (last, *(name for name in stale if not (stage / name).exists())):
-        (folder / name).unlink(missing_ok=True)
-    files = (path for path in stage.rglob("*") if path.is_file())
-    for path in sorted(files, key=lambda path: (path == stage / last, path)):
-        target = folder / path.relative_to(stage)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        path.replace(target)
 
 
 def cannot_write(path: str | Path, error: OSError) -> OutputError:

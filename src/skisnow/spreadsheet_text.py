@@ -137,3 +137,30 @@ def decimal_mark(groups: Iterable[Iterable[str]], *, separator: str) -> str:
 
 def _count(cells: Iterable[str], mark: str) -> int:
     return sum(mark in cell and is_number(cell.strip(), mark) for cell in cells)
+
+
+_FORMULA: Final = "=+-@\t\r＝＋－＠"
+_AS_FORMULA: Final = re.compile(f"'*[{re.escape(_FORMULA)}]")
+
+
+def guarded(text: str) -> str:
+    """The cell of a text in a table that people open: no spreadsheet program takes it for a formula.
+
+    A text that begins with = + - @, a tab or a carriage return, and is no number, gets an apostrophe in front; so does
+    one that begins so behind apostrophes, so that `unguarded` gives every text back.
+
+    >>> [guarded(text) for text in ("=1+1", "-1.5", "'=a", "it's", "-")]
+    ["'=1+1", '-1.5', "''=a", "it's", "'-"]
+    """
+    if not _AS_FORMULA.match(text) or is_number(text, ".") or is_number(text, ","):
+        return text
+    return f"'{text}"
+
+
+def unguarded(cell: str) -> str:
+    """The text that `guarded` made a cell of.
+
+    >>> [unguarded(cell) for cell in ("'=1+1", "-1.5", "''=a", "'tis")]
+    ['=1+1', '-1.5', "'=a", "'tis"]
+    """
+    return cell[1:] if cell.startswith("'") and _AS_FORMULA.match(cell) else cell

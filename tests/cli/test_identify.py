@@ -98,7 +98,6 @@ def test_too_few_points_exit_with_1_and_say_so(cells: Path, capsys: Printed) -> 
         (["--free", "mu_9"], "friction.mu_0"),
         (["--free", "S_f"], "plays no part"),
         ([], "nothing is looked for"),
-        (["--free", "mu_0", "--starts", "0"], "at least 1"),
     ],
 )
 def test_what_is_wrong_is_told(cells: Path, capsys: Printed, words: list[str], told: str) -> None:

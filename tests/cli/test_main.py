@@ -139,9 +139,89 @@ def test_a_seed_is_a_whole_number_that_every_file_can_hold(seed: str, capsys: py
     assert "is no seed" in capsys.readouterr().err
 
 
-def test_too_few_resamples_are_refused(campaign: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["analyse", str(campaign), "--resamples", "0"]) == 1
-    assert "100 or more" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["analyse", "x", "--resamples", "0"], "--resamples: '0' is not allowed; allowed is a whole number, 100 to"),
+        (["analyse", "x", "--resamples", "9" * 20], "allowed is a whole number, 100 to 100000"),
+        (["analyse", "x", "--resamples", "9" * 5000], "is no whole number"),
+        (["serve", "--port", "99999"], "--port: '99999' is not allowed; allowed is a whole number, 0 to 65535"),
+        (["serve", "--port", "-1"], "allowed is a whole number, 0 to 65535"),
+        (["study", "x", "--workers", "0"], "allowed is a whole number, 1 to 256"),
+        (["identify", "x", "y", "--workers", "1000000"], "allowed is a whole number, 1 to 256"),
+        (["identify", "x", "y", "--bootstrap", "39"], "allowed is a whole number, 0, or 40 to 100000"),
+        (["identify", "x", "y", "--posterior", "-1"], "allowed is a whole number, 0 to 1000000"),
+        (["identify", "x", "y", "--starts", "0"], "allowed is a whole number, 1 to 1000"),
+        (
+            ["track", "x", "--window-s", "0"],
+            "--window-s: '0' is not allowed; allowed is a number above 0 to 86400 in s",
+        ),
+        (["track", "x", "--noise-m", "nan"], "allowed is a number above 0 to 1000 in m"),
+        (["compare", "x", "y", "--slope-angle-deg", "76"], "allowed is a number from 0 to 75 in degrees"),
+        (["compare", "x", "y", "--fall-line-azimuth-deg=-1e9"], "allowed is a number from -360 to 360 in degrees"),
+    ],
+)
+def test_numbers_outside_their_range_are_refused_at_once(
+    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(words)
+    assert stop.value.code == 2
+    said = capsys.readouterr().err
+    assert told in " ".join(said.split())
+    assert len(said) < 4000
+
+
+def test_a_load_that_is_no_quantity_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    words = "carve --ski slalom --edge-angle-deg 45 --published race-piste --unloading-ratio 10 --load-N 1e-320"
+    assert main(words.split()) == 1
+    told = "load_N is 1e-320, which is no quantity; allowed are 0 and sizes from 1e-100 to 1e+100"
+    assert told in capsys.readouterr().err
+
+
+class TestLastResort:
+    @pytest.fixture(autouse=True)
+    def broken(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        def run(_: object) -> int:
+            raise ZeroDivisionError("what nobody foresaw\nsecond line")
+
+        monkeypatch.setattr("skisnow.cli.check.run", run)
+
+    def test_one_sentence_a_reference_and_the_trace_in_a_file(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        monkeypatch.setattr("platformdirs.user_log_path", lambda name: tmp_path / name / "log")
+        assert main(["check", "x"]) == 70
+        (said,) = capsys.readouterr().err.splitlines()
+        (kept,) = (tmp_path / "skisnow" / "log").iterdir()
+        reference = kept.stem.removeprefix("error-")
+        assert f"(ZeroDivisionError: what nobody foresaw). Reference {reference}. The trace is in {kept};" in said
+        text = kept.read_text(encoding="utf-8")
+        assert "Traceback (most recent call last)" in text
+        assert f"reference {reference}" in text
+
+    def test_folder_for_logs_that_cannot_be_written(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        (tmp_path / "file").touch()
+        monkeypatch.setattr("platformdirs.user_log_path", lambda name: tmp_path / "file" / name)
+        monkeypatch.setattr("tempfile.gettempdir", lambda: str(tmp_path / "temporary"))
+        assert main(["check", "x"]) == 70
+        assert [path.suffix for path in (tmp_path / "temporary").iterdir()] == [".txt"]
+        monkeypatch.setattr("tempfile.gettempdir", lambda: str(tmp_path / "file"))
+        assert main(["check", "x"]) == 70
+        assert "Traceback" in capsys.readouterr().err
+
+
+def test_memory_that_does_not_suffice_is_a_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def run(_: object) -> int:
+        raise MemoryError
+
+    monkeypatch.setattr("skisnow.cli.check.run", run)
+    assert main(["check", "x"]) == 1
+    assert "memory" in capsys.readouterr().err
 
 
 def run_program(*words: str, encoding: str = "utf-8", stdout: int | IO[bytes] = subprocess.PIPE) -> Any:

@@ -128,6 +128,39 @@ def test_a_folder_never_holds_two_runs(tmp_path: Path, monkeypatch: pytest.Monke
     assert all(second[name] != first[name] for name in ("summary.json", "track.csv", "run.nc", "report.html"))
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.usefixtures("replaced", "undrawn")
+def test_a_kill_between_new_numbers_and_old_figures(tmp_path: Path, capsys: Printed) -> None:
+    """Killed while its files are moved; what is there is of one run, and the next start has all of it."""
+    assert main(["simulate", *ASKED, "--out", str(tmp_path)]) == 0
+    first = {path.relative_to(tmp_path): path.read_bytes() for path in tmp_path.rglob("*.*") if path.is_file()}
+    child = os.fork()
+    if child == 0:
+        move, moved = Path.replace, iter(range(3))
+
+        def replace(self: Path, target: Path) -> Path:
+            if target.parent in (tmp_path, tmp_path / "figures") and next(moved, None) is None:
+                os.kill(os.getpid(), signal.SIGKILL)
+            return move(self, target)
+
+        Path.replace = replace  # type: ignore[method-assign,assignment]
+        try:
+            main(["simulate", *ASKED, "--set", "friction.mu_0=0.06", "--out", str(tmp_path)])
+        finally:
+            os._exit(0)
+    assert os.WIFSIGNALED(os.waitpid(child, 0)[1])
+    seen = [path.relative_to(tmp_path) for path in tmp_path.rglob("*.*") if ".skisnow-" not in str(path)]
+    assert Path("summary.json") not in seen
+    assert len(seen) == 3
+    assert all((tmp_path / name).read_bytes() != first[name] for name in seen)
+    capsys.readouterr()
+    assert main(["track", str(tmp_path / "absent.csv"), "--out", str(tmp_path)]) == 1
+    assert "what a killed process had still to move is in place now" in capsys.readouterr().err
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    assert summary["scenario"]["friction"]["mu_0"] == 0.06
+    assert {path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()} == first.keys()
+
+
 @pytest.mark.usefixtures("replaced")
 def test_without_out_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

@@ -59,13 +59,9 @@ def test_window_and_noise_are_obeyed(turn: Path, capsys: Printed) -> None:
     assert (smoothing["window_s"], smoothing["place_noise_m"]) == (2.0, 0.05)
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [(["--window-s", "0"], "window = 0 s"), (["--window-s", "0.2"], "no window of 0.2 s holds six usable points")],
-)
-def test_bad_numbers_are_told_in_a_sentence(turn: Path, capsys: Printed, words: list[str], told: str) -> None:
-    assert main(["track", str(turn), *words]) == 1
-    assert told in capsys.readouterr().err
+def test_a_window_of_too_few_points_is_told_in_a_sentence(turn: Path, capsys: Printed) -> None:
+    assert main(["track", str(turn), "--window-s", "0.2"]) == 1
+    assert "no window of 0.2 s holds six usable points" in capsys.readouterr().err
 
 
 def test_few_points_and_missing_files_are_told_in_a_sentence(turn: Path, tmp_path: Path, capsys: Printed) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 
 from skisnow.report.table import Column, Table
 from skisnow.report.table_csv import table_csv
@@ -27,6 +28,13 @@ TABLE = Table(
         ("ünïcode ;", 0, False, [], (None, None), (0.0, -2.5), None),
     ],
 )
+
+
+def test_no_text_is_a_formula_and_every_number_stays() -> None:
+    rows = [("=1+1", 1, True, ["@x"], (-1.5, (-2.0, -1.0)), None, 0.5)]
+    (row,) = csv.DictReader(io.StringIO(table_csv(replace(TABLE, rows=rows)), newline=""))
+    assert (row["site"], row["flags"]) == ("'=1+1", "'@x")
+    assert (row["H_V_N_per_mm3"], row["H_V_N_per_mm3_low"]) == ("-1.5", "-2.0")
 
 
 def test_values_come_back_with_all_digits() -> None:

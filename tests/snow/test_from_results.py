@@ -99,7 +99,7 @@ def test_shear_alone_is_no_snow(tmp_path: Path) -> None:
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
-    with pytest.raises(ParameterError, match=r"absent\.json cannot be read \(No such file"):
+    with pytest.raises(ParameterError, match=r"absent\.json cannot be read: No such file"):
         snow_from_results(tmp_path / "absent.json")
     with pytest.raises(ParameterError, match="cannot be read"):
         snow_from_results(tmp_path)
@@ -108,9 +108,9 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("contents", "told"),
     [
-        (b"", "is not JSON"),
-        (b"experiment,site\n", "is not JSON"),
-        (b"\xff\xfe\x00", "is not JSON"),
+        (b"", "is no JSON text"),
+        (b"experiment,site\n", "is no JSON text"),
+        (b"\xff\xfe\x00", "is not UTF-8 text"),
         (b"[]", "has no entries 'penetration' and 'shear'"),
         (b'{"outcome": "finished"}', "has no entries 'penetration' and 'shear'"),
         (b'{"penetration": {}, "shear": {}}', "penetration.experiments is not a list"),

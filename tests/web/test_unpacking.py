@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import io
+import random
+import shutil
 import stat
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,6 +16,7 @@ import pytest
 from skisnow.errors import ParameterError
 from skisnow.web.settings import Limits
 from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, write_zip
+from tests.given.fuzz import damaged
 
 LIMITS = Limits(upload_bytes=10_000, unpacked_bytes=5_000, files=4)
 
@@ -117,3 +122,92 @@ def test_a_broken_member_is_said(folder: Path) -> None:
     content[60:80] = bytes(20)
     with pytest.raises(ParameterError, match="zip file is damaged"):
         Unpacking(folder, LIMITS).take_zip(io.BytesIO(bytes(content)))
+
+
+def changed(content: bytes, change: Callable[[bytearray], None]) -> io.BytesIO:
+    """A zip with some bytes of its list of files changed, after the signature ``PK 1 2``."""
+    data = bytearray(content)
+    at = data.index(b"PK\x01\x02")
+    entry = data[at:]
+    change(entry)
+    data[at:] = entry
+    return io.BytesIO(bytes(data))
+
+
+def _no_name(entry: bytearray) -> None:
+    entry[28:30] = b"\0\0"
+    del entry[46:53]
+    end = entry.index(b"PK\x05\x06")
+    entry[end + 12 : end + 16] = (46).to_bytes(4, "little")
+
+
+def _set(at: int, value: bytes) -> Callable[[bytearray], None]:
+    def change(entry: bytearray) -> None:
+        entry[at : at + len(value)] = value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (_set(8, b"\x01\x00"), "is encrypted; pack it without a password"),
+        (_set(8, b"\x20\x00"), "zip file is damaged"),
+        (_set(10, b"\x0e\x00"), "packed in an unusual way; choose Deflate"),
+        (_set(10, b"\x63\x00"), "packed in an unusual way; choose Deflate"),
+        (_set(42, b"\xff\xff\xff\xff"), "zip file is damaged"),
+        (_set(46, b"inner\0/"), "is not taken in|zip file is damaged"),
+        (lambda entry: (_set(8, b"\x00\x08")(entry), _set(46, b"\xff\xfe")(entry))[0], "zip file is damaged"),
+        (_no_name, "the file '' is not taken in: it has a part that is empty|zip file is damaged"),
+    ],
+)
+def test_damage_in_the_list_of_files_is_said(folder: Path, change: Callable[[bytearray], None], told: str) -> None:
+    content = changed(packed({"inner/a": bytes(range(256)) * 8}).getvalue(), change)
+    with pytest.raises(ParameterError, match=told):
+        Unpacking(folder, LIMITS).take_zip(content)
+
+
+def test_a_list_of_millions_of_files_is_not_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    content = packed({f"{number:04}{'x' * 100}": b"" for number in range(60)})
+    monkeypatch.setattr(zipfile, "ZipFile", None)  # not even opened
+    with pytest.raises(ParameterError, match="more than 4 files"):
+        Unpacking(folder, LIMITS).take_zip(content)
+
+
+@pytest.mark.parametrize(("name", "told"), [("a/" * 33 + "b", "more than 32 folders"), ("b" * 300, "name is too long")])
+def test_names_that_no_disk_takes(folder: Path, name: str, told: str) -> None:
+    with pytest.raises(ParameterError, match=told):
+        Unpacking(folder, LIMITS).take_zip(packed({name: b"x"}))
+
+
+def test_a_full_disk_is_not_taken_for_a_damaged_zip(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_self: Path, _mode: str) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "open", full)
+    with pytest.raises(OSError, match="No space left"):
+        Unpacking(folder, LIMITS).take_zip(packed({"a": b"x"}))
+
+
+def try_damaged(folder: Path, *, seed: int, number: int) -> int:
+    """Unpack so many damaged zips; how many were refused. Anything but a `ParameterError` comes through."""
+    sound = packed({"day/campaign.toml": b"a = 1\n" * 9, "day/b.csv": bytes(range(256)), "c": b""}).getvalue()
+    random_, refused = random.Random(seed), 0
+    for tried in range(number):
+        inside = folder / str(tried)
+        inside.mkdir()
+        try:
+            Unpacking(inside, LIMITS).take_zip(io.BytesIO(damaged(sound, random_)))
+        except ParameterError:
+            refused += 1
+        shutil.rmtree(inside)
+    return refused
+
+
+def test_damaged_zips_are_refused_in_words(folder: Path) -> None:
+    assert try_damaged(folder, seed=1, number=150) > 75
+
+
+@pytest.mark.slow
+def test_many_damaged_zips_are_refused_in_words(folder: Path) -> None:
+    assert try_damaged(folder, seed=2, number=20_000) > 10_000

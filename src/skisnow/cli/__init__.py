@@ -6,13 +6,15 @@ import argparse
 import io
 import os
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ..errors import FieldDataError, SkisnowError
 from .ending import Ended
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+LONGEST_MESSAGE: Final = 8_000
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -35,7 +37,11 @@ def build_parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; returns 0 when it did its work, 1 where the data or the machine refused, 2 for wrong words."""
+    """Run one command.
+
+    Returns 0 when it did its work, 1 where the data or the machine refused, 2 for wrong words, 70 after an error that
+    nobody foresaw.
+    """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # JSON is UTF-8 whatever the terminal's code page
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
@@ -43,23 +49,43 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options = build_parser().parse_args(arguments)
         status: int = options.run(options)
         sys.stdout.flush()
-    except FieldDataError as error:
-        for problem in error.problems:
-            print(problem, file=sys.stderr)
-        print("Nothing was written: mend the errors above first.", file=sys.stderr)
-        return 1
-    except SkisnowError as error:
-        print(f"skisnow: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt as interrupt:
+    except (Exception, KeyboardInterrupt) as error:
+        return _ended(error)
+    return status
+
+
+def _ended(error: Exception | KeyboardInterrupt) -> int:
+    """Say why a command ended; returns its exit status."""
+    if isinstance(error, KeyboardInterrupt):
         print("skisnow: interrupted; nothing half-written was left behind.", file=sys.stderr)
-        return 143 if isinstance(interrupt, Ended) else 130
-    except BrokenPipeError:
+        return 143 if isinstance(error, Ended) else 130
+    if isinstance(error, BrokenPipeError):
         return _stdout_lost()
-    except OSError as error:
+    if isinstance(error, OSError):
         print(f"skisnow: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", file=sys.stderr)
         return _stdout_lost()
-    return status
+    if isinstance(error, SkisnowError | MemoryError):
+        _say(error)
+        return 1
+    from .last_resort import told
+
+    return told(error)
+
+
+def _say(error: SkisnowError | MemoryError) -> None:
+    if isinstance(error, FieldDataError):
+        for problem in error.problems:
+            print(_short(str(problem)), file=sys.stderr)
+        print("Nothing was written: mend the errors above first.", file=sys.stderr)
+    elif isinstance(error, SkisnowError):
+        print(f"skisnow: {_short(str(error))}", file=sys.stderr)
+    else:
+        print("skisnow: the memory of this machine does not hold it. Give less at once.", file=sys.stderr)
+
+
+def _short(message: str) -> str:
+    """A message that a screen holds, whatever was given."""
+    return message if len(message) <= LONGEST_MESSAGE else f"{message[:LONGEST_MESSAGE]} …"
 
 
 def _stdout_lost() -> int:

@@ -7,7 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from .words import seed_number
+from .out_folder import ready
+from .words import MOST_RESAMPLES, seed_number, whole_number
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -24,7 +25,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--json", action="store_true", help="print results.json instead of the summary")
     parser.add_argument("--seed", type=seed_number, help="seed of the bootstrap, a whole number from 0 on")
     parser.add_argument(
-        "--resamples", type=int, metavar="N", help="bootstrap resamples of whole experiments, 100 or more"
+        "--resamples",
+        type=whole_number(100, MOST_RESAMPLES),
+        metavar="N",
+        help="bootstrap resamples of whole experiments, 100 or more",
     )
     parser.set_defaults(run=run)
 
@@ -34,7 +38,6 @@ def run(options: argparse.Namespace) -> int:
     from ..estimate import analyse, results_dict
     from ..estimate.results_text import results_json
     from ..field import read_campaign
-    from ..files import require_writable
     from ..memory import paused_collector
     from .progress import Progress
 
@@ -46,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     with Progress() as progress, paused_collector():
         campaign = read_campaign(options.campaign, progress=progress)
         if options.out is not None:
-            require_writable(options.out)
+            ready(options.out)
         analysis = analyse(campaign, geometry=options.geometry, progress=progress, **chosen)
         results = results_dict(analysis)
         if options.out is not None:

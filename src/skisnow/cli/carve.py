@@ -66,7 +66,7 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
     )
     choices.add_argument("--groove", choices=("edge", "path"), help="what the groove of the forebody follows")
     choices.add_argument("--no-twist", dest="twist", **off, help="the ski keeps its edge angle everywhere")
-    choices.add_argument("--elements", type=whole_number, metavar="N", help="finite elements over the whole ski")
+    choices.add_argument("--elements", type=whole_number(), metavar="N", help="finite elements over the whole ski")
     choices.add_argument(
         "--at-rest", action="store_const", const=True, help="set down on virgin snow, without side force"
     )

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .announced import announced
+from .out_folder import ready
 from .words import number
 
 if TYPE_CHECKING:
@@ -42,13 +43,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument(
         "--fall-line-azimuth-deg",
-        type=number("degrees"),
+        type=number("degrees", lowest=-360, highest=360),
         metavar="DEG",
         help="compass direction of the fall line: puts a track in latitude and longitude into a simulated run's frame",
     )
     parser.add_argument(
         "--slope-angle-deg",
-        type=number("degrees"),
+        type=number("degrees", lowest=0, highest=75),
         metavar="DEG",
         help="inclination of the plane slope, with --fall-line-azimuth-deg; left out: x stays horizontal",
     )
@@ -60,12 +61,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Compare, print, write."""
-    from ..files import require_writable
-
     if options.slope_angle_deg is not None and options.fall_line_azimuth_deg is None:
         options.parser.error("--slope-angle-deg needs --fall-line-azimuth-deg: say which way the slope falls")
     if options.out is not None:
-        require_writable(options.out)
+        ready(options.out)
     found = _compared(options)
     from ..track.comparison_dict import comparison_dict
 
@@ -129,8 +128,10 @@ def _write(folder: Path, found: Comparison, told: str) -> None:
     from ..files import write_file
     from ..report.figures.figure_file import write_figure
     from ..report.figures.track_comparison import track_comparison
+    from ..staging import staged
 
-    write_file(folder / "compare.json", f"{told}\n")
-    for ending in ("png", "svg"):
-        write_figure(folder / f"track_comparison.{ending}", lambda: track_comparison(found))
+    with staged(folder, last="compare.json") as stage:
+        write_file(stage.path / "compare.json", f"{told}\n")
+        for ending in ("png", "svg"):
+            write_figure(stage.path / f"track_comparison.{ending}", lambda: track_comparison(found))
     print(f"Figure: {folder / 'track_comparison.png'}", file=sys.stderr)

@@ -10,8 +10,11 @@ from typing import TYPE_CHECKING
 
 from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
+from .out_folder import ready
 from .progress import Progress
-from .words import seed_number, whole_number
+from .words import MOST_RESAMPLES, MOST_WORKERS, seed_number, whole_number
+
+MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
 
 if TYPE_CHECKING:
     from ..identify import Identification
@@ -50,16 +53,22 @@ def _add_ways(parser: argparse.ArgumentParser) -> None:
     profile = "also intervals by fitting all others anew along each parameter"
     parser.add_argument("--profile", action="store_true", help=profile)
     bootstrap = "also intervals by N resamples of the residuals, 40 or more"
-    parser.add_argument("--bootstrap", type=whole_number, default=0, metavar="N", help=bootstrap)
+    parser.add_argument(
+        "--bootstrap", type=whole_number(40, MOST_RESAMPLES, or_zero=True), default=0, metavar="N", help=bootstrap
+    )
     by = "each resample is fitted anew, with simulations of its own (left out), or by the linearised model"
     parser.add_argument("--bootstrap-by", choices=("refit", "linear"), default="refit", help=by)
     posterior = "also about N samples of the posterior (needs emcee)"
-    parser.add_argument("--posterior", type=whole_number, default=0, metavar="N", help=posterior)
-    parser.add_argument("--starts", type=whole_number, default=1, metavar="N", help="searches from N places")
+    parser.add_argument("--posterior", type=whole_number(0, MOST_SAMPLES), default=0, metavar="N", help=posterior)
+    parser.add_argument(
+        "--starts", type=whole_number(1, MOST_STARTS), default=1, metavar="N", help="searches from N places"
+    )
     parser.add_argument("--seed", type=seed_number, default=0, metavar="N", help="of every random number")
     clock = "whether photo-cell clocks show 0 at the start, or each run's has an offset of its own"
     parser.add_argument("--clock", choices=("start", "free"), help=clock)
-    parser.add_argument("--workers", type=whole_number, metavar="N", help="processes; left out: all cores")
+    parser.add_argument(
+        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: all cores"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -85,9 +94,7 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
             require_emcee()
         asked = scenario_file(options.scenario, changes=_changes(options))
     if options.out is not None:
-        from ..files import require_writable
-
-        require_writable(options.out)
+        ready(options.out)
     for text in asked.warnings:
         print(f"warning: {text}", file=sys.stderr)
     return asked

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from .words import port_number
+from .words import whole_number
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -17,7 +17,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Serve the web lab. The first line printed is its address; Ctrl-C ends it. No network is used.",
     )
     parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: this machine alone)")
-    parser.add_argument("--port", type=port_number, default=8765, help="port, 0 for a free one (default: 8765)")
+    parser.add_argument(
+        "--port", type=whole_number(0, 65_535), default=8765, help="port, 0 for a free one (default: 8765)"
+    )
     parser.add_argument("--token", help="word that is asked for before anything else; needed with any other host")
     parser.add_argument("--store", type=Path, metavar="PATH", help="file of the store (default: the user's own)")
     parser.set_defaults(run=run)

@@ -8,11 +8,11 @@ import sys
 import time
 from contextlib import ExitStack
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
+from .out_folder import ready
 from .progress import Progress
 
 if TYPE_CHECKING:
@@ -85,9 +85,7 @@ def _list(name: str | None) -> int:
 def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
     """What can be refused is refused before the work."""
     if options.out is not None:
-        from ..files import require_writable
-
-        require_writable(options.out)
+        ready(options.out)
     for text in asked.warnings:
         print(f"warning: {text}", file=sys.stderr)
 
@@ -134,26 +132,23 @@ def _tell(options: argparse.Namespace, asked: ScenarioFile, found: Run, verifica
 
 def _write(folder: Path, found: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
     """Write all files beside the folder's own and move them into place: never those of two runs together."""
-    from ..files import cannot_write, move_into_place, write_file
+    from ..files import write_file
     from ..report.run_report import FIGURES, write_run_report
     from ..simulate.track_table import write_track
+    from ..staging import staged
 
     figures = [f"figures/{name}.{form}" for name in FIGURES for form in ("png", "svg")]
-    try:
-        with TemporaryDirectory(prefix=".run-", dir=folder) as name:
-            stage = Path(name)
-            text = json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1)
-            write_file(stage / SUMMARY, f"{text}\n")
-            write_track(found, stage / "track.csv")
-            with Progress() as progress:
-                page = write_run_report(found, summary, stage, progress=lambda doing: progress(f"writing {doing}"))
-            if replay_title is not None:
-                from ..web.replay import write_replay
+    with staged(folder, last=SUMMARY) as stage:
+        stage.stale += [*figures, REPLAY]
+        text = json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1)
+        write_file(stage.path / SUMMARY, f"{text}\n")
+        write_track(found, stage.path / "track.csv")
+        with Progress() as progress:
+            page = write_run_report(found, summary, stage.path, progress=lambda doing: progress(f"writing {doing}"))
+        if replay_title is not None:
+            from ..web.replay import write_replay
 
-                write_replay(found, stage / REPLAY, title=replay_title)
-            move_into_place(stage, folder, last=SUMMARY, stale=[*figures, REPLAY])
-    except OSError as error:
-        raise cannot_write(folder, error) from error
+            write_replay(found, stage.path / REPLAY, title=replay_title)
     print(f"Report: {folder / page.name}", file=sys.stderr)
     if replay_title is not None:
         print(f"Replay: {folder / REPLAY}", file=sys.stderr)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..errors import ParameterError
 from .ending import Ended, ending_is_an_interrupt
 from .progress import Progress
-from .words import whole_number
+from .words import MOST_WORKERS, whole_number
 
 if TYPE_CHECKING:
     from ..study import Study, StudyTable
@@ -25,7 +25,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Run a study. Its table goes where STUDY.toml says; an interrupted one goes on when started again.",
     )
     parser.add_argument("study", type=Path, metavar="STUDY.toml", help="what varies, what is fixed, and `out`")
-    parser.add_argument("--workers", type=whole_number, metavar="N", help="processes; left out: one for each core")
+    parser.add_argument(
+        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
+    )
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a map of the table: .png, .svg or .pdf")
     about = "radius over edge angle, or where the edge lets go; left out: radius"
     parser.add_argument("--map", choices=("radius", "grip"), default="radius", help=about)

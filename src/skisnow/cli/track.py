@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .announced import announced
+from .out_folder import ready
 from .progress import Progress
 from .words import number
 
@@ -25,13 +26,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("file", type=Path, metavar="FILE", help="CSV, GPX, FIT, NMEA, UBX or RTKLIB .pos")
     parser.add_argument(
         "--window-s",
-        type=number("s"),
+        type=number("s", lowest=0, highest=86_400, above=True),
         metavar="S",
         help="length of the smoothing's window; left out, eight intervals between points, at least 0.8 s",
     )
     parser.add_argument(
         "--noise-m",
-        type=number("m"),
+        type=number("m", lowest=0, highest=1_000, above=True),
         metavar="M",
         help="standard deviation of a coordinate; left out, from the scatter about the smoothed track",
     )
@@ -43,9 +44,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(options: argparse.Namespace) -> int:
     """Read, look, print, draw."""
     if options.out is not None:
-        from ..files import require_writable
-
-        require_writable(options.out)
+        ready(options.out)
     with announced(f"reading {options.file}"):
         from ..track.read import read_track
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 import difflib
+import math
 import re
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+MOST_WORKERS: Final = 256
+MOST_RESAMPLES: Final = 100_000
 _BEGINS_AS_NUMBER: Final = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
 
 
@@ -43,16 +46,30 @@ def _meant(name: str, options: Iterable[str]) -> str:
     return f" Is {by_small[like[0]]} meant?" if like else ""
 
 
-def number(unit: str) -> Callable[[str], float]:
+def number(
+    unit: str, *, lowest: float = -math.inf, highest: float = math.inf, above: bool = False
+) -> Callable[[str], float]:
     """A reader of numbers that says how to write one.
 
     Parameters
     ----------
     unit
         In which the number is; empty where it has none.
+    lowest, highest
+        Ends of what is allowed; left out where a table of keys says it, which is asked before the work begins.
+    above
+        Whether the lowest itself is left out.
     """
+    ranged = highest < math.inf
 
     def read(word: str) -> float:
+        value = written(word)
+        if ranged and (not lowest <= value <= highest or (above and value == lowest)):
+            ends = f"{'above' if above else 'from'} {lowest:g} to {highest:g}"
+            raise argparse.ArgumentTypeError(f"{_shown(word)} is not allowed; allowed is a number {ends} in {unit}")
+        return value
+
+    def written(word: str) -> float:
         try:
             return float(word)
         except ValueError:
@@ -60,29 +77,34 @@ def number(unit: str) -> Callable[[str], float]:
             example = f", such as {found[0].replace(',', '.')}" if found else ""
             told = f" in {unit}, without the unit" if unit else ""
             raise argparse.ArgumentTypeError(
-                f"{word!r} is no number; write one with a decimal point{told}{example}"
+                f"{_shown(word)} is no number; write one with a decimal point{told}{example}"
             ) from None
 
     return read
 
 
-def whole_number(word: str) -> int:
-    """A whole number."""
-    try:
-        return int(word)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{word!r} is no whole number; write one such as 160") from None
+def whole_number(
+    lowest: float = -math.inf, highest: float = math.inf, *, or_zero: bool = False
+) -> Callable[[str], int]:
+    """A reader of whole numbers within a range, see `number`; ``or_zero``: 0 is allowed, too."""
+
+    def read(word: str) -> int:
+        try:
+            value = int(word)
+        except ValueError:
+            example = f"write one such as {int(lowest) if lowest > 0 else 160}"
+            raise argparse.ArgumentTypeError(f"{_shown(word)} is no whole number; {example}") from None
+        if not (lowest <= value <= highest or (or_zero and value == 0)):
+            allowed = f"{'0, or ' if or_zero else ''}{lowest} to {highest}"
+            raise argparse.ArgumentTypeError(f"{_shown(word)} is not allowed; allowed is a whole number, {allowed}")
+        return value
+
+    return read
 
 
-def port_number(word: str) -> int:
-    """A port to listen on: a whole number from 0 to 65535."""
-    try:
-        port = int(word)
-    except ValueError:
-        port = -1
-    if not 0 <= port <= 65_535:
-        raise argparse.ArgumentTypeError(f"{word!r} is no port; a whole number from 1 to 65535 is, or 0 for a free one")
-    return port
+def _shown(word: str, limit: int = 80) -> str:
+    """A word within a message."""
+    return repr(word if len(word) <= limit else f"{word[:limit]}…")
 
 
 def seed_number(word: str) -> int:
@@ -92,5 +114,5 @@ def seed_number(word: str) -> int:
     except ValueError:
         seed = -1
     if not 0 <= seed < 2**63:
-        raise argparse.ArgumentTypeError(f"{word!r} is no seed; a whole number from 0 to 9223372036854775807 is")
+        raise argparse.ArgumentTypeError(f"{_shown(word)} is no seed; a whole number from 0 to 9223372036854775807 is")
     return seed

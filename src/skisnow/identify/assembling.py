@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ..errors import ParameterError
+from ..given import is_file
 from ..simulate.input_keys import nearest
 from ..simulate.scenario import ScenarioFile
 from ..simulate.scenario.given import GivenScenario
@@ -134,7 +135,7 @@ def _require_different(paths: Sequence[str | Path]) -> None:
     """Refuse a file that is given twice: its data would count double, and every interval be too narrow."""
     seen: dict[bytes, str | Path] = {}
     for path in paths:
-        if not Path(path).is_file():
+        if not is_file(path):
             continue  # said by its reader
         content = hashlib.sha256(Path(path).read_bytes()).digest()
         if content in seen:

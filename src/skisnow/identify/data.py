@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final, TypeAlias
 
 from ..errors import ParameterError
+from ..given import is_file
 from ..spreadsheet_text import encoding_of, most_frequent_separator, named_separator
 from ..track.track import Track
 from .marks import COLUMNS as MARK_COLUMNS
@@ -29,7 +30,7 @@ def read_data(path: str | Path) -> Data:
         The file cannot be read, or something in it is wrong; place and value are named.
     """
     path = Path(path)
-    if not path.is_file():
+    if not is_file(path):
         raise ParameterError(f"{path} cannot be read: there is no such file. Check the path")
     if path.suffix.lower() in (".csv", ".txt", ".tsv"):
         head = _head(path)

@@ -11,11 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ..files import require_writable, write_file
+from ..spreadsheet_text import guarded
+from ..staging import staged
 from .figures.drawing import Drawing
 from .figures.identify_fits import residuals_along, tracks_above
 from .figures.identify_profiles import profiles_drawn
 from .numerals import counted
-from .pictures import write_pictures
+from .pictures import picture_files, write_pictures
 from .sheet import Header, Section, sheet
 from .symbols import html, prose
 from .tables.identified import correlation_table, parameters_table
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from ..identify.identification import Identification
     from .figures.drawing import Picture
 
+ANSWER: Final = "identification.json"
 FIGURES: Final = ("tracks", "residuals_track", "residuals_photo_cells", "residuals_marks", "profiles")
 """Names of an identification's figures, in figures/ as .png and .svg."""
 COLUMNS: Final = ("run", "kind", "along", "quantity", "measured", "identified", "sd")
@@ -61,11 +64,14 @@ def write_identify_report(
     folder = Path(folder)
     require_writable(folder)
     say = progress or _silent
-    write_file(folder / "identification.json", json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1) + "\n")
-    write_file(folder / "fits.csv", fits_csv(found))
-    pictures = write_pictures(_drawings(found), folder / "figures", every=FIGURES, progress=say)
-    say("report.html")
-    write_file(folder / "report.html", identify_page(found, pictures))
+    with staged(folder, last=ANSWER) as stage:
+        stage.stale += picture_files(FIGURES)
+        text = json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1)
+        write_file(stage.path / ANSWER, f"{text}\n")
+        write_file(stage.path / "fits.csv", fits_csv(found))
+        pictures = write_pictures(_drawings(found), stage.path / "figures", every=FIGURES, progress=say)
+        say("report.html")
+        write_file(stage.path / "report.html", identify_page(found, pictures))
     return folder / "report.html"
 
 
@@ -80,7 +86,7 @@ def fits_csv(found: Identification) -> str:
                 numbers = (fit.measured[i, k], fit.fitted[i, k], fit.sd[i, k])
                 if math.isfinite(numbers[0]):
                     cells = [repr(float(each)) if math.isfinite(each) else "" for each in numbers]
-                    writer.writerow([fit.name, fit.kind, repr(float(along)), label, *cells])
+                    writer.writerow([guarded(fit.name), fit.kind, repr(float(along)), label, *cells])
     return stream.getvalue()
 
 

@@ -9,10 +9,15 @@ from .figures.drawing import pictured
 from .figures.style import journal_style
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from pathlib import Path
 
     from .figures.drawing import Drawing, Picture
+
+
+def picture_files(names: Iterable[str]) -> list[str]:
+    """The files of these figures below a report's folder."""
+    return [f"figures/{name}.{ending}" for name in names for ending in ("png", "svg")]
 
 
 def write_pictures(

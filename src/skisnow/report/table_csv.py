@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import orjson
 
+from ..spreadsheet_text import guarded
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -50,7 +52,7 @@ def _digits(values: Sequence[float | None]) -> list[str]:
 
 
 def _text(value: Any) -> str:
-    return "" if value is None else str(value)
+    return "" if value is None else guarded(str(value))
 
 
 def _truth(value: bool) -> str:
@@ -62,5 +64,5 @@ _WRITTEN: Final[dict[str, Callable[[Any], str]]] = {
     "words": _text,
     "yes": _truth,
     "tick": _truth,
-    "codes": "; ".join,
+    "codes": lambda codes: guarded("; ".join(codes)),
 }

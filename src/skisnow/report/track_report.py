@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ..files import require_writable, write_file
+from ..staging import staged
 from ..track.summary import summary_dict
 from .figures.drawing import Drawing
 from .figures.track_along import track_along
 from .figures.track_map import track_map
-from .pictures import write_pictures
+from .pictures import picture_files, write_pictures
 from .symbols import prose
 
 if TYPE_CHECKING:
@@ -55,11 +56,13 @@ def write_track_report(
     """
     folder = Path(folder)
     require_writable(folder)
-    write_pictures(track_drawings(summary), folder / "figures", every=FIGURES, progress=progress)
     text = json.dumps(
         summary_dict(summary) if values is None else values, ensure_ascii=False, allow_nan=False, indent=1
     )
-    write_file(folder / "track.json", f"{text}\n")
+    with staged(folder, last="track.json") as stage:
+        stage.stale += picture_files(FIGURES)
+        write_pictures(track_drawings(summary), stage.path / "figures", every=FIGURES, progress=progress)
+        write_file(stage.path / "track.json", f"{text}\n")
     return folder / "track.json"
 
 

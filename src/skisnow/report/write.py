@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 from ..estimate.results_text import results_json
-from ..files import cannot_write, move_into_place, require_writable, write_file
+from ..files import write_file
 from ..memory import paused_collector
+from ..staging import staged, tidied
 from .figures import figures_of
 from .material import Material
 from .page import page
@@ -59,13 +59,10 @@ def write_report(
     """
     say = progress or _silent
     out = Path(out)
-    require_writable(out)
-    try:
-        with paused_collector(), TemporaryDirectory(prefix=".report-", dir=out) as stage:
-            stale = _write(Material(campaign, results), Path(stage), say)
-            move_into_place(Path(stage), out, last=RESULTS, stale=stale)
-    except OSError as error:
-        raise cannot_write(out, error) from error
+    for sentence in tidied(out):
+        say(sentence)
+    with paused_collector(), staged(out, last=RESULTS) as stage:
+        stage.stale += _write(Material(campaign, results), stage.path, say)
     return out / "report.html"
 
 

@@ -12,6 +12,7 @@ from typing import IO, Any, Final, Self, TypeAlias
 
 from ..errors import OutputError, ParameterError
 from ..files import cannot_write
+from ..given import json_value
 
 Row: TypeAlias = dict[str, Any]
 NumberedText: TypeAlias = tuple[int, str]
@@ -70,7 +71,7 @@ class KeptRows:
                 self._file.flush()
             except OSError as error:
                 raise cannot_write(self.path, error) from error
-        self.rows.update((number, json.loads(text)) for number, text in new)
+        self.rows.update((number, json_value(text)) for number, text in new)
 
     def close(self) -> None:
         """Leave the file for a later start."""
@@ -110,7 +111,7 @@ def _rows_of(file: IO[bytes], path: Path, fingerprint: str) -> dict[int, Row]:
     for line in lines[1:]:
         try:
             number, text = line.split(b" ", 1)
-            rows[int(number)] = json.loads(text)
+            rows[int(number)] = json_value(text)
         except ValueError:
             break
         whole += len(line) + 1

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from ..errors import RangeWarning
 from ..forces.measured_ranges import FAILURE_SHEAR_STRESS, PENETRATION_EDGE_ANGLE, SNOW_HARDNESS
+from ..given import is_file
 from ..ski import Ski, read_ski, ski_names
 from ..snow import SnowProperties, published_snow, snow_from_results
 from .carve import Equilibrium, carve, rest
@@ -81,7 +82,7 @@ class Sources:
             return None
         place = self.path(word)
         looks_like_one = Path(word).suffix.lower() in (".toml", ".json") or Path(word).name != word
-        return place if looks_like_one or place.is_file() else None
+        return place if looks_like_one or is_file(place) else None
 
     def _ski_place(self, word: str) -> str | Path:
         return self.ski_file(word) or word

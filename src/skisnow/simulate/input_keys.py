@@ -11,6 +11,8 @@ from typing import Any, Literal, TypeAlias
 from ..errors import ParameterError
 
 Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "three numbers"]
+SMALLEST, LARGEST = 1e-100, 1e100
+"""Sizes of numbers that can be squared and divided by (Choice)."""
 InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
 
 
@@ -109,6 +111,9 @@ class InputKey:
             number = float(value)
         except OverflowError:
             number = math.inf
+        if number and math.isfinite(number) and not SMALLEST <= abs(number) <= LARGEST:
+            what = f"allowed are 0 and sizes from {SMALLEST:g} to {LARGEST:g}"
+            raise ParameterError(f"{self.name} is {_shown(value)}, which is no quantity; {what}")
         if self.kind == "number":
             return number
         if not number.is_integer():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import math
-import tomllib
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError, RangeWarning
+from ..given import read_toml
 from .file_keys import KEYS, LIST_KEYS, NUMBER_KEYS
 
 if TYPE_CHECKING:
@@ -141,14 +141,7 @@ def file_values(path: Path) -> FileValues:
     ParameterError
         The file cannot be read, is no TOML, or has a key that no ski file has; the nearest key is named.
     """
-    try:
-        values = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path.") from error
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"{path} is not UTF-8 text ({error.reason}). Save it as UTF-8.") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ParameterError(f"{path} is no TOML: {error}. Correct that place.") from error
+    values = read_toml(path)
     for key in values:
         if key not in KEYS:
             raise ParameterError(f"{path}: the key {key} is not known. {nearest(key, KEYS)}")

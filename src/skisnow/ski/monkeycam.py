@@ -8,13 +8,13 @@ the edge is the arc through the three.
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ..errors import ParameterError
+from ..given import read_json
 from ..units import CM, MM
 from .assembling import SkiParts, stiffness_table
 from .base_profile import BaseShape
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from .ski import Ski
 
 _UNITS = {"": CM, "cm": CM, "mm": MM, "m": 1.0, "in": 25.4 * MM, "inch": 25.4 * MM, "inches": 25.4 * MM, '"': 25.4 * MM}
+_MOST_BYTES = 1 << 22
+_LARGEST = 1e9
 _LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z\"]*)\s*")
 
 
@@ -114,12 +116,7 @@ def monkeycam_shape(path: Path, *, running_length: float | None = None) -> Monke
 
 
 def _board(path: Path) -> dict[str, Any]:
-    try:
-        design = json.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path.") from error
-    except ValueError as error:
-        raise ParameterError(f"{path} is no JSON text: {error}. Correct that place.") from error
+    design = read_json(path, most_bytes=_MOST_BYTES)
     board = design.get("board") if isinstance(design, dict) else None
     if not isinstance(board, dict):
         raise ParameterError(f"{path} has no section 'board'. Give a design file of MonkeyCAM, such as ski-def.json.")
@@ -136,6 +133,6 @@ def _length(path: Path, board: dict[str, Any], key: str) -> float:
     """A length in m; a number without unit is in cm, as in MonkeyCAM."""
     value = board.get(key)
     read = None if isinstance(value, bool) else _LENGTH.fullmatch(str(value))
-    if read is None or read[2].lower() not in _UNITS:
+    if read is None or read[2].lower() not in _UNITS or not abs(float(read[1])) <= _LARGEST:
         refuse(path, f"board: {key}", value, "a number in cm or a text such as '161cm', '2mm', '4in'", "Correct it")
     return float(read[1]) * _UNITS[read[2].lower()]

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import ParameterError
+from ..given import is_file
 from .file_parts import FileParts
 from .file_values import file_values, nearest
 from .table_file import read_table
@@ -45,7 +46,7 @@ def read_ski(name_or_path: str | Path) -> Ski:
             f"{path} has a shape but no stiffness and no mass. Write a TOML file with shape = {path.name!r}, EI_N_m2, "
             "GJ_N_m2 and mass_kg, and read that."
         )
-    if isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != str(path) or path.is_file():
+    if isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != str(path) or is_file(path):
         return _ski_in(path)
     raise _no_such_ski(str(name_or_path))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -12,8 +11,11 @@ import numpy.typing as npt
 
 from ..constants import CONFIDENCE
 from ..errors import ParameterError
+from ..given import GivenError, read_json
 from ..units import N_PER_MM2, N_PER_MM3
 from .properties import Interval, SnowProperties
+
+_LARGEST = 1e9
 
 
 def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowProperties:
@@ -51,6 +53,8 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
         raise ParameterError(f"{path} has no used penetration experiment{asked}; {known}")
     if not (np.all(hardness > 0) and np.all(stress >= 0) and (stress.size == 0 or np.any(stress > 0))):
         raise ParameterError(f"{path}: H_V of a used experiment must be above 0, and S_f of one at least")
+    if not (np.all(hardness >= 1.0 / _LARGEST) and np.all(hardness <= _LARGEST) and np.all(stress <= _LARGEST)):
+        raise ParameterError(f"{path}: H_V and S_f of a used experiment must lie from 1e-9 to 1e9 N/mm³ and N/mm²")
     H_V, H_V_interval = _mean(np.log(hardness))
     S_f, S_f_interval = _mean(stress) if stress.size else (None, None)
     return SnowProperties(
@@ -90,11 +94,9 @@ def _mean(values: npt.NDArray[np.float64]) -> tuple[float, Interval | None]:
 def _results(path: Path) -> dict[str, Any]:
     advice = "give the results.json that `skisnow analyse` wrote"
     try:
-        results = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read ({error.strerror or error}); {advice}") from error
-    except ValueError as error:  # no JSON, or no UTF-8
-        raise ParameterError(f"{path} is not JSON ({error}); {advice}") from error
+        results = read_json(path)
+    except GivenError as error:
+        raise ParameterError(f"{error} Needed is the results.json that `skisnow analyse` wrote") from error
     if not isinstance(results, dict) or not {"penetration", "shear"} <= results.keys():
         raise ParameterError(f"{path} has no entries 'penetration' and 'shear'; {advice}")
     return results

@@ -10,6 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
+from ..given import is_file
 from ..simulate.batch_file import Row
 from ..simulate.input_keys import InputKey
 
@@ -97,5 +98,5 @@ class Study:
         digest = hashlib.sha256()
         digest.update(json.dumps([version("skisnow"), self.columns, self.points]).encode())
         for path in self.subject.files(self.points):
-            digest.update(b"\0" + (path.read_bytes() if path.is_file() else b"absent"))
+            digest.update(b"\0" + (path.read_bytes() if is_file(path) else b"absent"))
         return digest.hexdigest()[:16]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from ..errors import ParameterError
+from ..given import read_toml
 from ..simulate.input_keys import InputKey, InputValue, nearest
 from .axes import Axis, grid_points, hypercube_points
 from .carve_subject import CarveSubject
@@ -37,22 +37,11 @@ def read_study(path: str | Path, *, subject: SubjectIn = CarveSubject) -> Study:
         cannot be read. Such a value of what varies is no error of the study but of its points.
     """
     path = Path(path)
-    values = _parsed(path)
+    values = read_toml(path)
     try:
         return _study(path, values, subject)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
-
-
-def _parsed(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"{path} is not UTF-8 text ({error.reason}). Save it as UTF-8") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ParameterError(f"{path} is no TOML: {error}. Correct that place") from error
 
 
 def _study(path: Path, values: Mapping[str, Any], subject: SubjectIn) -> Study:

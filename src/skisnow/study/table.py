@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ParameterError
+from ..given import json_value
 from ..simulate.batch_file import Row
 from ..simulate.input_keys import InputKey
+from ..spreadsheet_text import guarded, unguarded
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,7 +97,7 @@ def _row(place: str, columns: Sequence[str], cells: Sequence[str], keys: Mapping
     for name, cell in zip(columns, cells, strict=True):
         try:
             row[name] = _value(name, cell, keys)
-        except ValueError:
+        except (ValueError, TypeError):
             raise ParameterError(f"{place}: {name} is {cell!r}; it must be a number. Correct or remove it") from None
     return row
 
@@ -107,7 +109,7 @@ def _cell(value: Any) -> str:
         return "true" if value else "false"
     if isinstance(value, list | tuple):
         return json.dumps(list(value))
-    return value if isinstance(value, str) else repr(value)
+    return guarded(value) if isinstance(value, str) else repr(value)
 
 
 _TEXTS = ("outcome", "ski_name", "warnings", "reason", "study")
@@ -118,9 +120,9 @@ def _value(name: str, cell: str, keys: Mapping[str, InputKey]) -> Any:
     if cell == "":
         return "" if name in ("warnings", "reason") else None
     if is_text:
-        return cell
+        return unguarded(cell)
     if cell.startswith("["):
-        return [float(each) for each in json.loads(cell)]
+        return [float(each) for each in json_value(cell)]
     if cell in ("true", "false"):
         return cell == "true"
     return int(cell) if name in keys and keys[name].kind == "whole number" else float(cell)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import tomllib
 import warnings
 from pathlib import Path
 from tempfile import TemporaryDirectory, mkdtemp
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from ..errors import OutputError, ParameterError, RangeWarning
 from ..files import cannot_write, write_file
+from ..given import GivenError, toml_values
 from ..ski import read_ski, ski_names, write_ski
 
 if TYPE_CHECKING:
@@ -152,8 +152,8 @@ def texts_of_ski(ski: Ski) -> tuple[str, str]:
 
 def _require_no_other_file(text: str) -> None:
     try:
-        keys = tomllib.loads(text)
-    except tomllib.TOMLDecodeError:
+        keys = toml_values(text)
+    except GivenError:
         return  # said with its line by the reader
     if "shape" in keys:
         raise ParameterError(

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from ..errors import ParameterError
 from ..files import write_file
+from ..given import GivenError, read_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -62,8 +63,8 @@ class Runs:
         """All jobs, the newest first."""
         found = []
         for place in self.folder.glob(f"*/{JOB}"):
-            with contextlib.suppress(OSError):  # its folder is being taken away
-                found.append(Job(**json.loads(place.read_text(encoding="utf-8"))))
+            with contextlib.suppress(GivenError, TypeError):  # its folder is being taken away, or it is damaged
+                found.append(Job(**read_json(place)))
         return sorted(found, key=lambda job: job.asked_at, reverse=True)
 
     def ask(
@@ -170,7 +171,7 @@ class Runs:
         if not summary.is_file():
             said = "Nothing was computed yet." if cancelled else last
             return replace(job, state="cancelled" if cancelled else "failed", said=said)
-        found = json.loads(summary.read_text(encoding="utf-8"))
+        found = read_json(summary)
         words = f"{found['outcome']}: {found['run_length_m']:.1f} m in {found['simulated_s']:.2f} s".replace("_", " ")
         if found["outcome"] == "interrupted":  # cancelled a moment after the end it is finished all the same
             return replace(job, state="cancelled", said=f"{words}. What was computed until then is kept.")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import lzma
+import errno
 import stat
+import struct
 import zipfile
-import zlib
+from contextlib import contextmanager
 from pathlib import PurePosixPath
 from typing import IO, TYPE_CHECKING, Final
 
@@ -13,21 +14,20 @@ from ..errors import ParameterError
 from ..field.store.folder import unsafe_because
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
     from .settings import Limits
 
 CHUNK_BYTES: Final = 1 << 18
-_DAMAGE: Final = (
-    zipfile.BadZipFile,
-    zlib.error,
-    lzma.LZMAError,
-    EOFError,
-    NotImplementedError,
-    RuntimeError,
-    ValueError,
-)
+DEEPEST: Final = 32
+"""Folders within one another (Choice: a campaign has two)."""
+
+_METHODS: Final = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+_END_RECORD: Final = struct.Struct("<4s4H2LH")
+_LONGEST_COMMENT: Final = 0xFFFF
+_BYTES_PER_NAME: Final = 2_000
+_DAMAGED: Final = "the zip file is damaged or of a kind that is not read; pack the folder anew"
 
 
 class Unpacking:
@@ -47,20 +47,7 @@ class Unpacking:
         ParameterError
             Its name leads out of the folder or cannot be used on every system, it is there already, or it is too much.
         """
-        place = self._place(name)
-        self._files += 1
-        if self._files > self.limits.files:
-            raise ParameterError(f"more than {self.limits.files} files at once are not taken in")
-        try:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            with place.open("xb") as file:
-                while piece := content.read(CHUNK_BYTES):
-                    self._bytes += len(piece)
-                    if self._bytes > self.limits.unpacked_bytes:
-                        raise ParameterError(f"more than {self.limits.unpacked_bytes} bytes at once are not taken in")
-                    file.write(piece)
-        except (FileExistsError, NotADirectoryError) as error:
-            raise ParameterError(f"two files of the upload are called {shown(name)}") from error
+        self._write(name, iter(lambda: content.read(CHUNK_BYTES), b""))
 
     def take_zip(self, packed: IO[bytes]) -> None:
         """Unpack a zip file; what it says about sizes is not believed but counted.
@@ -68,35 +55,58 @@ class Unpacking:
         Raises
         ------
         ParameterError
-            As in `take`; it is no zip file, is damaged or encrypted, or holds links.
+            As in `take`; it is no zip file, is damaged, encrypted or packed in another way than by deflating, or holds
+            links.
         """
+        self._require_small_directory(packed)
+        with _damage_told():
+            archive = zipfile.ZipFile(packed)
+        with archive:
+            members = [member for member in archive.infolist() if not member.filename.endswith("/")]
+            if len(members) > self.limits.files:
+                raise ParameterError(f"more than {self.limits.files} files at once are not taken in")
+            for member in members:
+                _require_plain(member)
+                self._write(member.filename, _unpacked(archive, member))
+
+    def _require_small_directory(self, packed: IO[bytes]) -> None:
+        """Refuse a list of files so long that reading it alone would fill the memory."""
+        with _damage_told():
+            packed.seek(0, 2)
+            size = packed.tell()
+            packed.seek(max(0, size - _END_RECORD.size - _LONGEST_COMMENT))
+            tail = packed.read()
+            at = tail.rindex(b"PK\5\6")
+            *_, listed, _start, _comment = _END_RECORD.unpack_from(tail, at)
+        if listed > self.limits.files * _BYTES_PER_NAME:
+            raise ParameterError(f"more than {self.limits.files} files at once are not taken in")
+
+    def _write(self, name: str, pieces: Iterable[bytes]) -> None:
+        place = self._place(name)
+        self._files += 1
+        if self._files > self.limits.files:
+            raise ParameterError(f"more than {self.limits.files} files at once are not taken in")
         try:
-            with zipfile.ZipFile(packed) as archive:
-                members = [member for member in archive.infolist() if not member.is_dir()]
-                if len(members) > self.limits.files:
-                    raise ParameterError(f"more than {self.limits.files} files at once are not taken in")
-                for member in members:
-                    _require_plain(member)
-                    with archive.open(member) as content:
-                        self.take(member.filename, content)
-        except (
-            zipfile.BadZipFile,
-            zipfile.LargeZipFile,
-            EOFError,
-            OSError,
-            RuntimeError,
-            NotImplementedError,
-        ) as error:
-            raise ParameterError("the zip file is damaged or of a kind that is not read") from error
-        except Exception as error:
-            if type(error).__module__ in ("zlib", "_lzma", "lzma"):
-                raise ParameterError("the zip file is damaged") from error
-            raise
+            place.parent.mkdir(parents=True, exist_ok=True)
+            with place.open("xb") as file:
+                for piece in pieces:
+                    self._bytes += len(piece)
+                    if self._bytes > self.limits.unpacked_bytes:
+                        raise ParameterError(f"more than {self.limits.unpacked_bytes} bytes at once are not taken in")
+                    file.write(piece)
+        except (FileExistsError, NotADirectoryError) as error:
+            raise ParameterError(f"two files of the upload are called {shown(name)}") from error
+        except OSError as error:
+            if error.errno != errno.ENAMETOOLONG:
+                raise
+            raise ParameterError(f"the file {shown(name)} is not taken in: its name is too long") from error
 
     def _place(self, name: str) -> Path:
         path = name.replace("\\", "/")
         if (why := unsafe_because(path, for_windows=True)) is not None:
             raise ParameterError(f"the file {shown(name)} is not taken in: {why}")
+        if path.count("/") > DEEPEST:
+            raise ParameterError(f"the file {shown(name)} is not taken in: it lies in more than {DEEPEST} folders")
         return self.folder.joinpath(*PurePosixPath(path).parts)
 
 
@@ -106,6 +116,29 @@ def _require_plain(member: zipfile.ZipInfo) -> None:
         raise ParameterError(f"{shown(member.filename)} in the zip file is a link or the like, not a plain file")
     if member.flag_bits & 1:
         raise ParameterError(f"{shown(member.filename)} in the zip file is encrypted; pack it without a password")
+    if member.compress_type not in _METHODS:
+        raise ParameterError(f"{shown(member.filename)} in the zip file is packed in an unusual way; choose Deflate")
+
+
+def _unpacked(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Iterator[bytes]:
+    with _damage_told():
+        content = archive.open(member)
+    with content:
+        while True:
+            with _damage_told():
+                piece = content.read(CHUNK_BYTES)
+            if not piece:
+                return
+            yield piece
+
+
+@contextmanager
+def _damage_told() -> Iterator[None]:
+    """Only for what zipfile does by itself: it tells of damage by a dozen kinds of errors, from any of its steps."""
+    try:
+        yield
+    except Exception as error:
+        raise ParameterError(_DAMAGED) from error
 
 
 def shown(name: str) -> str:

@@ -101,8 +101,14 @@ def test_toml_that_python_cannot_hold(value: str) -> None:
     assert problem.code == "bad_toml"
 
 
+@pytest.mark.parametrize(("digits", "row"), [(20, None), (400, 1)])
+def test_whole_number_beyond_those_of_toml(digits: int, row: int | None) -> None:
+    _, (problem,) = read("load_uncertainty_N = 1" + "0" * digits)
+    assert (problem.code, problem.row) == ("bad_toml", row)
+
+
 def test_number_too_large_for_a_float() -> None:
-    _, (problem,) = read("load_uncertainty_N = 1" + "0" * 400)
+    _, (problem,) = read("load_uncertainty_N = 1e400")
     assert (problem.code, problem.column) == ("out_of_range", "load_uncertainty_N")
 
 

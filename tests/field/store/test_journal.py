@@ -1,5 +1,6 @@
 """A campaign that is being entered: nothing is overwritten, and its files are read as any campaign's."""
 
+import csv
 import sqlite3
 from dataclasses import replace
 from pathlib import Path
@@ -207,3 +208,21 @@ def test_an_entry_that_is_sent_again_is_written_down_once(store: Store) -> None:
     assert journals.append(other, sent, seen=0).sequence > first.sequence
     assert journals.begin(TOML, once="page-1") == journals.begin(TOML, once="page-1")
     assert len(journals.list()) == 3
+
+
+def test_names_like_formulas_are_exported_as_texts_and_read_as_they_were(store: Store, tmp_path: Path) -> None:
+    journals = Journals(store)
+    id_ = journals.begin(TOML)
+    name, site = "=1+1", "'@SUM(A1)"
+    for position, (load, depth) in enumerate((("20", "1.5"), ("40", "2.1"), ("60", "2.6"))):
+        row = reading(name, position, load, depth)
+        journals.append(id_, replace(row, cells={**row.cells, "site": site}), seen=position and 10**6)
+    write_campaign(grown(journals.entries(id_)), tmp_path)
+    text = (tmp_path / "penetration.csv").read_text(encoding="utf-8")
+    assert "'=1+1" in text
+    assert "''@SUM(A1)" in text
+    cells = next(csv.reader(text.splitlines()[1:]))
+    assert not any(cell.startswith(("=", "@", "+", "-")) for cell in cells)
+    campaign = read_campaign(tmp_path)
+    assert campaign.penetration is not None
+    assert (set(campaign.penetration.experiment), set(campaign.penetration.site)) == ({name}, {site})

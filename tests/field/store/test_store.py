@@ -5,6 +5,7 @@ import hashlib
 import os
 import re
 import sqlite3
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from skisnow.errors import StoreError
 from skisnow.field.problems import Problem
 from skisnow.field.store import Store, default_path
 from skisnow.field.store import folder as store_folder
+from skisnow.field.store.folder import manifest_sha256
 
 PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\nP1,A,ski,45,100,1.5\n"
 FILES = {
@@ -215,8 +217,14 @@ def test_export_does_not_touch_what_is_there(folder: Path, place: Path, tmp_path
 @pytest.mark.parametrize("path", ["../evil", "/evil", "a/../../evil", "C:/evil", "a//b", "./a", ""])
 def test_export_refuses_unsafe_paths(path: str, folder: Path, place: Path, tmp_path: Path) -> None:
     with Store.open(place) as store:
-        id_ = store.add(folder).id
-        change(place, f"UPDATE campaign_file SET path = '{path}' WHERE path = 'case.csv'")
+        files = store.show(store.add(folder).id).files
+        sha256 = manifest_sha256(replace(file, path=path) if file.path == "case.csv" else file for file in files)
+        id_ = sha256[:12]  # whoever wants to write elsewhere gives the list of files its hash
+        change(
+            place,
+            f"UPDATE campaign SET id = '{id_}', sha256 = '{sha256}'; UPDATE campaign_file SET campaign_id = '{id_}'; "
+            f"UPDATE campaign_file SET path = '{path}' WHERE path = 'case.csv'",
+        )
         before = sorted(tmp_path.iterdir())
         with pytest.raises(StoreError, match="rename it"):
             store.export(id_, tmp_path / "out")

@@ -99,6 +99,15 @@ def test_change_on_a_command_line(word: str, change: tuple[str, object]) -> None
     assert change_of(word) == change
 
 
+@pytest.mark.parametrize(
+    "word", ["mass_kg=80\nspeed_m_per_s=3", "mass_kg=80\n[x]", "mass_kg=" + "[" * 3000, "mass_kg=1" + "0" * 400]
+)
+def test_change_that_is_not_one_value_is_refused_in_a_short_sentence(word: str) -> None:
+    with pytest.raises(ParameterError, match=r"^sledge\.mass_kg is .*; it must be a number$") as error:
+        read_scenario("carved-46m", changes=dict([change_of(word)]))
+    assert len(str(error.value)) < 200
+
+
 def test_named_snow_takes_the_place_of_numbers_and_back() -> None:
     named = read_scenario("carved-46m", changes={"published": "spring-snow"})
     assert "spring snow" in named.contact.snow.source

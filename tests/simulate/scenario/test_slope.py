@@ -136,5 +136,5 @@ def test_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match=r"nowhere\.csv cannot be read"):
         read_profile(tmp_path / "nowhere.csv")
     (tmp_path / "image.csv").write_bytes(b"\xff\xfe\x00\x81")
-    with pytest.raises(ParameterError, match="no CSV text in UTF-8"):
+    with pytest.raises(ParameterError, match=r"image\.csv is not UTF-8 text"):
         read_profile(tmp_path / "image.csv")

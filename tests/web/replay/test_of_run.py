@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import random
+import warnings
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from skisnow.errors import ParameterError
+from skisnow.errors import ParameterError, SkisnowError
 from skisnow.report.run_file import write_run_file
 from skisnow.simulate.run import Run
 from skisnow.simulate.scenario import Profile, scenario_values
@@ -91,6 +94,25 @@ def test_what_is_no_run_is_refused_with_its_name(tmp_path: Path, content: bytes)
         replay_of_file(tmp_path)
     with pytest.raises(ParameterError, match="cannot be read"):
         replay_of_file(tmp_path / "gone.nc")
+
+
+def test_a_damaged_run_is_refused_in_words(tmp_path: Path) -> None:
+    folder = written(circle_run(count=5), tmp_path)
+    sound, random_ = (folder / "run.nc").read_bytes(), random.Random(1)
+    refused = 0
+    for tried in range(60):
+        data = bytearray(sound)
+        if tried % 3:
+            data[random_.randrange(6000)] = random_.randrange(256)
+        else:
+            del data[random_.randrange(6000) :]
+        (folder / "run.nc").write_bytes(data)
+        with warnings.catch_warnings(), suppress(SkisnowError):
+            warnings.simplefilter("ignore")
+            refused += 1
+            replay_of_file(folder, ski=ski_named("slalom"))
+            refused -= 1
+    assert refused > 15
 
 
 def test_a_profile_is_drawn_with_its_heights() -> None:

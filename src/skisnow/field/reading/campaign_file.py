@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import difflib
-import re
-import tomllib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+from ...given import GivenError, toml_values
 from ...units import MM
 from ..marks import ALWAYS_EXCLUDE, MARKS
 from ..problems import error
@@ -106,13 +105,9 @@ def _scaled(value_mm: float | None) -> float | None:
 
 def _parsed(text: str, found: list[Problem]) -> dict[str, Any] | None:
     try:
-        return tomllib.loads(text.replace("\r\n", "\n").replace("\r", "\n"))
-    except RecursionError:
-        row, what = None, "brackets nested too deeply"
-    except ValueError as trouble:  # TOMLDecodeError, and numbers or dates that Python cannot hold
-        what = str(trouble)
-        line = re.search(r"at line (\d+)", what)
-        row = int(line[1]) if line else None
+        return toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
+    except GivenError as trouble:
+        row, what = trouble.line, trouble.what
     action = "Correct the line: texts stand in quotes, numbers have a decimal point, lists stand in brackets."
     found.append(error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed="TOML (toml.io)", action=action))
     return None

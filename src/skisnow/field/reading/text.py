@@ -21,6 +21,7 @@ from ...spreadsheet_text import (
     decoded,
     most_frequent_separator,
     named_separator,
+    unguarded,
 )
 
 if TYPE_CHECKING:
@@ -107,6 +108,8 @@ class CsvText:
     def records(self) -> Iterator[Records]:
         """Cut the file into records, some thousand at a time; the first record is the header.
 
+        The apostrophe that keeps a text from being taken for a formula is off again.
+
         Raises
         ------
         UnreadableTextError
@@ -118,6 +121,7 @@ class CsvText:
         lines: list[int] = []
         rows: list[list[str]] = []
         line = 1 + skipped
+        may_be_guarded = b"'" in self.data  # in most files there is none
         try:
             for cells in reader:
                 if len(rows) >= RECORDS_AT_ONCE:
@@ -129,7 +133,7 @@ class CsvText:
                 first = cells[0] if cells else ""
                 if (first and not first.isspace()) or any(map(str.strip, cells)):
                     lines.append(line)
-                    rows.append(cells)
+                    rows.append(list(map(unguarded, cells)) if may_be_guarded else cells)
                 line = reader.line_num + 1 + skipped
             line = lines.pop()  # its last cell swallowed the end
             rows.pop()

@@ -6,6 +6,8 @@ import csv
 import io
 from typing import TYPE_CHECKING, Final
 
+from ...spreadsheet_text import guarded
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -20,11 +22,11 @@ def correction_row(entry: JournalEntry, line: int, column: str, old: str, new: s
 
 
 def csv_text(rows: Iterable[Sequence[str]]) -> str:
-    r"""A table with commas and plain line ends.
+    r"""A table with commas and plain line ends; no cell is taken for a formula.
 
     >>> csv_text([("old", "new"), ("1,5", "1.5")])
     'old,new\n"1,5",1.5\n'
     """
     stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(rows)
+    csv.writer(stream, lineterminator="\n").writerows(map(guarded, row) for row in rows)
     return stream.getvalue()

@@ -155,7 +155,10 @@ def _revision(connection: Connection, path: Path) -> str | None:
         return None
     if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
         raise StoreError(f"{path} is an SQLite database of another program, not a store; name another file.")
-    return str(connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalar_one())
+    versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
+    if len(versions) != 1 or not isinstance(versions[0], str):
+        raise StoreError(f"{path} is damaged: it does not say what version it is. Put a backup in its place.")
+    return versions[0]
 
 
 def _is_outdated(engine: Engine, path: Path) -> bool:

@@ -9,14 +9,14 @@ import hashlib
 import os
 import re
 import stat
-import tomllib
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final, Protocol
 
-from ...errors import StoreError
+from ...errors import ParameterError, StoreError
+from ...given import MOST_TOML_BYTES, plain_bytes, toml_values
 from ..reading.text import UnreadableTextError, decode
 
 if TYPE_CHECKING:
@@ -119,8 +119,8 @@ def campaign_name(folder: Path) -> str:
     """Name from campaign.toml where it can be read, else the folder's; never an error: raw data are kept as is."""
     own = folder.resolve().name.encode(errors="replace").decode()
     try:
-        name = tomllib.loads(decode((folder / "campaign.toml").read_bytes()).text).get("name")
-    except (OSError, ValueError, UnreadableTextError):
+        name = toml_values(decode(plain_bytes(folder / "campaign.toml", most_bytes=MOST_TOML_BYTES)).text).get("name")
+    except (OSError, ParameterError, UnreadableTextError):
         return own
     words = " ".join(name.split()) if isinstance(name, str) else ""
     return words or own

@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 from sqlalchemy import ColumnElement, Connection, RowMapping, and_, func, insert, select
 
 from ...errors import StoreError
+from ...given import json_value
 from .engine import database_told, reading, writing
-from .rows import TIME
+from .rows import TIME, damaged, number_of, text_of
 from .schema import campaign, journal, journal_entry
 
 if TYPE_CHECKING:
@@ -135,7 +136,7 @@ class Journals:
             .order_by(journal.c.begun_at, journal.c.id)
         )
         with database_told(self._path, "could not be read"), reading(self._engine) as connection:
-            return tuple(JournalHead(*row) for row in connection.execute(asked).all())
+            return tuple(_head(*row) for row in connection.execute(asked).all())
 
     def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
         """Give the entries of a journal, oldest first, from the one behind a sequence on.
@@ -162,7 +163,7 @@ class Journals:
             require(connection, id_)
             asked = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
             rows = connection.execute(asked.order_by(journal_entry.c.sequence)).mappings()
-            return tuple(_entry(row) for row in rows)
+            return tuple(entry_of(row) for row in rows)
 
     def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
         """Write an entry down; when this returns it is on the disk. One that is there already is given back.
@@ -226,6 +227,13 @@ class Journals:
             return _write(connection, id, entry)
 
 
+def _head(id_: object, begun_at: object, n_entries: object, last_at: object) -> JournalHead:
+    try:
+        return JournalHead(text_of(id_), text_of(begun_at), number_of(n_entries), text_of(last_at))
+    except TypeError as error:
+        raise damaged(f"The campaign in entry {id_}") from error
+
+
 def _now() -> str:
     return datetime.now(UTC).strftime(TIME)
 
@@ -261,7 +269,7 @@ def _written_before(connection: Connection, id_: str, entry: NewEntry) -> Journa
         return None
     found = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.once == entry.once)
     row = connection.execute(found).mappings().first()
-    return None if row is None else _entry(row)
+    return None if row is None else entry_of(row)
 
 
 def _refuse_overtaken(connection: Connection, id_: str, entry: NewEntry, seen: int) -> None:
@@ -293,6 +301,22 @@ def _write(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry:
     return JournalEntry(**values, cells=dict(entry.cells), at=at, sequence=int(key[0]))
 
 
-def _entry(row: RowMapping) -> JournalEntry:
+def entry_of(row: RowMapping) -> JournalEntry:
+    """An entry from its row.
+
+    Raises
+    ------
+    StoreError
+        It holds what was never written there.
+    """
     values: dict[str, Any] = {str(name): value for name, value in row.items() if name not in ("journal_id", "cells")}
-    return JournalEntry(**values, cells=json.loads(row["cells"]))
+    try:
+        for name in ("action", "file", "test", "at", "who", "why"):
+            text_of(values[name])
+        for name in ("sequence", "position", "about"):
+            if values[name] is not None or name == "sequence":
+                number_of(values[name])
+        cells = {text_of(column): text_of(cell) for column, cell in json_value(text_of(row["cells"])).items()}
+    except (TypeError, ValueError, AttributeError) as error:
+        raise damaged(f"The entry {values.get('sequence')} of the campaign in entry {row['journal_id']}") from error
+    return JournalEntry(**values, cells=cells)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
 from ...errors import StoreError
-from .folder import StoredFile, read_chunks
+from .folder import StoredFile, manifest_sha256, read_chunks
 from .schema import CHUNK_BYTES, campaign, campaign_file, chunk, content
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class StoredCampaign:
 def all_campaigns(connection: Connection) -> tuple[StoredCampaign, ...]:
     """Give all campaigns, oldest first."""
     rows = connection.execute(select(campaign).order_by(campaign.c.added_at, campaign.c.id)).all()
-    return tuple(_stored_campaign(connection, row) for row in rows)
+    return tuple(stored_campaign(connection, row) for row in rows)
 
 
 def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
@@ -84,7 +84,7 @@ def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
     begins_so = select(campaign).where(campaign.c.sha256.startswith(beginning)).order_by(campaign.c.id)
     rows = connection.execute(begins_so).all()
     if len(rows) == 1:
-        return _stored_campaign(connection, rows[0])
+        return stored_campaign(connection, rows[0])
     if rows:
         raise StoreError(f"Several campaigns begin with {beginning}: {_candidates(rows)}; give more digits.")
     known = connection.execute(select(campaign).order_by(campaign.c.added_at.desc(), campaign.c.id)).all()
@@ -97,6 +97,39 @@ def _candidates(rows: Sequence[Row[tuple[object, ...]]]) -> str:
     return (", ".join(named) or "none") + (f" and {further} more" if further else "")
 
 
+def damaged(what: str) -> StoreError:
+    """The error for rows that hold what was never written there."""
+    return StoreError(
+        f"{what} is damaged in the store; `skisnow store verify` lists all damage. Put a backup in its place."
+    )
+
+
+def require_whole(stored: StoredCampaign) -> None:
+    """Refuse a campaign whose list of files is not the one that it was added with.
+
+    Raises
+    ------
+    StoreError
+        A name, a size, a hash or a file differs.
+    """
+    if manifest_sha256(stored.files) != stored.sha256:
+        raise damaged(f"The list of files of the campaign {stored.id}")
+
+
+def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
+    """A campaign from its row.
+
+    Raises
+    ------
+    StoreError
+        The row, or one of its files, holds what was never written there.
+    """
+    try:
+        return _stored_campaign(connection, row)
+    except (TypeError, ValueError) as error:
+        raise damaged(f"The campaign {row.id}") from error
+
+
 def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
     files = connection.execute(
         select(campaign_file.c.path, content.c.size, content.c.sha256)
@@ -105,28 +138,49 @@ def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> St
         .order_by(campaign_file.c.path)
     )
     return StoredCampaign(
-        id=row.id,
-        name=row.name,
-        added_at=datetime.strptime(row.added_at, TIME).replace(tzinfo=UTC),
-        sha256=row.sha256,
-        n_errors=row.n_errors,
-        n_warnings=row.n_warnings,
-        files=tuple(StoredFile(file.path, file.size, file.sha256) for file in files),
+        id=text_of(row.id),
+        name=text_of(row.name),
+        added_at=datetime.strptime(text_of(row.added_at), TIME).replace(tzinfo=UTC),
+        sha256=text_of(row.sha256),
+        n_errors=None if row.n_errors is None else number_of(row.n_errors),
+        n_warnings=None if row.n_warnings is None else number_of(row.n_warnings),
+        files=tuple(StoredFile(text_of(file.path), number_of(file.size), text_of(file.sha256)) for file in files),
     )
+
+
+def text_of(value: object) -> str:
+    """A text as it must be; SQLite gives bytes or a number where a damaged row says so."""
+    if not isinstance(value, str):
+        raise TypeError(f"{value!r} is no text")
+    return value
+
+
+def number_of(value: object) -> int:
+    """A whole number as it must be."""
+    if not isinstance(value, int):
+        raise TypeError(f"{value!r} is no whole number")
+    return value
 
 
 def stored_chunks(connection: Connection, sha256: str) -> Iterator[bytes]:
     """Give a content's bytes piece by piece."""
     pieces = select(chunk.c.data).where(chunk.c.sha256 == sha256).order_by(chunk.c.position)
-    yield from connection.execute(pieces, execution_options={"yield_per": 1}).scalars()
+    try:
+        for piece in connection.execute(pieces, execution_options={"yield_per": 1}).scalars():
+            yield bytes(piece)
+    except TypeError as error:
+        raise damaged(f"The content {sha256}") from error
 
 
 def is_sound(connection: Connection, sha256: str, size: int) -> bool:
     """Tell whether a content still has the hash and the size (bytes) that it had when it was taken in."""
     found, n_bytes = hashlib.sha256(), 0
-    for piece in stored_chunks(connection, sha256):
-        found.update(piece)
-        n_bytes += len(piece)
+    try:
+        for piece in stored_chunks(connection, sha256):
+            found.update(piece)
+            n_bytes += len(piece)
+    except StoreError:
+        return False
     return found.hexdigest() == sha256 and n_bytes == size
 
 

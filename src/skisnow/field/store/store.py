@@ -34,6 +34,7 @@ from .rows import (
     keep_content,
     one_campaign,
     refuse_changed,
+    require_whole,
     stored_chunks,
 )
 from .schema import CHUNK_BYTES
@@ -226,6 +227,7 @@ class Store:
         out, done = Path(out_folder), 0
         with database_told(self.path, "could not be read"), reading(self.engine) as connection:
             stored = one_campaign(connection, id)
+            require_whole(stored)
             with files_told(out, "could not be written"), new_folder(out) as filling:
                 for file in stored.files:
                     write_file(filling, file, stored_chunks(connection, file.sha256))

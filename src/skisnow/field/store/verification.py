@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sqlalchemy import Connection, func, select
+from sqlalchemy import Connection, select
 from sqlalchemy.exc import DatabaseError
 
+from ...errors import StoreError
 from .folder import Progress, manifest_sha256, unsafe_because
-from .rows import StoredCampaign, all_campaigns, is_sound
-from .schema import campaign_file, content
+from .journal import entry_of
+from .rows import StoredCampaign, is_sound, stored_campaign
+from .schema import campaign, campaign_file, content, journal_entry
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,40 +33,65 @@ class Finding:
 
 
 def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
-    """Check database, contents and campaigns; an empty answer means that all is sound."""
+    """Check database, contents, campaigns and entries, each whatever the others hold; an empty answer: all is sound."""
     found: list[Finding] = []
-    try:
-        found.extend(_of_database(connection))
-        found.extend(_of_contents(connection, progress))
-        for stored in all_campaigns(connection):
-            found.extend(_of_campaign(stored))
-    except DatabaseError as error:
-        found.append(Finding(None, None, f"cannot be read further: {error.orig}; put a backup in its place"))
+    for of_part in (_of_database, lambda each: _of_contents(each, progress), _of_campaigns, _of_entries):
+        try:
+            for finding in of_part(connection):
+                found.append(finding)
+        except DatabaseError as error:
+            stopped = Finding(None, None, f"cannot be read further: {error.orig}; put a backup in its place")
+            found.extend(() if stopped in found else (stopped,))
     return tuple(found)
 
 
 def _of_database(connection: Connection) -> Iterator[Finding]:
-    for message in connection.exec_driver_sql("PRAGMA integrity_check").scalars().all():
+    for message in connection.exec_driver_sql("PRAGMA integrity_check").scalars():
         if message != "ok":
             yield Finding(None, None, f"SQLite's integrity check: {message}")
-    for table, row, parent, _ in connection.exec_driver_sql("PRAGMA foreign_key_check").all():
+    for table, row, parent, _ in connection.exec_driver_sql("PRAGMA foreign_key_check"):
         yield Finding(None, None, f"row {row} of table {table} points at what table {parent} does not hold")
 
 
 def _of_contents(connection: Connection, progress: Progress) -> Iterator[Finding]:
-    done, total = 0, connection.execute(select(func.coalesce(func.sum(content.c.size), 0))).scalar_one()
-    for sha256, size in connection.execute(select(content.c.sha256, content.c.size)).all():
-        try:
-            sound = is_sound(connection, sha256, size)
-        except DatabaseError:  # the pages that hold it are broken; other files may be whole
-            sound = False
-        if not sound:
+    rows = connection.execute(select(content.c.sha256, content.c.size)).all()
+    done, total = 0, sum(size for _, size in rows if isinstance(size, int))
+    for sha256, size in rows:
+        if not isinstance(size, int) or not _is_sound(connection, sha256, size):
             users = select(campaign_file.c.campaign_id, campaign_file.c.path).where(campaign_file.c.sha256 == sha256)
             message = f"the bytes no longer have the SHA-256 {sha256}; add the original folder again to repair it"
-            for campaign_id, path in connection.execute(users).all():
-                yield Finding(campaign_id, path, message)
-        done += size
+            named = connection.execute(users).all() if isinstance(sha256, str) else []
+            places = [(_words(campaign_id), _words(path)) for campaign_id, path in named]
+            yield from (Finding(*place, message) for place in places or [(None, None)])
+        done += size if isinstance(size, int) else 0
         progress(done, total)
+
+
+def _is_sound(connection: Connection, sha256: object, size: int) -> bool:
+    try:
+        return isinstance(sha256, str) and is_sound(connection, sha256, size)
+    except DatabaseError:  # the pages that hold it are broken; other files may be whole
+        return False
+
+
+def _words(value: object) -> str | None:
+    return value if value is None or isinstance(value, str) else repr(value)
+
+
+def _of_campaigns(connection: Connection) -> Iterator[Finding]:
+    for row in connection.execute(select(campaign)).all():
+        try:
+            yield from _of_campaign(stored_campaign(connection, row))
+        except StoreError as error:
+            yield Finding(_words(row.id), None, str(error))
+
+
+def _of_entries(connection: Connection) -> Iterator[Finding]:
+    for row in connection.execute(select(journal_entry).order_by(journal_entry.c.sequence)).mappings().all():
+        try:
+            entry_of(row)
+        except StoreError as error:
+            yield Finding(_words(row["journal_id"]), None, str(error))
 
 
 def _of_campaign(stored: StoredCampaign) -> Iterator[Finding]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib.resources import files
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from ...errors import ParameterError
+from ...given import MOST_TOML_BYTES, GivenError, is_file, plain_text, toml_values
 from ..input_keys import InputValue, meant, nearest
 from .keys import SCENARIO_KEYS, SECTIONS
 
@@ -135,24 +135,16 @@ def given_scenario(name_or_path: str | Path) -> GivenScenario:
     if word in scenario_names():
         return _given(word, None, scenario_text(word))
     path = Path(name_or_path)
-    if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or path.is_file()):
+    if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
         raise ParameterError(
             f"there is no scenario named {word!r}. {nearest(word, scenario_names())}. Any other scenario is read from "
             "a file ending in .toml"
         )
-    try:
-        return _given(str(path), path, path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"{path} is not UTF-8 text ({error.reason}). Save it as UTF-8") from error
+    return _given(str(path), path, plain_text(path, most_bytes=MOST_TOML_BYTES))
 
 
 def _given(title: str, file: Path | None, text: str) -> GivenScenario:
-    try:
-        parsed = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ParameterError(f"{title} is no TOML: {error}. Correct that place") from error
+    parsed = toml_values(text, title=title)
     identify = parsed.pop(IDENTIFY, {})
     if not isinstance(identify, dict):
         raise ParameterError(f"{title}: {IDENTIFY} is {identify!r}; it must be a table, begun by the line [{IDENTIFY}]")
@@ -234,8 +226,9 @@ def change_of(word: str) -> tuple[str, object]:
         raise ParameterError(f"{word!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35")
     name = full_name(name)
     try:
-        value = tomllib.loads(f"value = {text}")["value"]
-    except (tomllib.TOMLDecodeError, KeyError):
+        values = toml_values(f"value = {text}")
+    except GivenError:
         return name, text
+    value = values["value"] if values.keys() == {"value"} else text  # a second line would say more than one value
     is_text = SCENARIO_KEYS[name].kind == "text"
     return name, text if is_text and not isinstance(value, str) else value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,9 +12,11 @@ from typing import Final
 import numpy as np
 
 from ...errors import ParameterError
+from ...given import plain_text
 from .slope import Gap, Profile
 
 COLUMNS: Final = ("x", "y")
+_MOST_BYTES: Final = 1 << 26
 _ACTION: Final = "write horizontal distance and height in m, with a decimal point, under a first line x,y"
 
 
@@ -36,12 +39,9 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
     """
     path = Path(path)
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            points = list(_points(path, csv.reader(stream)))
-    except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError(f"{path} is no CSV text in UTF-8 ({error}); {_ACTION}") from error
+        points = list(_points(path, csv.reader(io.StringIO(plain_text(path, most_bytes=_MOST_BYTES)))))
+    except csv.Error as error:
+        raise ParameterError(f"{path} is no CSV text ({error}); {_ACTION}") from error
     try:
         table = np.array(points, dtype=float).reshape(-1, 2)
         return Profile(table[:, 0], table[:, 1], gap=gap, source=str(path))

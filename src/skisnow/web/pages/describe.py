@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
@@ -12,6 +11,7 @@ from ...field.reading.tool_shapes import SHAPES
 from ...field.store import Journals, NewEntry
 from ...field.store.description import Description, description_text
 from ...field.store.journal import DESCRIPTION
+from ...given import toml_values
 from ..answering import form
 from ..desk import Desk
 from ..fields import button, choice, field
@@ -45,7 +45,7 @@ def add_page(lab: Lab) -> None:
         with framed("Campaign" if desk else "New campaign", here=HERE, ahead=True):
             status = ui.label("").classes("status").props("role=status")
             with form(""):
-                described = DescriptionForm(tomllib.loads(desk.campaign.description) if desk else {})
+                described = DescriptionForm(toml_values(desk.campaign.description) if desk else {})
 
             def done(pressed: GenericEventArguments) -> None:
                 once = pressed.args if isinstance(pressed.args, str) else None
@@ -66,7 +66,7 @@ def add_page(lab: Lab) -> None:
 def _stored(lab: Lab, desk: Desk | None, text: str, once: str | None) -> str:
     if desk is None:
         return Journals(lab.store).begin(text, once=once)
-    _require_used_names(desk, tomllib.loads(text))
+    _require_used_names(desk, toml_values(text))
     if text != desk.campaign.description:
         entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: text})
         desk.write_down(entry, seen=desk.campaign.described)

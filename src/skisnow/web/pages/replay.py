@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import app, ui
 
+from ...given import read_json
 from ...report.numerals import counted
 from ..fields import link
 from ..layout import framed, heading, sentence
@@ -59,10 +59,10 @@ def _run(place: Path, name: str) -> None:
 def _told(place: Path) -> str:
     """What summary.json says of a run in a line; nothing where there is none."""
     try:
-        summary: dict[str, Any] = json.loads((place / "summary.json").read_text(encoding="utf-8"))
+        summary: dict[str, Any] = read_json(place / "summary.json")
         length, time = float(summary["run_length_m"]), float(summary["simulated_s"])
         return f"{length:.1f} m in {time:.2f} s, {str(summary['outcome']).replace('_', ' ')}"
-    except (OSError, ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError):
         return "without a readable summary"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -12,6 +11,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from ...errors import ParameterError
+from ...given import read_json
 from ...ski import read_ski
 from ..runs import JOB
 from .binary import replay_bytes
@@ -82,8 +82,8 @@ class RunFolders:
 
 def _ski_of_job(job: Path) -> Ski | None:
     try:
-        word = json.loads(job.read_text(encoding="utf-8"))["changes"]["ski.file"]
-    except (OSError, ValueError, KeyError, TypeError):
+        word = read_json(job)["changes"]["ski.file"]
+    except (ValueError, KeyError, TypeError):
         return None  # a run from the command line, or one with a ski of the catalogue
     return read_ski(Path(word))
 

@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import ParameterError
+from ...given import GivenError, json_value
 from .looks import COLOURS, drawn_thickness
 from .replay import Replay, ReplayGroove, ReplaySkis, ReplayTrack
 
@@ -107,12 +108,12 @@ def replay_of_bytes(content: bytes) -> Replay:
         raise ParameterError("these bytes are no replay: they do not begin with SKRP")
     (length,) = struct.unpack("<I", content[4:8])
     try:
-        header = json.loads(content[8 : 8 + length].decode("utf-8"))
+        header = json_value(content[8 : 8 + length].decode("utf-8"))
         if header["format"] != FORMAT:
             raise ParameterError(f"the replay has format {header['format']}; this program reads format {FORMAT}")
         arrays = {name: _unpacked(content, 8 + length, each) for name, each in header["arrays"].items()}
     except (ValueError, KeyError) as error:
-        if isinstance(error, ParameterError):
+        if isinstance(error, ParameterError) and not isinstance(error, GivenError):
             raise
         raise ParameterError(f"the replay is damaged or cut off ({error}). Write it again") from error
     return _rebuilt(header, arrays)

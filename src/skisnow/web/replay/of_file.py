@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -10,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.io import netcdf_file
 
-from ...errors import ParameterError
+from ...errors import ParameterError, SkisnowError
+from ...given import GivenError, json_value
 from ...simulate.scenario import Plane, Profile, read_profile
 from ...ski import read_ski, ski_named
 from ...units import DEGREE
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
+_DAMAGE: Final = (TypeError, ValueError, LookupError, AttributeError, ArithmeticError, AssertionError, MemoryError)
 RUN_FILE: Final = "run.nc"
 _PLAIN: Final = (
     "time", "speed", "heading", "turn_radius", "depth", "station", "bending", "twist", "edge_depth",
@@ -58,12 +59,16 @@ def replay_of_file(
             content: Any = file  # its attributes are those of the file
             arrays, values = _arrays(content), _scenario(content)
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
+        setting = _setting(path, values, outcome, spacing, ski)
+        return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track)
+    except GivenError as error:
+        raise ParameterError(f"{path} is no run.nc of skisnow: {error} Simulate it again with --out") from error
+    except SkisnowError:
+        raise
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
-    except (TypeError, ValueError, KeyError, AttributeError) as error:
+    except _DAMAGE as error:
         raise ParameterError(f"{path} is no run.nc of skisnow ({error}). Simulate it again with --out") from error
-    setting = _setting(path, values, outcome, spacing, ski)
-    return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track)
 
 
 def _arrays(file: Any) -> dict[str, FloatArray]:
@@ -77,7 +82,7 @@ def _arrays(file: Any) -> dict[str, FloatArray]:
 
 def _scenario(file: Any) -> dict[str, Any]:
     """Its values under full names."""
-    sections = json.loads(file.scenario.decode("utf-8"))
+    sections = json_value(file.scenario.decode("utf-8"))
     return {f"{section}.{key}": value for section, table in sections.items() for key, value in table.items()}
 
 

@@ -13,6 +13,7 @@ from typing import IO, TYPE_CHECKING, Final
 
 from ...errors import FieldDataError, ParameterError
 from ...files import cannot_write, write_file
+from ...given import read_json
 from ...track.read import SUFFIXES, read_track
 from ...track.slope_frame import in_slope_frame
 from ...units import DEGREE
@@ -120,7 +121,7 @@ class TrackFolders:
         """
         if name not in self.names():
             raise ParameterError(f"there is no track {name!r} here. Choose one from the list")
-        placing = Placing(**json.loads((self._folder / name / ABOUT).read_text(encoding="utf-8")))
+        placing = Placing(**read_json(self._folder / name / ABOUT))
         (place,) = (each for each in (self._folder / name).iterdir() if each.name != ABOUT)
         angle = replay.tilt if replay.profile is None else None
         track = _placed(_read(place, placing), placing, slope_angle=angle)

@@ -1,0 +1,20 @@
+"""The folder of ``--out`` before the work begins."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+
+def ready(folder: Path) -> None:
+    """See that a folder can be written, tidy up what killed processes left in it, and say so.
+
+    Raises
+    ------
+    OutputError
+        It cannot be made or written.
+    """
+    from ..staging import tidied
+
+    for sentence in tidied(folder):
+        print(sentence, file=sys.stderr)

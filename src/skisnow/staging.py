@@ -1,0 +1,184 @@
+"""Several files that belong together: written beside their place, then moved there, never parts of two writings.
+
+All is written into a hidden folder inside the place. When it is complete a plan is put beside it; only then are the old
+files taken away and the new ones moved. What a killed process left is finished, where there is a plan, or else thrown
+away, at the next start (`tidied`). A process holds a lock on its hidden folder, so that nobody tidies it meanwhile.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import sys
+import tempfile
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from .files import cannot_write, require_writable, write_file
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_PREFIX: Final = ".skisnow-"
+_HIDDEN: Final = re.compile(r"\.(skisnow|report|run)-[a-z0-9_]{8}")
+_FILES: Final = "files"
+_PLAN: Final = "plan"
+_CLEARED: Final = "cleared"
+_A_DAY_S: Final = 86_400.0
+
+
+@dataclass(slots=True)
+class Stage:
+    """Where to write.
+
+    Attributes
+    ----------
+    path
+        The folder to fill.
+    stale
+        Files, by their paths in the place, that only an earlier writing can have left; taken away where there are no
+        new ones.
+    """
+
+    path: Path
+    stale: list[str] = field(default_factory=list)
+
+
+@contextmanager
+def staged(folder: Path, *, last: str) -> Iterator[Stage]:
+    """A stage whose files are moved into a folder at the end of the block; an error before leaves the folder as it was.
+
+    Parameters
+    ----------
+    folder
+        The place, which is there; other files in it stay.
+    last
+        The file that says by its presence that all others are there: taken away first, moved last.
+
+    Raises
+    ------
+    OutputError
+        The place cannot be written.
+    """
+    try:
+        hidden, lock = _new_hidden(folder)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    stage = Stage(hidden / _FILES)
+    try:
+        yield stage
+        write_file(hidden / _PLAN, "\n".join((last, *stage.stale)))
+        try:
+            _carry_out(hidden)
+        except KeyboardInterrupt:
+            _carry_out(hidden)  # it takes a moment, and half of it would be no run at all
+            raise
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    finally:
+        if not (hidden / _PLAN).exists():
+            shutil.rmtree(hidden, ignore_errors=True)
+        if lock is not None:
+            os.close(lock)
+
+
+def tidied(folder: Path) -> list[str]:
+    """Make a folder where it is missing, see that it can be written, and tidy up what killed processes left in it.
+
+    Returns
+    -------
+    What was done, in sentences.
+
+    Raises
+    ------
+    OutputError
+        The folder cannot be made or written.
+    """
+    require_writable(folder)
+    try:
+        with _alone(folder):
+            left = sorted(path for path in folder.iterdir() if _HIDDEN.fullmatch(path.name) and path.is_dir())
+            return [sentence for hidden in left if (sentence := _tidied(hidden))]
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+
+
+def _tidied(hidden: Path) -> str | None:
+    lock = _locked(hidden)
+    if lock is None and not _is_old(hidden):
+        return None
+    try:
+        if not (hidden / _PLAN).is_file():
+            return f"{hidden} was left by a process that was killed; it is removed"
+        _carry_out(hidden)
+        return f"{hidden.parent}: what a killed process had still to move is in place now"
+    finally:
+        shutil.rmtree(hidden, ignore_errors=True)
+        if lock is not None:
+            os.close(lock)
+
+
+def _new_hidden(folder: Path) -> tuple[Path, int | None]:
+    with _alone(folder):
+        hidden = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
+        lock = _locked(hidden)
+    (hidden / _FILES).mkdir()
+    return hidden, lock
+
+
+def _carry_out(hidden: Path) -> None:
+    """Take all old files away, then move the new ones; where it is stopped it can be begun again."""
+    folder, stage = hidden.parent, hidden / _FILES
+    last, *stale = (hidden / _PLAN).read_text(encoding="utf-8").split("\n")
+    new = sorted(path.relative_to(stage) for path in stage.rglob("*") if path.is_file())
+    if not (hidden / _CLEARED).exists():
+        for name in (Path(last), *map(Path, stale), *new):
+            (folder / name).unlink(missing_ok=True)
+        (hidden / _CLEARED).touch()
+    for name in sorted(new, key=lambda name: (name == Path(last), name)):
+        target = folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        (stage / name).replace(target)
+    (hidden / _PLAN).unlink()
+
+
+def _is_old(hidden: Path) -> bool:
+    """Where the system has no locks a folder that nobody wrote into for a day is nobody's."""
+    return sys.platform == "win32" and time.time() - hidden.stat().st_mtime > _A_DAY_S
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Wait while another process makes or tidies a stage in the same folder."""
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with contextlib.suppress(OSError):  # a file system without locks
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _locked(hidden: Path) -> int | None:
+    """A lock that ends with this process; None where another one has it, or there are none."""
+    if sys.platform == "win32":
+        return None
+    import fcntl
+
+    handle = os.open(hidden, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(handle)
+        return None
+    return handle
