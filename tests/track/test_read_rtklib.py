@@ -182,3 +182,8 @@ def test_refused(tmp_path: Path, old: str, new: str, told: list[str]) -> None:
 
 def test_header_only(tmp_path: Path) -> None:
     assert "empty_file" in refused(tmp_path, "".join(LLH.splitlines(keepends=True)[:3]), "a.pos")
+
+
+def test_a_long_line_of_blanks_is_no_header(tmp_path: Path) -> None:
+    content = "% " + "\t" * 300_000 + "\n" + LLH  # with backtracking this would take minutes
+    assert len(read(tmp_path, content, "a.pos")) == 2
