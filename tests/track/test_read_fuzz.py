@@ -17,8 +17,8 @@ from .test_read_damage import FILES, require_track_or_our_error
 
 Mutation = Callable[[np.random.Generator, bytes], bytes]
 FRAGMENTS: Final = [
-    b"9" * 400, b"1e400", b"-1e308", b"nan", b"-inf", b"0", b"", b",", b";", b"\t", b" ", b"\r", b"\n", b'"', b"%", b"$",
-    b"*", b"\xb5\x62", b"\x00", b"\xff\xff\xff\xff", b"<", b"</", b"<a>", b"&#0;", b"0001/01/01 00:00:00",
+    b"9" * 400, b"1e400", b"-1e308", b"nan", b"-inf", b"0", b"", b",", b";", b"\t", b" ", b"\r", b"\n", b'"', b"%",
+    b"$", b"*", b"\xb5\x62", b"\x00", b"\xff\xff\xff\xff", b"<", b"</", b"<a>", b"&#0;", b"0001/01/01 00:00:00",
     b"9999/12/31 23:59:60.9", b"0001-01-01T00:00:00+14:00", "\u00e4\u2212\u0660".encode(),
 ]  # fmt: skip
 
