@@ -14,7 +14,7 @@ from ..simulate.scenario import ScenarioFile
 from ..simulate.scenario.given import GivenScenario
 from ..simulate.scenario.keys import SCENARIO_KEYS
 from ..track.track import Track
-from .data import Data, read_data
+from .data import Data, read_data, taken_for
 from .free_keys import EACH, free_key
 from .marks import Marks
 from .observations import START
@@ -39,6 +39,8 @@ class Collected:
         Values of keys in every simulated run.
     first_motions
         Start keys as the first points of each track show them, where there are several.
+    taken
+        The name of each datum, and what it was taken for.
     warnings, methods
         About the data.
     """
@@ -49,6 +51,7 @@ class Collected:
     starts: Mapping[str, Mapping[str, float]]
     fixed: Mapping[str, float]
     first_motions: Mapping[str, Mapping[str, float]]
+    taken: tuple[tuple[str, str], ...]
     warnings: tuple[str, ...]
     methods: tuple[str, ...]
 
@@ -97,9 +100,14 @@ def collected(
         starts=starts,
         fixed={key: float(asked.values[key]) for key in SNOW_NUMBERS} if snow else {},
         first_motions={track.name: first_motion(track) for track in tracks} if len(runs) > 1 else {},
+        taken=tuple((_file_name(each, kind), taken_for(kind)) for each, kind in zip(data, read, strict=True)),
         warnings=tuple(text for text in warnings if text),
         methods=tuple(dict.fromkeys(methods)),
     )
+
+
+def _file_name(given: Data | str | Path, read: Data) -> str:
+    return str(given) if isinstance(given, str | Path) else read.name
 
 
 def values_to_begin_with(asked: ScenarioFile, data: Collected, given: Iterable[str]) -> dict[str, Any]:

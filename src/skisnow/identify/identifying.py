@@ -143,6 +143,7 @@ def identify(
         found = _found(parameters, observations, plan)
         return replace(
             found,
+            data=read.taken,
             effort=replace(
                 found.effort,
                 simulations=simulations.computed,
