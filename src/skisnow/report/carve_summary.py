@@ -72,6 +72,7 @@ def _choices(inputs: Json) -> str:
     if not inputs["at_rest"]:
         words.append(f"side force bends the ski: {_yes(inputs['side_force_bending'])}")
         words.append(f"groove follows the {inputs['groove']}")
+        words.append(f"moment balance: {inputs['moment_balance']}")
     return ", ".join([*words, f"twist: {_yes(inputs['twist'])}", f"elements {inputs['elements']}"])
 
 
@@ -110,6 +111,7 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
     ("force per length, greatest (N/m)", _greatest("force_per_length_N_per_m")),
     ("bending, greatest (mm)", _greatest("bending_mm", by=abs)),
     ("twist, greatest (degrees)", _greatest("twist_deg", by=abs)),
+    ("boot moment about the ski's cross axis (N m)", _number("boot_pitch_moment_Nm")),
     ("force out of balance (N)", _number("residual_force_N")),
     ("moment out of balance (N m)", _number("residual_moment_Nm")),
 )
