@@ -11,11 +11,11 @@ from typing import Any, Final
 from ..errors import ParameterError
 from ..simulate.input_keys import nearest
 from ..simulate.scenario import ScenarioFile
+from ..simulate.scenario.free_keys import EACH, free_key
 from ..simulate.scenario.given import GivenScenario
 from ..simulate.scenario.keys import SCENARIO_KEYS
 from ..track.track import Track
 from .data import Data, read_data, taken_for
-from .free_keys import EACH, free_key
 from .marks import Marks
 from .observations import START
 from .photo_cells import PhotoCells
