@@ -104,6 +104,7 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
     ("turn radius, boot and 0.4 m to each side (m)", _number("turn_radius_boot_m")),
     ("turn radius, boot and ends of contact (m)", _number("turn_radius_chord_m")),
     ("sidecut radius of three widths (m)", lambda answer: _of_ski(answer, "sidecut_radius_of_three_widths_m")),
+    ("sidecut radius of the whole edge line (m)", lambda answer: _of_ski(answer, "sidecut_radius_of_edge_line_m")),
     ("contact length (m)", _number("contact_length_m")),
     ("length that carries load (m)", _number("bearing_length_m")),
     ("edge depth, afterbody / forebody", _number("afterbody_depth_ratio")),
