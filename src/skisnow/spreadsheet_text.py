@@ -15,9 +15,15 @@ if TYPE_CHECKING:
 
 SEPARATOR_NAMES: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
 _FORMS: Final = {
-    mark: re.compile(rf"[+-]?([0-9]+{escaped}?[0-9]*|{escaped}[0-9]+)([eE][+-]?[0-9]+)?")
+    mark: re.compile(rf"[+-]?(?:[0-9]++(?:{escaped}[0-9]*+)?|{escaped}[0-9]++)(?:[eE][+-]?[0-9]++)?")
     for mark, escaped in ((".", r"\."), (",", ","))
 }
+"""Possessive: what does not fit is refused after one pass over the cell."""
+LONGEST_CELL: Final = 32_767
+"""Characters: what a cell of Excel and LibreOffice holds."""
+LONGEST_NUMBER: Final = 1_100
+"""Characters: the longest decimal that is exactly a number in double precision has 1,077."""
+MOST_COLUMNS: Final = 1_000
 
 
 class NoTextError(ValueError):
@@ -101,7 +107,7 @@ def is_number(cell: str, mark: str) -> bool:
     >>> is_number("-1.5e3", "."), is_number("1_000", "."), is_number("nan", "."), is_number("1.5", ",")
     (True, False, False, False)
     """
-    return _FORMS[mark].fullmatch(cell) is not None
+    return len(cell) <= LONGEST_NUMBER and _FORMS[mark].fullmatch(cell) is not None
 
 
 def number(cell: str, mark: str = ".") -> float:

@@ -172,6 +172,7 @@ def test_table_has_skis_own_names_sidecut_radius_and_bearing_length(tmp_path: Pa
     [
         (["--no-side-force-bending"], "side_force_bending", False),
         (["--groove", "path"], "groove", "path"),
+        (["--moment-balance", "free"], "moment_balance", "free"),
         (["--no-twist"], "twist", False),
         (["--clamp-length-m", "0"], "clamp_length_m", 0.0),
         (["--elements", "80"], "elements", 80),

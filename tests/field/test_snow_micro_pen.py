@@ -182,3 +182,26 @@ def test_foreign_files_are_refused(tmp_path: Path, content: bytes, code: str) ->
 def test_a_missing_file_is_said(tmp_path: Path) -> None:
     with pytest.raises(FieldDataError, match=r"gone\.pnt.*No such file"):
         read_snow_micro_pen(tmp_path / "gone.pnt")
+
+
+@pytest.mark.parametrize(
+    ("form", "offset", "value", "name"),
+    [
+        (">f", 64, math.nan, "speed_mm_per_s"),
+        (">f", 64, -20.0, "speed_mm_per_s"),
+        (">f", 64, math.inf, "speed_mm_per_s"),
+        (">f", 64, 2e4, "speed_mm_per_s"),
+        (">i", 376, -5000, "tip_diameter_um"),
+        (">i", 376, 2**31 - 1, "tip_diameter_um"),
+        (">h", 386, -1, "instrument_length_mm"),
+        (">f", 6, math.nan, "sample_distance_mm"),
+        (">f", 10, math.inf, "force_per_count"),
+    ],
+)
+def test_numbers_that_no_instrument_has(tmp_path: Path, form: str, offset: int, value: float, name: str) -> None:
+    data = bytearray(built([100, 200, 300]))
+    struct.pack_into(form, data, offset, value)
+    path = tmp_path / "a.pnt"
+    path.write_bytes(data)
+    with pytest.raises(FieldDataError, match=f"found '{name} "):
+        read_snow_micro_pen(path)

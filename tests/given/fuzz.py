@@ -20,10 +20,11 @@ from skisnow.field.reading.text import UnreadableTextError, decode
 from skisnow.identify.assembling import collected, values_to_begin_with
 from skisnow.identify.identifying import _clock
 from skisnow.identify.observations import keys_of_runs
-from skisnow.identify.parameter_table import given_parameters, parameter_table
+from skisnow.identify.parameter_table import parameter_table
 from skisnow.identify.track_frame import _site
 from skisnow.simulate.scenario import scenario_file, scenario_text
 from skisnow.simulate.scenario.given import change_of, given_scenario
+from skisnow.simulate.scenario.identify_section import given_parameters
 from skisnow.ski import read_ski
 from skisnow.ski.monkeycam import monkeycam_shape
 from skisnow.snow.from_results import snow_from_results

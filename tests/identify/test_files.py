@@ -8,8 +8,10 @@ import pytest
 
 from skisnow.errors import FieldDataError, ParameterError
 from skisnow.identify import identify
-from skisnow.identify.data import read_data
+from skisnow.identify.data import read_data, taken_for
 from skisnow.identify.photo_cells import PhotoCells
+from skisnow.simulate.track_table import COLUMNS
+from skisnow.track.track import Track
 
 CELLS = "run,station_m,time_s\nfirst,20,3.34\nfirst,40,5.1\nfirst,60,6.5\n"
 
@@ -67,3 +69,27 @@ def test_what_was_measured_once_counts_once(tmp_path: Path) -> None:
     one, copy = file_in(tmp_path, CELLS), file_in(tmp_path, CELLS, "copy.csv")
     with pytest.raises(ParameterError, match=r"copy\.csv holds the same as .*cells\.csv"):
         identify("carved-46m", [one, copy], "mu_0")
+
+
+def test_the_track_of_a_run_is_a_track(tmp_path: Path) -> None:
+    """It has the column turn_radius_m, as marks do; every column that `skisnow simulate` writes is there."""
+    row = dict.fromkeys(COLUMNS, "1") | {"turn_radius_m": ""}
+    rows = [",".join((row | {"time_s": f"{k}", "x_m": f"{3 * k}"}).values()) for k in range(3)]
+    found = read_data(file_in(tmp_path, "\n".join([",".join(row), *rows]), "track.csv"))
+    assert isinstance(found, Track)
+    assert found.time.tolist() == [0.0, 1.0, 2.0]
+    assert taken_for(found) == "a track (points: 3)"
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("time_s,x_m,y_m,depth_mm\n0,0,0,3\n1,5,0,3\n", "a track (points: 2)"),
+        ("time,lat,lon,turn_radius_m\n0,47,11,3\n1,47.0001,11,3\n", "a track (points: 2)"),
+        ("time_s,x_m,y_m,station_m\n0,0,0,0\n1,5,0,5\n", "a track (points: 2)"),
+        ("run,station_m,time_s,x_m,y_m\na,5,1,5,0\na,9,2,9,0\nb,5,1,5,0\n", "photo-cell times (runs: 2)"),
+        ("x_m,y_m,depth_mm,depth_sd_mm\n0,0,3,1\n1,1,3,1\n", "marks left in the snow (places: 2)"),
+    ],
+)
+def test_what_a_table_is_taken_for(text: str, kind: str, tmp_path: Path) -> None:
+    assert taken_for(read_data(file_in(tmp_path, text))) == kind

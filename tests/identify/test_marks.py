@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from skisnow.errors import ParameterError
-from skisnow.identify import Marks, identify, read_marks
+from skisnow.identify import Marks, identification_dict, identify, read_marks
 from skisnow.identify.mark_grooves import MarkGrooves
 from skisnow.simulate.scenario import scenario_file
 
@@ -159,3 +160,25 @@ class TestFile:
         path.write_text("depth_mm,depth_sd_mm\n0,0.1\n", encoding="utf-8")
         with pytest.raises(ParameterError, match="above 0"):
             read_marks(path)
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_the_strength_alone_from_marks_of_an_edge_that_held(stated: bool) -> None:
+    """Nothing else is looked for: the bound is that of the own snow, with the scatter of the radius."""
+    own = grooves()
+    groove = own.groove({})
+    assert groove is not None
+    data = replace(marks(groove.depth, groove.width, groove.turn_radius, share=0.02, seed=1), stated=stated)
+    found = identify("carved-46m", data, "S_f", changes=CHANGES)
+    assert found.outcome == "not_identifiable"
+    assert found["S_f"].value is None
+    assert found.correlation.shape == found.covariance.shape == (1, 1)
+    low, high = found["S_f"].interval or (None, None)
+    assert high is None
+    scenario = own.asked.scenario
+    radius = float(np.mean(data.turn_radius))
+    needed = (scenario.sledge.mass + 2.0 * scenario.ski.mass) * 7.0**2 / radius / (2.0 * groove.grip_area) / 1e6
+    assert low == pytest.approx(needed * (1.0 - 1.645 * 0.02 / 2.0), rel=1e-3)  # four places, 1/R, one-sided
+    assert len(found.fits) == 1
+    assert found.data == (("marks.csv", "marks left in the snow (places: 4)"),)
+    assert identification_dict(found)["parameters"]["snow.S_f_N_per_mm2"]["interval"] == [low, None]

@@ -14,6 +14,7 @@ from skisnow.identify.data import read_data
 from skisnow.simulate.scenario import scenario_file
 
 from . import glide_in_closed_form as exact
+from .test_glide import times_on_two_planes, two_planes
 
 ANGLE_DEG, MU, AREA, SPEED, SD = 14.0, 0.05, 0.5, 3.0, 0.004
 CHANGES: dict[str, object] = {
@@ -236,3 +237,36 @@ class TestFile:
         path.write_text(text, encoding="utf-8")
         with pytest.raises(ParameterError, match=told):
             read_photo_cells(path)
+
+
+def test_two_planes_give_friction_and_drag_with_true_errors(tmp_path: Path) -> None:
+    """The search ends at the truth; its standard errors are those of central differences of the closed form."""
+    station = np.arange(10.0, 141.0, 10.0)
+    planes = math.radians(20.0), math.radians(10.0)
+    profile = two_planes(*planes, 1.0)
+    rows = "".join(f"{x!r},{z!r}\n" for x, z in zip(profile.x.tolist(), profile.height.tolist(), strict=True))
+    (tmp_path / "profile.csv").write_text(f"x,y\n{rows}", encoding="utf-8")
+
+    def times(mu: float, area: float) -> np.ndarray:
+        return np.asarray(times_on_two_planes(*planes, mu, 0.5 * exact.DENSITY * area / mass(), station))
+
+    scenario = scenario_file("carved-46m").values
+    assert scenario["drag.air_density_kg_per_m3"] == exact.DENSITY
+    data = PhotoCells("cells.csv", (PhotoCellRun("1", station, times(MU, AREA), np.full(len(station), SD)),))
+    changes = CHANGES | {
+        "slope.kind": "profile", "slope.profile": str(tmp_path / "profile.csv"), "start.speed_m_per_s": 6.0,
+    }  # fmt: skip
+    del changes["slope.angle_deg"]
+    found = identify("carved-46m", data, "mu_0,drag_area", changes=changes)
+    step = 1e-4
+    design = np.column_stack(
+        [
+            (times(MU + step, AREA) - times(MU - step, AREA)) / (2.0 * step),
+            (times(MU, AREA + step) - times(MU, AREA - step)) / (2.0 * step),
+        ]
+    )
+    errors = SD * np.sqrt(np.diag(np.linalg.inv(design.T @ design)))
+    assert found.outcome == "converged"
+    assert [each.standard_error for each in found.parameters] == pytest.approx(errors, rel=0.01)
+    assert abs(found["mu_0"].value - MU) < 0.1 * errors[0]  # type: ignore[operator]
+    assert abs(found["drag_area"].value - AREA) < 0.1 * errors[1]  # type: ignore[operator]

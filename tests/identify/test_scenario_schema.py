@@ -12,9 +12,8 @@ import pytest
 
 import skisnow.simulate
 from skisnow.errors import ParameterError
-from skisnow.identify.parameter_table import GIVEN, given_parameters
-from skisnow.identify.track_frame import SITE
 from skisnow.simulate.scenario import scenario_text
+from skisnow.simulate.scenario.identify_section import GIVEN, SITE, given_parameters
 
 SCHEMA: dict[str, Any] = json.loads((files(skisnow.simulate) / "schemas" / "scenario.schema.json").read_text("utf-8"))
 SECTION = """

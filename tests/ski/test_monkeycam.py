@@ -139,3 +139,15 @@ def test_what_is_no_design_file(tmp_path: Path, text: str, named: str) -> None:
         ski_of(path)
     with pytest.raises(ParameterError, match="cannot be read"):
         ski_of(tmp_path / "gone.json")
+
+
+@pytest.mark.parametrize("radius", ["1e999cm", "1e200m", "1e5m", 10**400])
+def test_a_sidecut_radius_must_be_that_of_a_ski(design: Callable[..., Path], radius: object) -> None:
+    with pytest.raises(ParameterError, match="sidecut radius"):
+        ski_of(design(sidecut_radius=radius))
+
+
+@pytest.mark.parametrize("text", ["1" * 300_000 + "?", "1" + " " * 300_000 + "?", "1cm" + " " * 300_000 + "?"])
+def test_a_long_text_is_refused_after_one_pass(design: Callable[..., Path], text: str) -> None:
+    with pytest.raises(ParameterError, match="waist width"):  # with backtracking this would take minutes
+        ski_of(design(waist_width=text))

@@ -82,7 +82,7 @@ def test_other_encoding(tmp_path: Path) -> None:
         (gpx(point(47.0, "99Z")), ["not_a_time", "point 1, column time"]),
         (gpx(point(400.0, "14Z")), ["out_of_range", "point 1, column latitude", "'400'"]),
         (gpx(point(47.0, "14Z") + point(47.0, "13Z")), ["time_backwards", "point 2", "15:51:13"]),
-        (gpx(point(47.0, "14Z", "<ele>high</ele>")), ["unreadable_file", "high"]),
+        (gpx(point(47.0, "14Z", "<ele>high</ele>")), ["not_a_number", "point 1, column ele", "'high'"]),
         (gpx(""), ["empty_file"]),
         (gpx(point(47.0, "14Z"))[:-30], ["unreadable_file", "ends too early"]),
         (
@@ -95,3 +95,51 @@ def test_refused(tmp_path: Path, content: str, told: list[str]) -> None:
     message = refused(tmp_path, content, "a.gpx")
     for words in told:
         assert words in message
+
+
+def test_deep_nesting_is_refused(tmp_path: Path) -> None:
+    deep = gpx(point(47.0, "14Z", "<extensions>" + "<a>" * 200_000 + "</a>" * 200_000 + "</extensions>"))
+    message = refused(tmp_path, deep, "a.gpx")
+    assert "101 elements within each other" in message
+    assert "at most 100" in message
+
+
+def test_as_deep_as_allowed(tmp_path: Path) -> None:
+    inside = "<a>" * 94 + "<speed>3</speed>" + "</a>" * 94
+    assert read(tmp_path, gpx(point(47.0, "14Z", f"<extensions>{inside}</extensions>")), "a.gpx").speed.tolist() == [3]
+
+
+def test_too_many_elements_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skisnow.track.gpx.MOST_ELEMENTS", 9)
+    assert len(read(tmp_path, gpx(point(47.0, "14Z") + point(47.0, "15Z")), "a.gpx")) == 2  # nine
+    assert "more than 9 elements" in refused(tmp_path, gpx(point(47.0, "14Z", "<ele>1</ele><a/>") * 2), "a.gpx")
+
+
+@pytest.mark.parametrize(
+    "declared", ['<!ENTITY a "aaaa">', '<!ENTITY a SYSTEM "file:///etc/passwd">', '<!ENTITY % a "b">']
+)
+def test_entities_are_refused(tmp_path: Path, declared: str) -> None:
+    content = f"<!DOCTYPE gpx [{declared}]>" + gpx(point(47.0, "14Z", "<ele>&a;</ele>")).split("\n", 1)[1]
+    assert "the declaration of an entity, a" in refused(tmp_path, content, "a.gpx")
+
+
+def test_the_place_is_a_points_own(tmp_path: Path) -> None:
+    waypoint = '<wpt lat="1" lon="1"><ele>7</ele><time>2022-12-27T15:51:14Z</time></wpt>'
+    inside = "<extensions><ele>9</ele><time>1999-01-01T00:00:00Z</time></extensions><ele> 1500 <!-- m --></ele>"
+    content = gpx(point(47.0, "14Z", inside)).replace("<trk>", f"{waypoint}<trk>")
+    track = read(tmp_path, content, "a.gpx")
+    assert len(track) == 1
+    assert track.origin is not None
+    assert track.origin.height == 1500.0
+    assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
+
+
+@pytest.mark.parametrize("height", ["<ele></ele>", "<ele>NaN</ele>", ""])
+def test_a_height_may_be_missing(tmp_path: Path, height: str) -> None:
+    assert read(tmp_path, gpx(point(47.0, "14Z", height)), "a.gpx").marked == {"missing_height": 1}
+
+
+@pytest.mark.parametrize("place", ['lat="47"', 'lat="x" lon="11"', 'lat="1e999" lon="11"'])
+def test_a_point_needs_a_place(tmp_path: Path, place: str) -> None:
+    content = gpx(f"<trkpt {place}><time>2022-12-27T15:51:14Z</time></trkpt>")
+    assert "not_a_number: a.gpx, point 1, column l" in refused(tmp_path, content, "a.gpx")

@@ -132,3 +132,20 @@ def test_refused(tmp_path: Path) -> None:
     assert "time_backwards: a.nmea, row 2" in message
     assert "no_place" in refused(tmp_path, sentence("GNGGA,155113.00,,,,,0,00,99.99,,,,,,"), "a.nmea")
     assert "out_of_range" in refused(tmp_path, gga(lat="9914.0740680"), "a.nmea")
+
+
+@pytest.mark.parametrize("digits", ["9" * 400, "9" * 5000, "1e400"])
+@pytest.mark.parametrize("place", [6, 7, 8, 9, 11])
+def test_numbers_beyond_all_numbers(tmp_path: Path, digits: str, place: int) -> None:
+    cells = gga().decode().split("*")[0][1:].split(",")
+    cells[place] = digits
+    content = gga() + sentence(",".join(cells)) + gga("155115.00")
+    assert len(read(tmp_path, content, "a.nmea")) in (2, 3)
+
+
+@pytest.mark.parametrize("year", ["0001", "9999", "9" * 400])
+def test_dates_beyond_the_calendar(tmp_path: Path, year: str) -> None:
+    content = gga("235959.00") + gga("000001.00") + sentence(f"GPZDA,000001.00,01,01,{year},00,00")
+    track = read(tmp_path, content, "a.nmea")
+    assert track.start is None
+    assert track.time.tolist() == [0.0, 2.0]

@@ -182,3 +182,16 @@ def test_refused(tmp_path: Path, old: str, new: str, told: list[str]) -> None:
 
 def test_header_only(tmp_path: Path) -> None:
     assert "empty_file" in refused(tmp_path, "".join(LLH.splitlines(keepends=True)[:3]), "a.pos")
+
+
+def test_a_long_line_of_blanks_is_no_header(tmp_path: Path) -> None:
+    content = "% " + "\t" * 300_000 + "\n" + LLH  # with backtracking this would take minutes
+    assert len(read(tmp_path, content, "a.pos")) == 2
+
+
+@pytest.mark.parametrize("value", ["1e308", "-1e308", "1.1e12"])
+def test_numbers_beyond_all_solutions(tmp_path: Path, value: str) -> None:
+    row = f"2022/12/27 15:51:14.000 4.2e6 1.7e5 4.78e6 1 12 0.01 0.02 0.03 0.0 0.0 0.0 0.0 99.9 1.5 {value} 2.5"
+    message = refused(tmp_path, f"{EARTH}{row} .1 .1 .1 0 0 0\n", "a.pos")
+    assert "not_a_number" in message
+    assert value in message

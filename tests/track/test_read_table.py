@@ -219,3 +219,9 @@ def test_a_real_day() -> None:
     lengths = np.hypot(steps[:, 0] * metres_per_degree.east(45.9), steps[:, 1] * metres_per_degree.north(45.9))
     own = np.hypot(*np.diff(track.place[:, :2], axis=0).T)
     assert own.sum() == pytest.approx(lengths.sum(), rel=1e-3)
+
+
+def test_tables_of_no_measurement_are_refused(tmp_path: Path) -> None:
+    assert "at most 1000 columns" in refused(tmp_path, "x," * 100_000 + "\n1\n")
+    assert "row 2" in refused(tmp_path, f"time_s,x_m,y_m\n1,2,{'9' * 40_000}\n")
+    assert "not_a_number" in refused(tmp_path, f"time_s,x_m,y_m\n1,2,{'9' * 30_000}\n")

@@ -8,8 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from pyubx2 import calc_checksum
 
 from skisnow.track.projection import GeodeticPoint
+from skisnow.track.ubx import SYNC, _Checksums
 
 from . import metres_per_degree
 from .receivers import nav_cov, nav_hpposllh, nav_pvt, sentence, ubx_frame
@@ -166,3 +170,18 @@ def test_refused(tmp_path: Path) -> None:
     assert "time_backwards: a.ubx, byte 101" in refused(tmp_path, nav_pvt(second=2) + nav_pvt(second=1), "a.ubx")
     assert "no_place" in refused(tmp_path, nav_pvt(fix=0), "a.ubx")
     assert "out_of_range" in refused(tmp_path, nav_pvt(lat=1_000_000_000), "a.ubx")
+
+
+def test_sync_bytes_by_the_thousand_cost_one_pass(tmp_path: Path) -> None:
+    content = nav_pvt() + SYNC * 200_000 + nav_pvt(second=15)  # frame by frame this would take many minutes
+    track = read(tmp_path, content, "a.ubx")
+    assert len(track) == 2
+    assert track.left_out == {"messages with a wrong checksum or cut short": 200_000}
+
+
+@settings(max_examples=50, deadline=None)
+@given(data=st.binary(min_size=1, max_size=1000), ends=st.tuples(st.floats(0, 1), st.floats(0, 1)))
+@example(data=bytes([255] * 70_000), ends=(0.0, 1.0))
+def test_checksums_of_pieces(data: bytes, ends: tuple[float, float]) -> None:
+    begin, end = sorted(int(share * len(data)) for share in ends)
+    assert _Checksums(data).between(begin, end) == calc_checksum(data[begin:end])

@@ -65,6 +65,8 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
         "--no-side-force-bending", dest="side_force_bending", **off, help="the side force does not bend the ski"
     )
     choices.add_argument("--groove", choices=("edge", "path"), help="what the groove of the forebody follows")
+    balance = "what holds the side force's moment about the ski's cross axis: boot, or nothing but --moment-Nm (free)"
+    choices.add_argument("--moment-balance", choices=("boot", "free"), help=balance)
     choices.add_argument("--no-twist", dest="twist", **off, help="the ski keeps its edge angle everywhere")
     choices.add_argument("--elements", type=whole_number(), metavar="N", help="finite elements over the whole ski")
     choices.add_argument(

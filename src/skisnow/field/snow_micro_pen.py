@@ -180,7 +180,14 @@ def _refuse(path: Path, found: str, allowed: str, action: str, code: str = "unre
 
 def _check(path: Path, header: dict[str, Any], size: int) -> None:
     """Refuse what is no such recording; the format has no signature, so that plausible numbers must do."""
-    limits = {"sample_distance_mm": (1e-4, 1.0), "force_per_count": (1e-6, 1.0), "samples": (1, 2**31)}
+    limits = {
+        "sample_distance_mm": (1e-4, 1.0),
+        "force_per_count": (1e-6, 1.0),
+        "samples": (1, 2**31),
+        "speed_mm_per_s": (0.0, 1000.0),
+        "tip_diameter_um": (0, 100_000),
+        "instrument_length_mm": (0, 10_000),
+    }
     for name, (low, high) in limits.items():
         if not low <= header[name] <= high:  # NaN too
             allowed = f"a SnowMicroPen recording, whose header has {name} from {low:g} to {high:g}"

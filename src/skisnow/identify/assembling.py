@@ -12,11 +12,11 @@ from ..errors import ParameterError
 from ..given import is_file
 from ..simulate.input_keys import nearest
 from ..simulate.scenario import ScenarioFile
+from ..simulate.scenario.free_keys import EACH, free_key
 from ..simulate.scenario.given import GivenScenario
 from ..simulate.scenario.keys import SCENARIO_KEYS
 from ..track.track import Track
-from .data import Data, read_data
-from .free_keys import EACH, free_key
+from .data import Data, read_data, taken_for
 from .marks import Marks
 from .observations import START
 from .photo_cells import PhotoCells
@@ -40,6 +40,8 @@ class Collected:
         Values of keys in every simulated run.
     first_motions
         Start keys as the first points of each track show them, where there are several.
+    taken
+        The name of each datum, and what it was taken for.
     warnings, methods
         About the data.
     """
@@ -50,6 +52,7 @@ class Collected:
     starts: Mapping[str, Mapping[str, float]]
     fixed: Mapping[str, float]
     first_motions: Mapping[str, Mapping[str, float]]
+    taken: tuple[tuple[str, str], ...]
     warnings: tuple[str, ...]
     methods: tuple[str, ...]
 
@@ -98,9 +101,14 @@ def collected(
         starts=starts,
         fixed={key: float(asked.values[key]) for key in SNOW_NUMBERS} if snow else {},
         first_motions={track.name: first_motion(track) for track in tracks} if len(runs) > 1 else {},
+        taken=tuple((_file_name(each, kind), taken_for(kind)) for each, kind in zip(data, read, strict=True)),
         warnings=tuple(text for text in warnings if text),
         methods=tuple(dict.fromkeys(methods)),
     )
+
+
+def _file_name(given: Data | str | Path, read: Data) -> str:
+    return str(given) if isinstance(given, str | Path) else read.name
 
 
 def values_to_begin_with(asked: ScenarioFile, data: Collected, given: Iterable[str]) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Final, TypeAlias
 from ..errors import ParameterError
 from ..given import is_file
 from ..spreadsheet_text import encoding_of, most_frequent_separator, named_separator
+from ..track.table import GEODETIC, LOCAL, TIMES
 from ..track.track import Track
 from .marks import COLUMNS as MARK_COLUMNS
 from .marks import Marks, marks_of
@@ -24,6 +25,9 @@ Data: TypeAlias = Track | PhotoCells | Marks
 def read_data(path: str | Path) -> Data:
     """Read photo-cell times or marks, by their columns, or else a track.
 
+    A table with time, x and y, or time, latitude and longitude, is a track, whatever else it has: a run's own track.csv
+    has the column ``turn_radius_m``, as marks do.
+
     Raises
     ------
     ParameterError, FieldDataError
@@ -34,9 +38,9 @@ def read_data(path: str | Path) -> Data:
         raise ParameterError(f"{path} cannot be read: there is no such file. Check the path")
     if path.suffix.lower() in (".csv", ".txt", ".tsv"):
         head = _head(path)
-        if "station_m" in head or set(CELL_COLUMNS) <= head:
+        if set(CELL_COLUMNS) <= head or ("station_m" in head and not _is_track(head)):
             return photo_cells_of(read_table(path))
-        if head & set(MARK_COLUMNS):
+        if head & set(MARK_COLUMNS) and not _is_track(head):
             if of_campaign := sorted(head & _OF_CAMPAIGN):
                 raise ParameterError(
                     f"{path} has a column {of_campaign[0]}: it is a table of a campaign, no marks left in the snow. "
@@ -46,6 +50,19 @@ def read_data(path: str | Path) -> Data:
     from ..track.read import read_track
 
     return read_track(path)
+
+
+def _is_track(head: set[str]) -> bool:
+    return bool(head & set(TIMES)) and any(set(place[:2]) <= head for place in (LOCAL, GEODETIC))
+
+
+def taken_for(data: Data) -> str:
+    """What a file was taken for, in words."""
+    if isinstance(data, PhotoCells):
+        return f"photo-cell times (runs: {len(data.runs)})"
+    if isinstance(data, Marks):
+        return f"marks left in the snow (places: {len(data)})"
+    return f"a track (points: {len(data)})"
 
 
 def _head(path: Path) -> set[str]:

@@ -9,7 +9,7 @@ where the snow presses more. After Kaps, Nachbauer and Mössner (1996).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -18,9 +18,8 @@ import numpy.typing as npt
 from ..simulate.scenario import Plane, Profile
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
-TABLE_SPACING: Final = 0.02
-"""Spacing (m) of the tables of a profile's inclination and curvature."""
 STEPS: Final = 200
 """Time steps over a run at least: the terms change over tens of seconds (Choice)."""
 WAIT: Final = 5.0
@@ -28,72 +27,79 @@ WAIT: Final = 5.0
 CRAWL: Final = 0.1
 """Speed (m/s) of a body that does not get there in that time, so that a search is told the way."""
 LONGEST_STEP_ON_PROFILE: Final = 0.02
-"""(s): 0.4 m at 20 m/s, less than the points of a profile lie apart (Choice)."""
+"""(s): 0.4 m at 20 m/s (Choice); a step ends at every point of a profile besides."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SlopeLine:
-    """The slope along the way, from the start on.
+    """The slope along the way, from the start on, in n pieces on which its gradient changes linearly.
+
+    A profile's points do not say where between them it bends. Each of its segments has its gradient at its middle, and
+    from middle to middle the gradient changes linearly (Choice): a hollow presses and a crest relieves over the length
+    between the middles, by the whole angle and nowhere by the contrary, as cubics through the points would.
 
     Attributes
     ----------
     way
-        (n,) m, from 0 in equal steps; a plane has one entry.
-    sine, cosine
-        (n,) of the inclination, positive downwards.
-    curvature
-        (n,) 1/m, above 0 in a hollow.
+        (n + 1,) m: where the pieces begin, from 0 on, and where the last one ends; a plane has one without an end.
+    x
+        (n + 1,) m: the horizontal distances of these places.
+    gradient
+        (2, n): dz/dx at the beginning of each piece, and d²z/dx² (1/m); of planes one column for each body, or one for
+        all.
     """
 
     way: FloatArray
-    sine: FloatArray
-    cosine: FloatArray
-    curvature: FloatArray
+    x: FloatArray
+    gradient: FloatArray
 
     @property
     def length(self) -> float:
         """How far it goes (m); a plane has no end."""
-        return math.inf if len(self.way) == 1 else float(self.way[-1])
+        return float(self.way[-1])
 
-    def at(self, way: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Sine, cosine and curvature there."""
-        if len(self.way) == 1:
-            return self.sine, self.cosine, self.curvature
-        place = np.clip(way / self.way[1], 0.0, len(self.way) - 1.000001)
-        number = place.astype(np.int64)
-        rest = place - number
-        sine, cosine, curvature = (
-            table[number] * (1.0 - rest) + table[number + 1] * rest
-            for table in (self.sine, self.cosine, self.curvature)
-        )
-        return sine, cosine, curvature
+    def at(self, piece: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Sine and cosine of the inclination, positive downwards, and curvature (1/m), above 0 in a hollow."""
+        own = self.gradient if math.isinf(self.length) else self.gradient[:, piece]
+        bend = own[1]
+        gradient = own[0] + bend * (x - self.x[piece])
+        stretch = np.hypot(1.0, gradient)
+        return -gradient / stretch, 1.0 / stretch, bend / stretch**3
 
 
 def slope_line(slope: Plane | Profile, start: float) -> SlopeLine:
     """The slope along the fall line from x = `start` (m) on.
 
     >>> line = slope_line(Plane(math.radians(30.0)), 0.0)
-    >>> round(float(line.sine[0]), 9), float(line.curvature[0]), line.length
+    >>> sine, _, curvature = line.at(np.zeros(1, int), np.zeros(1))
+    >>> round(float(sine[0]), 9), float(curvature[0]), line.length
     (0.5, 0.0, inf)
     """
     if isinstance(slope, Plane):
-        return SlopeLine(np.zeros(1), np.array([math.sin(slope.angle)]), np.array([math.cos(slope.angle)]), np.zeros(1))
-    end = slope.ends[1]
-    x = np.linspace(start, end, max(2, math.ceil((end - start) / (TABLE_SPACING / 2.0)) + 1))
-    gradient = slope.gradients(x)
-    stretch = np.hypot(1.0, gradient)
-    way = np.concatenate([[0.0], np.cumsum(0.5 * (stretch[1:] + stretch[:-1]) * np.diff(x))])
-    curvature = second_derivatives(slope, x) / stretch**3
-    even = np.linspace(0.0, way[-1], max(2, math.ceil(way[-1] / TABLE_SPACING) + 1))
-    tables = (np.interp(even, way, table) for table in (-gradient / stretch, 1.0 / stretch, curvature))
-    return SlopeLine(even, *tables)
+        return planes(np.array([slope.angle]))
+    middle = 0.5 * (slope.x[1:] + slope.x[:-1])
+    of_segment = np.diff(slope.height) / np.diff(slope.x)
+    ahead = middle > start
+    x = np.concatenate([[start], middle[ahead], slope.x[-1:]])
+    gradient = np.concatenate([np.interp([start], middle, of_segment), of_segment[ahead], of_segment[-1:]])
+    line = SlopeLine(np.zeros(len(x)), x, np.stack([gradient[:-1], np.diff(gradient) / np.diff(x)]))
+    return replace(line, way=np.concatenate([[0.0], np.cumsum(_lengths(line))]))
 
 
-def second_derivatives(slope: Profile, x: FloatArray) -> FloatArray:
-    """d²z/dx² of the profile's cubics (1/m)."""
-    piece = np.clip(np.searchsorted(slope.x, x, side="right") - 1, 0, len(slope.x) - 2)
-    cubic, square = slope.coefficients[0], slope.coefficients[1]
-    return np.asarray(6.0 * cubic[piece] * (x - slope.x[piece]) + 2.0 * square[piece])
+def planes(angle: FloatArray) -> SlopeLine:
+    """Planes inclined by the angles (rad), one for each body."""
+    ends = np.array([0.0, math.inf])
+    zero = np.zeros_like(angle)
+    return SlopeLine(ends, ends, np.stack([-np.tan(angle), zero]))
+
+
+def _lengths(line: SlopeLine) -> FloatArray:
+    """Lengths (m) of the pieces, by Gauss's rule with ten points."""
+    place, weight = np.polynomial.legendre.leggauss(10)
+    middle, half = 0.5 * (line.x[1:] + line.x[:-1]), 0.5 * np.diff(line.x)
+    number = np.arange(len(middle))
+    stretch = [1.0 / line.at(number, middle + half * each)[1] for each in place]
+    return np.asarray(half * np.tensordot(weight, stretch, axes=1))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -118,12 +124,12 @@ class Glide:
     speed: FloatArray
     gravity: FloatArray
 
-    def acceleration(self, line: SlopeLine, way: FloatArray, speed: FloatArray) -> FloatArray:
-        """(m/s²) of each; the snow presses but does not pull."""
-        sine, cosine, curvature = line.at(way)
+    def rates(self, line: SlopeLine, piece: IntArray, x: FloatArray, speed: FloatArray) -> FloatArray:
+        """Of change of x (m/s), way (m/s) and speed (m/s²), (3, k); the snow presses but does not pull."""
+        sine, cosine, curvature = line.at(piece, x)
         pressed = np.maximum(self.gravity * cosine + curvature * speed**2, 0.0)
         friction = (self.friction + self.friction_by_speed * speed) * pressed
-        return np.asarray(self.gravity * sine - friction - self.drag_per_mass * speed**2)
+        return np.stack([speed * cosine, speed, self.gravity * sine - friction - self.drag_per_mass * speed**2])
 
 
 def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: float) -> FloatArray:
@@ -148,63 +154,90 @@ def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: f
 
     Notes
     -----
-    Runge-Kutta of fourth order in time, which a start from rest does not trouble as ∫ ds/v would; between the steps a
-    cubic through places and speeds.
+    Runge-Kutta of fourth order in time, which a start from rest does not trouble as ∫ ds/v would. The curvature of a
+    profile jumps between its pieces: there a step ends, and no step sees two. Between the steps a cubic through
+    places and speeds.
     """
     k = len(glide.speed)
     stations = np.broadcast_to(np.asarray(station, float), (k, np.shape(station)[-1]))
-    h = longest / STEPS if len(line.way) == 1 else min(longest / STEPS, LONGEST_STEP_ON_PROFILE)
-    way, speed = _histories(line, glide, h, float(stations.max()), WAIT * longest)
-    found = [_passages(way[:, j], speed[:, j], h, stations[j]) for j in range(k)]
+    h = longest / STEPS if math.isinf(line.length) else min(longest / STEPS, LONGEST_STEP_ON_PROFILE)
+    time, way, speed = _histories(line, glide, h, float(stations.max()), WAIT * longest)
+    found = [_passages(time[:, j], way[:, j], speed[:, j], stations[j]) for j in range(k)]
     crawling = WAIT * longest + (stations - way[-1][:, None]) / CRAWL
     return np.where(np.isfinite(found), found, crawling)
 
 
-def _histories(line: SlopeLine, glide: Glide, h: float, last: float, longest: float) -> tuple[FloatArray, FloatArray]:
-    way, speed = np.zeros_like(glide.speed), glide.speed.astype(float)
-    ways, speeds = [way], [speed]
+def _histories(
+    line: SlopeLine, glide: Glide, h: float, last: float, longest: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Times, ways and speeds after each step, (m, k) each; a body that is there, or waited for in vain, stays."""
+    k = len(glide.speed)
+    piece, time = np.zeros(k, np.int64), np.zeros(k)
+    state = np.stack([np.full(k, line.x[0]), np.zeros(k), glide.speed.astype(float)])
+    told = [(time, state)]
     with np.errstate(over="ignore", invalid="ignore"):
-        for _ in range(math.ceil(longest / h)):
-            way, speed = _stepped(line, glide, way, speed, h)
-            ways.append(way)
-            speeds.append(speed)
-            if not np.any((way < last) & (speed > 0.0)):
+        for _ in range(math.ceil(longest / h) + len(line.way)):
+            step = np.where((state[1] < last) & (time < longest), h, 0.0)
+            state, piece, share = _stepped(line, glide, piece, state, step)
+            time = time + share * step
+            told.append((time, state))
+            if not np.any((state[1] < last) & (state[2] > 0.0) & (time < longest)):
                 break
-    return np.array(ways), np.array(speeds)
+    return np.array([each for each, _ in told]), *np.array([each[1:] for _, each in told]).transpose(1, 0, 2)
 
 
 def _stepped(
-    line: SlopeLine, glide: Glide, way: FloatArray, speed: FloatArray, h: float
-) -> tuple[FloatArray, FloatArray]:
-    a1 = glide.acceleration(line, way, speed)
-    v2 = speed + 0.5 * h * a1
-    a2 = glide.acceleration(line, way + 0.5 * h * speed, v2)
-    v3 = speed + 0.5 * h * a2
-    a3 = glide.acceleration(line, way + 0.5 * h * v2, v3)
-    v4 = speed + h * a3
-    a4 = glide.acceleration(line, way + h * v3, v4)
-    moved = way + h / 6.0 * (speed + 2.0 * v2 + 2.0 * v3 + v4)
-    faster = np.maximum(speed + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4), 0.0)
-    return np.maximum(moved, way), faster
+    line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArray, h: FloatArray
+) -> tuple[FloatArray, IntArray, FloatArray]:
+    """State and piece after a step, and which share of it was taken: all, or what leads to the end of the piece."""
+    share = np.ones_like(h)
+    moved = _runge_kutta(line, glide, piece, state, h)
+    end = line.way[piece + 1]
+    passes = moved[1] >= end
+    if passes.any():
+        shorter = _share(state[1], moved[1], h * state[2], h * moved[2], end)
+        share = np.where(passes, shorter, 1.0)
+        again = _runge_kutta(line, glide, piece, state, share * h)
+        at_end = np.stack([line.x[piece + 1], end, again[2]])
+        moved = np.where(passes, at_end, moved)
+        piece = np.minimum(piece + passes, len(line.way) - 2)
+    return moved, piece, share
 
 
-def _passages(way: FloatArray, speed: FloatArray, h: float, station: FloatArray) -> FloatArray:
-    """Times (s) at the stations, by Newton's method on the cubic of each step."""
+def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArray, h: FloatArray) -> FloatArray:
+    def rates(of: FloatArray) -> FloatArray:
+        return glide.rates(line, piece, of[0], of[2])
+
+    first = rates(state)
+    second = rates(state + 0.5 * h * first)
+    third = rates(state + 0.5 * h * second)
+    fourth = rates(state + h * third)
+    moved = state + h / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
+    moved[2] = np.maximum(moved[2], 0.0)
+    return np.where(moved[1] < state[1], np.stack([state[0], state[1], moved[2]]), moved)
+
+
+def _passages(time: FloatArray, way: FloatArray, speed: FloatArray, station: FloatArray) -> FloatArray:
+    """Times (s) at the stations, infinite at those that are not reached."""
     number = np.searchsorted(way, station, side="left") - 1
     reached = number < len(way) - 1
     at = np.clip(number, 0, len(way) - 2)
-    first, last = way[at], way[at + 1]
-    begin, end = h * speed[at], h * speed[at + 1]
-    share = np.clip(np.divide(station - first, last - first, out=np.zeros_like(station), where=last > first), 0.0, 1.0)
+    h = time[at + 1] - time[at]
+    share = _share(way[at], way[at + 1], h * speed[at], h * speed[at + 1], station)
+    return np.where(reached, time[at] + h * share, np.inf)
+
+
+def _share(first: FloatArray, last: FloatArray, begin: FloatArray, end: FloatArray, place: FloatArray) -> FloatArray:
+    """Where a cubic through first and last place, with slopes begin and end, is at a place: by Newton's method."""
+    u = np.clip(np.divide(place - first, last - first, out=np.zeros_like(first), where=last > first), 0.0, 1.0)
     for _ in range(6):
-        u = share
-        place = (
+        at = (
             first * (1.0 + 2.0 * u) * (1.0 - u) ** 2
             + begin * u * (1.0 - u) ** 2
             + last * u**2 * (3.0 - 2.0 * u)
             + end * u**2 * (u - 1.0)
         )
         slope = (last - first) * 6.0 * u * (1.0 - u) + begin * (1.0 - u) * (1.0 - 3.0 * u) + end * u * (3.0 * u - 2.0)
-        step = np.divide(station - place, slope, out=np.zeros_like(station), where=slope > 0.0)
-        share = np.clip(u + step, 0.0, 1.0)
-    return np.where(reached, h * (at + share), np.inf)
+        step = np.divide(place - at, slope, out=np.zeros_like(first), where=slope > 0.0)
+        u = np.clip(u + step, 0.0, 1.0)
+    return u

@@ -121,6 +121,8 @@ class Identification:
         Where asked for; samples are (N, p) in the keys' units.
     effort
         What it took.
+    data
+        The name of each file, and what it was taken for, in words.
     """
 
     outcome: Outcome
@@ -141,6 +143,7 @@ class Identification:
     bootstrap: FloatArray | None = None
     posterior: FloatArray | None = None
     effort: Effort = field(default_factory=Effort)
+    data: tuple[tuple[str, str], ...] = ()
 
     @property
     def values(self) -> dict[str, float | None]:
@@ -178,6 +181,7 @@ def identification_dict(found: Identification, *, files: Iterable[Path] = ()) ->
         },
         "warnings": list(found.warnings),
         "methods": list(found.methods),
+        "data": [{"name": name, "taken_for": kind} for name, kind in found.data],
         "scenario": found.scenario,
         "points": found.points,
         "degrees_of_freedom": found.degrees_of_freedom,

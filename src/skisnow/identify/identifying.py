@@ -14,19 +14,20 @@ import numpy as np
 from ..errors import FitError, ParameterError
 from ..simulate.batch_file import KeptRows
 from ..simulate.scenario import ScenarioFile
+from ..simulate.scenario.free_keys import free_keys
 from ..simulate.scenario.given import GivenScenario, given_scenario
+from ..simulate.scenario.identify_section import given_parameters
 from ..simulate.scenario.reading import resolved
 from .assembling import Collected, collected, values_to_begin_with
 from .bootstrap import BootstrapBy, require_bootstrap
 from .data import Data
 from .fingerprint import fingerprint
-from .free_keys import free_keys
 from .identification import Effort, Identification
 from .mark_grooves import MarkGrooves, require_marks_can_be
 from .marks_alone import marks_alone
 from .observations import Observations, keys_of_runs
 from .parameter import Parameter
-from .parameter_table import fixed_by_given, given_parameters, parameter_table
+from .parameter_table import fixed_by_given, parameter_table
 from .photo_cell_times import PhotoCellTimes
 from .problem import problem_of
 from .result import too_few
@@ -143,6 +144,7 @@ def identify(
         found = _found(parameters, observations, plan)
         return replace(
             found,
+            data=read.taken,
             effort=replace(
                 found.effort,
                 simulations=simulations.computed,
@@ -176,10 +178,7 @@ def _observations(
 
 
 def _clock(given: GivenScenario, asked: bool | None) -> bool:
-    said = given.identify.get("clock", "start")
-    if said not in ("start", "free"):
-        raise ParameterError(f'[identify] clock is {said!r}; it must be "start" or "free"')
-    return said == "free" if asked is None else asked
+    return given.identify.get("clock", "start") == "free" if asked is None else asked
 
 
 def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> None:

@@ -89,10 +89,7 @@ def _holding(
     plan: Asked,
 ) -> Identification:
     """Identify the others; S_f is bounded from below by what the turn needed."""
-    problem = problem_of(others, (marks,))
-    solution = solution_of(problem, plan)
-    found = identification_of(solution, plan.title, plan.warnings, plan.methods)
-    found = with_further_intervals(found, solution, plan)
+    found = _others(others, marks, plan) if others else _nothing_else(marks, plan)
     values = {key: value for key, value in found.values.items() if value is not None}
     bound, low = _bound(marks, values, found)
     needed = "says nothing" if bound is None or low is None else f"needed {bound:.3g} N/mm² (95 %: at least {low:.3g})"
@@ -118,6 +115,35 @@ def _holding(
         bootstrap=_with_gaps(found.bootstrap, places, p),
         posterior=_with_gaps(found.posterior, places, p),
         warnings=(told, *found.warnings),
+    )
+
+
+def _others(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Asked) -> Identification:
+    solution = solution_of(problem_of(others, (marks,)), plan)
+    found = identification_of(solution, plan.title, plan.warnings, plan.methods)
+    return with_further_intervals(found, solution, plan)
+
+
+def _nothing_else(marks: MarkGrooves, plan: Asked) -> Identification:
+    """The scenario's own ski and snow held against the marks; there is nothing to look for."""
+    problem = problem_of((), (marks,))
+    residuals = marks.residuals([{}])[0]
+    if residuals is not None:
+        problem = problem.with_noise_of(residuals)
+    return Identification(
+        outcome="not_identifiable",
+        reason=REASONS["not_identifiable"],
+        scenario=plan.title,
+        parameters=(),
+        correlation=np.zeros((0, 0)),
+        covariance=np.zeros((0, 0)),
+        noise=problem.noise,
+        accuracy_is_stated=problem.accuracy_is_stated,
+        points=problem.points,
+        degrees_of_freedom=problem.points,
+        warnings=(*plan.warnings, *marks.warnings({})),
+        methods=(*plan.methods, "every other value is the scenario's own: nothing was searched for"),
+        fits=marks.fits({}),
     )
 
 

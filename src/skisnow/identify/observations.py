@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..simulate.input_keys import nearest
-from .free_keys import EACH
+from ..simulate.scenario.free_keys import EACH
 
 FloatArray = npt.NDArray[np.float64]
 Values: TypeAlias = Mapping[str, float]

@@ -2,55 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Any
 
 from ..errors import ParameterError
-from ..simulate.input_keys import nearest
+from ..simulate.scenario.free_keys import short_name
 from ..simulate.scenario.keys import SCENARIO_KEYS
-from .free_keys import free_key, short_name
 from .parameter import Parameter
 from .usual_sizes import usual
-
-GIVEN: Final = ("start", "lower", "upper", "prior_mean", "prior_sd")
-"""What may stand in ``[identify."KEY"]``."""
-NO_KEYS: Final = ("runs", "site", "clock")
-"""Entries of ``[identify]`` that are no parameters."""
-
-
-def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
-    """The tables ``[identify."KEY"]`` by full key.
-
-    Raises
-    ------
-    ParameterError
-        A key or a word is unknown (near ones are named), or a value is no finite number.
-    """
-    found: dict[str, dict[str, float]] = {}
-    for word, table in section.items():
-        if word in NO_KEYS:
-            continue
-        own, at, run = word.partition("@")
-        try:
-            key = free_key(own) + at + run
-        except ParameterError as error:
-            raise ParameterError(f'[identify."{word}"]: {str(error).removeprefix("--free: ")}') from None
-        if not isinstance(table, dict):
-            raise ParameterError(
-                f'identify."{word}" is {table!r}; it must be a table with {", ".join(GIVEN)}, begun by the line '
-                f'[identify."{key}"]'
-            )
-        found[key] = {name: _number(key, name, value) for name, value in table.items()}
-    return found
-
-
-def _number(key: str, name: str, value: object) -> float:
-    if name not in GIVEN:
-        raise ParameterError(f'[identify."{key}"]: there is no {name!r}. {nearest(name, GIVEN)}')
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ParameterError(f'[identify."{key}"]: {name} is {value!r}; it must be a finite number')
-    return float(value)
 
 
 def parameter_table(

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..simulate.scenario import Plane, ScenarioFile
 from ..units import DEGREE
-from .glide import Glide, SlopeLine, passage_times, slope_line
+from .glide import Glide, SlopeLine, passage_times, planes, slope_line
 from .observations import Fit, Kind, Values, values_of_run
 from .photo_cells import PhotoCellRun, PhotoCells
 
@@ -166,7 +166,7 @@ class PhotoCellTimes:
         if not isinstance(self.asked.scenario.slope, Plane):
             return self._line
         angle = np.array([each["slope.angle_deg"] for each in sets]) * DEGREE
-        return SlopeLine(np.zeros(1), np.sin(angle), np.cos(angle), np.zeros(1))
+        return planes(angle)
 
     def _glide(self, sets: Sequence[Mapping[str, Any]]) -> Glide:
         def column(key: str) -> FloatArray:

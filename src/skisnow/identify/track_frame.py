@@ -13,13 +13,13 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..simulate.input_keys import nearest
 from ..simulate.scenario import Plane, ScenarioFile
+from ..simulate.scenario.identify_section import SITE
 from ..track.projection import GeodeticPoint, east_north_up
 from ..track.slope_frame import in_slope_frame
 from ..track.track import Track
 from ..units import DEGREE
 
 FloatArray = npt.NDArray[np.float64]
-SITE: Final = ("fall_line_azimuth_deg", "latitude_deg", "longitude_deg", "height_m")
 FARTHEST: Final = 50_000.0
 """(m) from the site: a track beyond is of another place, and a plane no longer the earth (Choice)."""
 

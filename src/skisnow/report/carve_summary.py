@@ -72,6 +72,7 @@ def _choices(inputs: Json) -> str:
     if not inputs["at_rest"]:
         words.append(f"side force bends the ski: {_yes(inputs['side_force_bending'])}")
         words.append(f"groove follows the {inputs['groove']}")
+        words.append(f"moment balance: {inputs['moment_balance']}")
     return ", ".join([*words, f"twist: {_yes(inputs['twist'])}", f"elements {inputs['elements']}"])
 
 
@@ -103,6 +104,7 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
     ("turn radius, boot and 0.4 m to each side (m)", _number("turn_radius_boot_m")),
     ("turn radius, boot and ends of contact (m)", _number("turn_radius_chord_m")),
     ("sidecut radius of three widths (m)", lambda answer: _of_ski(answer, "sidecut_radius_of_three_widths_m")),
+    ("sidecut radius of the whole edge line (m)", lambda answer: _of_ski(answer, "sidecut_radius_of_edge_line_m")),
     ("contact length (m)", _number("contact_length_m")),
     ("length that carries load (m)", _number("bearing_length_m")),
     ("edge depth, afterbody / forebody", _number("afterbody_depth_ratio")),
@@ -110,6 +112,7 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
     ("force per length, greatest (N/m)", _greatest("force_per_length_N_per_m")),
     ("bending, greatest (mm)", _greatest("bending_mm", by=abs)),
     ("twist, greatest (degrees)", _greatest("twist_deg", by=abs)),
+    ("boot moment about the ski's cross axis (N m)", _number("boot_pitch_moment_Nm")),
     ("force out of balance (N)", _number("residual_force_N")),
     ("moment out of balance (N m)", _number("residual_moment_Nm")),
 )

@@ -127,7 +127,8 @@ def _methods(found: Identification) -> list[Markup]:
     last = prose(
         "{runs}, {rounds}, {wall} s.", runs=runs, rounds=counted(effort.rounds, "Jacobian"), wall=f"{effort.wall_s:.1f}"
     )
-    return [*(prose("{text}.", text=text) for text in found.methods), last]
+    data = [prose("{name} was taken for {kind}.", name=name, kind=kind) for name, kind in found.data]
+    return [*data, *(prose("{text}.", text=text) for text in found.methods), last]
 
 
 def _drawings(found: Identification) -> Iterator[Drawing]:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 def identify_summary(found: Identification) -> str:
     """Outcome, values with intervals, correlations, what it took."""
     lines = [f"{found.scenario}: {found.outcome.replace('_', ' ')}", found.reason, ""]
+    lines += [f"{name}: {kind}" for name, kind in found.data] + [""] * bool(found.data)
     rows = [_row(each) for each in found.parameters]
     widths = [max(len(row[i]) for row in rows) for i in range(2)]
     lines += [f"{key.ljust(widths[0])}  {value.ljust(widths[1])}  {rest}".rstrip() for key, value, rest in rows]

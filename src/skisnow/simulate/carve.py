@@ -25,6 +25,7 @@ from .equilibrium.solve import RIGID_PLASTIC, Solution, solved
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_converged"]
 GrooveForm: TypeAlias = Literal["edge", "path"]
+MomentBalance: TypeAlias = Literal["boot", "free"]
 
 CLAMP_LENGTH: Final = 0.30
 """Length of ski that boot and binding keep straight (m). Choice; limits are tested with 0."""
@@ -81,6 +82,9 @@ class Equilibrium:
         Of the places that carry force (m): in a groove that does not spring back, parts of the contact carry none.
     afterbody_depth_ratio
         Mean edge depth of the contact behind the boot over that before it.
+    boot_pitch_moment
+        What boot and skier hold about the ski's cross axis, positive where they press the tip down (N m):
+        ∫ s (f cos ϑ + τ e sin ϑ) ds.
     station
         Places along the ski, from the boot, positive forward, tip to tail (m), shape (n,), as all that follow.
     edge_depth
@@ -94,7 +98,8 @@ class Equilibrium:
     edge_line
         Position of the edge in the snow surface, towards the inside of the turn (m).
     residual_force, residual_moment
-        What the snow's force and its moment about the boot differ by from load and moment (N, N m).
+        What the snow's force and its moment about the boot differ by from load and moment (N, N m); the moment is that
+        which was balanced.
     warnings
         Where the answer is outside what the model can say, in words.
     iterations
@@ -111,6 +116,7 @@ class Equilibrium:
     contact_length: float | None
     bearing_length: float | None
     afterbody_depth_ratio: float | None
+    boot_pitch_moment: float | None
     station: FloatArray
     edge_depth: FloatArray | None
     force_per_length: FloatArray | None
@@ -134,6 +140,7 @@ def carve(
     clamp_length: float = CLAMP_LENGTH,
     side_force_bending: bool = True,
     groove: GrooveForm = "edge",
+    moment_balance: MomentBalance = "boot",
     twist: bool = True,
     elements: int = ELEMENTS,
 ) -> Equilibrium:
@@ -151,7 +158,7 @@ def carve(
         k_u/H_V ≥ 1: 1 is elastic snow, `math.inf` rigid-plastic snow (computed as 1000). Where such steep unloading
         does not converge, 500, 300 or 200 is taken and a warning says so.
     moment
-        About the horizontal cross axis at the boot, positive where it presses the tip down (N m).
+        At the boot, positive where it presses the tip down (N m); about which axis, `moment_balance` says.
     clamp_length
         Length of ski kept straight by boot and binding (m).
     side_force_bending
@@ -159,6 +166,10 @@ def carve(
     groove
         "edge": the groove of the forebody lies under the edge of the afterbody. "path": it lies on the circle through
         the edge line at the boot and 0.4 m before and behind, and each edge beside it by what its edge line differs.
+    moment_balance
+        "boot": `moment` is about the horizontal cross axis and balances the load alone; what the side force does about
+        the ski's cross axis, boot and skier hold besides: `Equilibrium.boot_pitch_moment` tells how much. "free":
+        `moment` is about the ski's own cross axis, and all that boot and skier hold there.
     twist
         Whether the ski twists (GJ) or keeps its edge angle everywhere.
     elements
@@ -188,6 +199,10 @@ def carve(
     )
     if groove not in ("edge", "path"):
         raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
+    if moment_balance not in ("boot", "free"):
+        raise ParameterError(f"moment_balance is {moment_balance!r}; it must be 'boot' or 'free'")
+    if moment_balance == "free":
+        conditions = conditions._replace(pitch_of_force=math.cos(edge_angle), pitch_of_shear=math.sin(edge_angle))
     find = solved if groove == "edge" else _following_path
     solution = find(model, conditions)
     note: tuple[str, ...] = ()
@@ -273,6 +288,8 @@ def _conditions(
         twists=float(twist and edge_angle > 0.0),
         bevel=ski.base_bevel,
         bevel_width=ski.edge_width,
+        pitch_of_force=1.0,
+        pitch_of_shear=0.0,
     )
 
 
@@ -314,7 +331,7 @@ def _described(
     sinks = deepest > SINKING_DEPTH if solution.converged else _too_soft(model, conditions)
     if not solution.converged or sinks:
         outcome: Outcome = "sinks" if sinks else "not_converged"
-        nothing = (None,) * 8
+        nothing = (None,) * 9
         return Equilibrium(outcome, REMEDIES[outcome], *nothing, station, *(None,) * 7, (), solution.iterations)
     line = EdgeLine(model, conditions.edge_angle, solution)
     weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
@@ -327,6 +344,8 @@ def _described(
     holds = True if conditions.side_force == 0.0 else limit is not None and conditions.side_force <= limit
     outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
     ends = line.contact_ends(depth)
+    of_force = float(weight @ (force * station))
+    of_shear = solution.shear_stress * float(weight @ (np.maximum(depth, 0.0) * station))
     turns = conditions.side_force > 0.0
     return Equilibrium(
         outcome=outcome,
@@ -339,6 +358,7 @@ def _described(
         contact_length=ends[0] - ends[1],
         bearing_length=float(weight[force > 0.0].sum()),
         afterbody_depth_ratio=_depth_ratio(station, weight, depth),
+        boot_pitch_moment=math.cos(conditions.edge_angle) * of_force + math.sin(conditions.edge_angle) * of_shear,
         station=station,
         edge_depth=depth,
         force_per_length=force,
@@ -346,7 +366,7 @@ def _described(
         twist=line.twist,
         edge_line=line.position,
         residual_force=float(weight @ force) - conditions.load,
-        residual_moment=float(weight @ (force * station)) - conditions.moment,
+        residual_moment=conditions.pitch_of_force * of_force + conditions.pitch_of_shear * of_shear - conditions.moment,
         warnings=(*note, *_warnings(line)),
         iterations=solution.iterations,
     )

@@ -139,6 +139,7 @@ def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_a
         clamp_length=question.clamp_length_m,
         side_force_bending=question.side_force_bending,
         groove=question.groove,
+        moment_balance=question.moment_balance,
         twist=question.twist,
         elements=question.elements,
     )

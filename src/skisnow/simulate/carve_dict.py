@@ -71,6 +71,7 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
         "contact_length_m": finite(equilibrium.contact_length),
         "bearing_length_m": finite(equilibrium.bearing_length),
         "afterbody_depth_ratio": finite(equilibrium.afterbody_depth_ratio),
+        "boot_pitch_moment_Nm": finite(equilibrium.boot_pitch_moment),
         "residual_force_N": finite(equilibrium.residual_force),
         "residual_moment_Nm": finite(equilibrium.residual_moment),
         "iterations": int(equilibrium.iterations),

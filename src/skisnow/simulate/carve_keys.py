@@ -61,10 +61,19 @@ _KEYS: Final = (
     ),
     InputKey(
         name="moment_Nm",
-        meaning="boot moment about the cross axis, positive where it presses the tip down",
+        meaning="boot moment about the cross axis (see moment_balance), positive where it presses the tip down",
         unit="N m",
         default=0.0,
         origin="load at the boot",
+    ),
+    InputKey(
+        name="moment_balance",
+        kind="text",
+        choices=("boot", "free"),
+        meaning="boot: that moment balances the load alone, about the horizontal, and the boot holds what the side "
+        "force does besides; free: it is about the ski's own cross axis, and all that the boot holds there",
+        default="boot",
+        origin="choice: boot and skier lean as they must; plays no part at rest",
     ),
     InputKey(
         name="clamp_length_m",

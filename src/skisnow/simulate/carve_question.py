@@ -25,6 +25,7 @@ class CarveQuestion:
     published: str | None
     unloading_ratio: float | None
     moment_Nm: float
+    moment_balance: Literal["boot", "free"]
     clamp_length_m: float
     side_force_bending: bool
     groove: Literal["edge", "path"]

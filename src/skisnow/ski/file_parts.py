@@ -15,6 +15,7 @@ from .file_keys import BASE, LIST_KEYS, RIGID, WIDTHS
 from .layout import TAIL_OVERHANG, Layout, layout_of_lengths
 from .monkeycam import monkeycam_shape
 from .outline import ArcOutline
+from .side_line import width_of_table
 
 if TYPE_CHECKING:
     from .assembling import Along
@@ -82,7 +83,7 @@ class FileParts:
         layout = self._layout_of_table() if self.table else self._layout_of_keys()
         if "width_mm" in self.table:
             values.refuse_together(WIDTHS, "the column width_mm", "Leave one of them out")
-            return layout, self.table["width_mm"].at, values.file.stem
+            return layout, width_of_table(self.table["width_mm"], layout), values.file.stem
         tip, waist, tail = (values.needed(key) for key in WIDTHS)
         for key, width in (("tip_width_mm", tip), ("tail_width_mm", tail)):
             if waist > width:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from ..errors import ParameterError
 from ..given import read_json
@@ -29,10 +29,12 @@ if TYPE_CHECKING:
 
     from .ski import Ski
 
+STRAIGHTEST: Final = 1000.0
+"""Sidecut radius (m) beyond which no ski with a sidecut is made."""
 _UNITS = {"": CM, "cm": CM, "mm": MM, "m": 1.0, "in": 25.4 * MM, "inch": 25.4 * MM, "inches": 25.4 * MM, '"': 25.4 * MM}
 _MOST_BYTES = 1 << 22
 _LARGEST = 1e9
-_LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z\"]*)\s*")
+_LENGTH = re.compile(r"([+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?)\s*+([a-zA-Z\"]*+)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,8 +100,9 @@ def monkeycam_shape(path: Path, *, running_length: float | None = None) -> Monke
     board = _board(path)
     edge, waist, taper = (_length(path, board, key) for key in ("effective edge length", "waist width", "taper"))
     radius = _length(path, board, "sidecut radius")
-    if not radius > edge / 2.0 > 0:
-        refuse(path, "board: sidecut radius", board["sidecut radius"], "more than half the edge length", "Correct it")
+    if not edge / 2.0 < radius <= STRAIGHTEST or not edge > 0.0:
+        allowed = f"more than half the edge length, at most {STRAIGHTEST:g} m"
+        refuse(path, "board: sidecut radius", board["sidecut radius"], allowed, "Correct it")
     nose, tail = _length(path, board, "nose length"), _length(path, board, "tail length")
     layout = layout_of_lengths(
         length=nose + edge + tail,
@@ -132,7 +135,10 @@ def _board(path: Path) -> dict[str, Any]:
 def _length(path: Path, board: dict[str, Any], key: str) -> float:
     """A length in m; a number without unit is in cm, as in MonkeyCAM."""
     value = board.get(key)
-    read = None if isinstance(value, bool) else _LENGTH.fullmatch(str(value))
+    read = None if isinstance(value, bool) else _LENGTH.fullmatch(str(value).strip())
     if read is None or read[2].lower() not in _UNITS or not abs(float(read[1])) <= _LARGEST:
         refuse(path, f"board: {key}", value, "a number in cm or a text such as '161cm', '2mm', '4in'", "Correct it")
-    return float(read[1]) * _UNITS[read[2].lower()]
+    length = float(read[1]) * _UNITS[read[2].lower()]
+    if not math.isfinite(length):
+        refuse(path, f"board: {key}", value, "a finite number", "Correct it")
+    return length

@@ -36,7 +36,7 @@ class SkiSections:
     mass_per_length: FloatArray
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Ski:
     """A ski as tables from tip to tail, dense enough for linear interpolation. Everything in SI.
 
@@ -123,6 +123,12 @@ class Ski:
             along(self.torsional_stiffness),
             along(self.mass_per_length),
         )
+
+    def __repr__(self) -> str:
+        """Name, length, widths, the radius of the side line in use, mass."""
+        widths = "-".join(f"{width * 1e3:.4g}" for width in self.sidecut_widths)
+        radius = f"radius of the side line {self.sidecut_radius_of_edge_line:.4g} m"
+        return f"<Ski {self.name!r}: {self.length:.4g} m, {widths} mm, {radius}, {self.mass:.4g} kg>"
 
     @property
     def length(self) -> float:

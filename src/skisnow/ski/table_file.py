@@ -62,7 +62,10 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
         raise ParameterError(f"{path} is not UTF-8 text ({error.reason}). Save it as UTF-8.") from error
     separator = next((mark for mark in ";\t" if mark in text), ",")
     rows = enumerate(csv.reader(io.StringIO(text), delimiter=separator), start=1)
-    lines = [(line, [cell.strip() for cell in row]) for line, row in rows if any(map(str.strip, row))]
+    try:
+        lines = [(line, [cell.strip() for cell in row]) for line, row in rows if any(map(str.strip, row))]
+    except csv.Error as error:
+        raise ParameterError(f"{path} is no table of cells ({error}). Is a quote never closed?") from error
     lines = [(line, cells) for line, cells in lines if not cells[0].startswith("#")]
     if len(lines) < 3:
         raise ParameterError(f"{path}: a table needs a line of column names and two rows or more. Complete it.")

@@ -32,6 +32,7 @@ RESULTS: Final = (
     "afterbody_depth_ratio",
     "greatest_edge_depth_mm",
     "greatest_force_per_length_N_per_m",
+    "boot_pitch_moment_Nm",
     "residual_force_N",
     "residual_moment_Nm",
     "sidecut_radius_of_three_widths_m",

@@ -29,6 +29,10 @@ QUALITIES: Final[dict[float, Solution]] = {1.0: "code", 2.0: "code", 3.0: "code"
 """Of GGA; others are dead reckoning, typed in, or simulated."""
 MODES: Final[dict[str, Solution]] = {"A": "code", "D": "code", "P": "code", "R": "fixed", "F": "float"}
 """Of GNS, a letter for each satellite system."""
+LONGEST: Final = 1_000
+"""Bytes of a sentence: NMEA allows 82, receivers write somewhat more."""
+YEARS: Final = (1900, 2200)
+"""Of a date that a receiver may send; others are damage."""
 _DAY, _HALF_A_DAY = 86400.0, 43200.0
 
 
@@ -158,7 +162,6 @@ def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
 def _message(line: bytes, counts: dict[str, int]) -> Any:
     """The sentence, None where it is another one or damaged."""
     from pynmeagps import NMEAReader, calc_checksum
-    from pynmeagps.exceptions import NMEAMessageError, NMEAParseError, NMEATypeError
 
     content, star, checksum = line[1:].partition(b"*")
     if not star or calc_checksum(content.decode("latin-1")) != checksum[:2].decode("latin-1").upper():
@@ -166,9 +169,12 @@ def _message(line: bytes, counts: dict[str, int]) -> Any:
         return None
     if not SENTENCE.match(line) or not content.isascii():
         return None
+    if len(line) > LONGEST:
+        counts["sentences with a wrong checksum"] += 1
+        return None
     try:
         return NMEAReader.parse(b"$" + content + b"*" + checksum[:2])
-    except (NMEAMessageError, NMEAParseError, NMEATypeError):
+    except Exception:  # cells that are no numbers make pynmeagps fail in many ways
         counts["sentences with a wrong checksum"] += 1
         return None
 
@@ -216,7 +222,11 @@ def _solution(message: Any) -> Solution:
 
 def _number(message: Any, name: str) -> float:
     value = getattr(message, name, "")
-    return float(value) if isinstance(value, int | float) and math.isfinite(value) else math.nan
+    try:
+        read = float(value) if isinstance(value, int | float) else math.nan
+    except OverflowError:
+        return math.nan
+    return read if math.isfinite(read) else math.nan
 
 
 def _date(value: Any) -> date | None:
@@ -225,6 +235,7 @@ def _date(value: Any) -> date | None:
 
 def _whole_date(message: Any) -> date | None:
     try:
-        return date(int(message.year), int(message.month), int(message.day))
-    except (AttributeError, ValueError):
+        found = date(int(message.year), int(message.month), int(message.day))
+    except (AttributeError, ValueError, OverflowError):
         return None
+    return found if YEARS[0] <= found.year <= YEARS[1] else None

@@ -23,6 +23,8 @@ from .trouble import refusal
 
 FloatArray = npt.NDArray[np.float64]
 
+LARGEST: Final = 1e12
+"""In any column: squares of what is larger overflow."""
 ZONES: Final = {"UTC": UTC, "JST": timezone(timedelta(hours=9))}
 GPS_BEGIN: Final = datetime(1980, 1, 6)
 """Of the weeks that RTKLIB counts; GPS time itself has no zone."""
@@ -123,13 +125,13 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
         )
     values = [number(cell) for cell in cells[: header.width]]
     for cell, value in zip(cells, values, strict=False):
-        if math.isnan(value) and cell.lower() not in ("nan", "-nan"):
+        if (math.isnan(value) and cell.lower() not in ("nan", "-nan")) or abs(value) > LARGEST:
             raise refusal(
                 "not_a_number",
                 name,
                 place=f"row {row}",
                 value=cell,
-                allowed="a finite number with a decimal point",
+                allowed=f"a finite number with a decimal point, at most {LARGEST:g}",
                 action="The row is damaged; solve again.",
             )
     return moment, _degrees(cells, values) if header.sexagesimal else values

@@ -14,7 +14,9 @@ PLACES: Final = {
     "earth_centred": ("x-ecef", "y-ecef", "z-ecef"),
     "baseline": ("e-baseline", "n-baseline", "u-baseline"),
 }
-HEADER: Final = re.compile(r"^%[ \t]*(GPST|UTC|JST)?[ \t,;]*(latitude|x-ecef|e-baseline).*", re.MULTILINE)
+HEADER: Final = re.compile(
+    r"^%[ \t]*+(?:(GPST|UTC|JST)[ \t,;]*+|[,;][ \t,;]*+)?(latitude|x-ecef|e-baseline).*", re.MULTILINE
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,8 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final
 
 from ..spreadsheet_text import (
+    LONGEST_CELL,
+    MOST_COLUMNS,
     SEPARATOR_NAMES,
     NoTextError,
     decimal_mark,
@@ -65,7 +67,7 @@ def cells_of(text: str, name: str) -> Cells:
     Raises
     ------
     FieldDataError
-        There is no header, or a quote is never closed.
+        There is no header, a quote is never closed, a cell is too long, or there are too many columns.
     """
     lines = re.split(r"\r\n|\r|\n", text)
     named = named_separator(lines[0])
@@ -90,10 +92,34 @@ def cells_of(text: str, name: str) -> Cells:
             name,
             place=f"row {begun}",
             value=str(error),
-            allowed="cells with quotes in pairs",
+            allowed=f"cells with quotes in pairs, of at most {LONGEST_CELL} characters",
             action="Close the quote, or take it away.",
         ) from error
+    _require_size(rows, numbers, name)
     return Cells(rows[0], numbers[0], tuple(numbers[1:]), tuple(rows[1:]), separator)
+
+
+def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> None:
+    """Refuse what no table of measurements has, before anything is done with it."""
+    for line, row in zip(lines, rows, strict=True):
+        if len(row) > MOST_COLUMNS:
+            raise refusal(
+                "too_many_cells",
+                name,
+                place=f"row {line}",
+                value=f"{len(row)} cells",
+                allowed=f"at most {MOST_COLUMNS} columns",
+                action="Take out the columns that are not needed.",
+            )
+        if max(map(len, row)) > LONGEST_CELL:
+            raise refusal(
+                "unreadable_file",
+                name,
+                place=f"row {line}",
+                value=max(row, key=len),
+                allowed=f"cells of at most {LONGEST_CELL} characters",
+                action="Shorten the cell; is a separator or a quote missing?",
+            )
 
 
 def require_width(cells: Cells, name: str) -> None:

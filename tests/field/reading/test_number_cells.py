@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from decimal import Decimal
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skisnow.field.reading.number_cells import decimal_mark, number, numbers
+from skisnow.field.reading.number_cells import decimal_mark, is_number, number, numbers
 
 GOOD = {"1": 1.0, "-2.5": -2.5, "+.5": 0.5, "3.": 3.0, "1e3": 1000.0, "2.5E-1": 0.25, " 7.5\u00a0": 7.5, "007": 7.0}
 BAD = [
@@ -77,3 +78,15 @@ def test_every_float_comes_back(values: list[float], mark: str) -> None:
 )
 def test_decimal_mark(groups: list[list[str]], separator: str, mark: str) -> None:
     assert decimal_mark(groups, separator=separator) == mark
+
+
+def test_a_long_cell_is_refused_after_one_pass() -> None:
+    for cell in ("1" * 1_000_000 + "x", "1" * 1_000_000, "." * 1_000_000, "1e" + "1" * 1_000_000 + "e"):
+        assert not is_number(cell, ".")  # with backtracking this would take hours
+        assert math.isnan(number(cell))
+
+
+def test_every_number_in_double_precision_can_be_written_in_full() -> None:
+    longest = format(Decimal(-math.nextafter(2.0**-1022, 0.0)), "f")
+    assert len(longest) == 1077
+    assert number(longest) == -math.nextafter(2.0**-1022, 0.0)

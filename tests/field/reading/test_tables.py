@@ -146,3 +146,9 @@ def test_no_measurements(write_campaign: WriteCampaign, small_campaign: dict[str
     (problem,) = check_campaign(write_campaign(small_campaign))
     assert (problem.severity, problem.code, problem.file) == ("error", "unreadable_file", PEN)
     assert SHEAR in problem.allowed
+
+
+def test_a_hundred_thousand_columns(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    small_campaign[DENSITY] = ",".join(f"column {place}" for place in range(100_000)) + "\n1\n"
+    problems = [problem for problem in check_campaign(write_campaign(small_campaign)) if problem.severity == "error"]
+    assert [where(problem) for problem in problems] == [("unreadable_file", DENSITY, 1, None, None, "100000 cells")]

@@ -122,3 +122,21 @@ def test_records_come_in_portions() -> None:
     sizes = [len(rows) for _, rows in look_at_csv(data).records()]
     assert sum(sizes) == 3 * RECORDS_AT_ONCE
     assert all(size <= RECORDS_AT_ONCE for size in itertools.chain(sizes))
+
+
+@pytest.mark.parametrize("columns", [1_001, 100_000])
+def test_a_table_with_more_columns_than_a_person_fills_is_refused(columns: int) -> None:
+    text = look_at_csv(("x," * (columns - 1) + "x\n").encode())
+    with pytest.raises(UnreadableTextError) as caught:
+        list(text.records())
+    assert (caught.value.row, caught.value.value) == (1, f"{columns} cells")
+    assert caught.value.allowed == "at most 1000 columns"
+
+
+def test_a_cell_longer_than_a_spreadsheet_holds_is_refused() -> None:
+    fits, too_long = "x" * 32_767, "x" * 32_768
+    assert next(look_at_csv(f"a,b\n1,{fits}\n".encode()).records())[1][1] == ["1", fits]
+    with pytest.raises(UnreadableTextError) as caught:
+        list(look_at_csv(f"a,b\n1,{too_long}\n".encode()).records())
+    assert caught.value.row == 2
+    assert "32767" in caught.value.allowed

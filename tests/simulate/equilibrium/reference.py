@@ -37,6 +37,7 @@ class Case:
     clamp_length: float = 0.0
     side_force_bending: bool = True
     twist: bool = True
+    boot_is_free: bool = False  # the moment is all that the boot takes about the ski's cross axis
     knots: int = 30  # of each end
     along: int = 8  # intervals between knots
     across: int = 160
@@ -191,9 +192,11 @@ class _Equations:
         turned = rate - np.concatenate([t0 / self.front.torsional_stiffness, t1 / self.rear.torsional_stiffness])
         turned = turned if case.twist else z[2 * k : 4 * k]
         side = case.load * math.tan(case.edge_angle)
+        whole = math.cos(case.edge_angle) * force + math.sin(case.edge_angle) * shear
+        pitching = whole if case.boot_is_free else force
         loads = [
             (self.weight @ force) / case.load - 1.0,
-            (self.weight @ (force * self.station) - case.moment) / case.load,
+            (self.weight @ (pitching * self.station) - case.moment) / case.load,
             (self.weight @ shear - side) / case.load if side > 0.0 else border[2],
         ]
         return np.concatenate([bent, turned, np.array(loads)])

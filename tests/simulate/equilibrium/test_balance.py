@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import get_args
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_bvp
 
-from skisnow.simulate.carve import Equilibrium, carve
+from skisnow.errors import ParameterError
+from skisnow.simulate.carve import Equilibrium, GrooveForm, MomentBalance, carve
 from skisnow.ski import Ski, read_ski
 
 from .synthetic import FloatArray, plain_ski, snow, weights
@@ -170,3 +172,65 @@ def test_side_force_is_the_balanced_one() -> None:
     assert found.side_force == pytest.approx(600.0 / math.sqrt(3.0), rel=1e-12)
     limit = 0.35e6 * float(weights(plain_ski(), CLAMP) @ np.maximum(given(found.edge_depth), 0.0))
     assert found.side_force_limit == pytest.approx(limit, rel=1e-12)
+
+
+@pytest.mark.parametrize("moment_balance", ["boot", "free"])
+@pytest.mark.parametrize("moment", [0.0, -30.0])
+@pytest.mark.parametrize(("angle_deg", "ratio", "groove"), [(45.0, 10.0, "edge"), (60.0, 10.0, "path")])
+def test_what_the_boot_holds_about_the_skis_cross_axis(
+    angle_deg: float, ratio: float, groove: GrooveForm, moment: float, moment_balance: MomentBalance
+) -> None:
+    """All of the snow's forces at the edge in the bent ski's places, r × F summed and laid along the cross axis.
+
+    Forward x, y in the snow surface towards the inside, z out of the snow: F = (0, τ e, f) per length. The base's
+    normal is (0, sin ϑ, cos ϑ), the cross axis (0, cos ϑ, -sin ϑ), about which a force at the tip turns negatively.
+    """
+    ski, angle, load = read_ski("giant-slalom"), math.radians(angle_deg), 800.0
+    found = carve(
+        ski, snow(0.2), edge_angle=angle, load=load, moment=moment, unloading_ratio=ratio, groove=groove,
+        moment_balance=moment_balance,
+    )  # fmt: skip
+    weight, bite = weights(ski, CLAMP), np.maximum(given(found.edge_depth), 0.0)
+    stress = load * math.tan(angle) / (weight @ bite)
+    place = np.column_stack([found.station, given(found.edge_line), -given(found.edge_depth)])
+    force = np.column_stack([np.zeros_like(bite), stress * bite, given(found.force_per_length)])
+    cross = np.array([0.0, math.cos(angle), -math.sin(angle)])
+    taken = -float(weight @ (np.cross(place, force) @ cross))
+    about_horizontal = -float(weight @ np.cross(place, force)[:, 1])
+    assert found.boot_pitch_moment == pytest.approx(taken, abs=1e-6)
+    balanced = taken if moment_balance == "free" else about_horizontal
+    assert balanced == pytest.approx(moment, abs=2e-5)
+    assert found.residual_moment == pytest.approx(balanced - moment, abs=1e-9)
+
+
+def test_how_much_the_boot_holds_and_what_it_moves() -> None:
+    """The side force pushes the deeper afterbody up, so the boot presses it down; without that the turn is tighter."""
+    ski, shared = read_ski("slalom"), {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": 10.0}
+    by_boot, free = (carve(ski, snow(0.2), **shared, moment_balance=each) for each in ("boot", "free"))  # type: ignore[arg-type]
+    given_back = carve(ski, snow(0.2), **shared, moment_balance="free", moment=by_boot.boot_pitch_moment)  # type: ignore[arg-type]
+    assert by_boot.boot_pitch_moment is not None and by_boot.boot_pitch_moment < -50.0
+    assert free.boot_pitch_moment == pytest.approx(0.0, abs=1e-5)
+    assert by_boot.turn_radius_boot is not None and free.turn_radius_boot is not None
+    assert 0.975 < free.turn_radius_boot / by_boot.turn_radius_boot < 0.985
+    # the groove is kept at places across that follow from the first, elastic state, which is another one
+    assert given_back.turn_radius_boot == pytest.approx(by_boot.turn_radius_boot, rel=1e-5)
+
+
+def test_a_ski_that_is_flat_has_no_side_force_to_balance() -> None:
+    found = [
+        carve(
+            read_ski("slalom"), snow(0.2), edge_angle=0.0, load=800.0, moment=25.0, unloading_ratio=10.0,
+            moment_balance=each,
+        )
+        for each in get_args(MomentBalance)
+    ]  # fmt: skip
+    assert [each.boot_pitch_moment for each in found] == pytest.approx([25.0, 25.0], abs=1e-6)
+    assert given(found[0].edge_depth) == pytest.approx(given(found[1].edge_depth), abs=1e-12)
+
+
+def test_a_moment_balance_that_is_none() -> None:
+    with pytest.raises(ParameterError, match="moment_balance is 'ski'; it must be 'boot' or 'free'"):
+        carve(
+            read_ski("slalom"), snow(0.2), edge_angle=0.5, load=800.0, unloading_ratio=10.0,
+            moment_balance="ski",  # type: ignore[arg-type]
+        )  # fmt: skip

@@ -33,6 +33,7 @@ def compare(case: Case) -> None:
         unloading_ratio=case.unloading_ratio,
         clamp_length=case.clamp_length,
         side_force_bending=case.side_force_bending,
+        moment_balance="free" if case.boot_is_free else "boot",
         twist=case.twist,
         elements=320,
     )
@@ -99,3 +100,8 @@ def test_other_snow_and_a_moment(hardness: float, moment: float) -> None:
 def test_a_plain_ski_with_a_shovel() -> None:
     ski = plain_ski(width=circular_sidecut(13.0), base_height=shovel(1.4, 0.05, 1.6), running_length=1.4)
     compare(replace(base(ski), unloading_ratio=10.0, clamp_length=0.3))
+
+
+@pytest.mark.parametrize("moment", [0.0, 40.0])
+def test_a_boot_that_takes_no_moment_of_the_side_force(moment: float) -> None:
+    compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, boot_is_free=True, moment=moment))

@@ -306,3 +306,37 @@ def test_a_copy_of_a_built_in_scenario_is_warned_of(tmp_path: Path) -> None:
     path.write_text(scenario_text("carved-46m"), encoding="utf-8")
     (told,) = scenario_file(path).warnings
     assert "coefficient of friction 0.01 is outside" in told
+
+
+@pytest.mark.parametrize(
+    ("section", "told"),
+    [
+        ("[identify]\nduration_s = 5", "run.duration_s cannot be looked for"),
+        ("[identify]\nmass_kg = 90", r"A value of the scenario stands in its own section, \[sledge\]"),
+        ('[identify."mu_9"]\nlower = 0', r"Near are .*friction\.mu_0"),
+        ("[identify]\nclok = 'free'", "Or is clock meant"),
+        ("[identify]\nclock = 'fre'", 'it must be "start" or "free"'),
+        ("[identify.mu_0]\nlowr = 0", "Is lower meant"),
+        ("[identify.mu_0]\nlower = nan", "must be a finite number"),
+        ("[identify.site]\nfall_line_azimut_deg = 0", "Is fall_line_azimuth_deg meant"),
+        ("[identify]\nsite = 3", r"begun by the line \[identify.site\]"),
+        ('[identify.runs."a"]\nmas_kg = 3', r"sledge\.mass_kg"),
+        ("[identify.runs]\na = 3", "must be a table of keys"),
+    ],
+)
+def test_what_nobody_would_read_under_identify(tmp_path: Path, section: str, told: str) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(f"{scenario_text('carved-46m')}\n{section}\n", encoding="utf-8")
+    with pytest.raises(ParameterError, match=told) as refused:
+        read_scenario(path)
+    assert str(path) in str(refused.value)
+
+
+def test_what_a_run_does_not_heed_may_stand_under_identify(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    section = (
+        '[identify]\nclock = "free"\n[identify.site]\nfall_line_azimuth_deg = 90\n[identify.runs."a b"]\nmass_kg = 90\n'
+        '[identify."mu_0@each"]\nlower = 0.01\n[identify."snow.S_f_N_per_mm2"]\nprior_mean = 0.4\nprior_sd = 0.1\n'
+    )
+    path.write_text(f"{scenario_text('carved-46m')}\n{section}", encoding="utf-8")
+    assert read_scenario(path).sledge.mass == 80.0

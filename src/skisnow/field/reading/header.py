@@ -31,7 +31,9 @@ class Header:
     @property
     def position(self) -> dict[str, int]:
         """Where each named column stands; of equal names the first."""
-        return {name: self.columns.index(name) for name in dict.fromkeys(self.columns) if name}
+        backwards = reversed(range(len(self.columns)))
+        places = {self.columns[index]: index for index in backwards if self.columns[index]}
+        return dict(sorted(places.items(), key=lambda item: item[1]))
 
     @property
     def unnamed(self) -> tuple[int, ...]:

@@ -15,6 +15,8 @@ from itertools import chain
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from ...spreadsheet_text import (
+    LONGEST_CELL,
+    MOST_COLUMNS,
     SEPARATOR_NAMES,
     DecodedText,
     NoTextError,
@@ -113,8 +115,14 @@ class CsvText:
         Raises
         ------
         UnreadableTextError
-            At a quote that is never closed: all further lines would end in one cell.
+            At a quote that is never closed: all further lines would end in one cell; at a cell or a row that is longer
+            than any table of measurements has.
         """
+        for lines, rows in self._records():
+            _require_size(lines, rows)
+            yield lines, rows
+
+    def _records(self) -> Iterator[Records]:
         stream = io.TextIOWrapper(io.BytesIO(self.data), encoding=self.codec, newline="")
         skipped = len(stream.readline()[:1]) if self.separator_line else 0
         reader = csv.reader(chain(stream, (_END,)), delimiter=self.separator, skipinitialspace=True)
@@ -141,6 +149,29 @@ class CsvText:
             pass  # a cell beyond the csv module's limit: an open quote swallows the file
         yield lines, rows
         raise _open_quote(line)
+
+
+def _require_size(lines: list[int], rows: list[list[str]]) -> None:
+    if max(map(len, rows), default=0) > MOST_COLUMNS:
+        line, count = next(
+            (line, len(cells)) for line, cells in zip(lines, rows, strict=True) if len(cells) > MOST_COLUMNS
+        )
+        raise UnreadableTextError(
+            row=line,
+            value=f"{count} cells",
+            allowed=f"at most {MOST_COLUMNS} columns",
+            action="Take out the columns that are not needed.",
+        )
+    if max(map(len, chain.from_iterable(rows)), default=0) > LONGEST_CELL:
+        line, cell = next(
+            (line, cell) for line, cells in zip(lines, rows, strict=True) for cell in cells if len(cell) > LONGEST_CELL
+        )
+        raise UnreadableTextError(
+            row=line,
+            value=f"{cell[:40]}…",
+            allowed=f"cells of at most {LONGEST_CELL} characters",
+            action="Shorten the cell; is a separator or a quote missing?",
+        )
 
 
 def _open_quote(line: int) -> UnreadableTextError:

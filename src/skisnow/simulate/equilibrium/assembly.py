@@ -59,6 +59,8 @@ class Conditions(NamedTuple):
     twists: float
     bevel: float
     bevel_width: float
+    pitch_of_force: float  # share with which the snow's force takes part in the balance of moments about the boot
+    pitch_of_shear: float  # share of the side force
 
 
 class System(NamedTuple):
@@ -370,16 +372,19 @@ def _load(
 
 
 @compiled(error_model="numpy", inline="always")
-def _add_to_border(out: System, load: Load, weight: float, s: float, stress: float) -> None:
+def _add_to_border(out: System, conditions: Conditions, load: Load, weight: float, s: float, stress: float) -> None:
     right, corner = out.border_residual, out.corner
     held = 1.0 if load.bite > 0.0 else 0.0
+    force, shear = conditions.pitch_of_force, conditions.pitch_of_shear
+    slope = force * load.force_by_depth + shear * stress * held
     right[0] += weight * load.force
-    right[1] += weight * load.force * s
+    right[1] += weight * (force * load.force + shear * stress * load.bite) * s
     right[2] += weight * stress * load.bite
     corner[0, 0] += weight * load.force_by_depth
     corner[0, 1] += weight * load.force_by_depth * s
-    corner[1, 0] += weight * load.force_by_depth * s
-    corner[1, 1] += weight * load.force_by_depth * s * s
+    corner[1, 0] += weight * slope * s
+    corner[1, 1] += weight * slope * s * s
+    corner[1, 2] += weight * shear * load.bite * s
     corner[2, 0] += weight * stress * held
     corner[2, 1] += weight * stress * held * s
     corner[2, 2] += weight * load.bite
@@ -387,10 +392,11 @@ def _add_to_border(out: System, load: Load, weight: float, s: float, stress: flo
 
 @compiled(error_model="numpy", inline="always")
 def _add_to_beam(
-    out: System, sections: Sections, load: Load, i: int, stress: float, cosine: float, lever: float, twists: float
-) -> None:
+    out: System, sections: Sections, conditions: Conditions, load: Load, i: int, stress: float, cosine: float,
+    lever: float,
+) -> None:  # fmt: skip
     """Add the station's load to the beam's equations, and what beam and border do to it to the tangent."""
-    weight, s = sections.weight[i], sections.station[i]
+    weight, s, twists = sections.weight[i], sections.station[i], conditions.twists
     held = stress if load.bite > 0.0 else 0.0
     for a in range(6):
         j = sections.dof[i, a]
@@ -406,8 +412,9 @@ def _add_to_beam(
         out.columns[2, j] -= w * load.normal_by_stress + t * load.moment_by_stress
         slope = weight * (load.force_by_twist * turns - load.force_by_depth * cosine * bends)
         out.rows[0, j] += slope
-        out.rows[1, j] += slope * s
-        out.rows[2, j] += weight * held * (lever * turns - cosine * bends)
+        deeper = weight * held * (lever * turns - cosine * bends)
+        out.rows[1, j] += (conditions.pitch_of_force * slope + conditions.pitch_of_shear * deeper) * s
+        out.rows[2, j] += deeper
         for b in range(6):
             jb = sections.dof[i, b]
             if jb >= 0:
@@ -417,17 +424,18 @@ def _add_to_beam(
 
 @compiled(error_model="numpy")
 def _add_pulls(
-    out: System, sections: Sections, pulls: FloatArray, used: int, i: int, cosine: float, lever: float, twists: float
-) -> None:
+    out: System, sections: Sections, conditions: Conditions, pulls: FloatArray, used: int, i: int, cosine: float,
+    lever: float,
+) -> None:  # fmt: skip
     """Add what a deeper groove, cut by the linked stations, does to this station's load."""
-    weight, s = sections.weight[i], sections.station[i]
+    weight, s, twists = sections.weight[i], sections.station[i], conditions.twists
     for k in range(used):
         by_force, by_moment = pulls[k, 0], pulls[k, 1] - lever * pulls[k, 0]
         if by_force == 0.0 and by_moment == 0.0:
             continue
         c = BORDER + k
         out.corner[0, c] += weight * by_force
-        out.corner[1, c] += weight * by_force * s
+        out.corner[1, c] += weight * conditions.pitch_of_force * by_force * s
         for a in range(6):
             j = sections.dof[i, a]
             if j >= 0:
@@ -460,9 +468,9 @@ def assemble(
         load = _load(section, conditions, sums, stress, sine, cosine)
         lever = section.half * section.cosine
         out.depth[i], out.force[i] = section.depth, load.force
-        _add_to_border(out, load, sections.weight[i], sections.station[i], stress)
-        _add_to_beam(out, sections, load, i, stress, cosine, lever, conditions.twists)
-        _add_pulls(out, sections, pulls, 2 * linked.known[0], i, cosine, lever, conditions.twists)
+        _add_to_border(out, conditions, load, sections.weight[i], sections.station[i], stress)
+        _add_to_beam(out, sections, conditions, load, i, stress, cosine, lever)
+        _add_pulls(out, sections, conditions, pulls, 2 * linked.known[0], i, cosine, lever)
     out.border_residual[0] -= conditions.load
     out.border_residual[1] -= conditions.moment
     out.border_residual[2] -= conditions.side_force

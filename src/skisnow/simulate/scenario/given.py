@@ -11,6 +11,7 @@ from typing import Any, Final
 from ...errors import ParameterError
 from ...given import MOST_TOML_BYTES, GivenError, is_file, plain_text, toml_values
 from ..input_keys import InputValue, meant, nearest
+from .identify_section import require_known
 from .keys import SCENARIO_KEYS, SECTIONS
 
 PATH_KEYS: Final = ("slope.profile", "snow.results", "ski.file")
@@ -149,6 +150,7 @@ def _given(title: str, file: Path | None, text: str) -> GivenScenario:
     if not isinstance(identify, dict):
         raise ParameterError(f"{title}: {IDENTIFY} is {identify!r}; it must be a table, begun by the line [{IDENTIFY}]")
     try:
+        require_known(identify)
         values = in_ranges(flat(parsed))
     except ParameterError as error:
         raise ParameterError(f"{title}: {error}") from error

@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Final
 
-from ..errors import ParameterError
-from ..simulate.scenario.keys import SCENARIO_KEYS
+from ...errors import ParameterError
+from .keys import SCENARIO_KEYS
 
 _UNIT: Final = re.compile(r"_(N_per_mm3|N_per_mm2|kg_per_m3|m_per_s2|m_per_s|s_per_m|kg_m2|deg|mm|ms|m2|kg|m|s)$")
 _HOW_IT_IS_COMPUTED: Final = ("run.", "solver.")
