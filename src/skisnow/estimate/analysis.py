@@ -31,7 +31,7 @@ from .regressions import Regression, Source, regressions
 from .screening import Screened, screened_penetration, screened_shear
 from .seating import Seating, seating
 from .shear_stress import ShearStress, shear_stress
-from .sites import SiteComparison, compare_sites
+from .sites import SiteComparison, SiteMean, compare_sites, site_means
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -92,6 +92,7 @@ class Analysis:
     penetration: PenetrationAnalysis | None
     shear: ShearAnalysis | None
     regressions: tuple[Regression, ...]
+    site_means: tuple[SiteMean, ...]
     site_comparisons: tuple[SiteComparison, ...]
     comparisons: tuple[Comparison, ...]
     own_hardness: OwnValue
@@ -145,8 +146,8 @@ def _analysis(
     penetration = _penetration(campaign, geometry, rng, n_resamples, progress)
     shear = _shear(campaign)
     observations = _observations(campaign, penetration, shear)
-    own_hardness = own_mean(*observations["penetration"].known(HARDNESS_KEY), geometric=True)
-    own_stress = own_mean(*observations["shear"].known(STRESS_KEY), geometric=False)
+    pressed, sheared = observations["penetration"].known(HARDNESS_KEY), observations["shear"].known(STRESS_KEY)
+    own_hardness, own_stress = own_mean(*pressed, geometric=True), own_mean(*sheared, geometric=False)
     return Analysis(
         campaign=campaign,
         geometry=geometry,
@@ -155,10 +156,11 @@ def _analysis(
         penetration=penetration,
         shear=shear,
         regressions=regressions(observations),
-        site_comparisons=(
-            *compare_sites("H_V", *observations["penetration"].known(HARDNESS_KEY)),
-            *compare_sites("S_f", *observations["shear"].known(STRESS_KEY)),
+        site_means=(
+            *site_means(HARDNESS_KEY, *pressed, geometric=True),
+            *site_means(STRESS_KEY, *sheared, geometric=False),
         ),
+        site_comparisons=(*compare_sites("H_V", *pressed), *compare_sites("S_f", *sheared)),
         comparisons=compare_with_published(
             own_hardness,
             own_stress,

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from .regressions import Regression
     from .screening import Screened
     from .shear_stress import ShearStress
+    from .sites import SiteMean
 
 FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
@@ -46,6 +47,7 @@ def results_dict(analysis: Analysis) -> Json:
         "penetration": _penetration(analysis),
         "shear": _shear(analysis),
         "regressions": [_regression(regression) for regression in analysis.regressions],
+        "site_means": [_site_mean(row) for row in analysis.site_means],
         "site_comparisons": [
             {
                 "quantity": row.quantity,
@@ -318,8 +320,8 @@ def _regression(regression: Regression) -> Json:
             "rmse": float(fit.rmse),
             "rmse_dof": float(fit.rmse_dof),
             "r2": float(fit.r2),
-            "F": float(fit.F),
-            "p": float(fit.p),
+            "F": None if regression.withheld else float(fit.F),
+            "p": None if regression.withheld else float(fit.p),
         }
     by_site = regression.interval_by_site
     return {
@@ -327,8 +329,22 @@ def _regression(regression: Regression) -> Json:
         "terms": ["intercept", regression.plan.predictor],
         "group": regression.group,
         "n": regression.n,
+        "predictor_values": regression.predictor_values,
         **numbers,
+        "withheld": regression.withheld,
         "interval_by_site": None if by_site is None else [list(pair) for pair in by_site.tolist()],
+    }
+
+
+def _site_mean(row: SiteMean) -> Json:
+    own = row.own
+    return {
+        "quantity": row.quantity,
+        "site": row.site,
+        "n": row.n,
+        "mean": own.value,
+        "interval": [own.low, own.high],
+        "range": [own.least, own.greatest],
     }
 
 
