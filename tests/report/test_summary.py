@@ -43,7 +43,9 @@ def test_few_sites_come_first_with_their_comparison_and_no_interval_over_them(ca
     own = {row["site"]: row for row in results["site_means"]}
     places = [next(i for i, line in enumerate(lines) if f"H_V at {site}" in line) for site in ("site A:", "site B:")]
     for place, row in zip(places, own.values(), strict=True):
-        told = f"{significant(row['mean'])} N/mm³, 95 % interval {interval(row['interval'])} over its experiments, n = 30"
+        told = (
+            f"{significant(row['mean'])} N/mm³, 95 % interval {interval(row['interval'])} over its experiments, n = 30"
+        )
         assert told in lines[place]
     ratio = next(i for i, line in enumerate(lines) if "H_V at site A over site B: " in line)
     pooled = next(i for i, line in enumerate(lines) if line.startswith("H_V: geometric mean"))

@@ -48,7 +48,7 @@ DEFAULT_SEED: Final = 1
 
 @dataclass(frozen=True)
 class ModelTable:
-    """The nine fitted rows with bootstrap intervals of a0, a1, b0, b1 by model ((4, 2) each)."""
+    """The nine fitted rows with bootstrap intervals of a0, a1, b0, b1 by model ((4, 2) each); none where withheld."""
 
     fits: tuple[ModelFit, ...]
     intervals: dict[Model, FloatArray]
@@ -197,10 +197,7 @@ def _penetration(
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
     fitted_used = fitted.of(screened.used)
-    depth_fits, weights = fit_models_with_depth_errors(fitted_used, uncertainty)
-    depth_intervals = bootstrap_intervals(
-        fitted_used.readings, fitted_used.value, rng, n_resamples=n_resamples, weights=weights, progress=progress
-    )
+    depth_fits, _ = fit_models_with_depth_errors(fitted_used, uncertainty)
     return PenetrationAnalysis(
         screened=screened,
         readings=readings,
@@ -210,7 +207,7 @@ def _penetration(
         table=ModelTable(fits, intervals),
         nested=compare_nested_rows(fits),
         selected=select_model(fits),
-        errors_in_depth=ModelTable(depth_fits, depth_intervals),
+        errors_in_depth=ModelTable(depth_fits, {}),  # no intervals: a bootstrap covers b in 7 to 90 % of campaigns
     )
 
 
