@@ -14,6 +14,7 @@ from ..field import read_campaign
 from ..field.records import Campaign
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import FittedHardness, fit_models_with_depth_errors, fitted_hardness
+from .fit_warnings import fit_warnings
 from .hardness import DEFINITIONS, Hardness, ReadingUncertainty, hardness
 from .model_choice import NestedRows, bootstrap_intervals, compare_nested_rows
 from .models import Model, ModelFit, fit_models, select_model
@@ -59,7 +60,7 @@ class PenetrationAnalysis:
     """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
 
     ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say. ``table``,
-    ``errors_in_depth`` and ``selected`` are None where no experiment is used.
+    ``errors_in_depth`` and ``selected`` are None where no experiment is used; ``warnings`` are those of `fit_warnings`.
     """
 
     screened: Screened
@@ -71,6 +72,7 @@ class PenetrationAnalysis:
     nested: tuple[NestedRows, ...]
     selected: ModelFit | None
     errors_in_depth: ModelTable | None
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -198,6 +200,7 @@ def _penetration(
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
     fitted_used = fitted.of(screened.used)
     depth_fits, _ = fit_models_with_depth_errors(fitted_used, uncertainty)
+    selected = select_model(fits)
     return PenetrationAnalysis(
         screened=screened,
         readings=readings,
@@ -206,8 +209,9 @@ def _penetration(
         fitted=fitted,
         table=ModelTable(fits, intervals),
         nested=compare_nested_rows(fits),
-        selected=select_model(fits),
+        selected=selected,
         errors_in_depth=ModelTable(depth_fits, {}),  # no intervals: a bootstrap covers b in 7 to 90 % of campaigns
+        warnings=fit_warnings(fits, selected, depth_fits, used.load),
     )
 
 

@@ -37,6 +37,8 @@ FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
 
 SCHEMA_VERSION = 1
+_SAME_PERCENT = 0.005
+"""Rmse that differ by less are told as the same."""
 
 
 def results_dict(analysis: Analysis) -> Json:
@@ -127,6 +129,7 @@ def _penetration(analysis: Analysis) -> Json:
             "models": _no_models(),
             "tests": [],
             "selected": None,
+            "warnings": [],
             "seating": [],
             "errors_in_depth": {"models": _no_models(), "experiments": []},
         }
@@ -135,6 +138,7 @@ def _penetration(analysis: Analysis) -> Json:
         "models": _models(found.table),
         "tests": [_nested(row) for row in found.nested],
         "selected": _selected(found),
+        "warnings": list(found.warnings),
         "seating": _seating(tests.experiment, found),
         "errors_in_depth": {
             "models": _models(found.errors_in_depth),
@@ -258,7 +262,7 @@ def _reason(chosen: ModelFit, best: ModelFit) -> str:
     return (
         f"The simplest of the nine rows whose rmse is within 5 % of the best: {chosen.rmse:.4g} N with fitted "
         f"parameters: {chosen.n_parameters}, against {best.rmse:.4g} N of {best.model.id} with {best.n_parameters}, "
-        f"{more:.2g} % more."
+        f"{f'{more:.2g} % more' if more >= _SAME_PERCENT else 'which is the same'}."
     )
 
 

@@ -135,6 +135,7 @@ def _models(penetration: Json, tag: str) -> Iterator[str]:
         )
         yield f"{mark} {row['id']:<32}{rmse}   {_coefficients(row)}".rstrip()
     yield f"* {penetration['selected']['reason']}"
+    yield from (f"warning: {text}" for text in penetration["warnings"])
 
 
 def _coefficients(row: Json) -> str:
