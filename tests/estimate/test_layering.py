@@ -63,7 +63,7 @@ def test_even_snow_is_seldom_marked_and_layered_snow_is() -> None:
 
 @pytest.mark.parametrize("kappa", [0.0, FIFTY_PERCENT])
 def test_the_interval_of_all_readings_holds_the_truth_in_layered_snow(kappa: float) -> None:
-    """Without the layering in it the interval held the truth in 60 % of the layered series."""
+    """The interval for even snow holds it in fewer than nine of ten layered series."""
     uncertainty, hardness = ReadingUncertainty(0.01e-3 / math.sqrt(12)), np.full(1000, 0.1e9)
     readings = layered_series(hardness, kappa, 0.01, 2e-5)
     seated = seating(readings, hardness_at_largest_load(readings, DEFINITIONS["H_V"]), uncertainty)
