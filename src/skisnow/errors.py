@@ -56,3 +56,7 @@ class OutputError(SkisnowError):
 
 class RangeWarning(UserWarning):
     """A relation is used outside the range in which it was measured: the number is computed all the same."""
+
+
+class FitWarning(UserWarning):
+    """A fit has an answer of which fewer digits are known than a reader would take for granted."""

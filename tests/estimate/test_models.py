@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from scipy import optimize
 
+import skisnow
 from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimate.model_choice import bootstrap_intervals, compare_nested_rows
 from skisnow.estimate.models import MODELS, NESTED_PAIRS, Model, ModelFit, fit_models, select_model
 from skisnow.estimate.readings import Readings
 from skisnow.geometry import SkiPiece
 from skisnow.snow.published.moessner_2013 import PRINTED_RMSE_N
+
+from .conftest import MakeCampaign
 
 TOOL = SkiPiece(0.2, 0.062)
 LOADS = np.linspace(12.0, 492.0, 7)
@@ -256,3 +259,37 @@ def test_rounding_does_not_choose_between_exact_models() -> None:
         assert select_model(fits).model.id == "H_V:a=none,b=one"
         exact = [t for t in compare_nested_rows(fits) if t.full.hardness == "H_V"]
         assert all(math.isnan(t.F) and math.isnan(t.p) and math.isnan(t.rmse_change_percent) for t in exact)
+
+
+def test_rows_that_repeat_each_other_are_equal_and_not_a_rounding_apart(make_campaign: MakeCampaign) -> None:
+    """One edge angle: the linear rows repeat the constant ones, whatever the order of their sums."""
+    rng = np.random.default_rng(4)
+    rows = [
+        (f"p{i}", "A", "ski", 0, load, f"{load / 300 * math.exp(rng.normal(0, 0.1)):.3f}")
+        for i in range(6)
+        for load in (70, 140, 210, 280)
+    ]
+    results = skisnow.results_dict(skisnow.analyse(make_campaign(rows), n_resamples=100))["penetration"]
+    ids = {row["id"]: row for row in results["models"]}
+    for test in results["tests"]:
+        if ids[test["full"]]["n_parameters"] == ids[test["reduced"]]["n_parameters"]:
+            assert test["rmse_change_percent"] == 0.0
+    assert "e-" not in results["selected"]["reason"]
+    assert results["warnings"] == []
+
+
+def test_a_law_that_is_worse_than_no_force_is_warned_of(make_campaign: MakeCampaign) -> None:
+    """Depths in the unit of the file a thousand times too small for half the readings: every law misses wildly."""
+    rows = [
+        (f"p{i}", "A", "ski", 45, load, depth)
+        for i in range(4)
+        for load, depth in ((100, 5.0), (200, 7.0), (300, 9.0), (400, 0.3))
+    ]
+    extra = "[screening]\nexclude = []\n"
+    results = skisnow.results_dict(skisnow.analyse(make_campaign(rows, extra=extra), n_resamples=100))["penetration"]
+    size = math.sqrt(np.mean([100.0**2, 200.0**2, 300.0**2, 400.0**2]))
+    worst = max(results["models"], key=lambda row: row["rmse_N"])
+    assert worst["rmse_N"] > size
+    (warning,) = (text for text in results["warnings"] if text.startswith(f"The rmse of {worst['id']} ("))
+    assert f"({worst['rmse_N']:.5g} N)" in warning
+    assert f"loads, {size:.4g} N" in warning

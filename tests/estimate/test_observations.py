@@ -76,3 +76,25 @@ def test_regression_on_density_equals_a_line_by_numpy(make_campaign: MakeCampaig
     assert row["n"] == 6
     assert row["rmse"] == pytest.approx(row["rmse_dof"] * math.sqrt(4 / 6))
     assert row["interval_by_site"] is not None
+
+
+@pytest.mark.parametrize(
+    ("density", "judged"), [([400, 450], False), ([400, 450, 520], False), ([400, 450, 520, 600], True)]
+)
+def test_a_predictor_of_fewer_than_four_values_is_not_judged(
+    make_campaign: MakeCampaign, density: list[int], judged: bool
+) -> None:
+    """The slope stands; F and p are withheld with the reason, however clear the relation looks."""
+    values = [density[i % len(density)] for i in range(12)]
+    shear = [(f"s{i}", "AB"[i % 2], "blade", 90, 6, 250, d / 20 + 0.1 * i, d) for i, d in enumerate(values)]
+    campaign = make_campaign(shear=shear, shear_columns=",snow_density_kg_per_m3")
+    results = skisnow.results_dict(skisnow.analyse(campaign, n_resamples=100))
+    row = next(r for r in results["regressions"] if r["terms"][1] == DENSITY_KEY and r["response"] == STRESS_KEY)
+    assert row["predictor_values"] == len(density)
+    assert row["b"][1] > 0
+    if judged:
+        assert row["p"] < 1e-6
+        assert row["withheld"] is None
+    else:
+        assert (row["F"], row["p"]) == (None, None)
+        assert f"{len(density)} different values" in row["withheld"]

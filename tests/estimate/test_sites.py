@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from skisnow.estimate.comparisons import compare_with_published, own_mean
-from skisnow.estimate.sites import compare_sites
+from skisnow.estimate.sites import compare_sites, site_means
 
 
 def test_ratio_of_sites_is_welch_on_logarithms() -> None:
@@ -47,11 +47,40 @@ def test_own_mean_over_one_site_is_the_classical_interval() -> None:
 
 
 def test_own_mean_over_balanced_sites_is_the_interval_of_their_means() -> None:
-    values, sites = np.array([1.0, 1.2, 2.0, 2.2, 4.0, 4.4]), ["A", "A", "B", "B", "C", "C"]
-    own = own_mean(values, sites, geometric=False)
-    means = values.reshape(3, 2).mean(axis=1)
-    low, high = stats.t.interval(0.95, 2, means.mean(), means.std(ddof=1) / math.sqrt(3))
-    assert (own.value, own.low, own.high) == pytest.approx((means.mean(), low, high))
+    values, sites = np.array([1.0, 1.2, 2.0, 2.2, 4.0, 4.4, 3.0, 3.2]), [*"AABBCCDD"]
+    own = own_mean(values, sites, geometric=True)
+    means = np.log(values).reshape(4, 2).mean(axis=1)
+    low, high = np.exp(stats.t.interval(0.95, 3, means.mean(), means.std(ddof=1) / 2))
+    assert (own.value, own.low, own.high) == pytest.approx((math.exp(means.mean()), low, high))
+
+
+def test_the_interval_of_a_plain_mean_is_that_of_its_logarithm_and_never_below_zero() -> None:
+    """Delta method: the half-width of ln m is that of m over m."""
+    values = np.array([0.02, 0.5, 0.03])
+    own = own_mean(values, ["A"] * 3, geometric=False)
+    low, high = stats.t.interval(0.95, 2, values.mean(), values.std(ddof=1) / math.sqrt(3))
+    assert low < 0 < own.low < own.value < own.high
+    assert math.log(own.high / own.low) == pytest.approx((high - low) / values.mean())
+    assert own.low * own.high == pytest.approx(own.value**2)
+
+
+@pytest.mark.parametrize("geometric", [True, False])
+def test_two_or_three_sites_give_no_interval_over_them(geometric: bool) -> None:
+    values = np.array([1.0, 1.2, 2.0, 2.2, 4.0, 4.4, 3.0, 3.2])
+    for sites in ("AABB", "AABBCC"):
+        own = own_mean(values[: len(sites)], [*sites], geometric=geometric)
+        assert math.isnan(own.low)
+        assert math.isnan(own.high)
+    assert math.isfinite(own_mean(values, [*"AABBCCDD"], geometric=geometric).low)
+
+
+def test_each_site_has_its_own_mean_with_the_interval_of_its_experiments() -> None:
+    values = np.array([3.0, 0.1, 0.2, 0.15, 0.3])
+    first, second = site_means("S_f_N_per_mm2", values, ["B", "A", "A", "A", "A"], geometric=False)
+    assert (first.site, first.n, second.site, second.n) == ("A", 4, "B", 1)
+    assert first.own == own_mean(values[1:], ["A"] * 4, geometric=False)
+    assert second.own.value == 3.0
+    assert math.isnan(second.own.low)
 
 
 def test_published_values_are_those_that_the_paper_prints() -> None:

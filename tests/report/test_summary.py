@@ -7,9 +7,10 @@ import sys
 from dataclasses import replace
 
 from skisnow.field import Campaign
+from skisnow.report.numerals import interval, significant
 from skisnow.report.summary import summary
 
-from .conftest import Reported, results_of
+from .conftest import Reported, first_series, results_of
 
 
 def test_it_has_what_a_person_looks_for(reference: Reported) -> None:
@@ -29,9 +30,29 @@ def test_it_has_what_a_person_looks_for(reference: Reported) -> None:
 
 
 def test_synthetic_stands_beside_the_numbers(reference: Reported, campaign: Campaign) -> None:
-    assert summary(reference.results).count("(synthetic)") == 4
+    assert summary(reference.results).count("(synthetic)") == 4 + 8 + 7  # a line for each site of H_V and of S_f
     real = replace(campaign, name="Hintertux", place="", penetration=None)
     assert "synthetic" not in summary(results_of(real))
+
+
+def test_few_sites_come_first_with_their_comparison_and_no_interval_over_them(campaign: Campaign) -> None:
+    """Two sites of thirty series each: no p value rests on two densities, and no interval on two sites."""
+    tests = first_series(campaign, 60)
+    results = results_of(replace(campaign, name="real", shear=None, penetration=tests))
+    lines = summary(results).splitlines()
+    own = {row["site"]: row for row in results["site_means"]}
+    places = [next(i for i, line in enumerate(lines) if f"H_V at {site}" in line) for site in ("site A:", "site B:")]
+    for place, row in zip(places, own.values(), strict=True):
+        told = (
+            f"{significant(row['mean'])} N/mm³, 95 % interval {interval(row['interval'])} over its experiments, n = 30"
+        )
+        assert told in lines[place]
+    ratio = next(i for i, line in enumerate(lines) if "H_V at site A over site B: " in line)
+    pooled = next(i for i, line in enumerate(lines) if line.startswith("H_V: geometric mean"))
+    assert places[0] < places[1] < ratio < pooled
+    assert "no interval over 2 sites" in lines[pooled]
+    density = next(line for line in lines if "H_V_N_per_mm3 on snow_density" in line)
+    assert density.endswith("not judged (values of the predictor: 2)")
 
 
 def test_a_campaign_with_nothing_has_a_summary(campaign: Campaign) -> None:

@@ -128,3 +128,17 @@ def with_one(value: float) -> np.ndarray[Any, Any]:
 def test_what_is_no_ski(changes: dict[str, Any], named: str) -> None:
     with pytest.raises(ParameterError, match=named):
         arc_table(**changes)
+
+
+def two_rows(rows: int = 2) -> dict[str, Any]:
+    tables = ("width", "bending_stiffness", "torsional_stiffness", "mass_per_length")
+    values = {name: np.full(rows, 0.06) for name in tables}
+    station = np.array([0.001, -0.001])[:rows]
+    return {"name": "short", "source": "", "station": station, "base_height": np.zeros(rows), **values}
+
+
+def test_two_rows_make_a_table_and_one_does_not() -> None:
+    ski = Ski(**two_rows(), running_length=0.002, sidecut_length=0.002)
+    assert ski.at(0.0).width == pytest.approx(0.06)
+    with pytest.raises(ParameterError, match=r"station has shape \(1,\)"):
+        Ski(**two_rows(1), running_length=0.002, sidecut_length=0.002)

@@ -44,3 +44,8 @@ def test_undefined() -> None:
     for groups in ([], [[1.0], []], [[1.0, float("nan")], [2.0]]):
         with pytest.raises(ParameterError):
             one_way_anova(groups)
+
+
+def test_a_value_that_is_no_number_is_told_with_its_group() -> None:
+    with pytest.raises(ParameterError, match=r"group 2\[1\] is nan"):
+        one_way_anova([[1.0, 2.0], [3.0, float("nan")], [4.0]])

@@ -195,3 +195,18 @@ def test_numbers_beyond_all_solutions(tmp_path: Path, value: str) -> None:
     message = refused(tmp_path, f"{EARTH}{row} .1 .1 .1 0 0 0\n", "a.pos")
     assert "not_a_number" in message
     assert value in message
+
+
+@pytest.mark.parametrize(
+    ("row", "why"),
+    [
+        ("2022/12/27 15:51:14.400", "too_few_cells"),
+        ("2022/12/27 15:51:14.400 47.0", "too_few_cells"),
+        ("2022/12/27", "not_a_time"),
+        ("2022/12/27 noon 47.0 11.0 1500.0", "not_a_time"),
+    ],
+)
+def test_a_row_that_is_cut_short_is_told_by_what_is_missing(tmp_path: Path, row: str, why: str) -> None:
+    message = refused(tmp_path, f"{LLH}{row}\n", "a.pos")
+    assert f"error {why}: " in message
+    assert f"row {len(LLH.splitlines()) + 1}" in message

@@ -96,3 +96,16 @@ def test_refused() -> None:
         in_slope_frame(track([[0.0] * 3]), fall_line_azimuth=0.0, slope_angle=20.0)
     with pytest.raises(ParameterError, match="three finite numbers"):
         in_slope_frame(track([[0.0] * 3]), fall_line_azimuth=0.0, slope_angle=ANGLE, origin=(0.0, math.nan, 0.0))
+
+
+@pytest.mark.parametrize(("azimuth_deg", "slope_deg"), [(30.0, 20.0), (200.0, 35.0), (333.0, 5.0)])
+def test_axes_of_a_slope_that_falls_between_the_compass_points(azimuth_deg: float, slope_deg: float) -> None:
+    """x by its compass direction and its fall; y level; z square to both: sin α ahead on the level, cos α up."""
+    azimuth, slope = math.radians(azimuth_deg), math.radians(slope_deg)
+    x, y, z = axes = slope_axes(azimuth, slope)
+    np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-15)
+    assert math.atan2(x[0], x[1]) % math.tau == pytest.approx(azimuth)
+    assert math.asin(-x[2]) == pytest.approx(slope)
+    assert (y[2], z[2]) == pytest.approx((0.0, math.cos(slope)))
+    np.testing.assert_allclose(z[:2], math.sin(slope) * np.array([math.sin(azimuth), math.cos(azimuth)]), atol=1e-15)
+    np.testing.assert_allclose(np.cross(x, y), z, atol=1e-15)

@@ -211,3 +211,20 @@ def test_damaged_zips_are_refused_in_words(folder: Path) -> None:
 @pytest.mark.slow
 def test_many_damaged_zips_are_refused_in_words(folder: Path) -> None:
     assert try_damaged(folder, seed=2, number=20_000) > 10_000
+
+
+@pytest.mark.parametrize(("flag", "refused"), [(0x001, True), (0x009, True), (0x800, False), (0x002, False)])
+def test_an_encrypted_member_is_refused_and_no_other_flag(folder: Path, flag: int, refused: bool) -> None:
+    """Bit 0 of the flags says that a member is encrypted; bit 11 that its name is UTF-8, bit 1 how it was packed."""
+    content = bytearray(packed({"a.csv": b"1,2\n"}).getvalue())
+    for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        place = content.index(signature) + offset
+        content[place : place + 2] = flag.to_bytes(2, "little")
+    taking = Unpacking(folder, LIMITS)
+    if refused:
+        with pytest.raises(ParameterError, match="encrypted; pack it without a password"):
+            taking.take_zip(io.BytesIO(bytes(content)))
+        assert not any(folder.iterdir())
+    else:
+        taking.take_zip(io.BytesIO(bytes(content)))
+        assert (folder / "a.csv").read_bytes() == b"1,2\n"

@@ -14,6 +14,7 @@ from ..field import read_campaign
 from ..field.records import Campaign
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import FittedHardness, fit_models_with_depth_errors, fitted_hardness
+from .fit_warnings import fit_warnings
 from .hardness import DEFINITIONS, Hardness, ReadingUncertainty, hardness
 from .model_choice import NestedRows, bootstrap_intervals, compare_nested_rows
 from .models import Model, ModelFit, fit_models, select_model
@@ -31,7 +32,7 @@ from .regressions import Regression, Source, regressions
 from .screening import Screened, screened_penetration, screened_shear
 from .seating import Seating, seating
 from .shear_stress import ShearStress, shear_stress
-from .sites import SiteComparison, compare_sites
+from .sites import SiteComparison, SiteMean, compare_sites, site_means
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,7 +49,7 @@ DEFAULT_SEED: Final = 1
 
 @dataclass(frozen=True)
 class ModelTable:
-    """The nine fitted rows with bootstrap intervals of a0, a1, b0, b1 by model ((4, 2) each)."""
+    """The nine fitted rows with bootstrap intervals of a0, a1, b0, b1 by model ((4, 2) each); none where withheld."""
 
     fits: tuple[ModelFit, ...]
     intervals: dict[Model, FloatArray]
@@ -59,7 +60,7 @@ class PenetrationAnalysis:
     """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
 
     ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say. ``table``,
-    ``errors_in_depth`` and ``selected`` are None where no experiment is used.
+    ``errors_in_depth`` and ``selected`` are None where no experiment is used; ``warnings`` are those of `fit_warnings`.
     """
 
     screened: Screened
@@ -71,6 +72,7 @@ class PenetrationAnalysis:
     nested: tuple[NestedRows, ...]
     selected: ModelFit | None
     errors_in_depth: ModelTable | None
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,7 @@ class Analysis:
     penetration: PenetrationAnalysis | None
     shear: ShearAnalysis | None
     regressions: tuple[Regression, ...]
+    site_means: tuple[SiteMean, ...]
     site_comparisons: tuple[SiteComparison, ...]
     comparisons: tuple[Comparison, ...]
     own_hardness: OwnValue
@@ -145,8 +148,8 @@ def _analysis(
     penetration = _penetration(campaign, geometry, rng, n_resamples, progress)
     shear = _shear(campaign)
     observations = _observations(campaign, penetration, shear)
-    own_hardness = own_mean(*observations["penetration"].known(HARDNESS_KEY), geometric=True)
-    own_stress = own_mean(*observations["shear"].known(STRESS_KEY), geometric=False)
+    pressed, sheared = observations["penetration"].known(HARDNESS_KEY), observations["shear"].known(STRESS_KEY)
+    own_hardness, own_stress = own_mean(*pressed, geometric=True), own_mean(*sheared, geometric=False)
     return Analysis(
         campaign=campaign,
         geometry=geometry,
@@ -155,10 +158,11 @@ def _analysis(
         penetration=penetration,
         shear=shear,
         regressions=regressions(observations),
-        site_comparisons=(
-            *compare_sites("H_V", *observations["penetration"].known(HARDNESS_KEY)),
-            *compare_sites("S_f", *observations["shear"].known(STRESS_KEY)),
+        site_means=(
+            *site_means(HARDNESS_KEY, *pressed, geometric=True),
+            *site_means(STRESS_KEY, *sheared, geometric=False),
         ),
+        site_comparisons=(*compare_sites("H_V", *pressed), *compare_sites("S_f", *sheared)),
         comparisons=compare_with_published(
             own_hardness,
             own_stress,
@@ -195,10 +199,8 @@ def _penetration(
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
     fitted_used = fitted.of(screened.used)
-    depth_fits, weights = fit_models_with_depth_errors(fitted_used, uncertainty)
-    depth_intervals = bootstrap_intervals(
-        fitted_used.readings, fitted_used.value, rng, n_resamples=n_resamples, weights=weights, progress=progress
-    )
+    depth_fits, _ = fit_models_with_depth_errors(fitted_used, uncertainty)
+    selected = select_model(fits)
     return PenetrationAnalysis(
         screened=screened,
         readings=readings,
@@ -207,8 +209,9 @@ def _penetration(
         fitted=fitted,
         table=ModelTable(fits, intervals),
         nested=compare_nested_rows(fits),
-        selected=select_model(fits),
-        errors_in_depth=ModelTable(depth_fits, depth_intervals),
+        selected=selected,
+        errors_in_depth=ModelTable(depth_fits, {}),  # no intervals: a bootstrap covers b in 7 to 90 % of campaigns
+        warnings=fit_warnings(fits, selected, depth_fits, used.load),
     )
 
 

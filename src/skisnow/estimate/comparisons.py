@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -21,10 +21,16 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
+FEWEST_SITES: Final = 4
+"""Fewer sites do not tell how sites scatter (two leave one degree of freedom): no interval over them (Choice)."""
+
 
 @dataclass(frozen=True, slots=True)
 class OwnValue:
-    """A mean of the campaign: value and 95 % interval (sites as clusters where there are several), NaN if unknown."""
+    """A mean of the campaign: value and 95 % interval, NaN if unknown or withheld; least and greatest value.
+
+    With several sites the interval takes them as clusters; under four sites it is withheld.
+    """
 
     value: float
     low: float
@@ -59,27 +65,39 @@ class Comparison:
 
 
 def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> OwnValue:
-    """Mean (geometric for hardness, which spans decades) of the used experiments with its interval."""
+    """Mean (geometric for hardness, which spans decades) of the used experiments with its interval.
+
+    The interval is one of the logarithm of the mean, so that no bound of a positive quantity is negative: for a plain
+    mean m with half-width h, m exp(± h/m) (delta method).
+
+    >>> own = own_mean(np.array([1.0, 3.0]), ["A", "A"], geometric=False)  # h = t₁ · 1 = 12.706
+    >>> round(own.value, 9), round(float(np.log(own.high / 2.0)), 3), own.low > 0
+    (2.0, 6.353, True)
+    """
     if values.size == 0 or (geometric and np.any(values <= 0)):
         return OwnValue(*[float("nan")] * 5)
     data = np.log(values) if geometric else values
-    low, high = _mean_interval(data, numbered(sites)[1])
-    numbers = np.array([data.mean(), low, high])
-    mean, low, high = (np.exp(numbers) if geometric else numbers).tolist()
+    mean, half = float(data.mean()), _half_width(data, numbered(sites)[1])
+    if geometric:
+        mean = float(np.exp(mean))
+    else:
+        half = half / mean if mean > 0 else float("nan")
+    low, high = (mean * np.exp([-half, half])).tolist()
     return OwnValue(mean, low, high, float(values.min()), float(values.max()))
 
 
-def _mean_interval(data: FloatArray, sites: npt.NDArray[np.int64]) -> tuple[float, float]:
-    if len(np.unique(sites)) > 1:
+def _half_width(data: FloatArray, sites: npt.NDArray[np.int64]) -> float:
+    """Half of the 95 % interval of the mean; NaN for one value, and for more than one site but fewer than four."""
+    n_sites = len(np.unique(sites))
+    if n_sites >= FEWEST_SITES:
         try:
             low, high = cluster_intervals(data, np.empty((len(data), 0)), sites).intervals[0]
         except FitError:
-            return float("nan"), float("nan")
-        return float(low), float(high)
-    if len(data) < 2:
-        return float("nan"), float("nan")
-    half = float(expanded_factor(len(data) - 1.0, CONFIDENCE)) * float(data.std(ddof=1)) / np.sqrt(len(data))
-    return float(data.mean() - half), float(data.mean() + half)
+            return float("nan")
+        return float(high - low) / 2.0
+    if n_sites > 1 or len(data) < 2:
+        return float("nan")
+    return float(expanded_factor(len(data) - 1.0, CONFIDENCE)) * float(data.std(ddof=1)) / float(np.sqrt(len(data)))
 
 
 def compare_with_published(

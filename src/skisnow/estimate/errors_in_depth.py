@@ -25,6 +25,7 @@ import numpy.typing as npt
 
 from ..statistics.bounded import non_negative_fits
 from .hardness import DEFINITIONS, hardness_of_all_readings
+from .layering import layering
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, end_columns, fit_model
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ class FittedHardness:
     value
         H by definition (SI).
     interval
-        (m, 2), 95 %, of H_V (N/m³).
+        (m, 2), 95 %, of H_V (N/m³); with an offset it allows for layered snow too.
     scatter
         Relative scatter s of each series about F = H_V V.
     """
@@ -81,8 +82,15 @@ def fitted_hardness(readings: Readings, seated: Seating, uncertainty: ReadingUnc
     }
     value = {symbol: H.value for symbol, H in found.items()}
     value["H_V"] = np.where(enough, seated.hardness, value["H_V"])
-    interval = np.where(enough[:, None], seated.hardness_interval, found["H_V"].interval)
+    interval = np.where(enough[:, None], _with_layering(readings, seated, uncertainty), found["H_V"].interval)
     return FittedHardness(moved, offset, value, interval, found["H_V"].scatter)
+
+
+def _with_layering(readings: Readings, seated: Seating, uncertainty: ReadingUncertainty) -> FloatArray:
+    """What holds the interval for even snow and that for layered snow; NaN where one of them is not known."""
+    other = layering(readings, seated.hardness, seated.offset, uncertainty).hardness_interval
+    low, high = np.minimum(seated.hardness_interval, other)[:, 0], np.maximum(seated.hardness_interval, other)[:, 1]
+    return np.stack((low, high), axis=-1)
 
 
 def pooled_scatter(scatter: FloatArray) -> float:

@@ -28,6 +28,8 @@ FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 LEAST_DETERMINANT: Final = 1e-12
 """Of a normal matrix of columns of length one: below it, some combination of coefficients is free but for rounding."""
+EQUAL_PERCENT: Final = 1e-9
+"""Rows whose rmse differ by no more (in percent) are equal."""
 MOST_UNITS: Final = 5000
 """Experiments, or groups of them, that the bootstrap draws."""
 
@@ -61,6 +63,8 @@ def _compare(full: ModelFit, reduced: ModelFit) -> NestedRows:
         n_parameters_reduced=reduced.n_parameters,
     )
     change = 100.0 * (reduced.rmse / full.rmse - 1.0) if full.rmse > 0 else float("nan")
+    if abs(change) <= EQUAL_PERCENT:
+        change = 0.0  # rows that repeat each other differ by rounding alone
     bounded = bool(full.at_bound or reduced.at_bound)
     return NestedRows(full.model, reduced.model, test.F, test.df1, test.df2, test.p, change, not bounded)
 

@@ -28,6 +28,8 @@ Source: TypeAlias = Literal["penetration", "shear", "spots"]
 
 FEWEST_TESTS: Final = 5
 FEWEST_ANGLES: Final = 3
+FEWEST_VALUES: Final = 4
+"""A predictor that takes fewer values does not show a relation: what differs between them may be anything (Choice)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,14 +55,26 @@ PLANS: Final = (
 class Regression:
     """A regression with intercept on one predictor; ``fit`` is None where the data do not determine it.
 
-    ``interval_by_site`` (2, 2) treats sites as clusters; None for a single site, NaN where sites do not tell.
+    ``predictor_values`` counts the different values that the predictor takes. ``interval_by_site`` (2, 2) treats sites
+    as clusters; None for a single site, NaN where sites do not tell.
     """
 
     plan: RegressionPlan
     group: str
     n: int
+    predictor_values: int
     fit: LinearFit | None
     interval_by_site: FloatArray | None
+
+    @property
+    def withheld(self) -> str | None:
+        """Why the F test of a slope is not given; None where it is, or where there is no slope."""
+        if self.fit is None or self.predictor_values >= FEWEST_VALUES:
+            return None
+        return (
+            f"the predictor takes {self.predictor_values} different values, fewer than {FEWEST_VALUES}, and whatever "
+            "else differs between them would show as well"
+        )
 
 
 def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression, ...]:
@@ -74,8 +88,9 @@ def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression
         names, site_of = numbered([data.site[index] for index in np.flatnonzero(known).tolist()])
         for index, name in enumerate(names if plan.by_site else []):
             mine = site_of == index
-            if mine.sum() >= FEWEST_TESTS and len(np.unique(x[mine])) >= FEWEST_ANGLES:
-                found.append(Regression(plan, name, int(mine.sum()), _fit(y[mine], x[mine]), None))
+            n_values = len(np.unique(x[mine]))
+            if mine.sum() >= FEWEST_TESTS and n_values >= FEWEST_ANGLES:
+                found.append(Regression(plan, name, int(mine.sum()), n_values, _fit(y[mine], x[mine]), None))
         found.append(_pooled(plan, x, y, site_of))
     return tuple(found)
 
@@ -85,7 +100,7 @@ def _pooled(plan: RegressionPlan, x: FloatArray, y: FloatArray, sites: npt.NDArr
     by_site = None
     if fit is not None and len(np.unique(sites)) > 1:
         by_site = cluster_intervals(y, x, sites).intervals
-    return Regression(plan, "all", len(y), fit, by_site)
+    return Regression(plan, "all", len(y), len(np.unique(x)), fit, by_site)
 
 
 def _fit(response: FloatArray, predictor: FloatArray) -> LinearFit | None:

@@ -31,11 +31,14 @@ if TYPE_CHECKING:
     from .regressions import Regression
     from .screening import Screened
     from .shear_stress import ShearStress
+    from .sites import SiteMean
 
 FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
 
 SCHEMA_VERSION = 1
+_SAME_PERCENT = 0.005
+"""Rmse that differ by less are told as the same."""
 
 
 def results_dict(analysis: Analysis) -> Json:
@@ -46,6 +49,7 @@ def results_dict(analysis: Analysis) -> Json:
         "penetration": _penetration(analysis),
         "shear": _shear(analysis),
         "regressions": [_regression(regression) for regression in analysis.regressions],
+        "site_means": [_site_mean(row) for row in analysis.site_means],
         "site_comparisons": [
             {
                 "quantity": row.quantity,
@@ -125,6 +129,7 @@ def _penetration(analysis: Analysis) -> Json:
             "models": _no_models(),
             "tests": [],
             "selected": None,
+            "warnings": [],
             "seating": [],
             "errors_in_depth": {"models": _no_models(), "experiments": []},
         }
@@ -133,6 +138,7 @@ def _penetration(analysis: Analysis) -> Json:
         "models": _models(found.table),
         "tests": [_nested(row) for row in found.nested],
         "selected": _selected(found),
+        "warnings": list(found.warnings),
         "seating": _seating(tests.experiment, found),
         "errors_in_depth": {
             "models": _models(found.errors_in_depth),
@@ -256,7 +262,7 @@ def _reason(chosen: ModelFit, best: ModelFit) -> str:
     return (
         f"The simplest of the nine rows whose rmse is within 5 % of the best: {chosen.rmse:.4g} N with fitted "
         f"parameters: {chosen.n_parameters}, against {best.rmse:.4g} N of {best.model.id} with {best.n_parameters}, "
-        f"{more:.2g} % more."
+        f"{f'{more:.2g} % more' if more >= _SAME_PERCENT else 'which is the same'}."
     )
 
 
@@ -318,8 +324,8 @@ def _regression(regression: Regression) -> Json:
             "rmse": float(fit.rmse),
             "rmse_dof": float(fit.rmse_dof),
             "r2": float(fit.r2),
-            "F": float(fit.F),
-            "p": float(fit.p),
+            "F": None if regression.withheld else float(fit.F),
+            "p": None if regression.withheld else float(fit.p),
         }
     by_site = regression.interval_by_site
     return {
@@ -327,8 +333,22 @@ def _regression(regression: Regression) -> Json:
         "terms": ["intercept", regression.plan.predictor],
         "group": regression.group,
         "n": regression.n,
+        "predictor_values": regression.predictor_values,
         **numbers,
+        "withheld": regression.withheld,
         "interval_by_site": None if by_site is None else [list(pair) for pair in by_site.tolist()],
+    }
+
+
+def _site_mean(row: SiteMean) -> Json:
+    own = row.own
+    return {
+        "quantity": row.quantity,
+        "site": row.site,
+        "n": row.n,
+        "mean": own.value,
+        "interval": [own.low, own.high],
+        "range": [own.least, own.greatest],
     }
 
 

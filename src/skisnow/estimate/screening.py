@@ -1,4 +1,4 @@
-"""Which experiments take part: the marks of the field screening and the one that needs the hardness."""
+"""Which experiments take part: the marks of the field screening and those that need the hardness."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ import numpy.typing as npt
 from ..field.screening import mark_problems, screen_penetration, screen_shear
 from ..names import numbered
 from ..units import N_PER_MM3
-from .hardness import DEFINITIONS, hardness_at_largest_load
+from .hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
+from .layering import layered
 from .readings import readings_of
 from .shear_stress import shear_stress
 
@@ -50,12 +51,15 @@ class Screened:
 
 
 def screened_penetration(campaign: Campaign, *, geometry: GeometryForm) -> Screened:
-    """Marks of the penetration experiments, ``hardness_outlier`` included, and which of them are used."""
+    """Marks of the penetration experiments, those that need the hardness included, and which of them are used."""
     tests = campaign.penetration
     if tests is None:
         return Screened({}, np.zeros(0, dtype=bool))
     marks = dict(screen_penetration(campaign, geometry=geometry))
-    H_V = hardness_at_largest_load(readings_of(tests, campaign.tools, geometry=geometry), DEFINITIONS["H_V"])
+    readings = readings_of(tests, campaign.tools, geometry=geometry)
+    H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
+    used = _used(marks, campaign, len(tests)) & np.isfinite(H_V)
+    marks["layered"] = layered(readings, np.where(used, H_V, np.nan), _uncertainty(campaign))
     used = _used(marks, campaign, len(tests)) & np.isfinite(H_V)
     marks["hardness_outlier"] = hardness_outliers(H_V, used, tests.site)
     return Screened(marks, _used(marks, campaign, len(tests)) & np.isfinite(H_V))
@@ -103,6 +107,10 @@ def marks_of(campaign: Campaign, *, geometry: GeometryForm = "extended") -> list
         replace(problem, value=told[problem.experiment or ""]) if problem.code == "hardness_outlier" else problem
         for problem in problems
     ]
+
+
+def _uncertainty(campaign: Campaign) -> ReadingUncertainty:
+    return ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
 
 
 def _used(marks: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:

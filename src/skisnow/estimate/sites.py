@@ -1,4 +1,4 @@
-"""Whether one site is harder than another, and how many tests would tell."""
+"""What each site has, whether one is harder than another, and how many tests would tell."""
 
 from __future__ import annotations
 
@@ -11,11 +11,32 @@ import numpy.typing as npt
 
 from ..names import numbered
 from ..statistics.two_groups import ratio_of_means, tests_per_group
+from .comparisons import OwnValue, own_mean
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class SiteMean:
+    """Mean of the n used experiments of one site (``quantity`` as a key of the results, in its unit)."""
+
+    quantity: str
+    site: str
+    n: int
+    own: OwnValue
+
+
+def site_means(quantity: str, values: FloatArray, site: Sequence[str], *, geometric: bool) -> tuple[SiteMean, ...]:
+    """The mean of each site with its interval from the scatter between its experiments, in alphabetical order."""
+    names, site_of = numbered(site)
+    found = []
+    for index, name in enumerate(names):
+        mine = values[site_of == index]
+        found.append(SiteMean(quantity, name, len(mine), own_mean(mine, [name] * len(mine), geometric=geometric)))
+    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)

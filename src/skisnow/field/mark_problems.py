@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _UNMARKED_STATUS = "a blank status"
 _UNMARKED_ZERO = "a depth above 0 mm"
+_UNMARKED_LAYERED = "depths that grow with the load as F = H_V V has it"
 _UNMARKED_OUTLIER = "a logarithm of the hardness nearer to its site's median"
 
 
@@ -137,6 +138,9 @@ class _PenetrationPlaces:
     def _below_resolution(self, index: int) -> tuple[int, str, str, str]:
         reading = int(self._largest[index])
         return reading, "depth_mm", self._depth(reading), _resolution_limit(self._campaign)
+
+    def _layered(self, index: int) -> tuple[int, str, None, str]:
+        return int(self._largest[index]), "depth_mm", None, _UNMARKED_LAYERED
 
     def _hardness_outlier(self, index: int) -> tuple[int, None, None, str]:
         return int(self._largest[index]), None, None, _UNMARKED_OUTLIER

@@ -41,6 +41,11 @@ _ALL: Final = (
         False,
     ),
     Mark(
+        "layered",
+        "The hardness of the snow changes with depth, or the depth zero is off by several tenths of a millimetre.",
+        False,
+    ),
+    Mark(
         "hardness_outlier",
         "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's median.",
         False,
@@ -48,3 +53,6 @@ _ALL: Final = (
 )
 MARKS: Final[Mapping[str, Mark]] = MappingProxyType({mark.code: mark for mark in _ALL})
 """Every mark by its code, in the order in which they are listed."""
+
+NEED_HARDNESS: Final = frozenset({"layered", "hardness_outlier"})
+"""Marks that are set where hardness is estimated."""

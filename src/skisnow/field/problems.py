@@ -19,7 +19,15 @@ ERROR_CODES = (
     "bad_toml",
     "correction_mismatch",
 )
-WARNING_CODES = ("angles_look_like_radians", "angle_above_60", "unknown_column", "encoding", "separator")
+WARNING_CODES = (
+    "angles_look_like_radians",
+    "angle_above_60",
+    "unlikely_unit",
+    "repeated_row",
+    "unknown_column",
+    "encoding",
+    "separator",
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """Screening of single experiments: what is suspicious about them. A mark never deletes; some exclude by default.
 
-The mark that needs the hardness, ``hardness_outlier``, is set where hardness is estimated.
+The marks of `NEED_HARDNESS` are set where hardness is estimated.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 
 from .largest_load import greatest_depths, reading_at_largest_load
 from .mark_problems import mark_problems
-from .marks import FEWEST_LOADS, MARKS, RESOLUTIONS, Mark
+from .marks import FEWEST_LOADS, MARKS, NEED_HARDNESS, RESOLUTIONS, Mark
 
 if TYPE_CHECKING:
     from ..geometry import GeometryForm
@@ -42,11 +42,11 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
 
     Returns
     -------
-    For each code but ``hardness_outlier``, in the order of `MARKS`, a mask over the experiments.
+    For each code but those of `NEED_HARDNESS`, in the order of `MARKS`, a mask over the experiments.
     """
     tests = campaign.penetration
     if tests is None:
-        return {code: np.zeros(0, dtype=np.bool_) for code in MARKS if code != "hardness_outlier"}
+        return {code: np.zeros(0, dtype=np.bool_) for code in MARKS if code not in NEED_HARDNESS}
     largest_depth = tests.penetration_depth[reading_at_largest_load(tests)]
     deepest = np.maximum.reduceat(tests.penetration_depth, tests.first[:-1]) if len(tests) else np.zeros(0)
     return {

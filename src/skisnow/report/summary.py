@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from ..estimate.comparisons import FEWEST_SITES
+from ..estimate.regressions import FEWEST_VALUES
 from .numerals import interval, p_equals, significant
 
 if TYPE_CHECKING:
@@ -12,6 +14,7 @@ if TYPE_CHECKING:
 Json = dict[str, Any]
 
 MOST_REGRESSIONS: Final = 20
+MOST_SITES: Final = 8
 
 
 def summary(results: Json) -> str:
@@ -32,19 +35,22 @@ def _lines(results: Json) -> Iterator[str]:
     yield f"{name}, {results['campaign']['place']}" if results["campaign"]["place"] else name
     yield ""
     yield from _experiments(results)
-    yield _mean(results, "H_V_N_per_mm3", f"H_V{tag}", "N/mm³", "geometric mean")
-    yield _mean(results, "S_f_N_per_mm2", f"S_f{tag}", "N/mm²", "mean")
+    yield from _measured(results, "H_V_N_per_mm3", f"H_V{tag}", "N/mm³", "geometric mean")
+    yield from _measured(results, "S_f_N_per_mm2", f"S_f{tag}", "N/mm²", "mean")
     yield from _not_stated(results["campaign"])
     if results["penetration"]["selected"]:
         yield ""
         yield from _models(results["penetration"], tag)
-    judged = [row for row in results["regressions"] if row["p"] is not None]
-    if judged:
+    told = [row for row in results["regressions"] if row["p"] is not None or row["withheld"]]
+    if told:
         yield ""
         yield f"Regressions{tag}, slope with 95 % interval:"
-        yield from map(_regression, judged[:MOST_REGRESSIONS])
-        if len(judged) > MOST_REGRESSIONS:
-            yield f"  and {len(judged) - MOST_REGRESSIONS} more in results.json"
+        yield from map(_regression, told[:MOST_REGRESSIONS])
+        if len(told) > MOST_REGRESSIONS:
+            yield f"  and {len(told) - MOST_REGRESSIONS} more in results.json"
+        if any(row["withheld"] for row in told[:MOST_REGRESSIONS]):
+            few = f"fewer than {FEWEST_VALUES} values of the predictor"
+            yield f"  not judged: with {few}, whatever else differs between them would show as well"
 
 
 def _experiments(results: Json) -> Iterator[str]:
@@ -65,17 +71,46 @@ def _codes(rows: list[Json]) -> str:
     return f" ({', '.join(f'{code} {count}' for code, count in counts.items())})" if counts else ""
 
 
-def _mean(results: Json, quantity: str, symbol: str, unit: str, kind: str) -> str:
+def _measured(results: Json, quantity: str, symbol: str, unit: str, kind: str) -> Iterator[str]:
+    """The mean over all sites and each site's own; few sites come first, with their comparison."""
     row = next((row for row in results["comparisons"] if row["quantity"] == quantity), None)
     if row is None or row["own"] is None:
-        return f"{symbol}: none"
-    source = "penetration" if quantity.startswith("H") else "shear"
-    sites = {item["site"] for item in results[source]["experiments"] if item["used"]}
-    over = f"over {len(sites)} sites" if len(sites) > 1 else "over the experiments of one site"
-    ends = row["own_interval"]
-    known = f"95 % interval {interval(ends, style='plain')} {over}" if ends else "interval not known"
-    spread = " to ".join(significant(end, style="plain") for end in row["own_range"])
-    return f"{symbol}: {kind} {significant(row['own'], style='plain')} {unit}, {known}, range {spread}"
+        yield f"{symbol}: none"
+        return
+    sites = [item for item in results["site_means"] if item["quantity"] == quantity]
+    pooled = _mean(symbol, kind, unit, (row["own"], row["own_interval"], row["own_range"]), _over(sites))
+    if len(sites) >= FEWEST_SITES or len(sites) == 1:
+        yield pooled
+    if len(sites) > 1:
+        yield from (_site(item, symbol, unit, kind) for item in sites[:MOST_SITES])
+        if len(sites) > MOST_SITES:
+            yield f"  and {len(sites) - MOST_SITES} more sites in results.json"
+    if 1 < len(sites) < FEWEST_SITES:
+        yield from (_ratio(pair, symbol) for pair in results["site_comparisons"] if pair["quantity"] == quantity[:3])
+        yield pooled
+
+
+def _over(sites: list[Json]) -> str:
+    return f"over {len(sites)} sites" if len(sites) > 1 else f"over the experiments of one site, {sites[0]['site']}"
+
+
+def _mean(symbol: str, kind: str, unit: str, numbers: tuple[float, list[float] | None, list[float]], over: str) -> str:
+    mean, ends, least_and_greatest = numbers
+    known = f"95 % interval {interval(ends, style='plain')} {over}" if ends else f"no interval {over}"
+    spread = " to ".join(significant(end, style="plain") for end in least_and_greatest)
+    return f"{symbol}: {kind} {significant(mean, style='plain')} {unit}, {known}, range {spread}"
+
+
+def _site(item: Json, symbol: str, unit: str, kind: str) -> str:
+    numbers = (item["mean"], item["interval"], item["range"])
+    return _mean(f"  {symbol} at {item['site']}", kind, unit, numbers, f"over its experiments, n = {item['n']}")
+
+
+def _ratio(pair: Json, symbol: str) -> str:
+    ends = f" 95 % interval {interval(pair['interval'], style='plain')}" if pair["interval"] else " no interval"
+    p = "" if pair["p"] is None else f", {p_equals(pair['p'], style='plain')}"
+    ratio = significant(pair["ratio"], style="plain")
+    return f"  {symbol} at {pair['site_a']} over {pair['site_b']}: {ratio},{ends}{p}"
 
 
 def _not_stated(campaign: Json) -> Iterator[str]:
@@ -100,6 +135,7 @@ def _models(penetration: Json, tag: str) -> Iterator[str]:
         )
         yield f"{mark} {row['id']:<32}{rmse}   {_coefficients(row)}".rstrip()
     yield f"* {penetration['selected']['reason']}"
+    yield from (f"warning: {text}" for text in penetration["warnings"])
 
 
 def _coefficients(row: Json) -> str:
@@ -112,10 +148,11 @@ def _coefficients(row: Json) -> str:
 
 
 def _regression(row: Json) -> str:
+    head = f"  {row['response']} on {row['terms'][1]}, {row['group']}, n = {row['n']}: "
+    slope = significant(row["b"][1], style="plain")
+    if row["withheld"]:
+        return f"{head}{slope}, not judged (values of the predictor: {row['predictor_values']})"
     by_site = row["interval_by_site"]
     clustered = f", by site {interval(by_site[1], style='plain')}" if by_site and by_site[1] else ""
-    return (
-        f"  {row['response']} on {row['terms'][1]}, {row['group']}, n = {row['n']}: "
-        f"{significant(row['b'][1], style='plain')} {interval(row['interval'][1], style='plain')}{clustered}, "
-        f"{p_equals(row['p'], style='plain')}"
-    )
+    ends = interval(row["interval"][1], style="plain")
+    return f"{head}{slope} {ends}{clustered}, {p_equals(row['p'], style='plain')}"

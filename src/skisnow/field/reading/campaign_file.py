@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ...given import GivenError, toml_values
 from ...units import MM
 from ..marks import ALWAYS_EXCLUDE, MARKS
-from ..problems import error
+from ..problems import error, warning
 from .toml_values import TomlValues
 from .tool_shapes import SHAPES
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 CAMPAIGN_FILE: Final = "campaign.toml"
 
+LIKELY_LENGTH_MM: Final = (2.0, 5000.0)
+LIKELY_GAUGE_STEP_MM: Final = (0.0005, 5.0)
 _TOP_KEYS: Final = (
     "name",
     "place",
@@ -85,7 +87,7 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
         name=top.text("name", blank_allowed=True),
         place=top.text("place", blank_allowed=True) or "",
         observers=top.texts("observers"),
-        gauge_resolution=_scaled(top.number("gauge_resolution_mm", zero_allowed=False)),
+        gauge_resolution=_scaled(_likely(top, "gauge_resolution_mm", LIKELY_GAUGE_STEP_MM)),
         load_uncertainty=top.number("load_uncertainty_N", zero_allowed=True),
         moment_uncertainty=top.number("moment_uncertainty_Nm", zero_allowed=True),
         lever_arm_uncertainty=_scaled(top.number("lever_arm_uncertainty_mm", zero_allowed=True)),
@@ -173,7 +175,26 @@ def _shape_name(entry: TomlValues) -> str | None:
 def _length(entry: TomlValues, key: str) -> float | None:
     if key not in entry.values:
         entry.refuse(key, "a length in mm above 0", f"Add {key}.")
-    return _scaled(entry.number(key, zero_allowed=False))
+    return _scaled(_likely(entry, key, LIKELY_LENGTH_MM))
+
+
+def _likely(entry: TomlValues, key: str, limits: tuple[float, float]) -> float | None:
+    """A number above 0 in mm; one that hardly is in mm is warned of."""
+    value = entry.number(key, zero_allowed=False)
+    low, high = limits
+    if value is not None and not low <= value <= high:
+        unit = "m" if value < low else "µm"
+        entry.found.append(
+            warning(
+                "unlikely_unit",
+                CAMPAIGN_FILE,
+                column=entry.path_of(key),
+                value=f"{value:g}",
+                allowed=f"a number in mm; {low:g} to {high:g} is usual",
+                action=f"If this is in {unit} convert it to mm; if it is in mm nothing need be done.",
+            )
+        )
+    return value
 
 
 def _excluding(top: TomlValues) -> frozenset[str]:

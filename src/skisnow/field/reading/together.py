@@ -10,7 +10,9 @@ from ..problems import error
 from .angles import check_flat_tools, check_steepness, check_unit
 from .campaign_file import CAMPAIGN_FILE
 from .experiments import Blocks, check_one_site, check_series, check_single_rows
-from .table_forms import DROP_CONE, PENETRATION, SHEAR
+from .likely_units import check_likely_units
+from .repeated_rows import check_repeated_rows
+from .table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 
 def check_together(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
     """Find what the rows of a table say against each other, or against campaign.toml where that could be read."""
+    yield from check_likely_units(table)
+    if table.form in (DENSITY, DROP_CONE):
+        yield from check_repeated_rows(table)
     if table.form == PENETRATION:
         yield from _check_penetration(table, described)
     elif table.form == SHEAR:

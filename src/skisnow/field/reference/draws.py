@@ -49,7 +49,7 @@ def penetration(
     """Draw the readings of every series."""
     shape = (snow_hardness.size, len(design.LOADS))
     nominal = np.array(design.LOADS)
-    layering = noise.layering_sd * generator.standard_normal(shape[0])
+    layering = noise.layering_mean + noise.layering_sd * generator.standard_normal(shape[0])
     seating_offset = noise.seating_sd * generator.standard_normal(shape[0])
     load = nominal + noise.load_sd * generator.standard_normal(shape)
     scatter = noise.depth_scatter * generator.standard_normal(shape)

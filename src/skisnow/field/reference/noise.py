@@ -14,8 +14,8 @@ from ...units import MM
 class ReferenceNoise:
     """How far the readings of the reference campaign are from the law F = H_V V, and its spots from one another.
 
-    All but two are standard deviations of independent normal draws; each is 0 to switch it off, which leaves the draws
-    of all others as they are.
+    Most are standard deviations of independent normal draws; each is 0 to switch it off, which leaves the draws of all
+    others as they are.
 
     Attributes
     ----------
@@ -29,8 +29,8 @@ class ReferenceNoise:
         Relative scatter of depth from reading to reading.
     hardness_log_sd
         Spread of ln H_V between the spots of one site.
-    layering_sd
-        Spread of the layering exponent κ between series, see `reference_campaign`; at most 0.4.
+    layering_mean, layering_sd
+        Mean and spread of the layering exponent κ over the series, see `reference_campaign`; each at most 0.4.
     shear_scatter
         Multiplies the scatter of S_f between spots (0.03 N/mm² hard, 0.006 soft, 0.059 about Eqn 14).
     moment_sd
@@ -44,6 +44,7 @@ class ReferenceNoise:
     seating_sd: float = 0.02 * MM
     depth_scatter: float = 0.02
     hardness_log_sd: float = 0.3
+    layering_mean: float = 0.0
     layering_sd: float = 0.15
     shear_scatter: float = 1.0
     moment_sd: float = 0.2
@@ -52,10 +53,11 @@ class ReferenceNoise:
     def __post_init__(self) -> None:
         for name in (entry.name for entry in fields(self)):
             value = getattr(self, name)
-            if not (np.isfinite(value) and value >= 0):
+            if not (np.isfinite(value) and (value >= 0 or name == "layering_mean")):
                 raise ParameterError(f"ReferenceNoise: {name} is {value!r}; it must be a finite number, 0 or above")
-        if self.layering_sd > 0.4:
-            raise ParameterError(
-                f"ReferenceNoise: layering_sd is {self.layering_sd!r}; it must be at most 0.4, "
-                "or the force falls with depth in some series"
-            )
+        for name in ("layering_mean", "layering_sd"):
+            if abs(getattr(self, name)) > 0.4:
+                raise ParameterError(
+                    f"ReferenceNoise: {name} is {getattr(self, name)!r}; it must be at most 0.4 in size, "
+                    "or the force falls with depth in some series"
+                )

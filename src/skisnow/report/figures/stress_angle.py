@@ -64,7 +64,7 @@ def stress_angle(material: Material, styles: Sequence[SiteStyle]) -> Drawing | L
     axes.set_ylabel(r"failure shear stress $S_\mathrm{f}$ (N/mm²)")
     mark_synthetic(material, axes)
     legend_below(figure, handles)
-    found = "; ".join(f"{row['group']}: n = {row['n']}, {p_equals(row['p'])}" for row in rows[:MOST_SENTENCES])
+    found = "; ".join(f"{row['group']}: n = {row['n']}, {_judged(row)}" for row in rows[:MOST_SENTENCES])
     caption = prose(
         "Failure shear stress S_f against edge angle at the sites where the angle was varied (the paper's Fig. 8), "
         "with the 95 % interval that the instruments allow. A regression line with the 95 % band of its mean is drawn "
@@ -74,6 +74,10 @@ def stress_angle(material: Material, styles: Sequence[SiteStyle]) -> Drawing | L
     return Drawing(
         NAME, caption, "Failure shear stress against edge angle in degrees, by site.", figure, points=len(stress)
     )
+
+
+def _judged(row: Json) -> str:
+    return "too few different angles to judge" if row["withheld"] else p_equals(row["p"])
 
 
 def _significant(row: Json) -> bool:

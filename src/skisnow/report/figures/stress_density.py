@@ -55,11 +55,17 @@ def stress_density(material: Material, styles: Sequence[SiteStyle]) -> Drawing |
     )
 
 
+def _judged(row: Json) -> str:
+    if row["withheld"]:
+        return "dashed because too few different densities allow no judgement"
+    p = p_equals(row["p"])
+    return f"{p}, dashed because not significant" if row["p"] is None or row["p"] >= SIGNIFICANT else p
+
+
 def _line(row: Json) -> str:
     text = (
         f" Line: {significant(row['b'][0])} {'−' if row['b'][1] < 0 else '+'} {significant(abs(row['b'][1]))} ρ, "
-        f"n = {row['n']}, {p_equals(row['p'])}"
-        f"{', dashed because not significant' if row['p'] is None or row['p'] >= SIGNIFICANT else ''}; band: 95 % "
+        f"n = {row['n']}, {_judged(row)}; band: 95 % "
         "interval of its mean, as if all experiments were independent."
     )
     if row["interval_by_site"] and row["interval_by_site"][1]:

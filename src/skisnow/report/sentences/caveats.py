@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 def caveats(material: Material) -> list[Markup]:
     """Sentences, most weighty first."""
     remarks = material.results["campaign"]["remarks"]
-    return [html(sentence) for sentence in (*_not_stated(material), *remarks, *_not_there(material))]
+    fits = material.results["penetration"]["warnings"]
+    return [html(sentence) for sentence in (*fits, *_not_stated(material), *remarks, *_not_there(material))]
 
 
 def _not_stated(material: Material) -> list[str]:

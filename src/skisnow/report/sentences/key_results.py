@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from markupsafe import Markup
 
+from ...estimate.comparisons import FEWEST_SITES
+from ...estimate.regressions import FEWEST_VALUES
 from ..numerals import counted, interval, p_equals, significant, whole
 from ..symbols import html, prose
 from ..tables.models import law, row_name
@@ -60,6 +62,8 @@ def _mean(material: Material, quantity: Quantity, experiments: list[Json], used:
     if row is None:
         return prose("None of the {n} can be used, so there is no {symbol}.", n=n, symbol=html(quantity.symbol))
     sites = len(set(site.tolist()))
+    if 1 < sites < FEWEST_SITES:
+        return _few_sites(material, quantity, row, prose("{used} of {n} used", used=whole(used), n=n))
     return prose(
         "{begins} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used} of {n} used, at {sites}.",
         begins=html(quantity.begins),
@@ -71,6 +75,50 @@ def _mean(material: Material, quantity: Quantity, experiments: list[Json], used:
         used=whole(used),
         n=n,
         sites=counted(sites, "site"),
+    )
+
+
+def _few_sites(material: Material, quantity: Quantity, pooled: Json, used: Markup) -> Markup:
+    """The sites first, then how they compare, then the mean over them, without an interval."""
+    sites = [row for row in material.results["site_means"] if row["quantity"] == quantity.key]
+    pairs = [row for row in material.results["site_comparisons"] if row["quantity"] == quantity.symbol]
+    each = [
+        prose(
+            "{site} {value} {unit}{ends}, n = {n}",
+            site=row["site"],
+            value=_strong(row["mean"]),
+            unit=quantity.unit,
+            ends=_ends(row["interval"], quantity.unit, 1),
+            n=whole(row["n"]),
+        )
+        for row in sites
+    ]
+    return prose(
+        "{begins} of each site: {each}. {ratios}; {used}. Over the {sites} together {value} {unit}, without an "
+        "interval: {fewer} sites do not tell how sites scatter. Single experiments {low} to {high} {unit}.",
+        begins=html(quantity.begins),
+        each=html("; ").join(each),
+        ratios=html("; ").join(map(_ratio, pairs)),
+        used=used,
+        sites=counted(len(sites), "site"),
+        value=significant(pooled["own"]),
+        unit=quantity.unit,
+        fewer=f"fewer than {FEWEST_SITES}",
+        low=significant(pooled["own_range"][0]),
+        high=significant(pooled["own_range"][1]),
+    )
+
+
+def _ratio(pair: Json) -> Markup:
+    ends = "no interval" if pair["interval"] is None else f"95 % interval {interval(pair['interval'])}"
+    p = "" if pair["p"] is None else f", {p_equals(pair['p'])}"
+    return prose(
+        "{a} over {b}: {ratio} ({ends}{p})",
+        a=pair["site_a"],
+        b=pair["site_b"],
+        ratio=significant(pair["ratio"]),
+        ends=ends,
+        p=p,
     )
 
 
@@ -112,11 +160,19 @@ def _strong_law(model_id: str) -> Markup:
 
 def _relations(material: Material) -> Markup | None:
     judged = [row for row in material.results["regressions"] if row["p"] is not None]
-    if not judged:
+    withheld = [row for row in material.results["regressions"] if row["withheld"]]
+    if not judged and not withheld:
         return None
     return prose(
-        "Relations: significant at 5 %: {yes}; not significant: {no}. How large each slope could still be stands with "
-        "the regressions.",
+        "Relations: significant at 5 %: {yes}; not significant: {no}{withheld}. How large each slope could still be "
+        "stands with the regressions.",
+        withheld=prose(
+            "; not judged, as the predictor takes fewer than {few} different values: {rows}",
+            few=FEWEST_VALUES,
+            rows=_listed(withheld),
+        )
+        if withheld
+        else "",
         yes=_listed([row for row in judged if row["p"] < SIGNIFICANT]),
         no=_listed([row for row in judged if row["p"] >= SIGNIFICANT]),
     )
@@ -135,12 +191,11 @@ def _with_sites(row: Json) -> str:
 def _listed(rows: list[Json]) -> Markup:
     named = [
         prose(
-            "{response} on {predictor}{group} ({p}{sites})",
+            "{response} on {predictor}{group}{p}",
             response=html(QUANTITY[row["response"]][0]),
             predictor=html(QUANTITY[row["terms"][1]][0]),
             group="" if row["group"] == "all" else f" at {row['group']}",
-            p=p_equals(row["p"]),
-            sites=_with_sites(row),
+            p="" if row["p"] is None else f" ({p_equals(row['p'])}{_with_sites(row)})",
         )
         for row in rows[:LISTED]
     ]

@@ -45,6 +45,8 @@ def _sentence(row: Json) -> Markup:
     if row["b"] is None:
         reason = " no data." if row["n"] == 0 else " no slope: too few experiments, or the predictor does not vary."
         return head + html(reason)
+    if row["withheld"]:
+        return head + _not_judged(row)
     if row["p"] is None:
         return head + html(" too few experiments for an interval or a test.")
     return head + (_significant(row) if row["p"] < SIGNIFICANT else _not_significant(row))
@@ -73,6 +75,16 @@ def _not_significant(row: Json) -> Markup:
         step=_STEP[row["terms"][1]][1],
         change=_change(row, row["b"][1]),
     ) + _by_site(row)
+
+
+def _not_judged(row: Json) -> Markup:
+    return prose(
+        " not judged: {reason}; the slope over them is {change} {unit} {step}.",
+        reason=row["withheld"],
+        change=_change(row, row["b"][1]),
+        unit=QUANTITY[row["response"]][1],
+        step=_STEP[row["terms"][1]][1],
+    )
 
 
 def _change(row: Json, slope: float) -> str:

@@ -41,7 +41,8 @@ def regressions_table(material: Material) -> Table:
         [_row(row) for row in material.results["regressions"]],
         note="Intercept and rmse are in the unit of the response, slopes in that per unit of the predictor. Sites as "
         "clusters: the interval of the slope that knows that experiments of one site belong together; it is absent for "
-        "a single site and where the sites do not tell.",
+        "a single site and where the sites do not tell. F and p are withheld where the predictor takes fewer than four "
+        "different values: whatever else differs between them would show as well.",
     )
 
 

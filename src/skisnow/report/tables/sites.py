@@ -50,8 +50,9 @@ def sites_table(material: Material) -> Table:
         COLUMNS,
         rows,
         note="The interval of a site comes from the scatter between its experiments; that of all sites from the "
-        "scatter between sites. H_V spans decades, so its mean is the geometric one and its interval is computed on "
-        "logarithms.",
+        "scatter between sites, and is withheld for fewer than four. H_V spans decades, so its mean is the geometric "
+        "one. All intervals are computed on "
+        "logarithms: no bound is negative.",
     )
 
 
