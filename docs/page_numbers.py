@@ -15,6 +15,11 @@ from typing import Any
 
 from skisnow import snow_from_results
 from skisnow.cli import main
+from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimate.models import ModelFit, fit_models
+from skisnow.estimate.readings import readings_of
+from skisnow.estimate.screening import screened_penetration
+from skisnow.field import reference_campaign as drawn_campaign
 from skisnow.report.numerals import significant
 
 DOCS = Path(__file__).resolve().parent
@@ -71,6 +76,34 @@ def how_to_carve(_folder: Path) -> dict[str, str]:
     tool = ("carve", "--ski", "paper-tool", "--edge-angle-deg", "45", "--load-N", "490", "--H-V-N-per-mm3", "0.04")
     at_rest = answer(*tool, "--at-rest", "--clamp-length-m", "0")
     return {**numbers, "tool depth": f"{max(at_rest['edge_depth_mm']):.1f}"}
+
+
+def reference_campaign(_folder: Path) -> dict[str, str]:
+    """The rmse of the nine rows for seed 1, and the least and greatest of seeds 0 to 39 (N)."""
+    rmse = [{fit.model.id: fit.rmse for fit in _nine_rows(seed)} for seed in range(40)]
+    numbers = {}
+    for row in rmse[1]:
+        of_seeds = sorted(of[row] for of in rmse)
+        numbers[f"{_short(row)} seed 1"] = significant(rmse[1][row])
+        numbers[f"{_short(row)} seeds"] = f"{significant(of_seeds[0])}–{significant(of_seeds[-1])}"
+    return numbers
+
+
+def _nine_rows(seed: int) -> tuple[ModelFit, ...]:
+    campaign = drawn_campaign(seed).campaign()
+    assert campaign.penetration is not None
+    used = screened_penetration(campaign, geometry="extended").used
+    readings = readings_of(campaign.penetration, campaign.tools, geometry="extended").of(used)
+    return fit_models(readings, {name: hardness_at_largest_load(readings, of) for name, of in DEFINITIONS.items()})
+
+
+def _short(row: str) -> str:
+    """Without what a mark cannot hold.
+
+    >>> _short("H_V:a=none,b=one")
+    'H_V none one'
+    """
+    return re.sub(r"[:,]?[ab]=|:", " ", row).strip()
 
 
 def tutorial(folder: Path) -> dict[str, str]:
