@@ -4,12 +4,14 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 	&& echo $$p && break; done)
 VENV ?= .venv
 BIN := $(VENV)/bin
+TOOLS ?= .venv-tools
 DEMO ?= demo
 SEED ?= 1
+SBOM ?= dist/skisnow.cdx.json
 # the same examples every time (test-all seeks others); neighbours stay in one process, which has what they share
 QUICK := -n 2 --dist worksteal -q --hypothesis-profile=ci
 
-.PHONY: help demo test test-repeating test-all lint docs bench clean
+.PHONY: help demo test test-repeating test-all lint docs bench lock sbom clean
 
 help:
 	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, with reports in $(DEMO)/"
@@ -18,40 +20,55 @@ help:
 	@echo "make lint      ruff, mypy, import-linter"
 	@echo "make docs      the documentation, into docs/_build/html"
 	@echo "make bench     what is measured, as ratios in one run"
+	@echo "make lock      requirements/*.txt after a change of pyproject.toml; UPGRADE=--upgrade takes the newest of all"
+	@echo "make sbom      the bill of materials, CycloneDX, into $(SBOM)"
 
 $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "skisnow needs Python 3.11 or newer with its venv module (Debian: apt install python3-venv)"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/.skisnow: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+# What is installed stands in requirements/, file by file with its hashes. Where an index has not all of it,
+# LOCKED=no takes the newest that pyproject.toml allows.
+LOCKED ?= yes
+PIP := -m pip --disable-pip-version-check install --quiet
+define install
+	@if [ "$(LOCKED)" = yes ]; then \
+		{ $(BIN)/python $(PIP) --require-hashes --requirement requirements/$(1).txt \
+		|| { echo "not all of requirements/$(1).txt could be installed: 'make LOCKED=no ...' takes what pyproject.toml allows"; exit 1; }; } \
+		&& $(BIN)/python $(PIP) --no-deps --no-build-isolation --editable .; \
+	else $(BIN)/python $(PIP) --editable '.[$(2)]'; fi
+endef
+
+$(VENV)/.skisnow: pyproject.toml requirements/run.txt | $(BIN)/python
+	$(call install,run,web)
 	@touch $@
 
-$(VENV)/.skisnow-test: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+$(VENV)/.skisnow-dev: pyproject.toml requirements/dev.txt | $(BIN)/python
+	$(call install,dev,dev)
 	@touch $@ $(VENV)/.skisnow
 
-$(VENV)/.skisnow-dev: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
-	@touch $@ $(VENV)/.skisnow $(VENV)/.skisnow-test
+$(TOOLS)/.tools: requirements/tools.txt
+	$(PYTHON) -m venv $(TOOLS)
+	$(TOOLS)/bin/python $(PIP) --require-hashes --requirement requirements/tools.txt
+	@touch $@
 
 demo: $(VENV)/.skisnow
 	rm -rf $(DEMO)
 	$(BIN)/skisnow reference $(DEMO)/campaign --seed $(SEED)
 	$(BIN)/skisnow analyse $(DEMO)/campaign --out $(DEMO)/results
 	$(BIN)/python examples/campaign_to_turn.py $(DEMO)/results/results.json $(DEMO)/turn
-	@echo "To enter tests and look at turns in a browser: $(BIN)/pip install -e '.[web]', then $(BIN)/skisnow serve"
+	@echo "To enter tests and look at turns in a browser: $(BIN)/skisnow serve"
 	@echo
 	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser."
 
-test: $(VENV)/.skisnow-test
+test: $(VENV)/.skisnow-dev
 	$(BIN)/python -m pytest $(QUICK)
 
 # for .ci/run: a browser test that failed has a second try
-test-repeating: $(VENV)/.skisnow-test
+test-repeating: $(VENV)/.skisnow-dev
 	$(BIN)/python .ci/repeating.py $(QUICK)
 
-test-all: $(VENV)/.skisnow-test
+test-all: $(VENV)/.skisnow-dev
 	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m 'slow or not slow'
 
 lint: $(VENV)/.skisnow-dev
@@ -63,8 +80,23 @@ lint: $(VENV)/.skisnow-dev
 docs: $(VENV)/.skisnow-dev
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
 
-bench: $(VENV)/.skisnow-test
+bench: $(VENV)/.skisnow-dev
 	$(BIN)/python -m benchmarks
 
+# uv asks the public index, or the one in UV_DEFAULT_INDEX; what it writes names none
+COMPILE := $(TOOLS)/bin/uv --quiet --no-config pip compile --universal --python-version 3.11 --generate-hashes \
+	--no-header --no-annotate $(UPGRADE)
+lock: $(TOOLS)/.tools
+	$(COMPILE) --extra dev pyproject.toml requirements/build.in --output-file requirements/dev.txt
+	$(COMPILE) --extra web --constraint requirements/dev.txt pyproject.toml requirements/build.in --output-file requirements/run.txt
+	$(COMPILE) requirements/tools.in --output-file requirements/tools.txt
+
+sbom: $(TOOLS)/.tools
+	rm -rf $(TOOLS)/run
+	$(PYTHON) -m venv --without-pip $(TOOLS)/run
+	$(TOOLS)/bin/python -m pip --python $(TOOLS)/run/bin/python install --quiet --disable-pip-version-check \
+		--require-hashes --requirement requirements/run.txt
+	$(TOOLS)/bin/python requirements/sbom.py $(TOOLS)/run/bin/python $(SBOM)
+
 clean:
-	rm -rf $(VENV) $(DEMO) build dist docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(TOOLS) $(DEMO) build dist docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis

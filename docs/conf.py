@@ -40,25 +40,34 @@ html_show_sourcelink = False
 html_math_renderer = "mathml"
 
 
-def _mathml(node: Any, *, block: bool) -> str:
-    """Equations become MathML when the pages are built: browsers show it without a script or a network."""
-    from docutils.utils.math.latex2mathml import tex2mathml
+def mathml(equation: str, *, block: bool) -> str:
+    """Equations become MathML when the pages are built: browsers show it without a script or a network.
 
-    return tex2mathml(node.astext(), as_block=block)
+    Raises math_core.LatexError at a command that it does not know.
+    """
+    from math_core import LatexToMathML
+
+    return str(LatexToMathML(fancy_error=False).convert_with_local_state(equation, displaystyle=block))
+
+
+def _visit(translator: Any, node: Any, form: str, *, block: bool) -> None:
+    from docutils.nodes import SkipNode
+    from math_core import LatexError
+    from sphinx.util.logging import getLogger
+
+    try:
+        translator.body.append(form.format(mathml(node.astext(), block=block)))
+    except LatexError as error:
+        getLogger(__name__).warning("%s in the equation %s", error, node.astext(), location=node)
+    raise SkipNode
 
 
 def _visit_inline(translator: Any, node: Any) -> None:
-    from docutils.nodes import SkipNode
-
-    translator.body.append(_mathml(node, block=False))
-    raise SkipNode
+    _visit(translator, node, "{}", block=False)
 
 
 def _visit_block(translator: Any, node: Any) -> None:
-    from docutils.nodes import SkipNode
-
-    translator.body.append(f'<div class="equation">{_mathml(node, block=True)}</div>\n')
-    raise SkipNode
+    _visit(translator, node, '<div class="equation">{}</div>\n', block=True)
 
 
 def _bars(_app: Sphinx, _what: str, _name: str, _object: Any, _options: Any, lines: list[str]) -> None:

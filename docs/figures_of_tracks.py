@@ -1,7 +1,11 @@
-"""Draw the figures of the pages on tracks: python docs/figures_of_tracks.py."""
+"""Draw the figures of the pages on tracks: python docs/figures_of_tracks.py.
+
+With the name of a file, the slalom of the figures is written there as a table, and nothing is drawn.
+"""
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -90,6 +94,13 @@ def _draw_curvature(axes: Axes, motion: TrackMotion) -> None:
     axes.set_ylabel("curvature (1/m), left +")
 
 
+def write_slalom(path: Path) -> None:
+    """The slalom as a track file in local metres."""
+    track = slalom()
+    rows = np.column_stack([track.time, track.place[:, :2]])
+    np.savetxt(path, rows, delimiter=",", header="time_s,x_m,y_m", comments="", fmt="%.6f")
+
+
 def main() -> None:
     """Write both figures."""
     FOLDER.mkdir(parents=True, exist_ok=True)
@@ -98,4 +109,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    write_slalom(Path(sys.argv[1])) if sys.argv[1:] else main()

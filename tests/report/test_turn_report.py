@@ -22,6 +22,7 @@ from skisnow.report.turn_numbers import (
     used_grip,
 )
 from skisnow.report.turn_report import FIGURES, EnsembleRun, TurnChain, write_turn_report
+from skisnow.report.turn_sentences import contrast, meaning
 from skisnow.simulate.run import Run
 from skisnow.snow import SnowProperties
 from skisnow.units import N_PER_MM2, N_PER_MM3
@@ -121,6 +122,61 @@ def test_skis_that_yield_use_all_their_grip() -> None:
     grip, slides = used_grip(replace(run, skis=replace(run.skis, shear_per_length=-full)))
     assert grip == pytest.approx(1.0)
     assert slides == pytest.approx(0.75, abs=0.01)
+
+
+def words_of(first: Run, other: Run) -> str:
+    chain = TurnChain(
+        campaign="", site="", synthetic=False, snow=SNOW, runs={"first": first, "other": other}, ensemble=[], seed=1
+    )
+    return " ".join(str(sentence.striptags()) for sentence in contrast(chain))
+
+
+def with_grip(run: Run, share: float) -> Run:
+    """All of both skis draws that share of what the snow can hold."""
+    return replace(run, skis=replace(run.skis, shear_per_length=-share * 0.5e6 * np.maximum(run.skis.edge_depth, 0.0)))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "told"),
+    [
+        (1.2, "“other” is wider than that with “first”, by 20 %: median radius 14.4 against 12.0 m"),
+        (0.75, "“other” is narrower than that with “first”, by 25 %: median radius 9.00 against 12.0 m"),
+        (1.001, "“other” is as wide as that with “first”: median radius 12.0 against 12.0 m"),
+    ],
+)
+def test_the_wider_turn_is_called_the_wider(ratio: float, told: str) -> None:
+    assert told in words_of(circle_run(), circle_run(radius=ratio * RADIUS))
+
+
+@pytest.mark.parametrize(
+    ("first", "other", "told"),
+    [
+        (0.3, 0.6, "It uses more of its grip: 0.600 against 0.300. Both hold their edges."),
+        (0.6, 0.3, "It uses less of its grip: 0.300 against 0.600. Both hold their edges."),
+        (0.6, 1.0, "It uses more of its grip: 1.00 against 0.600. “other” slides across."),
+        (1.0, 0.6, "It uses less of its grip: 0.600 against 1.00. “first” slides across."),
+        (1.0, 1.0, "It uses as much of its grip: 1.00 against 1.00. Both slide across."),
+    ],
+)
+def test_who_draws_more_on_the_snow_and_who_slides(first: float, other: float, told: str) -> None:
+    assert told in words_of(with_grip(circle_run(), first), with_grip(circle_run(), other))
+
+
+@pytest.mark.parametrize(
+    ("first", "other", "told"),
+    [
+        (0.8, 0.3, "Its afterbody lies less deep, in parts of the forebody's depth: 0.300 against 0.800."),
+        (0.3, 0.8, "Its afterbody lies deeper, in parts of the forebody's depth: 0.800 against 0.300."),
+    ],
+)
+def test_whose_afterbody_lies_deeper(first: float, other: float, told: str) -> None:
+    assert told in words_of(with_afterbody(circle_run(), first), with_afterbody(circle_run(), other))
+
+
+def test_what_would_bring_back_the_edges_is_said_where_they_slide(chain: TurnChain) -> None:
+    held, slides = (replace(chain, runs={**chain.runs, "elastic": with_grip(circle_run(), of)}) for of in (0.6, 1.0))
+    assert "a slower start" not in " ".join(meaning(held))
+    assert "a slower start" in " ".join(meaning(slides))
 
 
 def test_distance_of_paths_and_width_of_a_band() -> None:

@@ -52,6 +52,12 @@ def used_grip(run: Run) -> tuple[float | None, float | None]:
     return (float(np.median(known)), float(np.mean(known >= YIELDS))) if known.size else (None, None)
 
 
+def median_radius(run: Run) -> float | None:
+    """Median turn radius (m) of the run where it turns; None where it never does."""
+    radius = np.abs(run.turn_radius[np.isfinite(run.turn_radius)])
+    return float(np.median(radius)) if radius.size else None
+
+
 def greatest_distance(run: Run, reference: Run) -> float | None:
     """The farthest that a run's path goes from that of another (m) while it lies beside it; None: nowhere."""
     distance = distance_beside(run.place, reference.place)

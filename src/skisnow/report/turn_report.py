@@ -180,8 +180,8 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
     nominal = next(iter(chain.runs.values()))
     contacts = html(
         "The hypoplastic contact remembers: snow that the forebody pressed stays down, and the afterbody runs in that "
-        "groove at nearly its depth, so that its edge has snow to hold on to. The elastic contact springs back: the "
-        "groove closes under the afterbody as the load passes. k_u / H_V is not published; it is a parameter."
+        "groove. The elastic contact springs back: the groove closes under the afterbody as the load passes. What that "
+        "changes in this turn stands under the key results. k_u / H_V is not published; it is a parameter."
     )
     drawn = prose(
         "{count} runs with H_V drawn from a log-normal and S_f from a normal distribution, both with the 95 % "

@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Final
 from ..units import N_PER_MM2, N_PER_MM3
 from .numerals import counted, interval, significant
 from .symbols import html, prose
-from .turn_numbers import afterbody_depth_ratio, band_width, greatest_distance, middle_track, used_grip
+from .turn_numbers import (
+    afterbody_depth_ratio,
+    band_width,
+    greatest_distance,
+    median_radius,
+    middle_track,
+    used_grip,
+)
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -15,6 +22,10 @@ if TYPE_CHECKING:
     from ..simulate.run import Run
     from .turn_report import TurnChain
 
+ALIKE: Final = 0.002
+"""Two numbers that differ by less of their size are called alike."""
+HELD: Final = 0.05
+"""A ski that slides across in no larger share of the time holds its edge."""
 _UNLOADING: Final = (
     "How the snow unloads matters more here than how exactly it was measured: a test that presses, lifts and presses "
     "again would tell more about this turn than further tests of the kinds that were made."
@@ -27,7 +38,7 @@ _MEASURING: Final = (
 
 def key_sentences(chain: TurnChain) -> list[Markup]:
     """Snow, contacts, band."""
-    return [_snow(chain), *(_contact(name, run) for name, run in chain.runs.items()), *_apart(chain), _band(chain)]
+    return [_snow(chain), *(_contact(name, run) for name, run in chain.runs.items()), *contrast(chain), _band(chain)]
 
 
 def _snow(chain: TurnChain) -> Markup:
@@ -58,17 +69,63 @@ def _contact(name: str, run: Run) -> Markup:
     )
 
 
-def _apart(chain: TurnChain) -> list[Markup]:
+def contrast(chain: TurnChain) -> list[Markup]:
+    """What the other contacts do otherwise than the first: how wide, by how much grip, how deep behind the boot."""
     (first, reference), *others = chain.runs.items()
+    return [sentence for name, run in others for sentence in _beside(html(name), run, html(first), reference)]
+
+
+def _beside(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
     return [
-        prose(
-            "The tracks with the contacts “{name}” and “{first}” lie up to {distance} m apart.",
-            name=html(name),
-            first=html(first),
-            distance=significant(greatest_distance(run, reference)),
-        )
-        for name, run in others
-    ]
+        prose("The turn with the contact “{name}” ", name=name) + _width(median_radius(run), first, reference),
+        prose("It uses {more} of its grip: {shares}. ", more=_more(used_grip(run)[0], used_grip(reference)[0]),
+              shares=_both(used_grip(run)[0], used_grip(reference)[0])) + _hold(name, run, first, reference),
+        prose("Its afterbody lies {deeper}, in parts of the forebody's depth: {ratios}.",
+              deeper=_more(*_ratios(run, reference), words=("deeper", "less deep", "as deep")),
+              ratios=_both(*_ratios(run, reference))),
+        prose("The tracks lie up to {distance} m apart.", distance=significant(greatest_distance(run, reference))),
+    ]  # fmt: skip
+
+
+def _width(radius: float | None, first: Markup, reference: Run) -> Markup:
+    other = median_radius(reference)
+    if radius is None or other is None:
+        return prose("or that with “{first}” never turns.", first=first)
+    wider = radius / other - 1.0
+    radii = _both(radius, other, " m")
+    if abs(wider) < ALIKE:
+        return prose("is as wide as that with “{first}”: median radius {radii}.", first=first, radii=radii)
+    return prose(
+        "is {wider} than that with “{first}”, by {percent} %: median radius {radii}.",
+        wider="wider" if wider > 0.0 else "narrower",
+        first=first,
+        percent=significant(100.0 * abs(wider), 2),
+        radii=radii,
+    )
+
+
+def _hold(name: Markup, run: Run, first: Markup, reference: Run) -> Markup:
+    """Which of two runs slides across at all."""
+    sliding = [each for each, of in ((name, run), (first, reference)) if (used_grip(of)[1] or 0.0) > HELD]
+    if not sliding:
+        return html("Both hold their edges.")
+    return html("Both slide across.") if len(sliding) == 2 else prose("“{who}” slides across.", who=sliding[0])
+
+
+def _ratios(run: Run, reference: Run) -> tuple[float | None, float | None]:
+    return afterbody_depth_ratio(run), afterbody_depth_ratio(reference)
+
+
+def _more(
+    value: float | None, other: float | None, *, words: tuple[str, str, str] = ("more", "less", "as much")
+) -> str:
+    if value is None or other is None or abs(value - other) < ALIKE * abs(other):
+        return words[2]
+    return words[0] if value > other else words[1]
+
+
+def _both(value: float | None, other: float | None, unit: str = "") -> str:
+    return f"{significant(value)} against {significant(other)}{unit}"
 
 
 def _band(chain: TurnChain) -> Markup:
@@ -121,9 +178,10 @@ def meaning(chain: TurnChain) -> list[Markup]:
         "(width of the band that holds 90 % at the end). "
     )
     more = _UNLOADING if far > aside else _MEASURING
-    grip = (
-        "An edge holds while the side force stays below S_f times the edge's depth times its length. Hard snow lets "
-        "an edge in little and so offers little to hold on to: by the measured S_f the skis slide across where the "
-        "share of grip is 1, and a smaller edge angle, a slower start or softer snow brings them back on their edges."
-    )
+    grip = "An edge holds while the side force stays below S_f times the edge's depth times its length. "
+    if any((used_grip(run)[1] or 0.0) > HELD for run in (reference, *others)):
+        grip += (
+            "Hard snow lets an edge in little and so offers little to hold on to: here the skis slide across, and a "
+            "slower start, a gentler slope or softer snow brings them back on their edges."
+        )
     return [prose(contacts + more, far=significant(far, 2), aside=significant(aside, 2)), html(grip)]

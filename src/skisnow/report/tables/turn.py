@@ -10,7 +10,7 @@ import numpy as np
 
 from ...units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..table import Column, Table
-from ..turn_numbers import afterbody_depth_ratio, used_grip
+from ..turn_numbers import afterbody_depth_ratio, median_radius, used_grip
 
 if TYPE_CHECKING:
     from ...simulate.run import Run
@@ -72,7 +72,6 @@ def contacts_table(runs: Mapping[str, Run]) -> Table:
 
 
 def _contact(name: str, run: Run) -> tuple[Any, ...]:
-    radius = np.abs(run.turn_radius[np.isfinite(run.turn_radius)])
     turned = np.unwrap(run.heading)
     return (
         name,
@@ -80,7 +79,7 @@ def _contact(name: str, run: Run) -> tuple[Any, ...]:
         run.run_length,
         float(run.speed[-1]),
         float(turned[-1] - turned[0]) / DEGREE,
-        float(np.median(radius)) if radius.size else None,
+        median_radius(run),
         float(np.nanmax(run.skis.edge_depth)) / MM,
         afterbody_depth_ratio(run),
         *used_grip(run),

@@ -1,0 +1,164 @@
+"""Numbers that stand in the sentences and tables of pages; `docs/write_numbers.py` puts them there.
+
+A function bears the name of its page with its folder, and gets the folder in which the page's commands have run.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+from skisnow import snow_from_results
+from skisnow.cli import main
+from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimate.models import ModelFit, fit_models
+from skisnow.estimate.readings import readings_of
+from skisnow.estimate.screening import screened_penetration
+from skisnow.field import reference_campaign as drawn_campaign
+from skisnow.report.numerals import significant
+
+DOCS = Path(__file__).resolve().parent
+
+
+def page_files(page: str) -> dict[str, str]:
+    """The blocks of a page that show files, each by the file that was named last before it; the first of each name."""
+    found: dict[str, str] = {}
+    name = ""
+    for part in re.split(
+        r"^(```\w*\n.*?^```$)", (DOCS / page).read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL
+    ):
+        if part.startswith("```") and name:
+            found.setdefault(name, part.partition("\n")[2].removesuffix("```"))
+        name = (re.findall(r"[\w-]+\.(?:csv|toml)", part) or [""])[-1]
+    return found
+
+
+def python_blocks(page: str) -> list[str]:
+    """The programs that a page shows."""
+    return re.findall(r"^```python\n(.*?)^```$", (DOCS / page).read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+
+
+def answer(*words: str) -> dict[str, Any]:
+    """What a command says with --json."""
+    told = io.StringIO()
+    with contextlib.redirect_stdout(told), contextlib.redirect_stderr(io.StringIO()):
+        main([*words, "--json"])
+    return dict(json.loads(told.getvalue()))
+
+
+def how_to_carve(_folder: Path) -> dict[str, str]:
+    """The slips of an edge on a glacier, a tool at rest, and what each choice does to the radius."""
+    ski = ("carve", "--ski", "slalom", "--edge-angle-deg", "45", "--load-N", "800")
+    glacier = answer(*ski, "--published", "glacier", "--unloading-ratio", "10")
+    numbers = {
+        "glacier limit": f"{glacier['side_force_limit_N']:.0f}",
+        "glacier depth": f"{max(glacier['edge_depth_mm']):.1f}",
+    }
+    snow = ("--H-V-N-per-mm3", "0.2", "--S-f-N-per-mm2", "0.35")
+    choices = {
+        "as above": (),
+        "clamp": ("--clamp-length-m", "0"),
+        "side force": ("--no-side-force-bending",),
+        "path": ("--groove", "path"),
+        "twist": ("--no-twist",),
+        "elastic": ("--unloading-ratio", "1"),
+    }
+    for name, choice in choices.items():
+        ratio = () if name == "elastic" else ("--unloading-ratio", "10")
+        found = answer(*ski, *snow, *ratio, *choice)
+        numbers[f"{name} boot"] = f"{found['turn_radius_boot_m']:.1f}"
+        numbers[f"{name} ends"] = f"{found['turn_radius_chord_m']:.1f}"
+    tool = ("carve", "--ski", "paper-tool", "--edge-angle-deg", "45", "--load-N", "490", "--H-V-N-per-mm3", "0.04")
+    at_rest = answer(*tool, "--at-rest", "--clamp-length-m", "0")
+    return {**numbers, "tool depth": f"{max(at_rest['edge_depth_mm']):.1f}"}
+
+
+def reference_campaign(_folder: Path) -> dict[str, str]:
+    """The rmse of the nine rows for seed 1, and the least and greatest of seeds 0 to 39 (N)."""
+    rmse = [{fit.model.id: fit.rmse for fit in _nine_rows(seed)} for seed in range(40)]
+    numbers = {}
+    for row in rmse[1]:
+        of_seeds = sorted(of[row] for of in rmse)
+        numbers[f"{_short(row)} seed 1"] = significant(rmse[1][row])
+        numbers[f"{_short(row)} seeds"] = f"{significant(of_seeds[0])}–{significant(of_seeds[-1])}"
+    return numbers
+
+
+def _nine_rows(seed: int) -> tuple[ModelFit, ...]:
+    campaign = drawn_campaign(seed).campaign()
+    assert campaign.penetration is not None
+    used = screened_penetration(campaign, geometry="extended").used
+    readings = readings_of(campaign.penetration, campaign.tools, geometry="extended").of(used)
+    return fit_models(readings, {name: hardness_at_largest_load(readings, of) for name, of in DEFINITIONS.items()})
+
+
+def _short(row: str) -> str:
+    """Without what a mark cannot hold.
+
+    >>> _short("H_V:a=none,b=one")
+    'H_V none one'
+    """
+    return re.sub(r"[:,]?[ab]=|:", " ", row).strip()
+
+
+def tutorial(folder: Path) -> dict[str, str]:
+    """What the sentences about the report say."""
+    results = json.loads((folder / "results" / "results.json").read_text(encoding="utf-8"))
+    penetration = results["penetration"]
+    rmse = {row["id"]: significant(row["rmse_N"], 4) for row in penetration["models"]}
+    sites = {name: snow_from_results(folder / "results" / "results.json", site=f"site {name}") for name in "AH"}
+    low, high = (end / 1e9 for end in sites["A"].snow_hardness_interval or ())
+    best = min(row["rmse_N"] for row in penetration["models"])
+    selected = next(row for row in penetration["models"] if row["id"] == penetration["selected"]["id"])
+    seating = penetration["seating"]
+    offsets = [row["interval_mm"] for row in seating]
+    change = sorted(row["H_V_change_percent"] for row in seating)
+    (on_angle,) = [row for row in results["regressions"] if row["p"] is not None and row["p"] < 0.05]
+    return {
+        "experiments": str(len(penetration["experiments"])),
+        "shear experiments": str(len(results["shear"]["experiments"])),
+        **{f"mean {name}": significant(snow.snow_hardness / 1e9, 3) for name, snow in sites.items()},
+        "interval A": f"[{significant(low, 3)}, {significant(high, 3)}]",
+        **{f"{hardness} {shape}": rmse[f"{hardness}:a={shape},b={shape}"]
+           for hardness in ("H_e", "H_A", "H_V") for shape in ("linear", "constant")},
+        **{f"b {shape}": rmse[f"H_V:a=none,b={shape}"] for shape in ("linear", "constant", "one")},
+        "above the best": f"{100.0 * (selected['rmse_N'] / best - 1.0):.1f}",
+        "intervals without zero": str(sum(not low <= 0.0 <= high for low, high in offsets)),
+        "lower quarter": _percent(_quantile(change, 0.25)),
+        "upper quarter": _percent(_quantile(change, 0.75)),
+        "regressions": str(len(results["regressions"])),
+        "slope": significant(on_angle["b"][1], 3),
+        "slope interval": "[{}, {}]".format(*(significant(end, 3) for end in on_angle["interval"][1])),
+    }  # fmt: skip
+
+
+def how_to_results_elsewhere(folder: Path) -> dict[str, str]:
+    """The snow of site C in the field's units."""
+    snow = snow_from_results(folder / "results" / "results.json", site="site C")
+    stress = snow.failure_shear_stress
+    return {"hardness": significant(snow.snow_hardness / 1e9), "stress": significant(stress and stress / 1e6)}
+
+
+def _quantile(ordered: list[float], share: float) -> float:
+    at = share * (len(ordered) - 1)
+    low = int(at)
+    return ordered[low] + (at - low) * (ordered[min(low + 1, len(ordered) - 1)] - ordered[low])
+
+
+def _percent(value: float) -> str:
+    return significant(value, 3)
+
+
+if __name__ == "__main__":
+    what, page, *rest = sys.argv[1:]
+    if what == "program":
+        print(python_blocks(page)[int(rest[0]) - 1])
+    else:
+        Path(rest[0]).mkdir(exist_ok=True)
+        for name in rest[1:]:
+            (Path(rest[0]) / name).write_text(page_files(page)[name], encoding="utf-8")

@@ -1,0 +1,148 @@
+"""Plant errors in a room one at a time, run its tests on each, and report those that no test found.
+
+    python -m tests.mutation --room track -n 50 --seed 1 --workers 2
+
+The errors are drawn with a seed from all that can be planted; the same seed on the same files plants the same ones.
+Nothing in this tree is changed: the tests run in copies.
+"""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import random
+import sys
+import time
+import tomllib
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from itertools import islice
+from pathlib import Path
+from queue import Queue
+from typing import Final, TypeAlias
+
+from .mutants import Mutant, mutants
+from .trial import OUT_OF_TIME, SURVIVED, Trials, copied_tree
+
+Planted: TypeAlias = tuple[Path, Mutant]
+Place: TypeAlias = tuple[str, str, str]
+ROOT: Final = Path(__file__).resolve().parents[2]
+SOURCE: Final = Path("src/skisnow")
+EQUIVALENTS: Final = Path(__file__).with_name("equivalents.toml")
+
+
+def files_of(room: str, *, root: Path = ROOT) -> list[Path]:
+    """Python files of a room, or the one file that a room is, from the tree's top."""
+    found = sorted((root / SOURCE / room).rglob("*.py")) or sorted((root / SOURCE).glob(f"{room}.py"))
+    if not found:
+        sys.exit(f"no room {room!r}: give a folder or file of {SOURCE}, such as track, field/store or units")
+    return [path.relative_to(root) for path in found]
+
+
+def room_tests(room: str, *, root: Path = ROOT) -> tuple[str, ...]:
+    """The room's tests and the examples in its docstrings."""
+    named = [f"tests/{room}", f"tests/test_{room}.py", f"{SOURCE}/{room}", f"{SOURCE}/{room}.py"]
+    return tuple(name for name in named if (root / name).exists())
+
+
+def changed_lines(path: Path, mutant: Mutant, *, root: Path = ROOT) -> str:
+    """The error as a diff without surroundings."""
+    source = (root / path).read_text(encoding="utf-8")
+    two = (source.splitlines(), mutant.planted(source).splitlines())
+    return "\n".join(difflib.unified_diff(*two, str(path), str(path), n=0, lineterm=""))
+
+
+def place_of(path: Path, mutant: Mutant, *, root: Path = ROOT) -> Place:
+    """File below the program's folder, line before, line after: how equivalents are listed."""
+    lines = changed_lines(path, mutant, root=root).splitlines()[3:]
+    before, after = (" ".join(line[1:].strip() for line in lines if line[0] == sign) for sign in "-+")
+    return str(path.relative_to(SOURCE)), before, after
+
+
+def equivalents() -> set[Place]:
+    """What is listed by hand as without consequence."""
+    listed = tomllib.loads(EQUIVALENTS.read_text(encoding="utf-8")).get("equivalent", [])
+    return {(each["file"], each["was"], each["is"]) for each in listed if each["reason"]}
+
+
+def drawn(files: Iterable[Path], count: int, seed: int, *, root: Path = ROOT) -> list[Planted]:
+    """So many errors, of each kind about as many, but for equivalent ones; all where there are fewer."""
+    texts = {path: (root / path).read_text(encoding="utf-8") for path in files}
+    every = [(path, each) for path, text in texts.items() for each in mutants(text)]
+    random.Random(seed).shuffle(every)
+    before: Counter[str] = Counter()
+    turns = []
+    for one in every:
+        before[one[1].kind] += 1
+        turns.append(before[one[1].kind])
+    in_turn = (one for _, one in sorted(zip(turns, every, strict=True), key=lambda each: each[0]))
+    known = equivalents()
+    counted = (
+        (path, each)
+        for path, each in in_turn
+        if each.is_another_program(texts[path]) and not (known and place_of(path, each, root=root) in known)
+    )
+    return list(islice(counted, count))
+
+
+def verdicts(planted: list[Planted], trials: list[Trials]) -> Iterator[tuple[Planted, str]]:
+    """What the tests say of each error, on as many copies of the tree as there are."""
+    free: Queue[Trials] = Queue()
+    for each in trials:
+        free.put(each)
+
+    def tried(one: Planted) -> str:
+        trial = free.get()
+        try:
+            return trial.verdict(*one)
+        finally:
+            free.put(trial)
+
+    with ThreadPoolExecutor(len(trials)) as pool:
+        yield from zip(planted, pool.map(tried, planted), strict=True)
+
+
+def asked_of(words: list[str] | None) -> argparse.Namespace:
+    """What the command line asks."""
+    parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=(__doc__ or "").split("\n", 1)[0])
+    parser.add_argument("--room", required=True, help="folder or file of src/skisnow: track, field/store, units")
+    parser.add_argument("-n", type=int, default=50, help="number of errors (50)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--workers", type=int, default=1, help="copies of the tree that are tested at once (1)")
+    parser.add_argument("--tests", nargs="*", default=[], help="further test files and folders that count")
+    parser.add_argument("--file", default="", help="only files of the room whose path contains this")
+    parser.add_argument(
+        "--limit-s", type=float, help="time for each (default: a minute and five times what all tests take)"
+    )
+    return parser.parse_args(words)
+
+
+def main(words: list[str] | None = None) -> int:
+    """Number of errors that survived."""
+    asked = asked_of(words)
+    planted = drawn([path for path in files_of(asked.room) if asked.file in str(path)], asked.n, asked.seed)
+    tests = (*room_tests(asked.room), *asked.tests)
+    with ExitStack() as kept:
+        trees = [kept.enter_context(copied_tree(ROOT)) for _ in range(asked.workers)]
+        start = time.monotonic()
+        if Trials(trees[0], tests, 3600.0).status() != 0:
+            sys.exit(f"the tests fail without an error planted: {' '.join(tests)}")
+        limit = asked.limit_s or 60.0 + 5.0 * asked.workers * (time.monotonic() - start)
+        survivors, late = [], 0
+        for number, (one, verdict) in enumerate(verdicts(planted, [Trials(tree, tests, limit) for tree in trees]), 1):
+            print(f"{number} of {len(planted)}: {verdict}, {one[1].kind}, {one[0]}", file=sys.stderr, flush=True)
+            late += verdict == OUT_OF_TIME
+            if verdict == SURVIVED:
+                survivors.append(one)
+                print(f"{changed_lines(*one)}\n", flush=True)
+    found = len(planted) - len(survivors)
+    print(
+        f"{asked.room}: {found} of {len(planted)} caught ({found / max(len(planted), 1):.0%}), {late} of them by time"
+    )
+    return len(survivors)
+
+
+if __name__ == "__main__":
+    main()

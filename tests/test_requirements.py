@@ -1,0 +1,114 @@
+"""What development and CI install is locked: all that pyproject.toml asks for, with hashes, from no place by name."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.version import Version
+
+ROOT = Path(__file__).resolve().parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+LOCKS = {name: (ROOT / "requirements" / f"{name}.txt").read_text(encoding="utf-8") for name in ("run", "dev", "tools")}
+PYTHONS = ("3.11.7", "3.12.1", "3.13.0", "3.14.0")
+
+
+def pins(name: str) -> list[Requirement]:
+    return [Requirement(line.rstrip(" \\")) for line in LOCKS[name].splitlines() if not line.startswith(" ")]
+
+
+def on_linux(python: str) -> dict[str, str]:
+    short = ".".join(python.split(".")[:2])
+    return {
+        "python_version": short, "python_full_version": python, "sys_platform": "linux", "platform_system": "Linux",
+        "os_name": "posix", "platform_machine": "x86_64", "implementation_name": "cpython",
+        "platform_python_implementation": "CPython",
+    }  # fmt: skip
+
+
+def chosen(name: str, python: str) -> dict[str, str]:
+    """Package and version on this Python, each once."""
+    of = [pin for pin in pins(name) if pin.marker is None or pin.marker.evaluate(on_linux(python))]
+    versions = {bare(pin.name): str(pin.specifier).removeprefix("==") for pin in of}
+    assert len(versions) == len(of)
+    return versions
+
+
+def bare(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def asked(*extras: str) -> Iterator[Requirement]:
+    """What pyproject.toml asks for with these extras, and with those that they name."""
+    project = PROJECT["project"]
+    lines = [*project["dependencies"], *(line for extra in extras for line in project["optional-dependencies"][extra])]
+    for requirement in map(Requirement, lines):
+        if requirement.name == project["name"]:
+            yield from asked(*requirement.extras)
+        else:
+            yield requirement
+
+
+@pytest.mark.parametrize("name", LOCKS)
+def test_each_file_is_named_by_its_hashes_and_no_place(name: str) -> None:
+    blocks = re.split(r"\n(?! )", LOCKS[name].rstrip("\n"))
+    assert len(blocks) > 10
+    form = r"[\w.-]+==[\w.!+]+( ; [^\\\n]+)?( \\\n    --hash=sha256:[0-9a-f]{64})+"
+    assert [block.splitlines()[0] for block in blocks if not re.fullmatch(form, block)] == []
+
+
+@pytest.mark.parametrize("python", PYTHONS)
+@pytest.mark.parametrize(("name", "extra"), [("run", "web"), ("dev", "dev")])
+def test_what_is_asked_for_is_locked(name: str, extra: str, python: str) -> None:
+    locked = chosen(name, python)
+    build = [Requirement(line) for line in PROJECT["build-system"]["requires"]]
+    missing = [
+        str(each) for each in [*asked(extra), *build] if not each.specifier.contains(locked.get(bare(each.name), "0"))
+    ]
+    assert missing == []
+
+
+def test_what_builds_the_package_is_asked_for_in_one_way() -> None:
+    lines = (ROOT / "requirements" / "build.in").read_text(encoding="utf-8").splitlines()
+    assert [line for line in lines if not line.startswith("#")] == PROJECT["build-system"]["requires"]
+
+
+@pytest.mark.parametrize("python", PYTHONS)
+def test_what_runs_is_what_is_tested(python: str) -> None:
+    run, dev = chosen("run", python), chosen("dev", python)
+    assert {name: version for name, version in run.items() if dev.get(name) != version} == {}
+
+
+def test_every_dependency_and_every_bound_is_explained() -> None:
+    page = (ROOT / "docs" / "dependencies.md").read_text(encoding="utf-8").lower()
+    for each in asked("dev", "posterior", "peers"):
+        assert bare(each.name) in page.replace("_", "-"), each
+        for bound in each.specifier:
+            if bound.operator == "<":
+                assert f"`{bare(each.name)}{bound}`" in page, each
+
+
+def test_the_bill_of_materials_has_what_lies_inside_the_package() -> None:
+    """One component more, on which the root depends, with the release that the page on dependencies says."""
+    sbom = runpy.run_path(str(ROOT / "requirements" / "sbom.py"))
+    bill = {
+        "metadata": {"component": {"bom-ref": "root"}},
+        "components": [{"name": "numpy"}],
+        "dependencies": [{"ref": "numpy"}, {"ref": "root", "dependsOn": ["numpy"]}],
+    }
+    found = sbom["with_three_js"](bill)
+    (ours,) = [each for each in found["dependencies"] if each["ref"] == "root"]
+    three = found["components"][-1]
+    assert ours["dependsOn"] == ["numpy", three["bom-ref"]]
+    assert f"three.js r{Version(three['version']).minor} " in (ROOT / "docs" / "dependencies.md").read_text(
+        encoding="utf-8"
+    )
+    assert {file["name"].rsplit("/", 1)[1] for file in three["components"]} == {
+        "three.core.min.js",
+        "three.module.min.js",
+    }
