@@ -156,7 +156,9 @@ def test_a_schema_whose_names_are_no_text_is_damaged(folder: Path, place: Path) 
     with Store.open(place) as store:
         store.add(folder)
     raw = place.read_bytes()
-    place.write_bytes(raw.replace(b"CREATE TABLE chunk", b"CREATE TABLE ch\xf5nk"))
+    assert b"tablechunkchunk" in raw
+    raw = raw.replace(b"tablechunkchunk", b"tablech\xf5nkchunk").replace(b"CREATE TABLE chunk", b"CREATE TABLE ch(nk")
+    place.write_bytes(raw)
     with pytest.raises(StoreError, match="the file is damaged"):
         Store.open(place)
 
