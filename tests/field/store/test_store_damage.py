@@ -152,6 +152,17 @@ def test_a_store_of_two_versions_is_damaged(folder: Path, place: Path) -> None:
         Store.open(place)
 
 
+def test_a_schema_whose_names_are_no_text_is_damaged(folder: Path, place: Path) -> None:
+    with Store.open(place) as store:
+        store.add(folder)
+    raw = place.read_bytes()
+    assert b"tablechunkchunk" in raw
+    raw = raw.replace(b"tablechunkchunk", b"tablech\xf5nkchunk").replace(b"CREATE TABLE chunk", b"CREATE TABLE ch(nk")
+    place.write_bytes(raw)
+    with pytest.raises(StoreError, match="the file is damaged"):
+        Store.open(place)
+
+
 def flipped(raw: bytes, random_: random.Random) -> bytes:
     """A store with bits flipped in its head, at the beginning of pages or anywhere; or cut; or with a page of zeros."""
     data = bytearray(raw)

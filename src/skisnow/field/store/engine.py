@@ -53,6 +53,8 @@ def database_told(store: Path, doing: str) -> Iterator[None]:
     except (DBAPIError, sqlite3.Error) as error:
         why = _SQLITE_TROUBLE.get(_primary_code(error), str(getattr(error, "orig", error)))
         raise StoreError(f"The store {store} {doing}: {why}.") from error
+    except UnicodeDecodeError as error:  # what SQLite says names a part of the schema that is no text any more
+        raise StoreError(f"The store {store} {doing}: {_SQLITE_TROUBLE[sqlite3.SQLITE_CORRUPT]}.") from error
 
 
 @contextmanager

@@ -39,8 +39,9 @@ def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
         try:
             for finding in of_part(connection):
                 found.append(finding)
-        except DatabaseError as error:
-            stopped = Finding(None, None, f"cannot be read further: {error.orig}; put a backup in its place")
+        except (DatabaseError, UnicodeDecodeError) as error:
+            why = getattr(error, "orig", error)
+            stopped = Finding(None, None, f"cannot be read further: {why}; put a backup in its place")
             found.extend(() if stopped in found else (stopped,))
     return tuple(found)
 
@@ -70,7 +71,7 @@ def _of_contents(connection: Connection, progress: Progress) -> Iterator[Finding
 def _is_sound(connection: Connection, sha256: object, size: int) -> bool:
     try:
         return isinstance(sha256, str) and is_sound(connection, sha256, size)
-    except DatabaseError:  # the pages that hold it are broken; other files may be whole
+    except (DatabaseError, UnicodeDecodeError):  # the pages that hold it are broken; other files may be whole
         return False
 
 
