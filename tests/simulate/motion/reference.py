@@ -201,6 +201,12 @@ class _Rows:
         return row
 
 
+def sidedness(tilt: float) -> float:
+    """Where the edge lies from the base's middle, over half the width: from -1 to 1, level where the base is level."""
+    size = min(abs(tilt), 1.0)
+    return math.copysign(3.0 * size**2 - 2.0 * size**3, tilt)
+
+
 def _section(
     body: Body, snow: Snow, spacing: float, k: int, line: Line, motion: Motion, rows: _Rows, out: Felt
 ) -> None:
@@ -214,7 +220,7 @@ def _section(
     gap = to_line @ ahead / (x @ ahead)
     if not body.tail - spacing <= gap <= body.tip + spacing:
         return
-    down = np.clip(-(across @ n) / snow.one_sided, -1.0, 1.0)
+    down = sidedness(-float(across @ n) / snow.one_sided)
     s = float(gap)
     for _ in range(2):
         half, height, _, _ = body.along(s)
@@ -233,7 +239,7 @@ def _section(
     depth = float((to_line - axis) @ n)
     sine = float(-t @ n)
     deep = depth + half * abs(sine)
-    side = float(np.clip(sine / snow.one_sided, -1.0, 1.0))
+    side = sidedness(sine / snow.one_sided)
     reach = side * half
     along_edge = x + slope * m + side * flare * t - reach * phi_slope * r
     # before the tip and behind the tail, the edge goes on straight to the line

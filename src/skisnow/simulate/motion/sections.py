@@ -109,7 +109,8 @@ def _cross(n: np.uint64, sided: float, tail: float, step: float, most: float, sh
         forwards = 1.0 / sheet[D0 + i]
         gap = sheet[E0 + i] + (sheet[E1 + i] * d1 + sheet[E2 + i] * d2) * forwards
         sheet[GAP + i] = gap
-        sheet[TOWARD + i] = min(max(-sheet[N1 + i] * sided, -1.0), 1.0) * d1 * forwards
+        tilt = min(max(-sheet[N1 + i] * sided, -1.0), 1.0)
+        sheet[TOWARD + i] = tilt * abs(tilt) * (3.0 - 2.0 * abs(tilt)) * d1 * forwards
         sheet[UPWARDS + i] = d2 * forwards
         at = (gap - tail) * step
         at = at if at > 0.0 else 0.0  # also where it is not a number
@@ -185,7 +186,10 @@ def _cut(n: np.uint64, sided: float, sheet: FloatArray) -> None:
         middle = (sheet[E0 + i] - s) * n0 + sheet[E1 + i] * n1 + (sheet[E2 + i] - height) * n2
         sine = sp * n2 - cp * n1
         deep = middle + half * abs(sine)
-        edge_side = min(max(sine * sided, -1.0), 1.0)
+        # of a level base it does not go aside as the base rolls: the hold of the snow would be drawn along, and a run
+        # straight down begin to swing by itself
+        tilt = min(max(sine * sided, -1.0), 1.0)
+        edge_side = tilt * abs(tilt) * (3.0 - 2.0 * abs(tilt))
         reach = edge_side * half
         edge_depth = middle + reach * sine
         fl, tw = sheet[FLARE + i] * edge_side, reach * twisting
