@@ -177,9 +177,7 @@ class Run:
     def is_open_by(self, share: float) -> bool:
         """Whether the balance of energy is open by more than a share of what was turned over, and by more than 1 J."""
         error = self.energy_balance_error
-        open_energy = self.open_energy
-        # where the losses outweigh what there was, below zero, no share can say how much is open
-        return open_energy > LEAST_OPEN and (error is None or error > share)
+        return error is not None and error > share and self.open_energy > LEAST_OPEN
 
     def turn_radius_quantile(self, share: float) -> float | None:
         """Quantile of the turn radius (m), without its sign, once the start is over; None of a straight run."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..units import DEGREE
 from .carve_dict import finite, snow_dict
-from .run import LOST, STORED, WARNED_SHARE, Run
+from .run import LEAST_OPEN, LOST, STORED, WARNED_SHARE, Run
 from .scenario.values import in_sections, scenario_values
 
 SCHEMA_VERSION: Final = 1
@@ -102,9 +102,9 @@ def radii_dict(run: Run) -> dict[str, float | None]:
 
 def run_warnings(run: Run) -> tuple[str, ...]:
     """What about the numbers of a run is to be told, in words: a balance of energy that stays open."""
-    if not run.is_open_by(WARNED_SHARE):
-        return ()
     error = run.energy_balance_error
+    if not (run.is_open_by(WARNED_SHARE) or (error is None and run.open_energy > LEAST_OPEN)):
+        return ()
     share = "" if error is None else f"{100.0 * error:.2g} % of what was turned over, "
     return (
         f"the balance of energy is open by {share}{run.open_energy:.3g} J: where and how fast the run ends is less "
