@@ -21,15 +21,18 @@ $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "skisnow needs Python 3.11 or newer with its venv module (Debian: apt install python3-venv)"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/.skisnow: pyproject.toml | $(BIN)/python
+# what an installation is made from: a change of the compiled core builds it anew
+CORE := CMakeLists.txt $(wildcard build_backend/*.py src/core/*)
+
+$(VENV)/.skisnow: pyproject.toml $(CORE) | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 
-$(VENV)/.skisnow-test: pyproject.toml | $(BIN)/python
+$(VENV)/.skisnow-test: pyproject.toml $(CORE) | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 	@touch $@ $(VENV)/.skisnow
 
-$(VENV)/.skisnow-dev: pyproject.toml | $(BIN)/python
+$(VENV)/.skisnow-dev: pyproject.toml $(CORE) | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $@ $(VENV)/.skisnow $(VENV)/.skisnow-test
 
