@@ -30,20 +30,24 @@ $(BIN)/python:
 # What is installed stands in requirements/, file by file with its hashes. Where an index has not all of it,
 # LOCKED=no takes the newest that pyproject.toml allows.
 LOCKED ?= yes
+# a change of the compiled core builds it anew; without a C++ compiler it is built with the one of Zig's wheel
+CORE := CMakeLists.txt $(wildcard build_backend/*.py src/core/*)
+COMPILER := $(shell command -v c++ || command -v g++ || command -v clang++)
 PIP := -m pip --disable-pip-version-check install --quiet
 define install
 	@if [ "$(LOCKED)" = yes ]; then \
 		{ $(BIN)/python $(PIP) --require-hashes --requirement requirements/$(1).txt \
 		|| { echo "not all of requirements/$(1).txt could be installed: 'make LOCKED=no ...' takes what pyproject.toml allows"; exit 1; }; } \
+		&& { [ -n "$(COMPILER)" ] || $(BIN)/python $(PIP) --require-hashes --requirement requirements/compiler.txt; } \
 		&& $(BIN)/python $(PIP) --no-deps --no-build-isolation --editable .; \
 	else $(BIN)/python $(PIP) --editable '.[$(2)]'; fi
 endef
 
-$(VENV)/.skisnow: pyproject.toml requirements/run.txt | $(BIN)/python
+$(VENV)/.skisnow: pyproject.toml requirements/run.txt $(CORE) | $(BIN)/python
 	$(call install,run,web)
 	@touch $@
 
-$(VENV)/.skisnow-dev: pyproject.toml requirements/dev.txt | $(BIN)/python
+$(VENV)/.skisnow-dev: pyproject.toml requirements/dev.txt $(CORE) | $(BIN)/python
 	$(call install,dev,dev)
 	@touch $@ $(VENV)/.skisnow
 
@@ -90,6 +94,7 @@ lock: $(TOOLS)/.tools
 	$(COMPILE) --extra dev pyproject.toml requirements/build.in --output-file requirements/dev.txt
 	$(COMPILE) --extra web --constraint requirements/dev.txt pyproject.toml requirements/build.in --output-file requirements/run.txt
 	$(COMPILE) requirements/tools.in --output-file requirements/tools.txt
+	$(COMPILE) requirements/compiler.in --output-file requirements/compiler.txt
 
 sbom: $(TOOLS)/.tools
 	rm -rf $(TOOLS)/run

@@ -69,6 +69,11 @@ class ShearLaw(abc.ABC):
         shape = np.broadcast_shapes(np.shape(edge_depth), np.shape(edge_length), edge_angles(edge_angle).shape)
         return np.zeros(shape)
 
+    def stress_and_thrust(self, edge_depth: FloatArray, edge_angle: FloatArray) -> FloatArray:
+        """F_t/(L e) and thrust/(L e) (N/m²), (2, n), for depths above 0. For loops: nothing is warned of."""
+        thrust = self.thrust_force(edge_depth, np.ones_like(edge_depth), edge_angle) / edge_depth
+        return np.stack([np.broadcast_to(self._stress(edge_depth, edge_angle), edge_depth.shape), thrust])
+
     def _checked_stress(self, edge_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         angle = edge_angles(edge_angle)
         depth, angle = np.broadcast_arrays(np.maximum(np.asarray(edge_depth, float), 0.0), angle)

@@ -1,0 +1,62 @@
+"""scikit-build-core, which builds the compiled core; without a C++ compiler it takes the one in Zig's wheel."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import stat
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from scikit_build_core import build as scikit
+
+build_sdist = scikit.build_sdist
+get_requires_for_build_sdist = scikit.get_requires_for_build_sdist
+Settings = dict[str, Any] | None
+
+ZIG = "ziglang>=0.13,<0.18"
+TOOLS = {"CXX": "c++", "CMAKE_AR": "ar", "CMAKE_RANLIB": "ranlib"}
+
+
+def _has_compiler() -> bool:
+    return bool(os.environ.get("CXX")) or any(shutil.which(name) for name in ("c++", "g++", "clang++", "cl"))
+
+
+def get_requires_for_build_wheel(config_settings: Settings = None) -> list[str]:
+    """What the build needs besides scikit-build-core and nanobind."""
+    return [*scikit.get_requires_for_build_wheel(config_settings), *([] if _has_compiler() else [ZIG])]
+
+
+get_requires_for_build_editable = get_requires_for_build_wheel
+
+
+def _use_zig(folder: Path) -> None:
+    """Programs in a folder that call Zig's; CMake wants the name of one file for each tool."""
+    for name, tool in TOOLS.items():
+        program = folder / f"zig-{tool}"
+        program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m ziglang {tool} "$@"\n', encoding="utf-8")
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        if name == "CXX":
+            os.environ["CXX"] = str(program)
+        else:
+            os.environ["CMAKE_ARGS"] = f"{os.environ.get('CMAKE_ARGS', '')} -D{name}={program}".strip()
+
+
+def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None) -> str:
+    """Build a wheel."""
+    with tempfile.TemporaryDirectory() as folder:
+        if not _has_compiler():
+            _use_zig(Path(folder))
+        return scikit.build_wheel(wheel_directory, config_settings, metadata_directory)
+
+
+def build_editable(
+    wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None
+) -> str:
+    """Build what an editable installation takes."""
+    with tempfile.TemporaryDirectory() as folder:
+        if not _has_compiler():
+            _use_zig(Path(folder))
+        return scikit.build_editable(wheel_directory, config_settings, metadata_directory)

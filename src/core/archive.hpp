@@ -1,0 +1,59 @@
+// Tracks left behind: lines that a runner has left, joined into strips, found again by place.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "groove.hpp"
+
+namespace skisnow {
+
+using Vector3 = std::array<double, 3>;
+
+// A line that was left: where it lies, and its ground.
+struct Track {
+  Vector3 origin, ahead, lateral;
+  int strip;             // of lines that were left one after the other
+  std::int64_t number;   // within the strip
+  int count;
+  double place[KNOTS], depth[KNOTS];
+
+  double width() const { return place[count - 1] - place[0]; }
+  double depth_at(double share) const;  // of the width, from 0 to 1
+};
+
+class Archive {
+ public:
+  int new_strip() { return strips_++; }
+  void add(const Track& track, double energy);
+
+  // Press the older tracks that a line crosses, between two places across it (m), into its ground.
+  void recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground) const;
+
+  const std::vector<Track>& tracks() const { return tracks_; }
+  double energy() const { return energy_; }
+
+  // Forget what was added since (for a contact that goes back to a state).
+  struct Mark {
+    std::size_t tracks;
+    int strips;
+    double energy;
+  };
+  Mark mark() const { return {tracks_.size(), strips_, energy_}; }
+  void forget_since(const Mark& mark);
+
+ private:
+  static constexpr double SQUARE = 0.0625;  // side (m) of the squares in which tracks are looked up
+
+  std::vector<Track> tracks_;
+  std::unordered_map<std::uint64_t, std::vector<int>> squares_;  // later track of each pair, by square
+  int strips_ = 0;
+  double energy_ = 0.0;
+
+  void enter_squares(int later);
+  const Track* before(int later) const;
+};
+
+}  // namespace skisnow

@@ -1,0 +1,227 @@
+#include "contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace skisnow {
+
+namespace {
+
+// Keep the base that touches a line: the way of its edge since it was marked last, and all that lies under it.
+void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+  const double edge = s[EDGE_PLACE][i], depth = s[EDGE_DEPTH][i], fall = s[DEPTH_FALL][i];
+  const double from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);
+  Ground ground = lines.ground(slot);
+  bool changed = false;
+  if (lines.values[MARKED][slot] > 0.5) {
+    const double before = lines.values[EDGE_MARKED][slot], depth_before = lines.values[DEPTH_MARKED][slot];
+    changed = before < edge ? ground.press(before, depth_before, edge, depth) : ground.press(edge, depth, before, depth_before);
+  }
+  if (ground.press(edge + from, depth + fall * from, edge + to, depth + fall * to)) changed = true;
+  if (!changed) return;
+  ground.simplify(snow.knot_area * s[DEEPEST][i] * (to - from), KNOTS);
+  lines.keep(slot, ground);
+}
+
+// Keep where the edge holds: where it came through the surface, not farther off than its full displacement.
+void keep_anchor(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+  auto& v = lines.values;
+  const double edge = s[EDGE_PLACE][i], depth = s[DEEPEST][i], reach = snow.shear_displacement;
+  double anchor = edge;
+  if (v[ANCHORED][slot] > 0.5) anchor = v[ANCHOR][slot];
+  else if (v[ABOVE][slot] > 0.5)
+    anchor = edge - depth / (depth - v[DEPTH_ABOVE][slot]) * (edge - v[EDGE_ABOVE][slot]);
+  v[ANCHOR][slot] = std::clamp(anchor, edge - reach, edge + reach);
+  v[ANCHORED][slot] = 1.0;
+}
+
+void remember_section(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
+  auto& v = lines.values;
+  if (!s.touches(i)) {
+    v[MARKED][slot] = 0.0;
+    if (!(s[SHARE][i] > 0.0)) return;
+    v[EDGE_ABOVE][slot] = s[EDGE_PLACE][i];
+    v[DEPTH_ABOVE][slot] = s[DEEPEST][i];
+    v[ANCHORED][slot] = 0.0;
+    v[ABOVE][slot] = 1.0;
+    return;
+  }
+  press_base(s, i, snow, lines, slot);
+  v[MARKED][slot] = 1.0;
+  v[EDGE_MARKED][slot] = s[EDGE_PLACE][i];
+  v[DEPTH_MARKED][slot] = s[EDGE_DEPTH][i];
+  keep_anchor(s, i, snow, lines, slot);
+  v[ABOVE][slot] = 0.0;
+}
+
+// Loads of the sections on the nodes of a beam, by Hermite's shapes.
+void load_beam(const Runner& runner, const Sections& s, std::vector<double>& beam) {
+  beam.assign(std::size_t(3 * runner.nodes()), 0.0);
+  for (int i = 0; i < s.count(); i++) {
+    if (!s.touches(i)) continue;
+    const double z = s[IN_ELEMENT][i], h = s[ELEMENT_LENGTH][i], y = 1.0 - z, force = s[BEAM_FORCE][i];
+    double* node = beam.data() + 3 * int(s[ELEMENT][i]);
+    node[0] += y * y * (1.0 + 2.0 * z) * force;
+    node[1] += h * z * y * y * force;
+    node[2] += y * s[BEAM_MOMENT][i];
+    node[3] += z * z * (3.0 - 2.0 * z) * force;
+    node[4] += -h * z * z * y * force;
+    node[5] += z * s[BEAM_MOMENT][i];
+  }
+}
+
+// The same situation with one runner moved, or its motion changed, by a small step of one of its six freedoms.
+Situation displaced(const Situation& at, int k, int freedom, double step, bool of_motion) {
+  Situation out = at;
+  const auto which = std::size_t(freedom % 3);
+  if (of_motion) {
+    Motion& motion = out.motions[std::size_t(k)];
+    (freedom < 3 ? motion.velocity : motion.turning)[which] += step;
+    return out;
+  }
+  Pose& pose = out.poses[std::size_t(k)];
+  if (freedom < 3) {
+    pose.position[which] += step;
+    return out;
+  }
+  const std::size_t a = (which + 1) % 3, b = (which + 2) % 3;
+  for (int c = 0; c < 3; c++) {
+    const double first = pose.rotation[a][c], second = pose.rotation[b][c];
+    pose.rotation[a][c] = std::cos(step) * first - std::sin(step) * second;
+    pose.rotation[b][c] = std::sin(step) * first + std::cos(step) * second;
+  }
+  return out;
+}
+
+constexpr double POSE_STEP = 1e-7;    // m, rad
+constexpr double MOTION_STEP = 1e-4;  // m/s, rad/s
+
+}  // namespace
+
+SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing, const Kernels& kernels)
+    : snow_(std::move(snow)), runners_(std::move(runners)), kernels_(&kernels) {
+  for (const Runner& each : runners_) {
+    state_.lines.emplace_back(each, spacing);
+    state_.strips.push_back(snow_->archive.new_strip());
+  }
+  trial_ = state_.lines;
+  sections_.resize(runners_.size());
+}
+
+Reaction SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion) {
+  Sections& s = sections_[std::size_t(k)];
+  kernels_->find_sections(runner(k), pose, *snow_, lines, s);
+  kernels_->press(*snow_, lines, s);
+  kernels_->slide(motion, pose, *snow_, s);
+  if (laws) laws(k, s);
+  Wrench wrench;
+  kernels_->push(motion, pose, *snow_, s, wrench);
+  Reaction out;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) {
+      out.force[a] += pose.rotation[a][b] * wrench.force[b];
+      out.moment[a] += pose.rotation[a][b] * wrench.moment[b];
+    }
+  if (!pose.beam.empty()) load_beam(runner(k), s, out.beam);
+  return out;
+}
+
+void SnowContact::remember(int k, GrooveLines& lines, const Pose& pose) {
+  Sections& s = sections_[std::size_t(k)];
+  kernels_->find_sections(runner(k), pose, *snow_, lines, s);
+  for (int i = 0; i < s.count(); i++)
+    if (s.line(i) >= lines.first && s.line(i) < lines.end) remember_section(s, i, *snow_, lines, lines.slot(s.line(i)));
+}
+
+// The history along the way, up to but without its end.
+void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
+  const int parts = int(std::ceil(to.dt / snow_->look_back - 1e-9));
+  if (state_.accepted.empty()) return;
+  for (int part = 1; part < parts; part++)
+    remember(k, lines, between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts));
+}
+
+// The lines at the end of a step, before its end is remembered: those that stand, or where that changes them a copy.
+GrooveLines& SnowContact::history(int k, const Situation& at) {
+  GrooveLines& standing = state_.lines[std::size_t(k)];
+  const Pose& pose = at.poses[std::size_t(k)];
+  const bool marches = !state_.accepted.empty() && at.dt > snow_->look_back * (1.0 + 1e-9);
+  const bool reaches = standing.count() > 0 && standing.station(standing.end - 1, pose) > runner(k).tip &&
+                       standing.station(standing.first, pose) < runner(k).tail;
+  if (!marches && reaches) return standing;
+  GrooveLines& trial = trial_[std::size_t(k)];
+  trial = standing;
+  trial.advance(runner(k), pose, *snow_, nullptr, 0);
+  march(k, trial, at);
+  return trial;
+}
+
+std::vector<Reaction> SnowContact::force(const Situation& at) {
+  std::vector<Reaction> out;
+  for (int k = 0; k < runners(); k++)
+    out.push_back(evaluate(k, history(k, at), at.poses[std::size_t(k)], at.motions[std::size_t(k)]));
+  return out;
+}
+
+void SnowContact::update(const Situation& to) {
+  for (int k = 0; k < runners(); k++) {
+    GrooveLines& lines = state_.lines[std::size_t(k)];
+    const Pose& pose = to.poses[std::size_t(k)];
+    int& strip = state_.strips[std::size_t(k)];
+    lines.advance(runner(k), pose, *snow_, &snow_->archive, strip);
+    march(k, lines, to);
+    remember(k, lines, pose);
+    lines.rebuild_if_uneven(pose, snow_->archive, strip);
+    lines.advance(runner(k), pose, *snow_, &snow_->archive, strip);
+  }
+  state_.accepted = to.poses;
+}
+
+void SnowContact::tangent(const Situation& at, std::vector<double>& stiffness, std::vector<double>& damping) {
+  const auto size = std::size_t(36 * runners());
+  stiffness.assign(size, 0.0);
+  damping.assign(size, 0.0);
+  for (int k = 0; k < runners(); k++)
+    for (int freedom = 0; freedom < 12; freedom++) {
+      const bool of_motion = freedom >= 6;
+      const double step = of_motion ? MOTION_STEP : POSE_STEP;
+      Reaction side[2];
+      for (int way = 0; way < 2; way++) {
+        const Situation moved = displaced(at, k, freedom % 6, way == 0 ? step : -step, of_motion);
+        side[way] = evaluate(k, history(k, moved), moved.poses[std::size_t(k)], moved.motions[std::size_t(k)]);
+      }
+      std::vector<double>& out = of_motion ? damping : stiffness;
+      for (int a = 0; a < 3; a++) {
+        const auto row = std::size_t(36 * k + 6 * a + freedom % 6);
+        out[row] = -(side[0].force[a] - side[1].force[a]) / (2.0 * step);
+        out[row + 18] = -(side[0].moment[a] - side[1].moment[a]) / (2.0 * step);
+      }
+    }
+}
+
+double SnowContact::groove_energy() const {
+  double total = snow_->archive.energy();
+  for (const GrooveLines& each : state_.lines) total += each.groove_energy();
+  return total;
+}
+
+double SnowContact::elastic_energy() const {
+  double total = 0.0;
+  for (const Sections& s : sections_)
+    for (int i = 0; i < s.count(); i++) total += s[SNOW_ENERGY][i];
+  return total;
+}
+
+SnowContact::State SnowContact::state() const {
+  State out = state_;
+  out.tracks = snow_->archive.mark();
+  return out;
+}
+
+void SnowContact::restore(const State& state) {
+  state_ = state;
+  snow_->archive.forget_since(state.tracks);
+}
+
+}  // namespace skisnow

@@ -1,0 +1,142 @@
+#include "groove.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skisnow {
+
+namespace {
+
+struct Segment {
+  double a, depth_a, b, depth_b, slope;
+
+  Segment(double from, double depth_from, double to, double depth_to)
+      : a(from), depth_a(depth_from), b(to), depth_b(depth_to), slope((depth_to - depth_from) / (to - from)) {}
+
+  double at(double where) const { return where == b ? depth_b : depth_a + slope * (where - a); }
+};
+
+double triangle(const Ground& ground, int i, int j, int k) {
+  const double* y = ground.place;
+  const double* g = ground.depth;
+  return 0.5 * std::fabs((y[j] - y[i]) * (g[k] - g[i]) - (y[k] - y[i]) * (g[j] - g[i]));
+}
+
+bool is_deeper(const Ground& ground, const Segment& pressed) {
+  if (pressed.a < ground.first() - THIN || pressed.b > ground.last() + THIN) return true;
+  for (int j = 0; j < ground.count; j++) {
+    const double where = ground.place[j];
+    if (where >= pressed.a && where <= pressed.b && pressed.at(where) > ground.depth[j] + THIN) return true;
+  }
+  return pressed.depth_a > ground.at(pressed.a, true) + THIN || pressed.depth_b > ground.at(pressed.b, false) + THIN;
+}
+
+// The deeper of both between two neighbouring knots of the old ground.
+void merge_piece(const Ground& old, int j, const Segment& pressed, Ground& out) {
+  const double a = old.place[j], b = old.place[j + 1];
+  if (b - a < 1e-15) return;
+  const double slope = (old.depth[j + 1] - old.depth[j]) / (b - a);
+  const double from = std::max(a, pressed.a), to = std::min(b, pressed.b);
+  if (to <= from) return;
+  const double old_from = old.depth[j] + slope * (from - a), old_to = old.depth[j] + slope * (to - a);
+  const double over_from = pressed.at(from) - old_from, over_to = pressed.at(to) - old_to;
+  if (over_from <= THIN && over_to <= THIN) return;
+  if (from > a) out.append(from, old_from);
+  if (from > a && over_from > THIN) out.append(from, pressed.at(from));
+  if (over_from < -THIN || over_to < -THIN) {
+    const double cross = from + (to - from) * over_from / (over_from - over_to);
+    out.append(cross, pressed.at(cross));
+  }
+  if (to < b && over_to > THIN) out.append(to, pressed.at(to));
+  if (to < b) out.append(to, old_to);
+}
+
+}  // namespace
+
+void Ground::append(double at, double deep) {
+  if (count > 0 && std::fabs(place[count - 1] - at) < THIN && std::fabs(depth[count - 1] - deep) < THIN) return;
+  if (count == ROOM) simplify(0.0, ROOM - 1);
+  place[count] = at;
+  depth[count] = deep;
+  count++;
+}
+
+double Ground::at(double where, bool from_right) const {
+  int j = 0;
+  while (j + 2 < count && (from_right ? place[j + 1] <= where : place[j + 1] < where)) j++;
+  const double width = place[j + 1] - place[j];
+  if (!(width > 0.0)) return from_right ? depth[j + 1] : depth[j];
+  return depth[j] + (depth[j + 1] - depth[j]) * (where - place[j]) / width;
+}
+
+bool Ground::press(double a, double depth_a, double b, double depth_b) {
+  if (!(b - a > THIN)) return false;
+  const Segment pressed(a, depth_a, b, depth_b);
+  if (empty()) {
+    clear();
+    append(a, depth_a);
+    append(b, depth_b);
+    return true;
+  }
+  if (!is_deeper(*this, pressed)) return false;
+  Ground out;
+  if (b < first()) {
+    out.append(a, depth_a);
+    out.append(b, depth_b);
+    // nothing has touched what lies between: no depth
+    out.append(b, 0.0);
+    out.append(first(), 0.0);
+  }
+  if (a < first() && b >= first()) {
+    out.append(a, depth_a);
+    out.append(first(), pressed.at(first()));
+  }
+  for (int j = 0; j < count; j++) {
+    // at an end of the segment a knot keeps its own depth to the outside: there may be a wall
+    const bool under = place[j] >= a && place[j] <= b;
+    if (!under || place[j] == a) out.append(place[j], depth[j]);
+    if (under) out.append(place[j], std::max(depth[j], pressed.at(place[j])));
+    if (place[j] == b) out.append(place[j], depth[j]);
+    if (j + 1 < count) merge_piece(*this, j, pressed, out);
+  }
+  if (a > last()) {
+    out.append(last(), 0.0);
+    out.append(a, 0.0);
+    out.append(a, depth_a);
+    out.append(b, depth_b);
+  } else if (b > last()) {
+    out.append(last(), pressed.at(last()));
+    out.append(b, depth_b);
+  }
+  *this = out;
+  return true;
+}
+
+void Ground::simplify(double area, int most) {
+  if (count < 3) return;
+  double size[ROOM];
+  for (int j = 1; j + 1 < count; j++) size[j] = triangle(*this, j - 1, j, j + 1);
+  while (count > 2) {
+    const int least = int(std::min_element(size + 1, size + count - 1) - size);
+    if (size[least] > area && count <= most) break;
+    for (int j = least; j + 1 < count; j++) {
+      place[j] = place[j + 1];
+      depth[j] = depth[j + 1];
+      size[j] = size[j + 1];
+    }
+    count--;
+    if (least > 1) size[least - 1] = triangle(*this, least - 2, least - 1, least);
+    if (least + 1 < count) size[least] = triangle(*this, least - 1, least, least + 1);
+  }
+}
+
+double Ground::squared() const {
+  double total = 0.0;
+  for (int j = 0; j + 1 < count; j++) {
+    const double a = depth[j], b = depth[j + 1];
+    total += (place[j + 1] - place[j]) * (a * a + a * b + b * b) / 3.0;
+  }
+  return total;
+}
+
+}  // namespace skisnow

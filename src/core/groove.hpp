@@ -1,0 +1,39 @@
+// The ground of one transverse line of snow: piecewise linear depth over the place across.
+//
+// History variable of the snow: the greatest depth that each place was ever pressed to. Outside its knots the snow is
+// virgin. Two knots at one place are a wall.
+#pragma once
+
+namespace skisnow {
+
+constexpr int KNOTS = 16;       // that a line keeps
+constexpr double THIN = 1e-12;  // width or depth (m) that is none
+
+struct Ground {
+  static constexpr int ROOM = 4 * KNOTS;
+  int count = 0;
+  double place[ROOM];
+  double depth[ROOM];
+
+  void clear() { count = 0; }
+  bool empty() const { return count < 2; }
+  double first() const { return place[0]; }
+  double last() const { return place[count - 1]; }
+
+  // Append a knot, unless it repeats the last one.
+  void append(double at, double deep);
+
+  // Depth at a place within the knots; at a wall that of the side asked for.
+  double at(double where, bool from_right) const;
+
+  // Press the segment from (a, depth_a) to (b, depth_b), a < b: keep the deeper of both. Whether anything changed.
+  bool press(double a, double depth_a, double b, double depth_b);
+
+  // Drop knots whose triangle with their neighbours is below an area (m²), and the smallest ones above `most` knots.
+  void simplify(double area, int most);
+
+  // ∫ depth² over the place (m³).
+  double squared() const;
+};
+
+}  // namespace skisnow

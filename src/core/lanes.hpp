@@ -1,0 +1,100 @@
+// Several lines of snow in one instruction: a vector of 2, 4 or 8 doubles that reads like one number.
+//
+// Written on the vector types of GCC and Clang. Nothing here fuses or reorders: a lane's result has the same bits
+// whatever the number of lanes, and sums over lines go through eight partial sums in a fixed order (`Sum`).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace skisnow {
+
+constexpr int BLOCK = 8;  // lines that lie side by side in memory; a multiple of every number of lanes
+
+template <int N>
+struct LaneTypes {
+  typedef double Value __attribute__((vector_size(N * 8)));
+  typedef std::int64_t Mask __attribute__((vector_size(N * 8)));
+};
+
+template <int N>
+using Lanes = typename LaneTypes<N>::Value;
+template <int N>
+using Mask = typename LaneTypes<N>::Mask;
+
+template <class V>
+inline constexpr int WIDTH = sizeof(V) / sizeof(double);
+template <class V>
+using MaskOf = Mask<WIDTH<V>>;
+
+template <class V>
+inline V load(const double* from) {
+  V value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
+template <class V>
+inline void store(double* to, V value) {
+  std::memcpy(to, &value, sizeof value);
+}
+
+template <class V>
+inline V all(double value) {
+  return V{} + value;
+}
+
+template <class V>
+inline V select(MaskOf<V> mask, V yes, V no) {
+  return mask ? yes : no;
+}
+
+template <class V>
+inline V minimum(V a, V b) {
+  return a < b ? a : b;
+}
+
+template <class V>
+inline V maximum(V a, V b) {
+  return a > b ? a : b;
+}
+
+template <class V>
+inline V within(V value, double low, double high) {
+  return minimum(maximum(value, all<V>(low)), all<V>(high));
+}
+
+template <class V>
+inline V absolute(V value) {
+  return maximum(value, -value);
+}
+
+template <class V>
+inline V root(V value) {
+  for (int i = 0; i < WIDTH<V>; i++) value[i] = __builtin_sqrt(value[i]);
+  return value;
+}
+
+template <class M>
+inline bool any(M mask) {
+  std::int64_t found = 0;
+  for (unsigned i = 0; i < sizeof(M) / 8; i++) found |= mask[i];
+  return found != 0;
+}
+
+// Eight partial sums, added up in one order: a total does not depend on the number of lanes.
+struct Sum {
+  double part[BLOCK] = {};
+
+  template <class V>
+  void add(int lane, V value) {
+    store(part + lane, load<V>(part + lane) + value);
+  }
+
+  double total() const {
+    return ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+  }
+};
+
+}  // namespace skisnow

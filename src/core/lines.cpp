@@ -1,0 +1,197 @@
+#include "lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skisnow {
+
+namespace {
+
+constexpr double MARGIN = 0.12;       // (m) before tip and behind tail in which lines are laid: more than a step's way
+constexpr double EDGE_ASIDE = 0.04;   // half a ski's width (m), about: where an edge will cross; no accuracy hangs on it
+constexpr int NEWTON_STEPS = 3;       // to the place on a curved surface
+constexpr double MOST_UNEVEN = 0.25;  // of the spacing, between neighbours
+constexpr double MOST_TURN = 0.3;     // (rad) between a line's direction ahead and the ski
+constexpr double REACH = 0.5;         // (m) to both sides, over which a new line looks for older tracks
+constexpr double MOST_ASIDE = 0.4;    // (m) of the ski from a line's origin
+
+double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vector3 unit(const Vector3& a) {
+  const double size = 1.0 / std::sqrt(dot(a, a));
+  return {a[0] * size, a[1] * size, a[2] * size};
+}
+
+Vector3 get(const GrooveLines& lines, LineField first, int slot) {
+  return {lines.values[first][slot], lines.values[LineField(first + 1)][slot], lines.values[LineField(first + 2)][slot]};
+}
+
+void put(GrooveLines& lines, LineField first, int slot, const Vector3& vector) {
+  for (int a = 0; a < 3; a++) lines.values[LineField(first + a)][slot] = vector[a];
+}
+
+// The place on the surface under a position along the ski's straight axis, beside it where the edge will be.
+Vector3 place_under(const Pose& pose, double station, const Snow& snow) {
+  const Vector3 ahead = pose.axis(0), lateral = pose.axis(1);
+  const double side = std::clamp(-lateral[2] / snow.edge_blend_sine, -1.0, 1.0) * EDGE_ASIDE;
+  Vector3 from;
+  for (int a = 0; a < 3; a++) from[a] = pose.position[a] + station * ahead[a] + side * lateral[a];
+  const double level = ahead[0] * ahead[0] + ahead[1] * ahead[1];
+  double way = 0.0;
+  for (int i = 0; i < NEWTON_STEPS; i++) {
+    const Grid::Value here = snow.surface.at(from[0] + way * ahead[0], from[1] + way * ahead[1]);
+    const double rise = here.slope_x * ahead[0] + here.slope_y * ahead[1];
+    way -= (way * level + (here.value - from[2]) * ahead[2]) / (level + rise * ahead[2]);
+  }
+  const double x = from[0] + way * ahead[0], y = from[1] + way * ahead[1];
+  return {x, y, snow.surface.at(x, y).value};
+}
+
+int power_of_two(int least) {
+  int size = 2 * BLOCK;
+  while (size < least) size *= 2;
+  return size;
+}
+
+}  // namespace
+
+GrooveLines::GrooveLines(const Runner& runner, double spacing) : spacing_(spacing) {
+  const int lines = int((runner.tip - runner.tail + 2.0 * MARGIN) / spacing) + 10;
+  const int size = power_of_two(lines + 2 * BLOCK);
+  values.resize(size);
+  for (Column* each : {&place, &depth, &slope}) each->assign(std::size_t(size) * KNOTS, 0.0);
+  knots.assign(std::size_t(size), 0);
+  recalled_energy.assign(std::size_t(size), 0.0);
+  for (int slot = 0; slot < size; slot++) {  // lanes beside the lines that are laid must hold numbers
+    put(*this, AHEAD_X, slot, {1.0, 0.0, 0.0});
+    put(*this, NORMAL_X, slot, {0.0, 0.0, 1.0});
+    values[ORIGIN_Z][slot] = -1e3;
+    values[HARDNESS][slot] = 1.0;
+    keep(slot, Ground());
+  }
+}
+
+Vector3 GrooveLines::origin(int slot) const { return get(*this, ORIGIN_X, slot); }
+
+Vector3 GrooveLines::lateral(int slot) const {
+  return cross(get(*this, NORMAL_X, slot), get(*this, AHEAD_X, slot));
+}
+
+Ground GrooveLines::ground(int slot) const {
+  Ground out;
+  for (int j = 0; j < knots[std::size_t(slot)]; j++) {
+    const auto at = std::size_t(tile(slot, j));
+    out.place[j] = place[at];
+    out.depth[j] = depth[at];
+  }
+  out.count = knots[std::size_t(slot)];
+  return out;
+}
+
+// What lies beyond the last knot repeats it, so that a block's lines may be summed together.
+void GrooveLines::keep(int slot, const Ground& ground) {
+  knots[std::size_t(slot)] = std::uint8_t(ground.count);
+  for (int j = 0; j < KNOTS; j++) {
+    const int i = std::min(j, ground.count - 1);
+    const auto at = std::size_t(tile(slot, j));
+    place[at] = ground.count > 0 ? ground.place[i] : 1e9;
+    depth[at] = ground.count > 0 ? ground.depth[i] : 0.0;
+    const double width = j + 1 < ground.count ? ground.place[i + 1] - ground.place[i] : 0.0;
+    slope[at] = width > THIN ? (ground.depth[i + 1] - ground.depth[i]) / width : 0.0;
+  }
+}
+
+double GrooveLines::station(std::int64_t number, const Pose& pose) const {
+  const int at = slot(number);
+  const Vector3 ahead = pose.axis(0), left = pose.axis(1), lateral = this->lateral(at);
+  Vector3 there = origin(at);
+  for (int a = 0; a < 3; a++) there[a] -= pose.position[a];
+  return dot(there, ahead) - dot(there, left) * dot(lateral, ahead) / dot(lateral, left);
+}
+
+void GrooveLines::lay(std::int64_t number, const Pose& pose, double station, const Snow& snow) {
+  const int at = slot(number);
+  const Vector3 origin = place_under(pose, station, snow);
+  const Grid::Value here = snow.surface.at(origin[0], origin[1]);
+  const Vector3 normal = unit({-here.slope_x, -here.slope_y, 1.0});
+  Vector3 ahead = pose.axis(0);
+  const double up = dot(ahead, normal);
+  for (int a = 0; a < 3; a++) ahead[a] -= up * normal[a];
+  put(*this, ORIGIN_X, at, origin);
+  put(*this, AHEAD_X, at, unit(ahead));
+  put(*this, NORMAL_X, at, normal);
+  for (int field = ANCHORED; field < LINE_FIELDS; field++) values[LineField(field)][at] = 0.0;
+  const double hardness = snow.hardness.at(origin[0], origin[1]).value;
+  values[HARDNESS][at] = hardness;
+  values[EXCESS][at] = (snow.unloading_ratio - 1.0) * hardness;
+  values[STRENGTH][at] = snow.strength.at(origin[0], origin[1]).value;
+  Ground older;
+  snow.archive.recall(origin, lateral(at), -REACH, REACH, older);
+  older.simplify(0.0, KNOTS);
+  keep(at, older);
+  recalled_energy[std::size_t(at)] = groove_energy(at);
+}
+
+double GrooveLines::groove_energy(int slot) const {
+  const double hardness = values[HARDNESS][slot], excess = values[EXCESS][slot];
+  return 0.5 * hardness * excess / (hardness + excess) * ground(slot).squared() * spacing_;
+}
+
+double GrooveLines::groove_energy() const {
+  double total = 0.0;
+  for (std::int64_t n = first; n < end; n++) total += groove_energy(slot(n)) - recalled_energy[std::size_t(slot(n))];
+  return total;
+}
+
+void GrooveLines::leave(std::int64_t number, Archive* archive, int strip) {
+  const int at = slot(number);
+  if (archive == nullptr) return;
+  const Ground left = ground(at);
+  Track track{origin(at), get(*this, AHEAD_X, at), lateral(at), strip, number, left.count, {}, {}};
+  std::copy_n(left.place, left.count, track.place);
+  std::copy_n(left.depth, left.count, track.depth);
+  archive->add(track, groove_energy(at) - recalled_energy[std::size_t(at)]);
+}
+
+void GrooveLines::advance(const Runner& runner, const Pose& pose, const Snow& snow, Archive* archive, int strip) {
+  const double room = MARGIN + 3.0 * spacing_;
+  for (; count() > 0 && station(first, pose) < runner.tail - room; first++) leave(first, archive, strip);
+  for (; count() > 0 && station(end - 1, pose) > runner.tip + room; end--) leave(end - 1, archive, strip);
+  if (count() == 0) lay(end++, pose, 0.0, snow);
+  const int most = capacity() - BLOCK;
+  double at = station(end - 1, pose);
+  while (at < runner.tip + MARGIN && count() < most) lay(end++, pose, at += spacing_, snow);
+  at = station(first, pose);
+  while (at > runner.tail - MARGIN && count() < most) lay(--first, pose, at -= spacing_, snow);
+}
+
+bool GrooveLines::is_uneven(const Pose& pose) const {
+  const Vector3 ahead = pose.axis(0), left = pose.axis(1);
+  const Vector3 there = get(*this, AHEAD_X, slot(first));
+  if (std::fabs(dot(there, left)) > std::sin(MOST_TURN) || dot(there, ahead) < 0.0) return true;
+  double before = station(first, pose);
+  for (std::int64_t n = first + 1; n < end; n++) {
+    const double here = station(n, pose);
+    if (std::fabs(here - before - spacing_) > MOST_UNEVEN * spacing_) return true;
+    before = here;
+  }
+  Vector3 middle = origin(slot((first + end) / 2));
+  for (int a = 0; a < 3; a++) middle[a] -= pose.position[a];
+  return std::fabs(dot(middle, left)) > MOST_ASIDE;
+}
+
+void GrooveLines::leave_all(Archive& archive, int strip) {
+  for (; first < end; first++) leave(first, &archive, strip);
+}
+
+void GrooveLines::rebuild_if_uneven(const Pose& pose, Archive& archive, int& strip) {
+  if (count() == 0 || !is_uneven(pose)) return;
+  leave_all(archive, strip);
+  strip = archive.new_strip();
+}
+
+}  // namespace skisnow

@@ -1,0 +1,53 @@
+#include "runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skisnow {
+
+namespace {
+
+// Rotation vector of a rotation matrix below half a turn.
+Vector3 rotation_vector(const double (&m)[3][3]) {
+  const Vector3 twice{m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]};
+  const double sine = 0.5 * std::sqrt(twice[0] * twice[0] + twice[1] * twice[1] + twice[2] * twice[2]);
+  const double cosine = 0.5 * (m[0][0] + m[1][1] + m[2][2] - 1.0);
+  const double factor = sine > 1e-9 ? 0.5 * std::atan2(sine, cosine) / sine : 0.5;
+  return {factor * twice[0], factor * twice[1], factor * twice[2]};
+}
+
+void rotation_matrix(const Vector3& v, double (&out)[3][3]) {
+  const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], angle = std::sqrt(square);
+  const double s = angle > 1e-6 ? std::sin(angle) / angle : 1.0 - square / 6.0;
+  const double c = angle > 1e-6 ? (1.0 - std::cos(angle)) / square : 0.5 - square / 24.0;
+  const double cross[3][3] = {{0.0, -v[2], v[1]}, {v[2], 0.0, -v[0]}, {-v[1], v[0], 0.0}};
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) out[a][b] = (a == b ? 1.0 - c * square : 0.0) + s * cross[a][b] + c * v[a] * v[b];
+}
+
+}  // namespace
+
+Pose between(const Pose& from, const Pose& to, double share) {
+  Pose middle = to;
+  double relative[3][3], step[3][3];
+  for (int a = 0; a < 3; a++) {
+    middle.position[a] = from.position[a] + share * (to.position[a] - from.position[a]);
+    for (int b = 0; b < 3; b++) {
+      relative[a][b] = 0.0;
+      for (int c = 0; c < 3; c++) relative[a][b] += from.rotation[c][a] * to.rotation[c][b];
+    }
+  }
+  Vector3 turn = rotation_vector(relative);
+  for (double& each : turn) each *= share;
+  rotation_matrix(turn, step);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) {
+      middle.rotation[a][b] = 0.0;
+      for (int c = 0; c < 3; c++) middle.rotation[a][b] += from.rotation[a][c] * step[c][b];
+    }
+  const std::size_t both = std::min(from.beam.size(), to.beam.size());
+  for (std::size_t i = 0; i < both; i++) middle.beam[i] = from.beam[i] + share * (to.beam[i] - from.beam[i]);
+  return middle;
+}
+
+}  // namespace skisnow

@@ -1,0 +1,102 @@
+"""The shape of a base that slides on snow."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..compiled import core
+from ..errors import ParameterError
+
+if TYPE_CHECKING:
+    from ..ski import Ski
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+TABLE_STEP: Final = 1e-3
+"""Spacing (m) of the table in which the core looks up width and height; between its rows they are linear."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Runner:
+    """A base with two edges: how wide and how high it is along its length. It has no mass: that is its body's.
+
+    Attributes
+    ----------
+    position
+        Along the runner from its boot, positive ahead (m), falling from tip to tail, as a ski's stations. (n,), n ≥ 2.
+    half_width
+        From the middle to each edge (m), > 0. (n,).
+    base_height
+        Of the unloaded base off the snow, 0 at the boot (m): camber, shovel. (n,).
+    nodes
+        Positions (m) of the nodes of a beam, falling, the first at the tip, the last at the tail; ``None``: rigid.
+
+    Raises
+    ------
+    ParameterError
+        Positions do not fall, a number is not finite, a width is not above 0, or nodes do not span the runner.
+    """
+
+    position: FloatArray
+    half_width: FloatArray
+    base_height: FloatArray
+    nodes: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("position", "half_width", "base_height"):
+            array = np.array(getattr(self, name), float)
+            array.flags.writeable = False
+            object.__setattr__(self, name, array)
+            if array.ndim != 1 or len(array) < 2 or array.shape != self.position.shape:
+                raise ParameterError(f"Runner: {name} has shape {array.shape}; it needs one number for each position")
+            if not np.all(np.isfinite(array)):
+                raise ParameterError(f"Runner: {name} holds a number that is not finite")
+        if np.any(np.diff(self.position) >= 0.0):
+            raise ParameterError("Runner: positions must fall from tip to tail")
+        if self.half_width.min() <= 0.0:
+            raise ParameterError(f"Runner: the half width is {self.half_width.min():g} m somewhere; it must be above 0")
+        self._check_nodes()
+
+    def _check_nodes(self) -> None:
+        if self.nodes is None:
+            return
+        nodes = np.array(self.nodes, float)
+        object.__setattr__(self, "nodes", nodes)
+        ends = (self.position[0], self.position[-1])
+        if nodes.ndim != 1 or len(nodes) < 2 or np.any(np.diff(nodes) >= 0.0):
+            raise ParameterError("Runner: nodes must be two positions or more that fall from tip to tail")
+        if not np.allclose((nodes[0], nodes[-1]), ends, atol=1e-9):
+            raise ParameterError(
+                f"Runner: nodes must begin at the tip and end at the tail, {ends[0]:g} and {ends[1]:g} m"
+            )
+
+    @classmethod
+    def of(cls, ski: Ski, *, nodes: npt.ArrayLike | None = None) -> Runner:
+        """The base of a ski, rigid, or with these beam nodes bending with what `SnowContact` is given of them."""
+        beam = None if nodes is None else np.asarray(nodes, float)
+        return cls(ski.station, ski.width / 2.0, ski.base_height, beam)
+
+    @property
+    def tip(self) -> float:
+        """Position of the tip (m)."""
+        return float(self.position[0])
+
+    @property
+    def tail(self) -> float:
+        """Position of the tail (m)."""
+        return float(self.position[-1])
+
+    def compiled(self) -> core.Runner:
+        """What the core takes."""
+        places = np.linspace(self.tail, self.tip, max(2, math.ceil((self.tip - self.tail) / TABLE_STEP)) + 1)
+        half, height = (
+            np.interp(places, self.position[::-1], column[::-1]) for column in (self.half_width, self.base_height)
+        )
+        table = np.column_stack([half, np.gradient(half, places), height, np.gradient(height, places)])
+        nodes = np.array([self.tip, self.tail]) if self.nodes is None else self.nodes
+        return core.runner(self.tail, self.tip, np.ascontiguousarray(table), np.ascontiguousarray(nodes))

@@ -1,0 +1,259 @@
+"""Any number of runners in one snow, each with its own pose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..compiled import core
+from ..errors import ParameterError
+
+if TYPE_CHECKING:
+    from ..forces.friction import FrictionLaw
+    from ..forces.shear import ShearLaw
+    from .runner import Runner
+    from .snow_field import SnowField
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Beams: TypeAlias = Sequence[npt.ArrayLike] | None
+State: TypeAlias = core.State
+
+SPACING: Final = 0.02
+"""Of the lines of snow along a runner (m) (Choice, as in the simulated turns)."""
+ORTHONORMAL: Final = 1e-9
+"""By how much a rotation may fail to be one."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ContactForces:
+    """What the snow does to k runners.
+
+    Attributes
+    ----------
+    wrench
+        (k, 6): force (N) and moment (N m) about each boot, in the slope's axes.
+    beam_loads
+        For each runner (nodes, 3): force (N) and moments (N m) on deflection, its slope and twist; empty without beams.
+    """
+
+    wrench: FloatArray
+    beam_loads: tuple[FloatArray, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sections:
+    """A runner's sections over the lines of snow, from the tail on; all (n,).
+
+    Attributes
+    ----------
+    position_along_ski, length
+        From the boot, and the length of runner that it stands for (m).
+    depth, edge_sine, edge_place
+        Depth of the deeper edge (m, < 0 above the snow), sine of the edge angle, place of the edge on its line (m).
+    normal_force, shear, push
+        Of the pressure, of the edge across, and along the edge (N).
+    sliding, friction
+        Speed along the edge (m/s), and μ with the sign of the sliding.
+    strength, shear_used
+        S_f (N/m²), and the share of the displacement to full strength in use (beyond ±1: slips).
+    """
+
+    position_along_ski: FloatArray
+    length: FloatArray
+    depth: FloatArray
+    edge_sine: FloatArray
+    edge_place: FloatArray
+    normal_force: FloatArray
+    shear: FloatArray
+    push: FloatArray
+    sliding: FloatArray
+    friction: FloatArray
+    strength: FloatArray
+    shear_used: FloatArray
+
+
+class SnowContact:
+    """Runners in a snow that keeps what they press into it.
+
+    ``force`` looks at a pose and leaves the snow as it is; ``update`` accepts a step. In between the history advances
+    along the way from the last accepted pose by itself, so that forces and acceptance of a long step agree.
+
+    Parameters
+    ----------
+    snow
+        The snow; contacts that share it meet each other's tracks once a runner has left them.
+    runners
+        One or more.
+    spacing
+        Of the lines on which the contact is integrated (m), > 0.
+
+    Notes
+    -----
+    Poses: ``position`` (k, 3) of the boots (m) and ``rotation`` (k, 3, 3) whose columns point ahead, left across the
+    base and off the base, in the slope's axes. ``velocity`` (k, 6): of the boots (m/s), and angular (rad/s), in those
+    axes. ``dt`` (s) is the time since the last accepted pose. Beams: for each runner (nodes, 3), deflection off the
+    base (m), its slope towards the tail, twist (rad). Equations: docs/methods/contact.md.
+    """
+
+    def __init__(
+        self,
+        snow: SnowField,
+        runners: Sequence[Runner],
+        *,
+        spacing: float = SPACING,
+        instruction_set: str | None = None,
+    ) -> None:
+        if not runners:
+            raise ParameterError("SnowContact: it needs one runner or more")
+        if not (np.isfinite(spacing) and spacing > 0.0):
+            raise ParameterError(f"SnowContact: spacing is {spacing!r} m; it must be above 0")
+        if instruction_set is not None and instruction_set not in core.instruction_sets():
+            known = ", ".join(core.instruction_sets())
+            raise ParameterError(f"SnowContact: instruction_set is {instruction_set!r}; this machine has {known}")
+        self.snow, self.runners = snow, tuple(runners)
+        self._core = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
+        friction = snow.friction_in_python
+        if friction is not None or snow.shear is not None:
+            called = None if friction is None else _coefficient(friction)
+            self._core.set_laws(called, None if snow.shear is None else _strength(snow.shear), snow.fade_speed)
+
+    def __repr__(self) -> str:
+        return f"SnowContact({len(self.runners)} runners, {self._core.instruction_set})"
+
+    @property
+    def instruction_set(self) -> str:
+        """Of the core's loops on this machine; all give the same bits."""
+        return self._core.instruction_set
+
+    def force(
+        self,
+        position: npt.ArrayLike,
+        rotation: npt.ArrayLike,
+        velocity: npt.ArrayLike,
+        dt: float,
+        *,
+        beam_dofs: Beams = None,
+        beam_rates: Beams = None,
+    ) -> ContactForces:
+        """Forces at a pose that may or may not be accepted later; nothing is remembered of it."""
+        found, loads = self._core.force(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
+        return ContactForces(found, tuple(loads))
+
+    def update(self, position: npt.ArrayLike, rotation: npt.ArrayLike, dt: float, *, beam_dofs: Beams = None) -> None:
+        """Accept the step to a pose: the snow remembers all that the runners met on the way."""
+        where, turned, _, step, beams, _ = self._asked(position, rotation, None, dt, beam_dofs, None)
+        self._core.update(where, turned, step, beams)
+
+    def tangent(
+        self,
+        position: npt.ArrayLike,
+        rotation: npt.ArrayLike,
+        velocity: npt.ArrayLike,
+        dt: float,
+        *,
+        beam_dofs: Beams = None,
+        beam_rates: Beams = None,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Stiffness and damping, (k, 6, 6): minus the derivatives of each wrench by its own runner's pose and motion.
+
+        Columns: place (m) and rotation (rad) about the slope's axes at the boot; velocity and angular velocity. Full,
+        unsymmetric; by central differences of 10⁻⁷ m and rad and 10⁻⁴ m/s and rad/s. Where a branch of a law changes
+        within that, the mean of both sides.
+        """
+        return self._core.tangent(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
+
+    def sections(self, runner: int = 0) -> Sections:
+        """What was found along a runner at the last ``force`` or ``update``."""
+        return Sections(**self._core.sections(runner))
+
+    def tracks(self) -> FloatArray:
+        """The grooves left in the snow, (n, 6): track, line, x, y, z on the surface (m), greatest depth ever (m).
+
+        Rows of a line follow each other across; between them the ground is straight. Those of all contacts in this
+        snow, and those under these runners.
+        """
+        return self._core.tracks(self.snow.compiled)
+
+    @property
+    def groove_energy(self) -> float:
+        """Energy (J) lost in all grooves of this snow: ½ H_V ε² (1 - H_V/k_u) over their area."""
+        return self._core.groove_energy()
+
+    @property
+    def elastic_energy(self) -> float:
+        """Energy (J) that the snow would give back, at the last pose looked at."""
+        return self._core.elastic_energy()
+
+    def state(self) -> State:
+        """All that this contact remembers, to go back to; tracks of others that came later are forgotten with it."""
+        return self._core.state()
+
+    def restore(self, state: State) -> None:
+        """Go back to a state: what follows has the same bits as it had from there."""
+        self._core.restore(state)
+
+    def _asked(
+        self,
+        position: npt.ArrayLike,
+        rotation: npt.ArrayLike,
+        velocity: npt.ArrayLike | None,
+        dt: float,
+        beams: Beams,
+        rates: Beams,
+    ) -> tuple[FloatArray, FloatArray, FloatArray, float, list[FloatArray] | None, list[FloatArray] | None]:
+        k = len(self.runners)
+        where, turned = _array("position", position, (k, 3)), _array("rotation", rotation, (k, 3, 3))
+        off = np.abs(np.swapaxes(turned, 1, 2) @ turned - np.eye(3)).max()
+        if off > ORTHONORMAL or np.any(np.linalg.det(turned) < 0.0):
+            raise ParameterError(f"SnowContact: rotation is none, its columns are off by {off:.1e} from orthonormal")
+        if not (np.isfinite(dt) and dt >= 0.0):
+            raise ParameterError(f"SnowContact: dt is {dt!r} s; it must be 0 or more")
+        moves = np.zeros((k, 6)) if velocity is None else _array("velocity", velocity, (k, 6))
+        return where, turned, moves, dt, self._beams("beam_dofs", beams), self._beams("beam_rates", rates)
+
+    def _beams(self, name: str, beams: Beams) -> list[FloatArray] | None:
+        if beams is None:
+            return None
+        if len(beams) != len(self.runners):
+            raise ParameterError(f"SnowContact: {name} has {len(beams)} entries for {len(self.runners)} runners")
+        counts = [2 if each.nodes is None else len(each.nodes) for each in self.runners]
+        return [_array(name, beam, (count, 3)) for beam, count in zip(beams, counts, strict=True)]
+
+
+def _array(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
+    array = np.ascontiguousarray(given, float)
+    if array.shape != shape:
+        raise ParameterError(f"SnowContact: {name} has shape {array.shape}; it must be {shape}")
+    if not np.all(np.isfinite(array)):
+        raise ParameterError(f"SnowContact: {name} holds a number that is not finite")
+    return array
+
+
+class _coefficient:  # noqa: N801 - a function that can be pickled
+    """μ of a law, for arrays of speeds."""
+
+    def __init__(self, law: FrictionLaw) -> None:
+        self.law = law
+
+    def __call__(self, speed: FloatArray) -> FloatArray:
+        return np.ascontiguousarray(np.broadcast_to(self.law.coefficient(speed), speed.shape), float)
+
+
+class _strength:  # noqa: N801
+    """Strength and thrust of a law (2, n), for arrays of depths and edge angles."""
+
+    def __init__(self, law: ShearLaw) -> None:
+        self.law = law
+
+    def __call__(self, depth: FloatArray, angle: FloatArray) -> FloatArray:
+        meets = depth > 0.0
+        found = np.zeros((2, len(depth)))
+        found[:, meets] = self.law.stress_and_thrust(depth[meets], angle[meets])
+        if not np.all(np.isfinite(found)):
+            worst = float(np.degrees(angle[meets][~np.isfinite(found[:, meets]).all(axis=0)][0]))
+            raise ParameterError(f"{self.law!r} gives no finite strength at an edge angle of {worst:.3g} degrees")
+        return found

@@ -1,0 +1,139 @@
+"""Snow over a slope: its strength, its laws, its surface, and the tracks that are left in it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..compiled import core
+from ..errors import ParameterError
+from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
+from ..forces.shear import ShearLaw
+from ..geometry.surfaces import Grid, Plane
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+SHEAR_DISPLACEMENT: Final = 0.5e-3
+"""Displacement of an edge across to its full strength (m) (Choice: that of the simulated turns)."""
+EDGE_BLEND: Final = math.radians(2.0)
+"""Edge angle (rad) above which the shear acts at the edge alone; below it moves to the middle (Choice)."""
+FADE_SPEED: Final = 0.01
+"""Sliding speed (m/s) below which friction fades to zero (Choice): Coulomb's law, regularised."""
+KNOT_AREA: Final = 1e-4
+"""Share of a contact's depth times width below which a knot of the groove is dropped (Choice)."""
+LOOK_BACK: Final = 1.25e-3
+"""Longest part of a step (s) over which the history advances at once (Choice)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SnowField:
+    """One snow, which any number of contacts share; what one leaves behind, the others meet.
+
+    Attributes
+    ----------
+    snow_hardness
+        H_V (N/m³), a number > 0 or a `Grid` over the place.
+    failure_shear_stress
+        S_f (N/m²), a number ≥ 0 or a `Grid` over the place; not used where ``shear`` is given.
+    unloading_ratio
+        k_u/H_V ≥ 1; 1 is elastic snow, which keeps nothing.
+    friction
+        A law for μ(v), or a constant μ ≥ 0.
+    shear
+        A law for the strength over depth and edge angle, with the thrust that comes with it; ``None``: S_f.
+    surface
+        ``Plane()`` or heights as a `Grid` (m).
+    compaction_resistance
+        Whether the snow that is pressed down resists along the edge.
+    shear_displacement
+        Of an edge across to its full strength (m), > 0: a penalty stiffness in front of Coulomb-like slip.
+    edge_blend_angle, fade_speed, knot_area, look_back
+        Numerics, see the constants of this module for what each does.
+
+    Raises
+    ------
+    ParameterError
+        A number is outside its range.
+    """
+
+    snow_hardness: float | Grid
+    failure_shear_stress: float | Grid
+    unloading_ratio: float
+    friction: FrictionLaw | float = 0.0
+    shear: ShearLaw | None = None
+    surface: Plane | Grid = field(default_factory=Plane)
+    compaction_resistance: bool = True
+    shear_displacement: float = SHEAR_DISPLACEMENT
+    edge_blend_angle: float = EDGE_BLEND
+    fade_speed: float = FADE_SPEED
+    knot_area: float = KNOT_AREA
+    look_back: float = LOOK_BACK
+    compiled: core.Snow = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        _require("snow_hardness", _least(self.snow_hardness), above=0.0)
+        _require("failure_shear_stress", _least(self.failure_shear_stress), least=0.0)
+        _require("unloading_ratio", self.unloading_ratio, least=1.0)
+        for name in ("shear_displacement", "edge_blend_angle", "fade_speed", "look_back"):
+            _require(name, getattr(self, name), above=0.0)
+        _require("knot_area", self.knot_area, least=0.0)
+        object.__setattr__(self, "compiled", self._compiled())
+
+    def _compiled(self) -> core.Snow:
+        snow = core.Snow()
+        snow.hardness, snow.strength = _grid(self.snow_hardness), _grid(self.failure_shear_stress)
+        snow.surface = _grid(0.0 if isinstance(self.surface, Plane) else self.surface, goes_on=True)
+        snow.unloading_ratio, snow.shear_displacement = self.unloading_ratio, self.shear_displacement
+        snow.edge_blend_sine = math.sin(self.edge_blend_angle)
+        snow.compaction_resistance, snow.friction = self.compaction_resistance, self._friction()
+        snow.knot_area, snow.look_back = self.knot_area, self.look_back
+        return snow
+
+    def _friction(self) -> core.FrictionLaw:
+        """Coefficients of μ = c₀ + c₁ v + c₂ v² + a/(1 + v/v₀), which the laws of `forces.friction` are."""
+        law, out = self.friction, core.FrictionLaw()
+        out.fade_speed = self.fade_speed
+        if isinstance(law, ConstantFriction):
+            out.constant = law.friction_coefficient
+        elif isinstance(law, LinearFriction):
+            out.constant, out.linear = law.friction_at_rest, law.friction_slope
+        elif isinstance(law, QuadraticFriction):
+            out.constant, out.linear, out.square = law.friction_at_rest, law.friction_slope, law.friction_curvature
+        elif isinstance(law, WaterFilmFriction):
+            out.constant, out.linear = law.lubricated_friction, law.viscous_slope
+            out.film, out.film_speed = law.dry_friction, law.film_speed
+        elif not isinstance(law, FrictionLaw):
+            _require("friction", law, least=0.0)
+            out.constant = law
+        return out
+
+    @property
+    def friction_in_python(self) -> FrictionLaw | None:
+        """The friction law, if it is none that the core knows."""
+        known = (ConstantFriction, LinearFriction, QuadraticFriction, WaterFilmFriction)
+        return (
+            self.friction if isinstance(self.friction, FrictionLaw) and not isinstance(self.friction, known) else None
+        )
+
+
+def _least(value: float | Grid) -> float:
+    return float(value.values.min()) if isinstance(value, Grid) else value
+
+
+def _require(name: str, value: float, *, least: float | None = None, above: float | None = None) -> None:
+    allowed = f"at least {least:g}" if least is not None else f"above {above:g}"
+    good = math.isfinite(value) and (least is None or value >= least) and (above is None or value > above)
+    if not good:
+        raise ParameterError(f"SnowField: {name} is {value!r}; it must be finite and {allowed}")
+
+
+def _grid(value: float | Grid, *, goes_on: bool = False) -> core.Grid:
+    if not isinstance(value, Grid):
+        return core.Grid(float(value))
+    steps = [float(np.ptp(places)) / (len(places) - 1) if len(places) > 1 else 1.0 for places in (value.x, value.y)]
+    heights = np.ascontiguousarray(value.values)
+    return core.grid(float(value.x[0]), steps[0], float(value.y[0]), steps[1], heights, goes_on)

@@ -1,0 +1,282 @@
+"""A runner in snow again: plain NumPy, one line at a time, all that was ever pressed kept as a list of segments.
+
+Derived apart from the core: points of the base as vectors, ground by its definition (the deepest of all segments), the
+pressure integrated by Gauss's points between all places where it may bend.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from skisnow.contact import Runner, SnowField
+
+FloatArray = npt.NDArray[np.float64]
+_POINT, _WEIGHT = np.polynomial.legendre.leggauss(3)
+
+
+@dataclass
+class Line:
+    """Across the path: origin, directions ahead, left and out of the snow; what was pressed; where the edge holds."""
+
+    origin: FloatArray
+    ahead: FloatArray
+    out: FloatArray
+    pressed: list[tuple[float, float, float, float]] = field(default_factory=list)
+    anchor: float | None = None
+    above: tuple[float, float] | None = None
+    marked: tuple[float, float] | None = None
+
+    @property
+    def left(self) -> FloatArray:
+        return np.cross(self.out, self.ahead)
+
+
+@dataclass
+class Touch:
+    """Where a base meets a line: edge, its depth, fall of the depth, wet from and to, depth of the deepest edge."""
+
+    edge: float
+    depth: float
+    fall: float
+    low: float
+    high: float
+    deepest: float
+
+    def base(self, y: FloatArray | float) -> FloatArray | float:
+        return self.depth + self.fall * (y - self.edge)
+
+
+@dataclass
+class Pose:
+    """Of a boot; beam as rows of deflection, slope towards the tail, twist."""
+
+    position: FloatArray
+    rotation: FloatArray
+    velocity: FloatArray
+    beam: FloatArray | None = None
+    rate: FloatArray | None = None
+
+
+class ReferenceRunner:
+    """A runner over lines that are laid every ``spacing`` along it at its first pose."""
+
+    def __init__(self, runner: Runner, snow: SnowField, pose: Pose, spacing: float) -> None:
+        self.runner, self.snow, self.spacing = runner, snow, spacing
+        self.table = np.linspace(runner.tail, runner.tip, max(2, math.ceil((runner.tip - runner.tail) / 1e-3)) + 1)
+        rows = [np.interp(self.table, runner.position[::-1], c[::-1]) for c in (runner.half_width, runner.base_height)]
+        self.columns = [*rows, *(np.gradient(row, self.table) for row in rows)]
+        self.lines = [self._laid(pose, s) for s in self._stations()]
+
+    def _stations(self) -> list[float]:
+        """The core begins at the boot and lays 0.12 m beyond tip and tail, each line one spacing from the last."""
+        ahead = range(math.ceil((self.runner.tip + 0.12) / self.spacing - 1e-9) + 1)
+        behind = range(1, math.ceil((0.12 - self.runner.tail) / self.spacing - 1e-9) + 1)
+        return [-n * self.spacing for n in reversed(behind)] + [n * self.spacing for n in ahead]
+
+    def _laid(self, pose: Pose, s: float) -> Line:
+        x, left = pose.rotation[:, 0], pose.rotation[:, 1]
+        side = float(np.clip(-left[2] / math.sin(self.snow.edge_blend_angle), -1.0, 1.0)) * 0.04
+        point = pose.position + s * x + side * left
+        # on the surface z = 0 at this position along the ski
+        level = x[0] ** 2 + x[1] ** 2
+        along = point[2] * x[2] / level
+        origin = np.array([point[0] + along * x[0], point[1] + along * x[1], 0.0])
+        ahead = np.array([x[0], x[1], 0.0])
+        return Line(origin, ahead / np.linalg.norm(ahead), np.array([0.0, 0.0, 1.0]))
+
+    def force(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
+        """Wrench (6,) about the boot and beam loads (nodes, 3)."""
+        wrench, loads = np.zeros(6), np.zeros((2 if self.runner.nodes is None else len(self.runner.nodes), 3))
+        for line in self.lines:
+            section = _Section(self, line, pose)
+            if section.share > 0.0 and section.touch.deepest > 0.0:
+                section.add(wrench, loads)
+        return wrench, loads
+
+    def update(self, pose: Pose) -> None:
+        for line in self.lines:
+            section = _Section(self, line, pose)
+            line.marked, before = None, line.marked
+            if section.share <= 0.0:
+                continue
+            touch = section.touch
+            if touch.deepest <= 0.0:
+                line.above, line.anchor = (touch.edge, touch.deepest), None
+                continue
+            if before is not None and abs(before[0] - touch.edge) > 1e-12:
+                line.pressed.append((*before, touch.edge, touch.depth))
+            if touch.high > touch.low:
+                line.pressed.append(
+                    (touch.low, float(touch.base(touch.low)), touch.high, float(touch.base(touch.high)))
+                )
+            line.marked = touch.edge, touch.depth
+            reach = self.snow.shear_displacement
+            line.anchor = float(np.clip(_anchor(line, touch), touch.edge - reach, touch.edge + reach))
+            line.above = None
+
+
+def _anchor(line: Line, touch: Touch) -> float:
+    if line.anchor is not None:
+        return line.anchor
+    if line.above is None:
+        return touch.edge
+    before, height = line.above
+    return before + (touch.edge - before) * height / (height - touch.deepest)
+
+
+class _Section:
+    def __init__(self, whole: ReferenceRunner, line: Line, pose: Pose) -> None:
+        self.whole, self.line, self.pose = whole, line, pose
+        self.x, across, up = pose.rotation.T
+        n, y, ahead = line.out, line.left, line.ahead
+        to_line = line.origin - pose.position
+        gap = float(to_line @ ahead / (self.x @ ahead))
+        blend = math.sin(whole.snow.edge_blend_angle)
+        down = float(np.clip(-(across @ n) / blend, -1.0, 1.0))
+        s = gap
+        for _ in range(2):
+            half, height = (float(np.interp(s, whole.table, column)) for column in whole.columns[:2])
+            s = gap - (down * half * float(across @ ahead) + height * float(up @ ahead)) / float(self.x @ ahead)
+        tail, tip = whole.runner.tail, whole.runner.tip
+        ends = np.clip([(s - tail) / whole.spacing + 0.5, (tip - s) / whole.spacing + 0.5], 0.0, 1.0)
+        self.share = float(ends.prod()) * whole.spacing
+        s = min(max(s, tail), tip)
+        half, height, flare, slope = (float(np.interp(s, whole.table, column)) for column in whole.columns)
+        self._bend(s)
+        height, slope = height + float(self.deflects @ self.beam), slope + float(self.deflects_s @ self.beam)
+        phi, self.twist_s = float(self.twists @ self.beam), float(self.twists_s @ self.beam)
+        self.t, self.r = math.cos(phi) * across - math.sin(phi) * up, math.cos(phi) * up + math.sin(phi) * across
+        axis = s * self.x + height * up
+        depth, self.sine = float((to_line - axis) @ n), float(-self.t @ n)
+        self.reach = float(np.clip(self.sine / blend, -1.0, 1.0)) * half
+        along = self.x + slope * up + self.reach / half * flare * self.t - self.reach * self.twist_s * self.r
+        missing = float((to_line - axis - self.reach * self.t) @ ahead)
+        edge = float((axis + self.reach * self.t + missing / float(along @ ahead) * along - to_line) @ y)
+        self.base = np.cross(along, self.t) / float(np.cross(along, self.t) @ n)
+        fall = float(self.base @ y)
+        self.wide = float(self.t @ y) + fall * self.sine
+        low, high = edge - (half + self.reach) / self.wide, edge + (half - self.reach) / self.wide
+        edge_depth = depth + self.reach * self.sine
+        if fall > 1e-12:
+            low = max(low, edge - edge_depth / fall)
+        elif fall < -1e-12:
+            high = min(high, edge - edge_depth / fall)
+        self.touch = Touch(edge, edge_depth, fall, low, high, depth + half * abs(self.sine))
+        u = np.cross(n, along)
+        self.per_length = 1.0 / float(np.linalg.norm(u))
+        self.u, self.up, self.edge_at = u * self.per_length, up, axis + self.reach * self.t
+
+    def _bend(self, s: float) -> None:
+        nodes = self.whole.runner.nodes
+        count = 2 if nodes is None else len(nodes)
+        self.deflects, self.deflects_s, self.twists, self.twists_s = (np.zeros(3 * count) for _ in range(4))
+        self.beam = np.zeros(3 * count) if self.pose.beam is None else self.pose.beam.ravel()
+        self.rate = np.zeros(3 * count) if self.pose.rate is None else self.pose.rate.ravel()
+        if nodes is None:
+            return
+        e = int(np.clip(np.searchsorted(-nodes, -s, side="left") - 1, 0, count - 2))
+        h = float(nodes[e] - nodes[e + 1])
+        z = float(nodes[e] - s) / h
+        place = [3 * e, 3 * e + 1, 3 * e + 3, 3 * e + 4]
+        cubics = np.array([[1, 0, -3, 2], [0, h, -2 * h, h], [0, 0, 3, -2], [0, 0, -h, h]])
+        self.deflects[place] = cubics @ [1, z, z * z, z**3]
+        self.deflects_s[place] = -(cubics @ [0, 1, 2 * z, 3 * z * z]) / h
+        self.twists[[3 * e + 2, 3 * e + 5]] = 1.0 - z, z
+        self.twists_s[[3 * e + 2, 3 * e + 5]] = 1.0 / h, -1.0 / h
+
+    def add(self, wrench: FloatArray, loads: FloatArray) -> None:
+        snow, line, touch = self.whole.snow, self.line, self.touch
+        n, y = line.out, line.left
+        force, moment = (self.share * value for value in _pressure(line, touch, snow))
+        off = moment / force if force > 0.0 else 0.0
+        push_at, arm = self.edge_at + off * (y - touch.fall * n), self.reach + off * self.wide
+        v, omega = self.pose.velocity[:3], self.pose.velocity[3:]
+        moves = v + np.cross(omega, push_at) + float(self.deflects @ self.rate) * self.up
+        moves -= float(self.twists @ self.rate) * arm * self.r
+        forwards = np.cross(self.u, n)
+        sliding = float(forwards @ moves)
+        by_twist = self.twist_s * moment / (1.0 - self.sine**2) * self.per_length
+        resist = force * float(self.base @ forwards) + by_twist if snow.compaction_resistance else 0.0
+        mu = float(snow.friction.coefficient(abs(sliding))) if hasattr(snow.friction, "coefficient") else snow.friction
+        rub = -mu * force * sliding / math.hypot(sliding, snow.fade_speed)
+        used = (_anchor(line, touch) - touch.edge) / snow.shear_displacement
+        strength = snow.failure_shear_stress
+        assert isinstance(strength, float)
+        shear = strength * touch.deepest * self.share * min(max(used, -1.0), 1.0) * self.u
+        push = force * n + (resist + rub) * forwards
+        wrench[:3] += push + shear
+        wrench[3:] += np.cross(push_at, push) + np.cross(self.edge_at, shear)
+        loads += (self.deflects * float(self.up @ (push + shear))).reshape(-1, 3)
+        loads -= (self.twists * float(self.r @ (arm * push + self.reach * shear))).reshape(-1, 3)
+
+
+def _pressure(line: Line, touch: Touch, snow: SnowField) -> tuple[float, float]:
+    """∫p dy and ∫p (y - edge) dy of p = max(0, H_V ε_max - k_u (ε_max - ε)), ε_max the deepest ever."""
+    hardness = snow.snow_hardness
+    assert isinstance(hardness, float)
+    stiff = snow.unloading_ratio * hardness
+    segments = [(a, ga, b, gb) if a < b else (b, gb, a, ga) for a, ga, b, gb in line.pressed]
+    marked = line.marked
+    if marked is not None and (touch.low - touch.edge) * (touch.high - touch.edge) == 0.0:
+        # ground that the edge has cut as it went away from its base
+        away = (marked[0] - touch.edge) * (0.5 * (touch.low + touch.high) - touch.edge)
+        if away > 0.0:
+            ends = sorted([(touch.edge, touch.depth), marked])
+            segments.append((*ends[0], *ends[1]))
+    places = {touch.low, touch.high, *(s[0] for s in segments), *(s[2] for s in segments)}
+    straight = [*segments, (touch.low, float(touch.base(touch.low)), touch.high, float(touch.base(touch.high)))]
+    for one, other in itertools.combinations([s for s in straight if s[2] > s[0]], 2):
+        places.update(_meet(one, other))
+    ordered = sorted(p for p in places if touch.low <= p <= touch.high)
+    force = moment = 0.0
+    for a, b in itertools.pairwise(ordered):
+        if b - a < 1e-15:
+            continue
+        middle = 0.5 * (a + b)
+        over = [s for s in segments if s[0] <= middle <= s[2] and s[2] > s[0]]
+        deepest = max(over, key=lambda s: _at(s, middle), default=None)
+        for low, high in _bearing(a, b, deepest, touch, hardness, stiff):
+            at = 0.5 * (low + high) + 0.5 * (high - low) * _POINT
+            base = np.asarray(touch.base(at))
+            ground = base if deepest is None else np.maximum(base, _at(deepest, at))
+            p = hardness * ground - stiff * (ground - base)
+            force += float(0.5 * (high - low) * _WEIGHT @ p)
+            moment += float(0.5 * (high - low) * _WEIGHT @ (p * (at - touch.edge)))
+    return force, moment
+
+
+def _at(segment: tuple[float, float, float, float], y: FloatArray | float) -> FloatArray | float:
+    a, ga, b, gb = segment
+    return ga + (gb - ga) * (y - a) / (b - a)
+
+
+def _meet(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> list[float]:
+    slope = (one[3] - one[1]) / (one[2] - one[0]), (other[3] - other[1]) / (other[2] - other[0])
+    if slope[0] == slope[1]:
+        return []
+    return [(other[1] - slope[1] * other[0] - one[1] + slope[0] * one[0]) / (slope[0] - slope[1])]
+
+
+def _bearing(
+    a: float, b: float, ground: tuple[float, float, float, float] | None, touch: Touch, hardness: float, stiff: float
+) -> list[tuple[float, float]]:
+    """The part of [a, b] in which the snow pushes: on it the pressure is straight."""
+    if ground is None:
+        return [(a, b)]
+
+    def push(y: float) -> float:
+        base = float(touch.base(y))
+        return float(hardness * max(base, float(_at(ground, y))) - stiff * max(0.0, float(_at(ground, y)) - base))
+
+    at_a, at_b = push(a), push(b)
+    if at_a <= 0.0 and at_b <= 0.0:
+        return []
+    if at_a > 0.0 and at_b > 0.0:
+        return [(a, b)]
+    zero = a + (b - a) * at_a / (at_a - at_b)
+    return [(a, zero)] if at_a > 0.0 else [(zero, b)]

@@ -1,0 +1,222 @@
+"""What a contact promises whatever the numbers: several runners, states, surfaces, laws, the same bits everywhere."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow import read_ski
+from skisnow.compiled import core
+from skisnow.contact import Runner, SnowContact, SnowField
+from skisnow.errors import ParameterError
+from skisnow.forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
+from skisnow.forces.shear import AngleShear, MachiningShear, ShearLaw
+from skisnow.geometry.surfaces import Grid
+
+from .conftest import edged, straight
+
+FloatArray = npt.NDArray[np.float64]
+H, S = 2e8, 5e5
+SKI = Runner.of(read_ski("giant-slalom"))
+SPEED = np.array([[8.0, 0.1, -0.01, 0.0, 0.0, 0.3]])
+
+
+def carving(step: int, *, y: float = 0.0, angle: float = 0.6) -> tuple[FloatArray, FloatArray]:
+    """A ski that runs along a circle of 12 m, 4 mm a step, going up and down by a tenth of a millimetre."""
+    turn = 0.004 * step / 12.0
+    centre = np.array([12.0 * math.sin(turn), y + 12.0 * (1.0 - math.cos(turn)), 0.016 + 1e-4 * math.sin(0.3 * step)])
+    return centre[None], edged(angle, turn=turn)[None]
+
+
+def history(contact: SnowContact, steps: range) -> FloatArray:
+    out = []
+    for step in steps:
+        out.append(contact.force(*carving(step), SPEED, 5e-4).wrench[0])
+        contact.update(*carving(step), 5e-4)
+    return np.array(out)
+
+
+def test_forces_of_several_runners_are_those_of_each() -> None:
+    poses = [carving(0, angle=a, y=y) for a, y in ((0.6, 0.25), (0.8, -0.25), (-0.3, 3.0))]
+    position, rotation = (np.concatenate(parts) for parts in zip(*poses, strict=True))
+    together = SnowContact(SnowField(H, S, 10.0), [SKI] * 3).force(position, rotation, np.repeat(SPEED, 3, 0), 0.0)
+    for wrench, pose in zip(together.wrench, poses, strict=True):
+        assert np.array_equal(wrench, SnowContact(SnowField(H, S, 10.0), [SKI]).force(*pose, SPEED, 0.0).wrench[0])
+
+
+def test_a_look_leaves_the_snow_as_it_is() -> None:
+    contact, looked_at = (SnowContact(SnowField(H, S, 10.0), [SKI]) for _ in range(2))
+    first = history(contact, range(20))
+    second = []
+    for step in range(20):
+        looked_at.force(*carving(step + 3, y=0.01), SPEED, 4e-3)
+        second.append(looked_at.force(*carving(step), SPEED, 5e-4).wrench[0])
+        looked_at.update(*carving(step), 5e-4)
+    assert np.array_equal(first, np.array(second))
+
+
+def test_a_restored_state_goes_on_with_the_same_bits() -> None:
+    contact = SnowContact(SnowField(H, S, 10.0), [SKI])
+    history(contact, range(600))  # 2.4 m: lines have been left behind
+    kept = contact.state()
+    first, grooves = history(contact, range(600, 700)), contact.tracks()
+    contact.restore(kept)
+    assert np.array_equal(history(contact, range(600, 700)), first)
+    assert np.array_equal(contact.tracks(), grooves)
+
+
+def test_a_long_step_is_marched_like_short_ones() -> None:
+    short, long = (SnowContact(SnowField(H, S, 10.0), [SKI]) for _ in range(2))
+    history(short, range(41))
+    for step in range(0, 41, 8):
+        long.update(*carving(step), 4e-3 if step else 0.0)
+    one, other = (each.force(*carving(41), SPEED, 5e-4).wrench[0] for each in (short, long))
+    assert np.abs(one - other).max() < 0.01 * np.abs(one).max()
+
+
+def test_bits_are_the_same_on_every_instruction_set_and_in_threads() -> None:
+    def run(name: str) -> FloatArray:
+        return history(SnowContact(SnowField(H, S, 10.0), [SKI], instruction_set=name), range(60))
+
+    with ThreadPoolExecutor(3) as pool:
+        found = list(pool.map(run, core.instruction_sets() * 2))
+    assert all(np.array_equal(each, found[0]) for each in found)
+
+
+def test_a_crossed_track_is_met_as_deep_as_it_was_left() -> None:
+    """A flat ski over an old flat groove of half its depth: forces are less by the loss, whatever the heading."""
+    depth, height = 2e-3, -1e-3
+    for heading in (math.pi / 2, math.radians(30)):
+        snow = SnowField(H, S, 10.0)
+        first = SnowContact(snow, [straight(length=1.0)])
+        for x in np.arange(-2.0, 2.0, 0.02):
+            first.update([[x, 0.0, -depth]], [np.eye(3)], 5e-4)
+        over = SnowContact(snow, [straight(length=1.0)])
+        pose = [[-0.4, 0.0, height]], [edged(0.0, turn=heading)]
+        found = over.force(*pose, SPEED * 0.0, 0.0).wrench[0][2]
+        virgin = SnowContact(SnowField(H, S, 10.0), [straight(length=1.0)]).force(*pose, SPEED * 0.0, 0.0).wrench[0][2]
+        # nothing pushes where the groove lies deeper by more than H_V/k_u of its depth
+        under = min(0.06 / math.sin(heading), 1.0)
+        assert found == pytest.approx(virgin * (1.0 - under), rel=0.02)
+
+
+def test_a_tilted_plane_as_a_grid_is_a_plane() -> None:
+    tilt = edged(0.0, lean=math.radians(-14.0))  # of the slope, x down
+    x = np.linspace(-3.0, 3.0, 25)
+    grid = Grid(x, x, np.repeat((x * tilt[2, 0] / tilt[0, 0])[:, None], 25, axis=1))
+    plane, tilted = SnowContact(SnowField(H, S, 10.0), [SKI]), SnowContact(SnowField(H, S, 10.0, surface=grid), [SKI])
+    for step in range(50):
+        position, rotation = carving(step)
+        turned = (tilt @ position[0])[None], (tilt @ rotation[0])[None]
+        one = plane.force(position, rotation, SPEED, 5e-4).wrench[0].reshape(2, 3)
+        velocity = (SPEED.reshape(2, 3) @ tilt.T).reshape(1, 6)
+        other = tilted.force(*turned, velocity, 5e-4).wrench[0].reshape(2, 3) @ tilt
+        assert np.abs(one - other).max() < 1e-7 * np.abs(one).max()
+        plane.update(position, rotation, 5e-4)
+        tilted.update(*turned, 5e-4)
+
+
+def test_snow_may_differ_from_place_to_place() -> None:
+    places = np.linspace(-2.0, 2.0, 9)
+    varied = SnowField(Grid.along(places, H * (1.0 + 0.2 * places)), S, 10.0)
+    pose = [[0.0, 0.0, -1e-3]], [np.eye(3)]
+    found = SnowContact(varied, [straight(length=1.0)]).force(*pose, SPEED * 0.0, 0.0).wrench[0]
+    assert found[2] == pytest.approx(H * 0.06 * 1e-3, rel=1e-9)
+    # ∫ H_V (1 + 0.2 x) w d x dx over the length: about the y axis, nose up is negative
+    assert found[4] == pytest.approx(-0.2 * H * 0.06 * 1e-3 / 12.0, rel=1e-3)
+
+
+@dataclass(frozen=True)
+class _Kinked(FrictionLaw):
+    """A law written here."""
+
+    def _coefficient(self, speed: FloatArray) -> FloatArray:
+        return np.where(speed < 5.0, 0.02, 0.07)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        ConstantFriction(0.05),
+        LinearFriction(0.03, 0.002),
+        QuadraticFriction(0.03, 0.002, 1e-4),
+        WaterFilmFriction(lubricated_friction=0.01, dry_friction=0.05, film_speed=3.0, viscous_slope=0.001),
+        _Kinked(),
+    ],
+    ids=lambda law: type(law).__name__,
+)
+def test_every_friction_law_runs_and_is_its_own_formula(law: FrictionLaw) -> None:
+    contact = SnowContact(SnowField(H, S, 10.0, friction=law), [SKI])
+    contact.force(*carving(0), SPEED, 0.0)
+    found = contact.sections()
+    met = found.normal_force > 0.0
+    signed = law.coefficient(np.abs(found.sliding)) * found.sliding / np.hypot(found.sliding, 0.01)
+    assert met.sum() > 20
+    assert found.friction[met] == pytest.approx(signed[met], rel=1e-12)
+
+
+@pytest.mark.parametrize("law", [AngleShear(3e5, 0.266), MachiningShear(1e5, 0.1)], ids=lambda law: type(law).__name__)
+def test_shear_laws_give_strength_and_thrust(law: ShearLaw) -> None:
+    angle, e, length = math.radians(50), 2e-3, 1.6
+    pose = np.array([[0.0, 0.0, 0.03 * math.sin(angle) - e]]), edged(angle)[None]
+    contact = SnowContact(SnowField(H, 0.0, 10.0, shear=law), [straight()])
+    contact.update(*pose, 0.0)
+    aside = pose[0] + [[0.0, 2e-3, 0.0]]
+    found = contact.force(aside, pose[1], SPEED * 0.0, 5e-4).wrench[0]
+    bare = SnowContact(SnowField(H, 0.0, 10.0), [straight()])
+    bare.update(*pose, 0.0)
+    without = bare.force(aside, pose[1], SPEED * 0.0, 5e-4).wrench[0]
+    assert -found[1] == pytest.approx(float(law.failure_force(e, length, angle)), rel=1e-9)
+    assert found[2] - without[2] == pytest.approx(float(law.thrust_force(e, length, angle)), rel=1e-9)
+
+
+def test_machining_below_its_friction_angle_is_refused() -> None:
+    law = MachiningShear(1e5, 1.0)
+    contact = SnowContact(SnowField(H, 0.0, 10.0, shear=law), [SKI])
+    with pytest.raises(ParameterError, match=r"MachiningShear.*no finite strength at an edge angle of 3[34]"):
+        contact.force(*carving(0), SPEED, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"snow_hardness": 0.0}, "snow_hardness is 0.0; it must be finite and above 0"),
+        ({"snow_hardness": math.nan}, "snow_hardness is nan"),
+        ({"unloading_ratio": 0.9}, "unloading_ratio is 0.9; it must be finite and at least 1"),
+        ({"failure_shear_stress": -1.0}, "failure_shear_stress is -1.0"),
+        ({"shear_displacement": 0.0}, "shear_displacement is 0.0"),
+        ({"friction": -0.1}, "friction is -0.1"),
+    ],
+)
+def test_snow_that_cannot_be_is_refused(change: dict[str, float], words: str) -> None:
+    given: dict[str, Any] = {"snow_hardness": H, "failure_shear_stress": S, "unloading_ratio": 10.0, **change}
+    with pytest.raises(ParameterError, match=words):
+        SnowField(**given)
+
+
+def test_poses_that_cannot_be_are_refused() -> None:
+    contact = SnowContact(SnowField(H, S, 10.0), [SKI])
+    position, rotation = carving(0)
+    for bad, words in (
+        ((position[0], rotation, SPEED, 0.0), r"position has shape \(3,\); it must be \(1, 3\)"),
+        ((position * np.nan, rotation, SPEED, 0.0), "position holds a number that is not finite"),
+        ((position, 1.1 * rotation, SPEED, 0.0), "rotation is none"),
+        ((position, -rotation, SPEED, 0.0), "rotation is none"),
+        ((position, rotation, SPEED, -1.0), r"dt is -1.0 s; it must be 0 or more"),
+    ):
+        with pytest.raises(ParameterError, match=words):
+            contact.force(*bad)
+    with pytest.raises(ParameterError, match="needs one runner or more"):
+        SnowContact(SnowField(H, S, 10.0), [])
+    with pytest.raises(ParameterError, match="beam_dofs has 2 entries for 1 runners"):
+        contact.force(position, rotation, SPEED, 0.0, beam_dofs=[np.zeros((2, 3))] * 2)
+    with pytest.raises(ParameterError, match="must fall from tip to tail"):
+        Runner(np.array([-1.0, 1.0]), np.ones(2), np.zeros(2))
+    with pytest.raises(ParameterError, match="instruction_set is 'sse'"):
+        SnowContact(SnowField(H, S, 10.0), [SKI], instruction_set="sse")

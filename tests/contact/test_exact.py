@@ -1,0 +1,137 @@
+"""A runner in snow against closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow.contact import SnowContact, SnowField
+
+from .conftest import edged, straight
+
+FloatArray = npt.NDArray[np.float64]
+H, S, LENGTH, WIDTH = 2e8, 5e5, 1.6, 0.06
+AT_REST = np.zeros((1, 6))
+
+
+def placed(angle: float, depth: float, *, x: float = 0.0, y: float = 0.0) -> tuple[FloatArray, FloatArray]:
+    """A straight runner whose deeper edge lies ``depth`` below the plane, its middle shifted by x and y."""
+    height = 0.5 * WIDTH * abs(math.sin(angle)) - depth
+    return np.array([[x, y, height]]), edged(angle)[None]
+
+
+def pressed(snow: SnowField, *path: tuple[FloatArray, FloatArray]) -> SnowContact:
+    contact = SnowContact(snow, [straight()])
+    for pose in path:
+        contact.update(*pose, 5e-4)
+    return contact
+
+
+def wrench(contact: SnowContact, pose: tuple[FloatArray, FloatArray], velocity: FloatArray = AT_REST) -> FloatArray:
+    return contact.force(*pose, velocity, 5e-4).wrench[0]
+
+
+def test_a_flat_base_bears_hardness_times_volume() -> None:
+    contact = SnowContact(SnowField(H, S, 10.0), [straight()])
+    assert wrench(contact, placed(0.0, 1e-3)) == pytest.approx([0, 0, H * LENGTH * WIDTH * 1e-3, 0, 0, 0], abs=1e-8)
+
+
+@pytest.mark.parametrize("degrees", [30, -45, 60])
+def test_an_edge_is_a_wedge(degrees: float) -> None:
+    angle, e = math.radians(degrees), 2e-3
+    found = wrench(SnowContact(SnowField(H, S, 10.0), [straight()]), placed(angle, e))
+    assert found[2] == pytest.approx(H * LENGTH * e * e / (2.0 * math.tan(abs(angle))), rel=1e-12)
+    assert found[[0, 1]] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [2.0, 10.0, 50.0])
+def test_unloading_of_a_wedge_is_a_square(ratio: float) -> None:
+    angle, e = math.radians(45), 2e-3
+    contact = pressed(SnowField(H, S, ratio), placed(angle, e))
+    most = wrench(contact, placed(angle, e))[2]
+    for share in (0.2, 0.5, 0.9):
+        lifted = wrench(contact, placed(angle, e - share * e / ratio))[2]
+        assert lifted == pytest.approx(most * (1.0 - share) ** 2, rel=1e-9)
+    assert wrench(contact, placed(angle, e - 1.01 * e / ratio))[2] == 0.0
+
+
+def test_elastic_snow_keeps_nothing() -> None:
+    angle = math.radians(45)
+    contact = pressed(SnowField(H, S, 1.0), placed(angle, 2e-3))
+    fresh = SnowContact(SnowField(H, S, 1.0), [straight()])
+    assert wrench(contact, placed(angle, 1e-3)) == pytest.approx(wrench(fresh, placed(angle, 1e-3)), rel=1e-12)
+
+
+def test_the_energy_of_a_cycle_is_that_of_the_groove() -> None:
+    """½ H_V ε² (1 - H_V/k_u) over the wedge's width: H_V e³ L (1 - 1/κ)/(6 tan ϑ)."""
+    angle, e, ratio = math.radians(40), 3e-3, 8.0
+    contact = pressed(SnowField(H, S, ratio), placed(angle, e))
+    lost = H * e**3 * LENGTH * (1.0 - 1.0 / ratio) / (6.0 * math.tan(angle))
+    assert contact.groove_energy == pytest.approx(lost, rel=0.02)  # lines stand for half a spacing beyond both ends
+    depths = np.linspace(e, e * (1.0 - 1.0 / ratio), 41)
+    back = np.trapezoid([wrench(contact, placed(angle, float(d)))[2] for d in depths], -depths)
+    done = H * e**3 * LENGTH / (6.0 * math.tan(angle))
+    assert done - back == pytest.approx(lost, rel=1e-3)
+
+
+def test_an_edge_holds_up_to_its_strength_and_then_slips() -> None:
+    angle, e, reach = math.radians(45), 2e-3, 0.5e-3
+    contact = pressed(SnowField(H, S, 10.0), placed(angle, e))
+    for aside in (0.1e-3, 0.4e-3, -0.3e-3):
+        assert wrench(contact, placed(angle, e, y=aside))[1] == pytest.approx(-S * LENGTH * e * aside / reach, rel=1e-9)
+    for aside in (0.6e-3, 5e-3):
+        assert wrench(contact, placed(angle, e, y=aside))[1] == pytest.approx(-S * LENGTH * e, rel=1e-9)
+    contact.update(*placed(angle, e, y=5e-3), 5e-4)  # slipped: it holds anew from half a millimetre behind
+    assert wrench(contact, placed(angle, e, y=5e-3))[1] == pytest.approx(-S * LENGTH * e, rel=1e-9)
+    assert wrench(contact, placed(angle, e, y=4.5e-3))[1] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_an_edge_that_leaves_its_base_rests_on_what_it_cut() -> None:
+    """On the flat ground that the edge leaves, a base carries H_V/k_u of what it carries on virgin snow."""
+    angle, e, ratio = math.radians(45), 2e-3, 10.0
+    contact = pressed(SnowField(H, S, ratio), placed(angle, e))
+    virgin = wrench(contact, placed(angle, e))[2]
+    # the left edge is down and the base lies to its right: to the left it cuts
+    steps = [placed(angle, e, y=float(y)) for y in np.linspace(0.0, 6e-3, 61)]
+    for pose in steps[1:]:
+        contact.update(*pose, 5e-4)
+    assert wrench(contact, steps[-1])[2] == pytest.approx(virgin / ratio, rel=1e-9)
+    # all at once, within the step: the same
+    at_once = pressed(SnowField(H, S, ratio), placed(angle, e))
+    assert wrench(at_once, steps[-1])[2] == pytest.approx(virgin / ratio, rel=1e-9)
+
+
+def test_friction_acts_against_the_glide() -> None:
+    pose, normal = placed(0.0, 1e-3), H * LENGTH * WIDTH * 1e-3
+    contact = SnowContact(SnowField(H, S, 10.0, friction=0.05), [straight()])
+    for speed in (8.0, -3.0):
+        found = wrench(contact, pose, np.array([[speed, 0, 0, 0, 0, 0]]))
+        assert found[0] == pytest.approx(-0.05 * normal * np.sign(speed), rel=1e-5)
+
+
+def test_stiffness_of_a_wedge() -> None:
+    """∂F/∂e = H_V L e/tan ϑ, and S_f e L over the displacement to full strength across."""
+    angle, e = math.radians(45), 2e-3
+    contact = pressed(SnowField(H, S, 1.0), placed(angle, e))
+    stiffness, damping = contact.tangent(*placed(angle, e), AT_REST, 5e-4)
+    assert stiffness[0, 2, 2] == pytest.approx(H * LENGTH * e / math.tan(angle), rel=1e-6)
+    assert stiffness[0, 1, 1] == pytest.approx(S * LENGTH * e / 0.5e-3, rel=1e-6)
+    assert damping[0] == pytest.approx(np.zeros((6, 6)), abs=1e-6)
+
+
+@pytest.mark.parametrize("ratio", [2.0, 10.0])
+def test_a_runner_in_the_groove_of_another_lies_deeper(ratio: float) -> None:
+    """Side-slip by the stance: the second edge runs where the first has cut, and both carry the same."""
+    angle, e = math.radians(45), 2e-3
+    snow = SnowField(H, S, ratio)
+    ahead = SnowContact(snow, [straight()])
+    for x in np.arange(0.0, 4.2, 0.02):
+        ahead.update(*placed(angle, e, x=float(x)), 5e-4)
+    behind = SnowContact(snow, [straight()])
+    virgin = wrench(SnowContact(SnowField(H, S, ratio), [straight()]), placed(angle, e))[2]
+    assert wrench(behind, placed(angle, e, x=1.5))[2] == pytest.approx(virgin, rel=1e-6)
+    lifted = placed(angle, e * (1.0 - 0.5 / ratio), x=1.5)
+    assert wrench(behind, lifted)[2] == pytest.approx(virgin * 0.25, rel=1e-3)
