@@ -1,7 +1,7 @@
 """Run every benchmark, print one table: what, seconds, goal, and the ratio to a peer measured in the same run.
 
 ``python -m benchmarks turns`` runs those of simulated turns alone and prints them as Markdown, ``identify`` those of
-identifications, ``web`` those of the web lab in a browser.
+identifications, ``web`` those of the web lab in a browser, ``contact`` those of the contact in the compiled core.
 """
 
 from __future__ import annotations
@@ -13,12 +13,15 @@ import subprocess
 import sys
 import tempfile
 
-TURNS, IDENTIFY, WEB = "turns", "identify", "web"
+TURNS, IDENTIFY, WEB, CONTACT = "turns", "identify", "web", "contact"
+PARTS = (TURNS, IDENTIFY, WEB, CONTACT)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("part", nargs="?", choices=[TURNS, IDENTIFY, WEB], help="these alone; left out: everything")
+    parser.add_argument(
+        "part", nargs="?", choices=[TURNS, IDENTIFY, WEB, CONTACT], help="these alone; left out: everything"
+    )
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
     parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds of a turn")
     parser.add_argument("--repeats", type=int, default=5, help="of each turn; the shortest time counts")
@@ -32,10 +35,14 @@ def main() -> None:
         _identify(options)
     elif options.part == WEB:
         _web(options)
+    elif options.part == CONTACT:
+        from .contact import print_table
+
+        print_table(options.repeats)
     else:
         _everything_else(options.rows)
         print(flush=True)
-        for part in (TURNS, IDENTIFY, WEB):
+        for part in PARTS:
             subprocess.run([sys.executable, "-m", "benchmarks", part, *_said(options)], check=True)
 
 
