@@ -141,7 +141,7 @@ def test_what_is_no_design_file(tmp_path: Path, text: str, named: str) -> None:
         ski_of(tmp_path / "gone.json")
 
 
-@pytest.mark.parametrize("radius", ["1e999cm", "1e200m", "1e5m", 10**400])
+@pytest.mark.parametrize("radius", ["1e999cm", "1e200m", "1e5m"])
 def test_a_sidecut_radius_must_be_that_of_a_ski(design: Callable[..., Path], radius: object) -> None:
     with pytest.raises(ParameterError, match="sidecut radius"):
         ski_of(design(sidecut_radius=radius))

@@ -114,6 +114,7 @@ def next_series(page: Page) -> None:
 
 
 def enter_shear(page: Page) -> None:
+    ready(page)  # a key that is held goes where the answer puts the focus
     page.get_by_role("link", name="Shear").press("Enter")
     page.get_by_role("heading", name="New test").wait_for()
     page.keyboard.type("A\n90\n6\n250\n30\n")
