@@ -77,7 +77,9 @@ def test_what_builds_the_package_is_asked_for_in_one_way() -> None:
     lines = (ROOT / "requirements" / "build.in").read_text(encoding="utf-8").splitlines()
     asked_for = [line for line in lines if not line.startswith("#")]
     # CMake and Ninja are asked for by scikit-build-core, where the machine has none
-    assert [line for line in asked_for if not line.startswith(("cmake", "ninja"))] == PROJECT["build-system"]["requires"]
+    assert [line for line in asked_for if not line.startswith(("cmake", "ninja"))] == PROJECT["build-system"][
+        "requires"
+    ]
 
 
 @pytest.mark.parametrize("python", PYTHONS)

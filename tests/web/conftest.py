@@ -223,6 +223,12 @@ def ready(page: Page) -> None:
     page.locator("html:not(.not-connected):not(.holding)").wait_for()
 
 
+def follow(page: Page, link: str, *, exact: bool = False) -> None:
+    """Press Enter on a link, once the page is ready: a key that is held goes where the answer puts the focus."""
+    ready(page)
+    page.get_by_role("link", name=link, exact=exact).press("Enter")
+
+
 def settled(page: Page) -> None:
     """Wait until colours have faded in and nothing moves any more, but for what always does."""
     page.wait_for_function(

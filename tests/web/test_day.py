@@ -21,7 +21,7 @@ from skisnow.simulate.carve_answer import answered
 from skisnow.simulate.carve_dict import answer_dict
 from skisnow.simulate.carve_question import carve_question
 
-from .conftest import Served, downloaded_results, fill, killed_and_started_again, ready
+from .conftest import Served, downloaded_results, fill, follow, killed_and_started_again, ready
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -60,7 +60,7 @@ def create(page: Page, served: Served) -> None:
 
 def describe(page: Page, served: Served) -> None:
     page.goto(served.address)
-    page.get_by_role("link", name="New campaign").press("Enter")
+    follow(page, "New campaign")
     page.get_by_role("heading", name="New campaign").wait_for()
     fill(
         page,
@@ -114,8 +114,7 @@ def next_series(page: Page) -> None:
 
 
 def enter_shear(page: Page) -> None:
-    ready(page)  # a key that is held goes where the answer puts the focus
-    page.get_by_role("link", name="Shear").press("Enter")
+    follow(page, "Shear")
     page.get_by_role("heading", name="New test").wait_for()
     page.keyboard.type("A\n90\n6\n250\n30\n")
     page.get_by_text("S_f = 0.200 N/mm²").wait_for()  # 30 N m / 0.25 m / (100 mm × 6 mm), by hand
@@ -152,7 +151,7 @@ def simulate(page: Page, served: Served) -> dict[str, Any]:
 
 def watch(page: Page) -> None:
     """The replay's canvas shows something, and something else while it plays."""
-    page.get_by_role("link", name="Watch").press("Enter")
+    follow(page, "Watch")
     page.wait_for_function("window.skisnowReplay")
     canvas = page.locator("canvas.replay-canvas")
     before = picture(canvas)
@@ -195,7 +194,7 @@ def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
     enter_shear(page)
     assert page.get_by_role("heading", level=1).inner_text() == 'The day <b>"of" & tests</b>'
 
-    page.get_by_role("link", name="Analysis").press("Enter")
+    follow(page, "Analysis")
     page.get_by_text("3 penetration experiments, 2 used; 2 shear experiments, 2 used.").wait_for()
     by_lab = downloaded_results(page)
 
@@ -205,7 +204,7 @@ def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
 
     page.goto(served.address)
     with page.expect_download() as download:
-        page.get_by_role("link", name="Export").press("Enter")
+        follow(page, "Export")
     folder = unpacked(download.value, tmp_path / "export") / "campaign"
     command = [sys.executable, "-m", "skisnow", "analyse", str(folder), "--json"]
     by_command = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)

@@ -14,7 +14,7 @@ import pytest
 
 from skisnow.field.store import Store
 
-from .conftest import Served, downloaded_results, killed_and_started_again, ready
+from .conftest import Served, downloaded_results, follow, killed_and_started_again, ready
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -63,7 +63,7 @@ def imported(page: Page, served: Served) -> None:
 def exported(page: Page, served: Served, place: Path) -> Path:
     page.goto(served.address)
     with page.expect_download() as download:
-        page.get_by_role("link", name="Export").press("Enter")
+        follow(page, "Export")
     with zipfile.ZipFile(download.value.path()) as packed:
         packed.extractall(place)
     return place / "campaign"
@@ -98,13 +98,13 @@ def correct(page: Page, field: str, text: str, why: str) -> None:
 
 def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path: Path) -> None:
     imported(page, served)
-    page.get_by_role("link", name="Analysis").press("Enter")
+    follow(page, "Analysis")
     page.get_by_text("3 penetration experiments, 2 used; 1 shear experiment, 1 used.").wait_for()  # 1 is marked
     page.goto(served.address)
-    page.get_by_role("link", name="Correct").press("Enter")
+    follow(page, "Correct")
     page.get_by_role("link", name="Penetration").wait_for()
     page.get_by_text("A: 2").click()
-    page.get_by_role("link", name="1", exact=True).press("Enter")
+    follow(page, "1", exact=True)
     page.get_by_role("heading", name="Test 1").wait_for()
     page.get_by_text("below the one before it").wait_for()
     correct(page, "Depth (mm), row 3", "2,15", "the point")
@@ -122,9 +122,9 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
     page.get_by_text("History of 1", exact=True).click()
     page.get_by_text("· Ada · corrected Depth (mm) in row 3 to 2.15 (the point)").wait_for()
     page.get_by_text("corrected Depth (mm) in row 4 to 2.7 (misheard) (undone)").wait_for()
-    page.get_by_role("link", name="Another test").press("Enter")
+    follow(page, "Another test")
     page.get_by_text("B: 1").click()
-    page.get_by_role("link", name="3", exact=True).press("Enter")
+    follow(page, "3", exact=True)
     page.get_by_role("heading", name="Test 3").wait_for()
     ready(page)
     page.get_by_role("button", name="Cancel this test").press("Enter")
@@ -145,7 +145,7 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
         (3, "depth_mm", "2.15"),
         (8, "status", "the tool slipped"),
     ]
-    page.get_by_role("link", name="Analysis").press("Enter")
+    follow(page, "Analysis")
     page.get_by_text("3 penetration experiments, 2 used; 1 shear experiment, 1 used.").wait_for()  # 3 is cancelled
     by_lab = downloaded_results(page)
     for each in (by_lab, results):
@@ -155,13 +155,13 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
 
 def test_what_a_test_has_once_is_corrected_in_every_row(page: Page, served: Served, tmp_path: Path) -> None:
     imported(page, served)
-    page.get_by_role("link", name="Correct").press("Enter")
+    follow(page, "Correct")
     page.get_by_text("B: 1").click()
-    page.get_by_role("link", name="3", exact=True).press("Enter")
+    follow(page, "3", exact=True)
     correct(page, "Site", "A", "was at A")
     correct(page, "Edge angle (°)", "45", "misheard")
-    page.get_by_role("link", name="Shear").press("Enter")
-    page.get_by_role("link", name="1", exact=True).press("Enter")
+    follow(page, "Shear")
+    follow(page, "1", exact=True)
     page.get_by_text("S_f = 0.200 N/mm²").wait_for()  # 30 N m / 0.25 m / (100 mm × 6 mm), by hand
     correct(page, "Moment (N m)", "36", "misread")
     page.get_by_text("S_f = 0.240 N/mm²").wait_for()
@@ -178,9 +178,9 @@ def test_the_pages_fit_a_phone(page: Page, served: Served, has_icons: bool) -> N
         page.route("**/*.woff*", lambda route: route.abort())
     imported(page, served)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    page.get_by_role("link", name="Correct").press("Enter")
+    follow(page, "Correct")
     page.get_by_text("A: 2").click()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    page.get_by_role("link", name="1", exact=True).press("Enter")
+    follow(page, "1", exact=True)
     page.get_by_text("below the one before it").wait_for()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
