@@ -63,6 +63,7 @@ FACTS: Final = {
     "contact_length_m": ("Contact length", "m"),
     "side_force_N": ("Side force", "N"),
     "side_force_limit_N": ("What the snow holds", "N"),
+    "boot_pitch_moment_Nm": ("What the boot holds about the cross axis", "N m"),
 }
 
 
