@@ -1,12 +1,13 @@
 """Errors in depth against exact series, against odrpack, and where the offset cannot be fitted."""
 
 import math
+from typing import Any
 
 import numpy as np
 import odrpack
 import pytest
 
-from skisnow.estimate.errors_in_depth import FittedHardness, fit_models_with_depth_errors, fitted_hardness
+from skisnow.estimate.errors_in_depth import FittedHardness, _weights, fit_models_with_depth_errors, fitted_hardness
 from skisnow.estimate.hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
 from skisnow.estimate.readings import Readings
 from skisnow.estimate.seating import seating
@@ -85,3 +86,11 @@ def test_effective_variance_agrees_with_orthogonal_distance_regression() -> None
     assert ours.a0 * 1e4 == pytest.approx(theirs.beta[0], abs=0.1 * theirs.sd_beta[0])
     assert ours.b0 == pytest.approx(theirs.beta[1], abs=0.1 * theirs.sd_beta[1])
     assert theirs.sd_beta[1] < 0.02
+
+
+def test_weights_of_small_uncertainties_are_one_over_their_squares() -> None:
+    """(0.1 · 2 N)² + (0.3 N)² + (400 N/m · 0.001 m)² = 0.29 N²; of a force of 0: 0.09 N²."""
+    readings: Any = None  # asked for their number alone, where all is exact
+    uncertainty = ReadingUncertainty(load=0.3, depth=0.001)
+    found = _weights(readings, np.array([2.0, 0.0]), np.array([400.0, 0.0]), uncertainty, 0.1)
+    assert found == pytest.approx([1.0 / 0.29, 1.0 / 0.09])

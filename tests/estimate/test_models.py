@@ -1,6 +1,7 @@
 """The nine rows against an independent constrained optimiser, by-hand cases and the paper's structure."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -293,3 +294,11 @@ def test_a_law_that_is_worse_than_no_force_is_warned_of(make_campaign: MakeCampa
     (warning,) = (text for text in results["warnings"] if text.startswith(f"The rmse of {worst['id']} ("))
     assert f"({worst['rmse_N']:.5g} N)" in warning
     assert f"loads, {size:.4g} N" in warning
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "terms"),
+    [("linear", "linear", 2), ("constant", "constant", 2), ("none", "linear", 1), ("none", "one", 1)],
+)
+def test_terms_are_those_that_stand_in_the_law(a: Any, b: Any, terms: int) -> None:
+    assert Model("H_V", a, b).n_terms == terms

@@ -1,6 +1,7 @@
 """Tools: the paper's formulas by hand, continuity, and volume and area held against an integration over the body."""
 
 import math
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -130,3 +131,15 @@ def test_paper_form_is_a_wedge_at_every_depth() -> None:
 def test_a_tool_without_a_length_is_refused(length: float) -> None:
     with pytest.raises(ParameterError, match="length"):
         SkiPiece(length=length, width=0.062)
+
+
+@pytest.mark.parametrize(
+    ("shape", "name"),
+    [(SkiPiece, "width"), (PlainWedge, "length"), (PlainWedge, "width"), (Disc, "diameter"), (LyingCylinder, "radius"),
+     (LyingCylinder, "width")],
+)  # fmt: skip
+def test_each_length_of_each_tool_is_asked_for(shape: type[Tool], name: str) -> None:
+    whole = {field.name: 0.1 for field in fields(shape)}  # type: ignore[arg-type]
+    shape(**whole)
+    with pytest.raises(ParameterError, match=f"{shape.__name__}: {name} is 0.0 m; it must be a finite length above 0"):
+        shape(**whole | {name: 0.0})

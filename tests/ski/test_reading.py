@@ -109,6 +109,7 @@ def test_one_stiffness_holds_everywhere(ski_file: Written) -> None:
         ({"Length_mm": 1593}, "key Length_mm is not known. Is length_mm meant"),
         ({"running_length_mm": None}, "key running_length_mm is missing"),
         ({"mass_kg": None}, "key mass_kg is missing"),
+        ({"tip_width_mm": None}, "key tip_width_mm is missing"),
         ({"EI_N_m2": None}, "key EI_N_m2 is missing"),
         ({"waist_width_mm": 0.068}, r"waist_width_mm is 0\.068; allowed is 15 to 500\. .*metres\? Then write 68"),
         ({"waist_width_mm": 6.8}, r"waist_width_mm is 6\.8; .*centimetres\? Then write 68"),

@@ -56,3 +56,6 @@ def test_bad_tables() -> None:
         StationTable(np.array([0.5, 0.0]), np.ones(3))
     with pytest.raises(ParameterError, match="List them from tip to tail"):
         StationTable(np.array([0.0, 0.5]), np.ones(2))
+    for nothing, shape in ((np.zeros(0), "0 values stand at 0"), (np.zeros((1, 2)), "2 values stand at 2")):
+        with pytest.raises(ParameterError, match=shape):
+            StationTable(nothing, nothing)

@@ -142,3 +142,15 @@ def test_shear_tests_without_any_moment_give_no_strength(tmp_path: Path) -> None
         snow_from_results(results_file(tmp_path, [penetration(0.2)], [shear(0.0), shear(0.0)]))
     one = snow_from_results(results_file(tmp_path, [penetration(0.2)], [shear(0.0), shear(0.2)]))
     assert one.failure_shear_stress == pytest.approx(0.1e6)
+
+
+@pytest.mark.parametrize(("hardness", "stress"), [(0.9e-9, 0.1), (1.1e9, 0.1), (0.1, 1.1e9)])
+def test_numbers_that_no_snow_has_are_refused(tmp_path: Path, hardness: float, stress: float) -> None:
+    with pytest.raises(ParameterError, match="must lie from 1e-9 to 1e9"):
+        snow_from_results(results_file(tmp_path, [penetration(hardness)], [shear(stress)]))
+
+
+@pytest.mark.parametrize("value", [1e-9, 1e9])
+def test_the_ends_of_what_is_taken_belong_to_it(tmp_path: Path, value: float) -> None:
+    snow = snow_from_results(results_file(tmp_path, [penetration(value)], [shear(value)]))
+    assert (snow.snow_hardness, snow.failure_shear_stress) == pytest.approx((value * 1e9, value * 1e6))

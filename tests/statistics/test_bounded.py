@@ -167,3 +167,5 @@ def test_bad_input() -> None:
         non_negative_fit([1.0, 2.0], [1.0, 2.0], weights=[1.0, -1.0])
     with pytest.raises(ParameterError, match=r"\(B, p, p\)"):
         non_negative_fits(np.ones((3, 2, 2)), np.ones((3, 3)))
+    with pytest.raises(ParameterError, match=r"7 coefficients; .* 1 to 6"):
+        non_negative_fits(np.ones((2, 7, 7)), np.ones((2, 7)))

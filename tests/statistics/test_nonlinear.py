@@ -81,3 +81,16 @@ def test_what_cannot_be_fitted_is_an_error() -> None:
         nonlinear_fit(lambda x, a: a * x, x, y, [1.0], names=["a", "b"])
     with pytest.raises(ParameterError, match="shape"):
         nonlinear_fit(lambda x, a: a * x[:3], x, y, [1.0])
+
+
+def test_a_model_that_refuses_a_step_of_the_search_is_an_error() -> None:
+    """It is defined at the start, and not where the search goes: towards 1000."""
+    x = np.linspace(1.0, 2.0, 6)
+
+    def narrow(x: Any, a: float) -> Any:
+        if a > 2.0:
+            raise ValueError("outside of the table")
+        return a * x
+
+    with pytest.raises(FitError, match="the search broke off: outside of the table; start nearer"):
+        nonlinear_fit(narrow, x, 1000.0 * x, [1.0])

@@ -110,6 +110,13 @@ def test_dependent_columns_get_zero_with_a_warning() -> None:
     np.testing.assert_allclose(found.stats, plain.stats, rtol=1e-10)
 
 
+def test_of_two_columns_of_ones_the_first_counts() -> None:
+    """The design of `test_the_vector_exactly` with ones on both sides: the same b, and 0 for what is not determined."""
+    with pytest.warns(UserWarning, match="4 columns but rank 3"):
+        found = regress(Y, np.column_stack((DESIGN, np.ones(4))))
+    np.testing.assert_allclose(found.b, [23 / 6, 5 / 6, 17 / 6, 0.0], rtol=1e-12, atol=1e-12)
+
+
 def test_nothing_left_to_judge_by() -> None:
     found = regress([1.0, 3.0], [[1, 0], [1, 2]])
     np.testing.assert_allclose(found.b, [1, 1], rtol=1e-13)

@@ -10,6 +10,9 @@ import pytest
 from skisnow.errors import ParameterError
 from skisnow.track.apart import Numbers
 from skisnow.track.comparison import Comparison, Distances, compared
+from skisnow.track.comparison_dict import comparison_dict
+from skisnow.track.polyline import polyline
+from skisnow.track.three_distances import time_apart
 from skisnow.track.track import Track
 
 from .made_tracks import FloatArray, arc, slalom, track_of, turned
@@ -234,8 +237,12 @@ def test_the_fit_says_by_how_much_and_keeps_what_was_before() -> None:
     assert found.fitted.moved == pytest.approx((1.0, 2.0, -3.0), abs=1e-7)
     assert (found.fitted.turned, found.fitted.later) == pytest.approx((-0.2, -1.5), abs=1e-7)
     assert max(every(found)[:3] + every(found)[4:7] + every(found)[8:11]) < 1e-6
+    assert found.time.definition.endswith(", with the fitted offset, while both are on their way")
     plain = compared(track_of(place, time), measured)
     assert plain.fitted is None
+    assert "with the fitted offset" not in plain.time.definition
+    turned_alone = compared(track_of(place, time), measured, fit=["heading"])
+    assert "with the fitted offset" not in turned_alone.time.definition
     assert every(found.fitted.before) == pytest.approx(every(plain))
     assert numbers(plain.nearest).max > 2.0
 
@@ -248,3 +255,24 @@ def test_points_that_are_float_among_fixed_ones_are_told() -> None:
     told = "a: of 4 points 1 float (decimetres off) and 1 by the code alone (metres off); the others are fixed"
     assert told in compared(one, one).warnings
     assert not compared(*[replace(one, solution=np.full(4, "float"))] * 2).warnings
+
+
+def test_json_says_how_much_was_compared() -> None:
+    """Beside 40 m of measured track a simulated one of 30 m: three quarters; nothing and a reason the other way."""
+    short, long_ = track_of([[0.0, 0.0], [30.0, 0.0]]), track_of([[0.0, 0.0], [40.0, 0.0]])
+    nearest = comparison_dict(compared(short, long_))["nearest"]
+    assert (nearest["compared_m"], nearest["compared_share"]) == pytest.approx((30.0, 0.75))
+    away = comparison_dict(compared(track_of([[-1.0, 0.0], [-20.0, 0.0]]), long_))["nearest"]
+    assert (away["compared_m"], away["compared_share"], away["max_m"], away["max_share"]) == (0.0, 0.0, None, None)
+    assert "nothing is beside it" in away["reason"]
+
+
+def test_tracks_that_have_one_moment_in_common_are_compared_there() -> None:
+    """One ends at 10 s, where the other begins: 3 m to its side at that moment. A moment later there is nothing."""
+    early = polyline(np.array([[0.0, 0.0], [5.0, 0.0]]), np.array([0.0, 10.0]))
+    late = polyline(np.array([[5.0, 3.0], [9.0, 3.0]]), np.array([10.0, 20.0]))
+    met = time_apart(late, early)
+    assert met is not None
+    assert set(met.distance.tolist()) == {3.0}
+    assert set(met.way.tolist()) == {5.0}
+    assert time_apart(late, early, later=-0.001) is None

@@ -1,11 +1,13 @@
 """Heading, curvature and radius on a circle, a clothoid and a straight line; coverage of their intervals."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from skisnow.track.curvature import running_mean, track_motion
+from skisnow.track.curvature import _curvature, running_mean, track_motion
+from skisnow.track.smoothing import smoothed_track
 
 from .paths import NOISE, FloatArray, along, circle, track
 
@@ -128,3 +130,19 @@ def test_nobody_heads_anywhere_at_rest() -> None:
 def test_running_mean_knows_only_what_is_known() -> None:
     time, values = np.arange(5.0), np.array([1.0, np.nan, 3.0, 5.0, 10.0])
     assert running_mean(time, values, 2.0).tolist() == pytest.approx([1.0, np.nan, 4.0, 6.0, 7.5], nan_ok=True)
+
+
+def test_error_of_the_curvature_is_that_of_drawn_velocities_and_accelerations() -> None:
+    """Fast turning, with errors of the velocity that count: 40,000 draws tell a standard deviation within 0.4 %."""
+    of_one = np.array([[1e-4, 0.0, 0.0], [0.0, 0.04, 0.03], [0.0, 0.03, 0.25]])
+    smoothed = replace(
+        smoothed_track(track(circle(RADIUS, SPEED))),
+        velocity=np.array([[3.0, 5.0]]), acceleration=np.array([[-14.0, 6.0]]), covariance=of_one[None],
+    )  # fmt: skip
+    curvature, error = _curvature(smoothed, np.array([math.sqrt(34.0)]))
+    assert curvature[0] == pytest.approx((3.0 * 6.0 + 5.0 * 14.0) / 34.0**1.5)
+    # a linear law needs small errors: a tenth of them, ten times
+    noise = np.random.default_rng(7).multivariate_normal([0.0, 0.0], of_one[1:, 1:] / 100.0, size=(40_000, 2))
+    (vx, vy), (ax, ay) = (noise[:, :, 0] + [3.0, 5.0]).T, (noise[:, :, 1] + [-14.0, 6.0]).T
+    drawn = (vx * ay - vy * ax) / np.hypot(vx, vy) ** 3
+    assert error[0] == pytest.approx(10.0 * np.std(drawn), rel=0.02)

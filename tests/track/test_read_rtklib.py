@@ -94,6 +94,12 @@ def test_commas_and_week_with_seconds(tmp_path: Path) -> None:
     np.testing.assert_array_equal(track.place_sd, [[0.006, 0.008, 0.015]])
 
 
+@pytest.mark.parametrize("when", ["10001 10.000", "-1 10.000", "2242 604801.000", "2242 -1.000"])
+def test_a_week_has_604800_seconds_and_there_are_10000_weeks(tmp_path: Path, when: str) -> None:
+    message = refused(tmp_path, f"%  GPST  {COLUMNS}\n{when}   47.0  11.0  1500.0  {TAIL}\n", "a.pos")
+    assert "week and seconds" in message
+
+
 def test_degrees_minutes_seconds(tmp_path: Path) -> None:
     head = COLUMNS.replace("(deg)", "(d'\")")
     row = "2022/12/27 15:51:14.000   -0 30 36.00000  -71 15 18.00000  1500.0  "

@@ -86,3 +86,11 @@ def test_wide_bend_is_straight() -> None:
     assert turns_of(motion) == ()
     motion = track_motion(track(along(np.full(100_001, 1.0 / 400.0), STEP)[::100]))
     assert len(turns_of(motion)) == 1
+
+
+def test_share_passed_is_that_of_half_a_sine_as_long_as_the_turn() -> None:
+    """A window of 1.6 s leaves 0.81 of turns of 1.5 s; the given radius times the share is the true one, 12 m."""
+    motion = track_motion(track(along(sine(4), STEP)[::10], interval=0.01), window=1.6)
+    for turn in turns_of(motion)[1:-1]:
+        assert turn.least_radius > 14.0
+        assert turn.share_passed * turn.least_radius == pytest.approx(12.0, rel=0.02)

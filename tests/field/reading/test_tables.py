@@ -119,6 +119,19 @@ def test_points_in_a_file_of_commas(write_campaign: WriteCampaign, small_campaig
     assert [where(problem) for problem in problems] == [("separator", CONE, None, None, None, "decimal comma")]
 
 
+@pytest.mark.parametrize(("cell", "separator", "mark"), [("12 mm", ",", "."), ("1x", ";", ",")])
+def test_a_cell_that_is_no_number_in_either_way_of_writing(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], cell: str, separator: str, mark: str
+) -> None:
+    rows = ["test,site,repeat,drop_cone_depth_mm", f"C1,S,1,12{mark}5", f"C1,S,2,13{mark}5", f"C2,S,1,{cell}"]
+    first, *others = (row.split(",", 3) for row in rows)
+    text = "".join(separator.join(row) + "\n" for row in (first, *others))
+    problems = check_campaign(write_campaign({**small_campaign, CONE: text}))
+    (error,) = [problem for problem in problems if problem.severity == "error"]
+    assert where(error) == ("not_a_number", CONE, 4, "drop_cone_depth_mm", "C2", cell)
+    assert error.action.startswith(f"Write a plain number such as 12{mark}5, without unit")
+
+
 def test_text_in_a_column_that_nobody_named(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
     text = "sample,,site,snow_density_kg_per_m3\nD1,,S,400\nD2,?,S,300\n"
     problems = check_campaign(write_campaign({**small_campaign, DENSITY: text}))

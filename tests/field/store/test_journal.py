@@ -78,6 +78,18 @@ def test_readings_stand_in_the_order_of_their_loads_whichever_came_first(store: 
     assert test.next_position == 4
 
 
+def test_a_column_that_need_not_be_there_is_written_where_one_row_has_it(store: Store) -> None:
+    """The remark of the second reading alone; spot, which no reading has, is no column."""
+    journals = Journals(store)
+    id_, last = campaign_with(journals, "1.5")
+    first = reading("1", 1, "40", "2.25")
+    journals.append(id_, replace(first, cells={**first.cells, "remark": "wind"}), seen=last)
+    header, *rows = campaign_files(grown(journals.entries(id_)))["penetration.csv"].splitlines()
+    names = header.split(",")
+    assert "spot" not in names
+    assert [dict(zip(names, row.split(","), strict=True))["remark"] for row in rows] == ["", "wind"]
+
+
 def test_a_correction_keeps_the_first_reading_and_what_came_between(store: Store, tmp_path: Path) -> None:
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5", "22.5", "3")

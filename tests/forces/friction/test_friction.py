@@ -145,6 +145,7 @@ def test_the_minimum_is_where_it_is_stated(dry: float, film_speed: float, slope:
 def test_the_minimum_at_the_ends() -> None:
     assert WaterFilmFriction(0.03, 0.001, 5.0, 1e-3).speed_of_least_friction == 0.0
     assert WaterFilmFriction(0.03, 0.04, 1.0, 0.0).speed_of_least_friction == math.inf
+    assert WaterFilmFriction(0.03, 0.0, 1.0, 0.0).speed_of_least_friction == 0.0  # the same at every speed
 
 
 def test_a_negative_coefficient_is_refused() -> None:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skisnow.errors import ParameterError
+from skisnow.errors import ParameterError, RangeWarning
 from skisnow.forces.penetration import (
     AreaLaw,
     BilinearLaw,
@@ -149,3 +149,14 @@ def test_any_tool_will_do() -> None:
 def test_what_no_snow_can_have_is_refused(make: Callable[[], object]) -> None:
     with pytest.raises(ParameterError, match="it must be a finite number"):
         make()
+
+
+@pytest.mark.filterwarnings("error::skisnow.errors.RangeWarning")
+@pytest.mark.parametrize("name", federolf_2006.PRESSURE_LAWS)
+def test_the_pressure_laws_of_the_paper_lie_in_its_range(name: str) -> None:
+    """The slopes go from 0.0036 to 0.034 N/mm³, the offsets from 0.058 to 0.35 N/mm²; beyond is warned of."""
+    slope, offset = federolf_2006.PRESSURE_LAWS[name]
+    MeanPressureLaw(slope * 1e9, offset * 1e6)
+    for beyond in ((0.0035e9, 0.06e6), (0.0341e9, 0.06e6), (0.02e9, 0.057e6), (0.02e9, 0.351e6)):
+        with pytest.raises(RangeWarning, match="2006"):
+            MeanPressureLaw(*beyond)
