@@ -11,13 +11,14 @@ SBOM ?= dist/skisnow.cdx.json
 # the same examples every time (test-all seeks others); neighbours stay in one process, which has what they share
 QUICK := -n 2 --dist worksteal -q --hypothesis-profile=ci
 
-.PHONY: help demo test test-repeating test-all lint docs bench lock sbom clean
+.PHONY: help demo test test-repeating test-all lint sanitize docs bench lock sbom clean
 
 help:
 	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, with reports in $(DEMO)/"
 	@echo "make test      the tests that take minutes, not hours"
 	@echo "make test-all  those and the long ones"
 	@echo "make lint      ruff, mypy, import-linter"
+	@echo "make sanitize  the contact's tests with the compiled core under sanitizers"
 	@echo "make docs      the documentation, into docs/_build/html"
 	@echo "make bench     what is measured, as ratios in one run"
 	@echo "make lock      requirements/*.txt after a change of pyproject.toml; UPGRADE=--upgrade takes the newest of all"
@@ -80,6 +81,22 @@ lint: $(VENV)/.skisnow-dev
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
+
+# The core built with sanitizers, and the tests of the contact run under them: SANITIZE=thread finds races.
+SANITIZE ?= address,undefined
+SANITIZED := build/sanitize-$(SANITIZE)
+RUNTIMES := $(if $(findstring thread,$(SANITIZE)),tsan,asan ubsan) stdc++
+PRELOAD = $(foreach each,$(RUNTIMES),$(shell c++ -print-file-name=lib$(each).so))
+sanitize: $(VENV)/.skisnow-dev
+	PATH="$(abspath $(BIN)):$$PATH" cmake -S . -B $(SANITIZED) -G Ninja -DPython_EXECUTABLE=$(abspath $(BIN))/python \
+		-DSKISNOW_SANITIZE=$(SANITIZE) -DCMAKE_BUILD_TYPE=Release
+	PATH="$(abspath $(BIN)):$$PATH" cmake --build $(SANITIZED)
+	rm -rf $(SANITIZED)/package && mkdir -p $(SANITIZED)/package && cp -r src/skisnow $(SANITIZED)/package
+	cp $(SANITIZED)/_core*.so $(SANITIZED)/package/skisnow/compiled
+# -S: the checkout's own core is not to be found
+	LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
+		PYTHONPATH=$(SANITIZED)/package:$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \
+		$(BIN)/python -S -m pytest -q -p no:cacheprovider -p no:xdist tests/contact
 
 docs: $(VENV)/.skisnow-dev
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html

@@ -17,7 +17,8 @@ get_requires_for_build_sdist = scikit.get_requires_for_build_sdist
 Settings = dict[str, Any] | None
 
 ZIG = "ziglang>=0.13,<0.18"
-TOOLS = {"CXX": "c++", "CMAKE_AR": "ar", "CMAKE_RANLIB": "ranlib"}
+# Zig builds for the processor it runs on unless told so; a wheel may go to another
+TOOLS = {"CXX": "c++ -mcpu=baseline", "CMAKE_AR": "ar", "CMAKE_RANLIB": "ranlib"}
 
 
 def _has_compiler() -> bool:
@@ -35,7 +36,7 @@ get_requires_for_build_editable = get_requires_for_build_wheel
 def _use_zig(folder: Path) -> None:
     """Programs in a folder that call Zig's; CMake wants the name of one file for each tool."""
     for name, tool in TOOLS.items():
-        program = folder / f"zig-{tool}"
+        program = folder / f"zig-{tool.split()[0]}"
         program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m ziglang {tool} "$@"\n', encoding="utf-8")
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
         if name == "CXX":

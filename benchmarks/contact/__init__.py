@@ -1,0 +1,1 @@
+"""The compiled contact: what its constants move."""

@@ -1,0 +1,128 @@
+"""What each constant of the contact moves in motions prescribed by hand: python -m benchmarks.contact.
+
+Constants that are literals of the C++ sources are varied in a copy of them, which needs cmake, ninja, nanobind and a
+compiler: ``--literals``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from skisnow.compiled import core
+
+from .paths import Answer, all_answers
+
+ROOT = Path(__file__).resolve().parents[2]
+KEYS: list[tuple[str, str, dict[str, Any]]] = [
+    ("spacing", "0.02 m", {"0.01": {"spacing": 0.01}, "0.04": {"spacing": 0.04}}),
+    ("look_back", "1.25 ms", {"0.6": {"look_back": 0.6e-3}, "2.5": {"look_back": 2.5e-3}}),
+    ("knot_area", "1e-4", {"0": {"knot_area": 0.0}, "1e-3": {"knot_area": 1e-3}}),
+    (
+        "edge_blend_angle",
+        "2°",
+        {"1°": {"edge_blend_angle": math.radians(1)}, "4°": {"edge_blend_angle": math.radians(4)}},
+    ),
+    ("fade_speed", "0.01 m/s", {"0.005": {"fade_speed": 0.005}, "0.02": {"fade_speed": 0.02}}),
+]
+
+
+@dataclass(frozen=True)
+class Literal:
+    name: str
+    file: str
+    before: str
+    values: tuple[str, str]
+
+
+LITERALS = [
+    Literal("MARGIN", "lines.cpp", "0.12", ("0.06", "0.24")),
+    Literal("EDGE_ASIDE", "lines.cpp", "0.04", ("0.02", "0.08")),
+    Literal("MOST_UNEVEN", "lines.cpp", "0.25", ("0.12", "0.5")),
+    Literal("MOST_TURN", "lines.cpp", "0.3", ("0.15", "0.6")),
+    Literal("REACH", "lines.cpp", "0.5", ("0.25", "1.0")),
+    Literal("MOST_ASIDE", "lines.cpp", "0.4", ("0.2", "0.8")),
+    Literal("KNOTS", "groove.hpp", "16", ("12", "32")),
+]
+
+
+def row(name: str, standard: str, value: str, found: dict[str, Answer], base: dict[str, Answer]) -> str:
+    """One row of the table, in per cent."""
+    cells = [" / ".join(f"{each:.2g}" for each in found[path].apart(base[path])) for path in base]
+    return f"| `{name}` | {standard} | {value} | {' | '.join(cells)} |"
+
+
+def _built(folder: Path, literal: Literal, value: str) -> Path:
+    """A package whose core has another value of a literal; the folder to import it from."""
+    tree, package = folder / "tree", folder / "package"
+    if not tree.exists():
+        shutil.copytree(ROOT / "src/core", tree / "src/core")
+        (tree / "src/skisnow/compiled").mkdir(parents=True)
+        shutil.copy(ROOT / "src/skisnow/compiled/sources.py", tree / "src/skisnow/compiled")
+        shutil.copy(ROOT / "CMakeLists.txt", tree)
+        shutil.copytree(ROOT / "src/skisnow", package / "skisnow", ignore=shutil.ignore_patterns("_core*.so"))
+        tools = ["-G", "Ninja", f"-DPython_EXECUTABLE={sys.executable}"]
+        subprocess.run(["cmake", "-S", tree, "-B", tree / "build", *tools], check=True, capture_output=True)
+    source = tree / "src/core" / literal.file
+    original = (ROOT / "src/core" / literal.file).read_text(encoding="utf-8")
+    changed, count = re.subn(rf"({literal.name} = ){re.escape(literal.before)}\b", rf"\g<1>{value}", original)
+    if count != 1:
+        raise SystemExit(f"{literal.file} does not set {literal.name} to {literal.before}")
+    source.write_text(changed, encoding="utf-8")
+    subprocess.run(["cmake", "--build", tree / "build"], check=True, capture_output=True)
+    source.write_text(original, encoding="utf-8")
+    for library in (tree / "build").glob("_core*.so"):
+        shutil.copy(library, package / "skisnow/compiled")
+    return package
+
+
+def _other(package: Path) -> dict[str, Answer]:
+    """The answers of another core, in a process of its own, which knows of no editable installation."""
+    paths = os.pathsep.join([str(package), str(ROOT), str(Path(np.__file__).parents[1])])
+    command = [sys.executable, "-S", "-m", "benchmarks.contact", "--answers"]
+    said = subprocess.run(
+        command, env={**os.environ, "PYTHONPATH": paths}, check=True, capture_output=True, cwd=package
+    )
+    answers = json.loads(said.stdout)
+    if not Path(answers.pop("core")).is_relative_to(package):
+        raise SystemExit("another core answered than the one that was built")
+    return {name: Answer.of(each) for name, each in answers.items()}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.contact")
+    parser.add_argument("--literals", action="store_true", help="those of the C++ sources too")
+    parser.add_argument("--answers", action="store_true", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    base = all_answers({})
+    if options.answers:
+        lists = {name: each.as_lists() for name, each in base.items()}
+        print(json.dumps({"core": core.__file__, **lists}))
+        return
+    print(f"| constant | as it is | varied to | {' | '.join(base)} |\n| --- | --- | --- |{' --- |' * len(base)}")
+    for name, standard, values in KEYS:
+        for value, changes in values.items():
+            print(row(name, standard, value, all_answers(dict(changes)), base), flush=True)
+    if not options.literals:
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        for literal in LITERALS:
+            for value in literal.values:
+                found = _other(_built(Path(folder), literal, value))
+                print(row(literal.name, literal.before, value, found, base), flush=True)
+
+
+if __name__ == "__main__":
+    main()
