@@ -72,7 +72,8 @@ bool clip(const Quantity& quantity, double& a, double& b) {
   return b - a > THIN;
 }
 
-void press_strip(const Strip& strip, const Vector3& origin, const Vector3& lateral, double a, double b, Ground& ground) {
+void press_strip(const Strip& strip, const Vector3& origin, const Vector3& lateral, double a, double b,
+                 Ground& ground) {
   const auto found = [&](double y) { return strip.find(along(origin, lateral, y)); };
   const auto ahead = [&](double y) { return found(y).ahead; };
   const auto share = [&](double y) { return found(y).share; };
@@ -153,8 +154,7 @@ void Archive::recall(const Vector3& origin, const Vector3& lateral, double from,
         if (found != squares_.end()) near.insert(found->second.begin(), found->second.end());
       }
   }
-  for (int later : near)
-    press_strip({*before(later), tracks_[std::size_t(later)]}, origin, lateral, from, to, ground);
+  for (int later : near) press_strip({*before(later), tracks_[std::size_t(later)]}, origin, lateral, from, to, ground);
 }
 
 void Archive::forget_since(const Mark& mark) {

@@ -15,8 +15,8 @@ using Vector3 = std::array<double, 3>;
 // A line that was left: where it lies, and its ground.
 struct Track {
   Vector3 origin, ahead, lateral;
-  int strip;             // of lines that were left one after the other
-  std::int64_t number;   // within the strip
+  int strip;            // of lines that were left one after the other
+  std::int64_t number;  // within the strip
   int count;
   double place[KNOTS], depth[KNOTS];
 

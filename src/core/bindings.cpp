@@ -76,7 +76,6 @@ Situation situation(int runners, const Array& position, const Array& rotation, c
   return out;
 }
 
-
 struct PythonLaws {
   nb::object friction, shear;  // μ of speeds (m/s); strength and thrust (Pa) of depths (m) and edge angles (rad)
   double fade_speed;
@@ -95,7 +94,8 @@ struct PythonLaws {
       const auto mu = nb::cast<Array>(friction(array(speed, {n})));
       if (mu.size() != n) throw std::invalid_argument("a friction law must give one value for each speed");
       for (std::size_t i = 0; i < n; i++)
-        s[FRICTION][i] = mu.data()[i] * s[SLIDING][i] / std::sqrt(s[SLIDING][i] * s[SLIDING][i] + fade_speed * fade_speed);
+        s[FRICTION][i] =
+            mu.data()[i] * s[SLIDING][i] / std::sqrt(s[SLIDING][i] * s[SLIDING][i] + fade_speed * fade_speed);
     }
     if (!shear.is_none()) {
       const auto found = nb::cast<Array>(shear(array(depth, {n}), array(angle, {n})));
@@ -114,10 +114,18 @@ nb::dict sections_of(const SnowContact& contact, int k) {
   std::vector<int> rows;
   for (int i = 0; i < s.count(); i++)
     if (s[SHARE][i] > 0.0) rows.push_back(i);
-  const std::pair<const char*, SectionField> fields[] = {
-      {"position_along_ski", STATION}, {"length", SHARE}, {"depth", DEEPEST}, {"edge_sine", EDGE_SINE},
-      {"edge_place", EDGE_PLACE}, {"normal_force", FORCE}, {"shear", SHEAR}, {"push", PUSH}, {"sliding", SLIDING},
-      {"friction", FRICTION}, {"strength", EDGE_STRENGTH}, {"shear_used", SHEAR_USED}};
+  const std::pair<const char*, SectionField> fields[] = {{"position_along_ski", STATION},
+                                                         {"length", SHARE},
+                                                         {"depth", DEEPEST},
+                                                         {"edge_sine", EDGE_SINE},
+                                                         {"edge_place", EDGE_PLACE},
+                                                         {"normal_force", FORCE},
+                                                         {"shear", SHEAR},
+                                                         {"push", PUSH},
+                                                         {"sliding", SLIDING},
+                                                         {"friction", FRICTION},
+                                                         {"strength", EDGE_STRENGTH},
+                                                         {"shear_used", SHEAR_USED}};
   nb::dict out;
   for (const auto& [name, field] : fields) {
     std::vector<double> values;
@@ -144,7 +152,8 @@ Result tracks_of(const Snow& snow, const SnowContact& contact) {
     for (std::int64_t n = lines.first; n < lines.end; n++) {
       const int slot = lines.slot(n);
       const Ground ground = lines.ground(slot);
-      if (!ground.empty()) add(contact.strip(k), n, lines.origin(slot), lines.lateral(slot), ground.count, ground.place, ground.depth);
+      if (!ground.empty())
+        add(contact.strip(k), n, lines.origin(slot), lines.lateral(slot), ground.count, ground.place, ground.depth);
     }
   }
   return array(rows, {rows.size() / 6, 6});
@@ -213,45 +222,52 @@ NB_MODULE(_core, m) {
 
   nb::class_<SnowContact::State>(m, "State");
   nb::class_<SnowContact>(m, "Contact")
-      .def("__init__",
-           [](SnowContact* at, std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
-              std::optional<std::string> set) {
-             const Kernels* chosen = set ? kernels_named(set->c_str()) : &kernels();
-             if (chosen == nullptr) throw std::invalid_argument("this processor or library lacks the instruction set " + *set);
-             new (at) SnowContact(std::move(snow), std::move(runners), spacing, *chosen);
-           },
-           nb::arg("snow"), nb::arg("runners"), nb::arg("spacing"), nb::arg("instruction_set").none() = nb::none())
+      .def(
+          "__init__",
+          [](SnowContact* at, std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
+             std::optional<std::string> set) {
+            const Kernels* chosen = set ? kernels_named(set->c_str()) : &kernels();
+            if (chosen == nullptr)
+              throw std::invalid_argument("this processor or library lacks the instruction set " + *set);
+            new (at) SnowContact(std::move(snow), std::move(runners), spacing, *chosen);
+          },
+          nb::arg("snow"), nb::arg("runners"), nb::arg("spacing"), nb::arg("instruction_set").none() = nb::none())
       .def_prop_ro("instruction_set", &SnowContact::instruction_set)
       .def("force", &force, nb::arg("position"), nb::arg("rotation"), nb::arg("velocity"), nb::arg("dt"),
            nb::arg("beams").none(), nb::arg("rates").none())
-      .def("update",
-           [](SnowContact& self, const Array& position, const Array& rotation, double dt, const Beams& beams) {
-             const Situation to = situation(self.runners(), position, rotation, nullptr, dt, beams, {});
-             nb::gil_scoped_release free;
-             self.update(to);
-           },
-           nb::arg("position"), nb::arg("rotation"), nb::arg("dt"), nb::arg("beams").none())
-      .def("tangent",
-           [](SnowContact& self, const Array& position, const Array& rotation, const Array& velocity, double dt,
-              const Beams& beams, const Beams& rates) {
-             const Situation at = situation(self.runners(), position, rotation, &velocity, dt, beams, rates);
-             std::vector<double> stiffness, damping;
-             {
-               nb::gil_scoped_release free;
-               self.tangent(at, stiffness, damping);
-             }
-             const auto count = std::size_t(self.runners());
-             return nb::make_tuple(array(stiffness, {count, 6, 6}), array(damping, {count, 6, 6}));
-           },
-           nb::arg("position"), nb::arg("rotation"), nb::arg("velocity"), nb::arg("dt"), nb::arg("beams").none(),
-           nb::arg("rates").none())
+      .def(
+          "update",
+          [](SnowContact& self, const Array& position, const Array& rotation, double dt, const Beams& beams) {
+            const Situation to = situation(self.runners(), position, rotation, nullptr, dt, beams, {});
+            nb::gil_scoped_release free;
+            self.update(to);
+          },
+          nb::arg("position"), nb::arg("rotation"), nb::arg("dt"), nb::arg("beams").none())
+      .def(
+          "tangent",
+          [](SnowContact& self, const Array& position, const Array& rotation, const Array& velocity, double dt,
+             const Beams& beams, const Beams& rates) {
+            const Situation at = situation(self.runners(), position, rotation, &velocity, dt, beams, rates);
+            std::vector<double> stiffness, damping;
+            {
+              nb::gil_scoped_release free;
+              self.tangent(at, stiffness, damping);
+            }
+            const auto count = std::size_t(self.runners());
+            return nb::make_tuple(array(stiffness, {count, 6, 6}), array(damping, {count, 6, 6}));
+          },
+          nb::arg("position"), nb::arg("rotation"), nb::arg("velocity"), nb::arg("dt"), nb::arg("beams").none(),
+          nb::arg("rates").none())
       .def("sections", &sections_of)
       .def("tracks", [](const SnowContact& self, const Snow& snow) { return tracks_of(snow, self); })
       .def("groove_energy", &SnowContact::groove_energy)
       .def("elastic_energy", &SnowContact::elastic_energy)
       .def("state", &SnowContact::state)
       .def("restore", &SnowContact::restore)
-      .def("set_laws", [](SnowContact& self, nb::object friction, nb::object shear, double fade_speed) {
-        self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
-      }, nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"));
+      .def(
+          "set_laws",
+          [](SnowContact& self, nb::object friction, nb::object shear, double fade_speed) {
+            self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
+          },
+          nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"));
 }

@@ -16,7 +16,8 @@ void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, 
   bool changed = false;
   if (lines.values[MARKED][slot] > 0.5) {
     const double before = lines.values[EDGE_MARKED][slot], depth_before = lines.values[DEPTH_MARKED][slot];
-    changed = before < edge ? ground.press(before, depth_before, edge, depth) : ground.press(edge, depth, before, depth_before);
+    changed = before < edge ? ground.press(before, depth_before, edge, depth)
+                            : ground.press(edge, depth, before, depth_before);
   }
   if (ground.press(edge + from, depth + fall * from, edge + to, depth + fall * to)) changed = true;
   if (!changed) return;
@@ -29,7 +30,8 @@ void keep_anchor(const Sections& s, int i, const Snow& snow, GrooveLines& lines,
   auto& v = lines.values;
   const double edge = s[EDGE_PLACE][i], depth = s[DEEPEST][i], reach = snow.shear_displacement;
   double anchor = edge;
-  if (v[ANCHORED][slot] > 0.5) anchor = v[ANCHOR][slot];
+  if (v[ANCHORED][slot] > 0.5)
+    anchor = v[ANCHOR][slot];
   else if (v[ABOVE][slot] > 0.5)
     anchor = edge - depth / (depth - v[DEPTH_ABOVE][slot]) * (edge - v[EDGE_ABOVE][slot]);
   v[ANCHOR][slot] = std::clamp(anchor, edge - reach, edge + reach);
@@ -99,7 +101,8 @@ constexpr double MOTION_STEP = 1e-4;  // m/s, rad/s
 
 }  // namespace
 
-SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing, const Kernels& kernels)
+SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
+                         const Kernels& kernels)
     : snow_(std::move(snow)), runners_(std::move(runners)), kernels_(&kernels) {
   for (const Runner& each : runners_) {
     state_.lines.emplace_back(each, spacing);

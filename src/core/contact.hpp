@@ -22,7 +22,8 @@ struct Reaction {
   std::vector<double> beam;
 };
 
-// Laws from outside: they may rewrite EDGE_STRENGTH, EDGE_THRUST and FRICTION of a runner's sections before forces are summed.
+// Laws from outside: they may rewrite EDGE_STRENGTH, EDGE_THRUST and FRICTION of a runner's sections before forces are
+// summed.
 using Laws = std::function<void(int runner, Sections&)>;
 
 class SnowContact {

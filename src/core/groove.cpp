@@ -74,15 +74,13 @@ bool Ground::press(double a, double depth_a, double b, double depth_b) {
   const Segment pressed(a, depth_a, b, depth_b);
   if (empty()) {
     clear();
-    append(a, depth_a);
-    append(b, depth_b);
+    append(a, depth_a), append(b, depth_b);
     return true;
   }
   if (!is_deeper(*this, pressed)) return false;
   Ground out;
   if (b < first()) {
-    out.append(a, depth_a);
-    out.append(b, depth_b);
+    out.append(a, depth_a), out.append(b, depth_b);
     // nothing has touched what lies between: no depth
     out.append(b, 0.0);
     out.append(first(), 0.0);

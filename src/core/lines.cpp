@@ -7,9 +7,9 @@ namespace skisnow {
 
 namespace {
 
-constexpr double MARGIN = 0.12;       // (m) before tip and behind tail in which lines are laid: more than a step's way
-constexpr double EDGE_ASIDE = 0.04;   // half a ski's width (m), about: where an edge will cross; no accuracy hangs on it
-constexpr int NEWTON_STEPS = 3;       // to the place on a curved surface
+constexpr double MARGIN = 0.12;      // (m) before tip and behind tail in which lines are laid: more than a step's way
+constexpr double EDGE_ASIDE = 0.04;  // half a ski's width (m), about: where an edge will cross; no accuracy hangs on it
+constexpr int NEWTON_STEPS = 3;      // to the place on a curved surface
 constexpr double MOST_UNEVEN = 0.25;  // of the spacing, between neighbours
 constexpr double MOST_TURN = 0.3;     // (rad) between a line's direction ahead and the ski
 constexpr double REACH = 0.5;         // (m) to both sides, over which a new line looks for older tracks
@@ -27,7 +27,8 @@ Vector3 unit(const Vector3& a) {
 }
 
 Vector3 get(const GrooveLines& lines, LineField first, int slot) {
-  return {lines.values[first][slot], lines.values[LineField(first + 1)][slot], lines.values[LineField(first + 2)][slot]};
+  return {lines.values[first][slot], lines.values[LineField(first + 1)][slot],
+          lines.values[LineField(first + 2)][slot]};
 }
 
 void put(GrooveLines& lines, LineField first, int slot, const Vector3& vector) {
@@ -77,9 +78,7 @@ GrooveLines::GrooveLines(const Runner& runner, double spacing) : spacing_(spacin
 
 Vector3 GrooveLines::origin(int slot) const { return get(*this, ORIGIN_X, slot); }
 
-Vector3 GrooveLines::lateral(int slot) const {
-  return cross(get(*this, NORMAL_X, slot), get(*this, AHEAD_X, slot));
-}
+Vector3 GrooveLines::lateral(int slot) const { return cross(get(*this, NORMAL_X, slot), get(*this, AHEAD_X, slot)); }
 
 Ground GrooveLines::ground(int slot) const {
   Ground out;

@@ -1,5 +1,5 @@
-// Transverse lines of snow under one runner. A line is laid ahead of the tip and stays where it is in the snow until the
-// tail has passed, so the history is never transported or interpolated.
+// Transverse lines of snow under one runner. A line is laid ahead of the tip and stays where it is in the snow until
+// the tail has passed, so the history is never transported or interpolated.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 
 namespace skisnow {
 
+// clang-format off: fields that belong together share a row
 enum LineField {
   ORIGIN_X, ORIGIN_Y, ORIGIN_Z,  // on the surface (m)
   AHEAD_X, AHEAD_Y, AHEAD_Z,     // unit vectors: along the ski when it was laid,
@@ -24,6 +25,7 @@ enum LineField {
   MARKED, EDGE_MARKED, DEPTH_MARKED,  // whether it was in the snow then; its edge then
   LINE_FIELDS
 };
+// clang-format on
 
 class GrooveLines {
  public:

@@ -13,10 +13,10 @@ using Vector3 = std::array<double, 3>;
 // Shape of a base along the ski. Positions along the ski count from the boot, positive ahead (m).
 struct Runner {
   double tail = 0.0, tip = 0.0;
-  int places = 0;                            // of the table, evenly spaced from tail to tip
-  std::vector<double> table;                 // (places, 4): half width, its slope, height of the base, its slope
-  std::vector<double> node;                  // beam nodes, tip to tail; a rigid runner has the two ends
-  std::vector<int> element;                  // (places,) the beam element of each place of the table
+  int places = 0;             // of the table, evenly spaced from tail to tip
+  std::vector<double> table;  // (places, 4): half width, its slope, height of the base, its slope
+  std::vector<double> node;   // beam nodes, tip to tail; a rigid runner has the two ends
+  std::vector<int> element;   // (places,) the beam element of each place of the table
   double places_per_metre() const { return (places - 1) / (tip - tail); }
   int nodes() const { return int(node.size()); }
 };
@@ -25,7 +25,7 @@ struct Runner {
 struct Pose {
   Vector3 position{};
   double rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // [slope axis][ski axis]
-  std::vector<double> beam;                                    // (nodes, 3): deflection (m), its slope towards the tail, twist (rad)
+  std::vector<double> beam;  // (nodes, 3): deflection (m), its slope towards the tail, twist (rad)
 
   Vector3 axis(int which) const { return {rotation[0][which], rotation[1][which], rotation[2][which]}; }
 };
@@ -36,7 +36,8 @@ struct Motion {
   std::vector<double> beam;
 };
 
-// The pose a share (0 to 1) of the way from one to another, the rotation about the axis that leads from one to the other.
+// The pose a share (0 to 1) of the way from one to another, the rotation about the axis that leads from one to the
+// other.
 Pose between(const Pose& from, const Pose& to, double share);
 
 }  // namespace skisnow

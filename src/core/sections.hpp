@@ -1,4 +1,5 @@
-// Where a base meets the lines: for each line the plane section of the ski that lies over it, and what the snow answers.
+// Where a base meets the lines: for each line the plane section of the ski that lies over it, and what the snow
+// answers.
 #pragma once
 
 #include "columns.hpp"
@@ -10,6 +11,7 @@ namespace skisnow {
 
 // Vectors are in the ski's axes (0 ahead, 1 left across the base, 2 off the base), from the boot. x counts across along
 // the line, to the left, from the edge that is deeper.
+// clang-format off: fields that belong together share a row
 enum SectionField {
   // the line: its place from the boot, its directions ahead, out of the snow, and to the left
   FROM_BOOT_0, FROM_BOOT_1, FROM_BOOT_2, LINE_AHEAD_0, LINE_AHEAD_1, LINE_AHEAD_2,
@@ -42,6 +44,7 @@ enum SectionField {
   SHEAR, PUSH, BEAM_FORCE, BEAM_MOMENT,
   SECTION_FIELDS
 };
+// clang-format on
 
 struct Sections {
   Columns<SectionField, SECTION_FIELDS> values;
@@ -71,7 +74,7 @@ struct Kernels {
   void (*push)(const Motion&, const Pose&, const Snow&, Sections&, Wrench&);
 };
 
-const Kernels& kernels();                      // the widest that this processor has
+const Kernels& kernels();                        // the widest that this processor has
 const Kernels* kernels_named(const char* name);  // null: not in this library, or not on this processor
 
 }  // namespace skisnow

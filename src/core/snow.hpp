@@ -6,7 +6,8 @@
 
 namespace skisnow {
 
-// Friction of the base: μ = constant + linear v + square v² + film/(1 + v/film_speed), all of Coulomb's, by speed (m/s).
+// Friction of the base: μ = constant + linear v + square v² + film/(1 + v/film_speed), all of Coulomb's, by speed
+// (m/s).
 struct FrictionLaw {
   double constant = 0.0, linear = 0.0, square = 0.0, film = 0.0, film_speed = 1.0;
   double fade_speed = 0.01;  // below it the friction fades to zero
@@ -20,8 +21,8 @@ struct Snow {
   double edge_blend_sine = 0.0349;     // sine of the edge angle above which the shear acts at the edge alone
   bool compaction_resistance = true;
   FrictionLaw friction;
-  double knot_area = 1e-4;             // share of depth times width of a contact below which a knot is dropped
-  double look_back = 1.25e-3;          // longest part of a step over which the history is marched at once (s)
+  double knot_area = 1e-4;     // share of depth times width of a contact below which a knot is dropped
+  double look_back = 1.25e-3;  // longest part of a step over which the history is marched at once (s)
   Archive archive;
 };
 

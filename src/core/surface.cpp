@@ -51,13 +51,13 @@ Grid::Value Grid::inside(double x, double y) const {
   const int i = std::clamp(int(std::floor(x)), 0, std::max(nx_ - 2, 0)), k = std::min(i + 1, nx_ - 1);
   const int j = std::clamp(int(std::floor(y)), 0, std::max(ny_ - 2, 0)), l = std::min(j + 1, ny_ - 1);
   const Cubic along_x(std::clamp(x - i, 0.0, 1.0)), across_y(std::clamp(y - j, 0.0, 1.0));
-  const auto row = [&](int a, const double(&weight)[4]) {
+  const auto row = [&](int a, const double (&weight)[4]) {
     return sum(weight, node(a, j), node(a, l), slope(a, j, false), slope(a, l, false));
   };
-  const auto row_rise = [&](int a, const double(&weight)[4]) {  // slope along x; no twist at the corners
+  const auto row_rise = [&](int a, const double (&weight)[4]) {  // slope along x; no twist at the corners
     return weight[0] * slope(a, j, true) + weight[1] * slope(a, l, true);
   };
-  const auto both = [&](const double(&along)[4], const double(&across)[4]) {
+  const auto both = [&](const double (&along)[4], const double (&across)[4]) {
     return sum(along, row(i, across), row(k, across), row_rise(i, across), row_rise(k, across));
   };
   return {both(along_x.value, across_y.value), both(along_x.slope, across_y.value) / dx_,

@@ -5,8 +5,9 @@
 
 namespace skisnow {
 
-// Values over a rectangular grid, interpolated by Ferguson's patches (bicubic Hermite, no twist at the corners) with slopes
-// from central differences: the value and its slopes are continuous. Beyond its border the nearest border's value goes on, along its slope if asked.
+// Values over a rectangular grid, interpolated by Ferguson's patches (bicubic Hermite, no twist at the corners) with
+// slopes from central differences: the value and its slopes are continuous. Beyond its border the nearest border's
+// value goes on, along its slope if asked.
 class Grid {
  public:
   Grid() = default;  // zero everywhere
