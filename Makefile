@@ -81,6 +81,7 @@ lint: $(VENV)/.skisnow-dev
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
+	$(BIN)/clang-format --dry-run --Werror src/core/*
 
 # The core built with sanitizers, and the tests of the contact run under them: SANITIZE=thread finds races.
 SANITIZE ?= address,undefined
