@@ -103,7 +103,7 @@ def with_one(value: float) -> np.ndarray[Any, Any]:
 @pytest.mark.parametrize(
     ("changes", "named"),
     [
-        ({"name": " "}, "name is blank"),
+        ({"name": " "}, r"name is blank\. Give it one"),
         ({"bending_stiffness": with_one(-100.0)}, "bending_stiffness is -100 at -0.4000 m from the boot"),
         ({"torsional_stiffness": with_one(0.0)}, "torsional_stiffness is 0 at"),
         ({"mass_per_length": with_one(-1.0)}, "mass_per_length is -1 at"),

@@ -184,7 +184,8 @@ def test_bad_input_is_named() -> None:
         linear_fit([1.0, 2.0, 3.0], [1.0, float("nan"), 2.0])
     with pytest.raises(ParameterError, match=r"response\[2\] is inf"):
         linear_fit([1.0, 2.0, float("inf")], [1.0, 4.0, 2.0])
-    for nothing in ([], 3.0):
+    nothings: list[npt.ArrayLike] = [[], 3.0]
+    for nothing in nothings:
         with pytest.raises(ParameterError, match=r"response has shape .* a row of at least one number"):
             linear_fit(nothing, [])
     with pytest.raises(ParameterError, match="one for each response"):
