@@ -36,7 +36,7 @@ def main() -> None:
     elif options.part == WEB:
         _web(options)
     elif options.part == CONTACT:
-        from .contact import print_table
+        from .contact.speed import print_table
 
         print_table(options.repeats)
     else:

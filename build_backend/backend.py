@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import os
 import shutil
 import stat
 import sys
 import tempfile
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +19,7 @@ build_sdist = scikit.build_sdist
 get_requires_for_build_sdist = scikit.get_requires_for_build_sdist
 Settings = dict[str, Any] | None
 
+SOURCES = Path(__file__).resolve().parents[1] / "src"
 ZIG = "ziglang>=0.13,<0.18"
 # Zig builds for the processor it runs on unless told so; a wheel may go to another
 TOOLS = {"CXX": "c++ -mcpu=baseline", "CMAKE_AR": "ar", "CMAKE_RANLIB": "ranlib"}
@@ -56,8 +60,26 @@ def build_wheel(wheel_directory: str, config_settings: Settings = None, metadata
 def build_editable(
     wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None
 ) -> str:
-    """Build what an editable installation takes."""
+    """Build what an editable installation takes: the source folder on Python's path, the compiled module in it.
+
+    Whoever puts another folder before it on the path runs that other folder's code, as with any module.
+    """
     with tempfile.TemporaryDirectory() as folder:
-        if not _has_compiler():
-            _use_zig(Path(folder))
-        return scikit.build_editable(wheel_directory, config_settings, metadata_directory)
+        name = build_wheel(folder, config_settings, metadata_directory)
+        with zipfile.ZipFile(Path(folder) / name) as built:
+            kept = {each: built.read(each) for each in built.namelist() if ".dist-info/" in each}
+            for each in built.namelist():
+                if Path(each).name.startswith("_core."):
+                    (SOURCES / each).write_bytes(built.read(each))
+    kept["skisnow.pth"] = f"{SOURCES}\n".encode()
+    (record,) = (each for each in kept if each.endswith("/RECORD"))
+    kept[record] = "".join(f"{each},,\n" if each == record else _recorded(each, kept[each]) for each in kept).encode()
+    with zipfile.ZipFile(Path(wheel_directory) / name, "w") as wheel:
+        for each, content in kept.items():
+            wheel.writestr(each, content)
+    return name
+
+
+def _recorded(name: str, content: bytes) -> str:
+    digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+    return f"{name},sha256={digest},{len(content)}\n"
