@@ -70,7 +70,7 @@ def build_editable(
             kept = {each: built.read(each) for each in built.namelist() if ".dist-info/" in each}
             for each in built.namelist():
                 if Path(each).name.startswith("_core."):
-                    (SOURCES / each).write_bytes(built.read(each))
+                    _put(SOURCES / each, built.read(each))
     kept["skisnow.pth"] = f"{SOURCES}\n".encode()
     (record,) = (each for each in kept if each.endswith("/RECORD"))
     kept[record] = "".join(f"{each},,\n" if each == record else _recorded(each, kept[each]) for each in kept).encode()
@@ -78,6 +78,13 @@ def build_editable(
         for each, content in kept.items():
             wheel.writestr(each, content)
     return name
+
+
+def _put(path: Path, content: bytes) -> None:
+    """Take the place of a file that a running program may have open."""
+    beside = path.with_name(f"{path.name}.new")
+    beside.write_bytes(content)
+    beside.replace(path)
 
 
 def _recorded(name: str, content: bytes) -> str:
