@@ -28,3 +28,6 @@ def test_an_edited_source_is_refused(tmp_path: Path) -> None:
 
 def test_without_sources_there_is_nothing_to_compare(tmp_path: Path) -> None:
     require_current("anything", tmp_path)
+    (tmp_path / "a.cpp").touch()
+    with pytest.raises(ImportError, match="older than its sources"):
+        require_current("anything", tmp_path)
