@@ -93,9 +93,11 @@ struct PythonLaws {
     if (!friction.is_none()) {
       const auto mu = nb::cast<Array>(friction(array(speed, {n})));
       if (mu.size() != n) throw std::invalid_argument("a friction law must give one value for each speed");
-      for (std::size_t i = 0; i < n; i++)
-        s[FRICTION][i] =
-            mu.data()[i] * s[SLIDING][i] / std::sqrt(s[SLIDING][i] * s[SLIDING][i] + fade_speed * fade_speed);
+      for (std::size_t i = 0; i < n; i++) {
+        const double fade = fade_speed * fade_speed, square = s[SLIDING][i] * s[SLIDING][i] + fade;
+        s[FRICTION][i] = mu.data()[i] * s[SLIDING][i] / std::sqrt(square);
+        s[FRICTION_SLOPE][i] = mu.data()[i] * fade / (square * std::sqrt(square));
+      }
     }
     if (!shear.is_none()) {
       const auto found = nb::cast<Array>(shear(array(depth, {n}), array(angle, {n})));
@@ -180,6 +182,10 @@ nb::tuple force(SnowContact& self, const Array& position, const Array& rotation,
 }  // namespace
 }  // namespace skisnow
 
+namespace skisnow {
+void bind_dynamics(nb::module_& m);
+}
+
 NB_MODULE(_core, m) {
   using namespace skisnow;
   m.attr("SOURCE_HASH") = SKISNOW_SOURCE_HASH;
@@ -212,6 +218,7 @@ NB_MODULE(_core, m) {
       .def_rw("surface", &Snow::surface)
       .def_rw("hardness", &Snow::hardness)
       .def_rw("strength", &Snow::strength)
+      .def_rw("strength_share", &Snow::strength_share)
       .def_rw("unloading_ratio", &Snow::unloading_ratio)
       .def_rw("shear_displacement", &Snow::shear_displacement)
       .def_rw("edge_blend_sine", &Snow::edge_blend_sine)
@@ -270,4 +277,5 @@ NB_MODULE(_core, m) {
             self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
           },
           nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"));
+  bind_dynamics(m);
 }

@@ -96,6 +96,16 @@ Situation displaced(const Situation& at, int k, int freedom, double step, bool o
   return out;
 }
 
+// Of pairs with rising first numbers; beyond the ends the last one.
+double interpolated(const std::vector<std::pair<double, double>>& table, double at) {
+  const auto after = std::lower_bound(table.begin(), table.end(), std::pair(at, -1e300));
+  if (after == table.begin()) return after->second;
+  const auto before = after - 1;
+  if (after == table.end() || !(after->first > before->first)) return before->second;
+  return before->second + (at - before->first) / (after->first - before->first) * (after->second - before->second);
+}
+
+constexpr double TANGENT_STEP = 1e-8;  // m, rad
 constexpr double POSE_STEP = 1e-7;    // m, rad
 constexpr double MOTION_STEP = 1e-4;  // m/s, rad/s
 
@@ -110,16 +120,23 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
   }
   trial_ = state_.lines;
   sections_.resize(runners_.size());
+  wrenches_.resize(runners_.size());
 }
 
-Reaction SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion) {
-  Sections& s = sections_[std::size_t(k)];
+const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion,
+                                    Sections& s) {
   kernels_->find_sections(runner(k), pose, *snow_, lines, s);
   kernels_->press(*snow_, lines, s);
   kernels_->slide(motion, pose, *snow_, s);
   if (laws) laws(k, s);
-  Wrench wrench;
+  Wrench& wrench = wrenches_[std::size_t(k)];
   kernels_->push(motion, pose, *snow_, s, wrench);
+  return wrench;
+}
+
+Reaction SnowContact::reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion) {
+  Sections& s = sections_[std::size_t(k)];
+  const Wrench& wrench = evaluate(k, lines, pose, motion, s);
   Reaction out;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) {
@@ -128,6 +145,36 @@ Reaction SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose
     }
   if (!pose.beam.empty()) load_beam(runner(k), s, out.beam);
   return out;
+}
+
+const Wrench& SnowContact::look(int k, const Pose& pose, const Motion& motion) {
+  Sections& s = sections_[std::size_t(k)];
+  const Wrench& wrench = evaluate(k, trial_[std::size_t(k)], pose, motion, s);
+  load_beam(runner(k), s, wrenches_[std::size_t(k)].beam);
+  return wrench;
+}
+
+void SnowContact::find_tangent(int k, const Pose& pose, const Motion& motion, double stiffness, double damping,
+                               RunnerTangent& out) {
+  const GrooveLines& lines = trial_[std::size_t(k)];
+  Sections& s = sections_[std::size_t(k)];
+  out.clear(runner(k).nodes());
+  evaluate(k, lines, pose, motion, s);
+  differences_.resize(s.count());
+  const int changes = pose.beam.empty() ? 6 : SectionDifferences::CHANGES;
+  const bool mirrored = pose.rotation[2][1] < 0.0;  // what changes sign in the mirror steps the other way there
+  for (int change = 0; change < changes; change++) {
+    const double step = mirrored && turns_in_mirror(change) ? -TANGENT_STEP : TANGENT_STEP;
+    evaluate(k, lines, changed(pose, change, step), motion, moved_);
+    for (int answer = 0; answer < SectionDifferences::ANSWERS; answer++) {
+      const double* before = s[SectionField(FORCE_0 + answer)];
+      const double* after = moved_[SectionField(FORCE_0 + answer)];
+      double* to = differences_.column(change, answer);
+      for (int i = 0; i < s.count(); i++) to[i] = (before[i] - after[i]) / step;
+    }
+  }
+  add_stiffness(runner(k), s, differences_, stiffness, out);
+  add_friction_damping(runner(k), s, damping, out);
 }
 
 void SnowContact::remember(int k, GrooveLines& lines, const Pose& pose) {
@@ -155,7 +202,8 @@ GrooveLines& SnowContact::history(int k, const Situation& at) {
   if (!marches && reaches) return standing;
   GrooveLines& trial = trial_[std::size_t(k)];
   trial = standing;
-  trial.advance(runner(k), pose, *snow_, nullptr, 0);
+  trial.drop_left(runner(k), pose, nullptr, 0);
+  trial.lay_ahead(runner(k), pose, *snow_);
   march(k, trial, at);
   return trial;
 }
@@ -163,22 +211,64 @@ GrooveLines& SnowContact::history(int k, const Situation& at) {
 std::vector<Reaction> SnowContact::force(const Situation& at) {
   std::vector<Reaction> out;
   for (int k = 0; k < runners(); k++)
-    out.push_back(evaluate(k, history(k, at), at.poses[std::size_t(k)], at.motions[std::size_t(k)]));
+    out.push_back(reaction(k, history(k, at), at.poses[std::size_t(k)], at.motions[std::size_t(k)]));
   return out;
+}
+
+void SnowContact::begin(const Situation& foreseen) {
+  trial_ = state_.lines;
+  for (int k = 0; k < runners(); k++) {
+    GrooveLines& trial = trial_[std::size_t(k)];
+    trial.lay_ahead(runner(k), foreseen.poses[std::size_t(k)], *snow_);
+    march(k, trial, foreseen);
+  }
+}
+
+void SnowContact::accept(const Situation& at) {
+  std::swap(state_.lines, trial_);
+  for (int k = 0; k < runners(); k++) settle_history(k, at.poses[std::size_t(k)]);
+  state_.accepted = at.poses;
 }
 
 void SnowContact::update(const Situation& to) {
   for (int k = 0; k < runners(); k++) {
     GrooveLines& lines = state_.lines[std::size_t(k)];
     const Pose& pose = to.poses[std::size_t(k)];
-    int& strip = state_.strips[std::size_t(k)];
-    lines.advance(runner(k), pose, *snow_, &snow_->archive, strip);
+    lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
+    lines.lay_ahead(runner(k), pose, *snow_);
     march(k, lines, to);
-    remember(k, lines, pose);
-    lines.rebuild_if_uneven(pose, snow_->archive, strip);
-    lines.advance(runner(k), pose, *snow_, &snow_->archive, strip);
+    settle_history(k, pose);
   }
   state_.accepted = to.poses;
+}
+
+// The end of a step enters the history; lines that the ski has left are dropped, new ones laid.
+void SnowContact::settle_history(int k, const Pose& pose) {
+  GrooveLines& lines = state_.lines[std::size_t(k)];
+  remember(k, lines, pose);
+  if (lines.is_uneven(pose)) lay_anew(k, pose);
+  lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
+  lines.lay_ahead(runner(k), pose, *snow_);
+}
+
+// Leave all lines to the archive and lay others, on which the edge is displaced as it was at the same station.
+void SnowContact::lay_anew(int k, const Pose& pose) {
+  GrooveLines& lines = state_.lines[std::size_t(k)];
+  Sections& s = sections_[std::size_t(k)];
+  std::vector<std::pair<double, double>> displaced;  // by station, rising
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int i = s.index(n), slot = lines.slot(n);
+    if (s.touches(i)) displaced.emplace_back(s[STATION][i], lines.values[ANCHOR][slot] - s[EDGE_PLACE][i]);
+  }
+  std::sort(displaced.begin(), displaced.end());
+  lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
+  state_.strips[std::size_t(k)] = snow_->archive.new_strip();
+  lines.lay_ahead(runner(k), pose, *snow_);
+  remember(k, lines, pose);
+  for (std::int64_t n = lines.first; n < lines.end && !displaced.empty(); n++) {
+    const int i = s.index(n);
+    if (s.touches(i)) lines.values[ANCHOR][lines.slot(n)] = s[EDGE_PLACE][i] + interpolated(displaced, s[STATION][i]);
+  }
 }
 
 void SnowContact::tangent(const Situation& at, std::vector<double>& stiffness, std::vector<double>& damping) {
@@ -192,7 +282,7 @@ void SnowContact::tangent(const Situation& at, std::vector<double>& stiffness, s
       Reaction side[2];
       for (int way = 0; way < 2; way++) {
         const Situation moved = displaced(at, k, freedom % 6, way == 0 ? step : -step, of_motion);
-        side[way] = evaluate(k, history(k, moved), moved.poses[std::size_t(k)], moved.motions[std::size_t(k)]);
+        side[way] = reaction(k, history(k, moved), moved.poses[std::size_t(k)], moved.motions[std::size_t(k)]);
       }
       std::vector<double>& out = of_motion ? damping : stiffness;
       for (int a = 0; a < 3; a++) {
@@ -203,9 +293,64 @@ void SnowContact::tangent(const Situation& at, std::vector<double>& stiffness, s
     }
 }
 
+ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) const {
+  const Sections& s = sections(k);
+  const Wrench& wrench = wrenches_[std::size_t(k)];
+  double v[3], o[3], all = 0.0;
+  for (std::size_t a = 0; a < 3; a++) {
+    v[a] = o[a] = 0.0;
+    for (std::size_t b = 0; b < 3; b++) {
+      v[a] += pose.rotation[b][a] * motion.velocity[b];
+      o[a] += pose.rotation[b][a] * motion.turning[b];
+    }
+    all += wrench.force[a] * v[a] + wrench.moment[a] * o[a];
+  }
+  for (std::size_t i = 0; i < motion.beam.size(); i++) all += wrench.beam[i] * motion.beam[i];
+  ContactPower out{0.0, 0.0, 0.0};
+  for (int i = 0; i < s.count(); i++) {
+    if (!s.touches(i)) continue;
+    const double z = s[IN_ELEMENT][i], h = s[ELEMENT_LENGTH][i], y = 1.0 - z, reach = s[EDGE_REACH][i];
+    const double* rate = motion.beam.data() + 3 * int(s[ELEMENT][i]);
+    double lifting = 0.0, twisting = 0.0;
+    if (!motion.beam.empty()) {
+      lifting = y * y * (1.0 + 2.0 * z) * rate[0] + h * z * y * y * rate[1] + z * z * (3.0 - 2.0 * z) * rate[3] -
+                h * z * z * y * rate[4];
+      twisting = reach * (y * rate[2] + z * rate[5]);
+    }
+    const double at[3] = {s[STATION][i], s[EDGE_LEFT][i], s[EDGE_UP][i]};
+    const double velocity[3] = {
+        v[0] + o[1] * at[2] - o[2] * at[1], v[1] + o[2] * at[0] - o[0] * at[2] - s[TWIST_SINE][i] * twisting,
+        v[2] + o[0] * at[1] - o[1] * at[0] + lifting - s[TWIST_COSINE][i] * twisting};
+    const double across =
+        velocity[0] * s[ACROSS_0][i] + velocity[1] * s[ACROSS_1][i] + velocity[2] * s[ACROSS_2][i];
+    out.shear += s[SHEAR][i] * across;
+    out.friction -= s[FRICTION][i] * s[FORCE][i] * s[SLIDING][i];
+  }
+  out.normal = all - out.shear - out.friction;
+  return out;
+}
+
+bool SnowContact::touches(int k) const {
+  const Sections& s = sections(k);
+  for (int i = 0; i < s.count(); i++)
+    if (s.touches(i)) return true;
+  return false;
+}
+
 double SnowContact::groove_energy() const {
   double total = snow_->archive.energy();
   for (const GrooveLines& each : state_.lines) total += each.groove_energy();
+  return total;
+}
+
+double SnowContact::held_energy() const {
+  double total = 0.0;
+  for (const Sections& s : sections_)
+    for (int i = 0; i < s.count(); i++) {
+      if (!s.touches(i)) continue;
+      const double used = std::clamp(s[SHEAR_USED][i], -1.0, 1.0);
+      total += 0.5 * snow_->shear_displacement * s[SHEAR][i] * used;
+    }
   return total;
 }
 

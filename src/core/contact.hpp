@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "sections.hpp"
+#include "tangent.hpp"
 
 namespace skisnow {
 
@@ -20,6 +20,11 @@ struct Situation {
 struct Reaction {
   double force[3] = {}, moment[3] = {};
   std::vector<double> beam;
+};
+
+// What the snow does to a runner (W): across the edge, along it by friction, and all else of the force on the base.
+struct ContactPower {
+  double shear, friction, normal;
 };
 
 // Laws from outside: they may rewrite EDGE_STRENGTH, EDGE_THRUST and FRICTION of a runner's sections before forces are
@@ -44,11 +49,27 @@ class SnowContact {
   // The step to a situation is accepted: the snow remembers it.
   void update(const Situation& to);
 
+  // The same for one who tries many poses for the end of a step: `begin` lets the history advance on copies towards an
+  // end foreseen, up to but without it; `look` gives the forces of one runner (in the ski's axes) at a pose there;
+  // `accept` makes the copies the snow, at a pose looked at or another.
+  void begin(const Situation& foreseen);
+  const Wrench& look(int k, const Pose& pose, const Motion& motion);
+  void accept(const Situation& at);
+  // Weighted sum of minus the derivatives by pose and by motion at a pose, by differences section by section.
+  void find_tangent(int k, const Pose& pose, const Motion& motion, double stiffness, double damping,
+                    RunnerTangent& out);
+
   // Minus the derivatives of each runner's force and moment by its own pose (rotation about the slope's axes at the
   // boot) and velocity: (6, 6) each, row by row, by central differences.
   void tangent(const Situation& at, std::vector<double>& stiffness, std::vector<double>& damping);
 
+  // At the situation that was looked at last.
+  ContactPower power(int k, const Pose& pose, const Motion& motion) const;
+  double shear_displacement() const { return snow_->shear_displacement; }
+  bool touches(int k) const;  // at the situation looked at last
+
   double groove_energy() const;   // lost in grooves, those under the runners included (J)
+  double held_energy() const;     // in the displaced shear of the edges at the last situation looked at (J)
   double elastic_energy() const;  // in the snow at the last situation looked at (J)
 
   // All that the contact remembers, but for the tracks of others.
@@ -68,9 +89,15 @@ class SnowContact {
   State state_;
   std::vector<GrooveLines> trial_;
   std::vector<Sections> sections_;
+  std::vector<Wrench> wrenches_;
+  Sections moved_;
+  SectionDifferences differences_;
 
   GrooveLines& history(int k, const Situation& at);
-  Reaction evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion);
+  const Wrench& evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, Sections& s);
+  Reaction reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion);
+  void settle_history(int k, const Pose& pose);
+  void lay_anew(int k, const Pose& pose);
   void march(int k, GrooveLines& lines, const Situation& to);
   void remember(int k, GrooveLines& lines, const Pose& pose);
 };

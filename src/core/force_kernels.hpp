@@ -65,16 +65,19 @@ void slide(const Motion& motion, const Pose& pose, const Snow& snow, Sections& s
                              m.v[1] + m.o[2] * centre.at.x - m.o[0] * centre.at.z - sp * turning,
                              m.v[2] + m.o[0] * centre.at.y - m.o[1] * centre.at.x + deflecting - cp * turning};
     const V sliding = dot(velocity, load3<V>(s, ALONG_0, i)), speed = absolute(sliding);
-    const V mu = law.constant + speed * (law.linear + law.square * speed) + law.film / (1.0 + speed / law.film_speed);
+    const V film = 1.0 / (1.0 + speed / law.film_speed), size = 1.0 / root(sliding * sliding + fade);
+    const V mu = law.constant + speed * (law.linear + law.square * speed) + law.film * film;
+    const V growth = law.linear + 2.0 * law.square * speed - law.film / law.film_speed * film * film;
     store(s[SLIDING] + i, sliding);
-    store(s[FRICTION] + i, mu * sliding / root(sliding * sliding + fade));
+    store(s[FRICTION] + i, mu * sliding * size);
+    store(s[FRICTION_SLOPE] + i, (growth * speed + mu * fade * size * size) * size);
   }
 }
 
 // [push] All forces of the sections, summed to the wrench on the boot and the loads of the beam.
 template <class V>
 void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out) {
-  Sum f[3], g[3];
+  Sum sums[6];
   const double compaction = snow.compaction_resistance ? 1.0 : 0.0;
   for (int i = 0; i < s.count(); i += WIDTH<V>) {
     const int lane = i % BLOCK;
@@ -97,18 +100,24 @@ void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out
     const Vector<V> edge{load<V>(s[STATION] + i), load<V>(s[EDGE_LEFT] + i), load<V>(s[EDGE_UP] + i)};
     const Vector<V> moment = cross(centre.at, a), edge_moment = cross(edge, z);
     const V sp = load<V>(s[TWIST_SINE] + i), cp = load<V>(s[TWIST_COSINE] + i);
-    f[0].add(lane, select(wet, a.x + z.x, none)), f[1].add(lane, select(wet, a.y + z.y, none)),
-        f[2].add(lane, select(wet, a.z + z.z, none));
-    g[0].add(lane, select(wet, moment.x + edge_moment.x, none));
-    g[1].add(lane, select(wet, moment.y + edge_moment.y, none));
-    g[2].add(lane, select(wet, moment.z + edge_moment.z, none));
+    const V parts[6] = {a.x + z.x,
+                        a.y + z.y,
+                        a.z + z.z,
+                        moment.x + edge_moment.x,
+                        moment.y + edge_moment.y,
+                        moment.z + edge_moment.z};
+    for (int c = 0; c < 6; c++) {
+      const V part = select(wet, parts[c], none);
+      store(s[SectionField(FORCE_0 + c)] + i, part);
+      sums[c].add(lane, part);
+    }
     store(s[SHEAR] + i, shear);
     store(s[PUSH] + i, along);
     store(s[BEAM_FORCE] + i, select(wet, a.z + z.z, none));
     store(s[BEAM_MOMENT] + i,
           select(wet, -centre.arm * (sp * a.y + cp * a.z) - load<V>(s[EDGE_REACH] + i) * (sp * z.y + cp * z.z), none));
   }
-  for (int a = 0; a < 3; a++) out.force[a] = f[a].total(), out.moment[a] = g[a].total();
+  for (int a = 0; a < 3; a++) out.force[a] = sums[a].total(), out.moment[a] = sums[a + 3].total();
 }
 
 }  // namespace skisnow::SKISNOW_LANES

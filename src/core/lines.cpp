@@ -156,10 +156,13 @@ void GrooveLines::leave(std::int64_t number, Archive* archive, int strip) {
   archive->add(track, groove_energy(at) - recalled_energy[std::size_t(at)]);
 }
 
-void GrooveLines::advance(const Runner& runner, const Pose& pose, const Snow& snow, Archive* archive, int strip) {
+void GrooveLines::drop_left(const Runner& runner, const Pose& pose, Archive* archive, int strip) {
   const double room = MARGIN + 3.0 * spacing_;
   for (; count() > 0 && station(first, pose) < runner.tail - room; first++) leave(first, archive, strip);
   for (; count() > 0 && station(end - 1, pose) > runner.tip + room; end--) leave(end - 1, archive, strip);
+}
+
+void GrooveLines::lay_ahead(const Runner& runner, const Pose& pose, const Snow& snow) {
   if (count() == 0) lay(end++, pose, 0.0, snow);
   const int most = capacity() - BLOCK;
   double at = station(end - 1, pose);
@@ -169,6 +172,7 @@ void GrooveLines::advance(const Runner& runner, const Pose& pose, const Snow& sn
 }
 
 bool GrooveLines::is_uneven(const Pose& pose) const {
+  if (count() == 0) return false;
   const Vector3 ahead = pose.axis(0), left = pose.axis(1);
   const Vector3 there = get(*this, AHEAD_X, slot(first));
   if (std::fabs(dot(there, left)) > std::sin(MOST_TURN) || dot(there, ahead) < 0.0) return true;
@@ -185,12 +189,6 @@ bool GrooveLines::is_uneven(const Pose& pose) const {
 
 void GrooveLines::leave_all(Archive& archive, int strip) {
   for (; first < end; first++) leave(first, &archive, strip);
-}
-
-void GrooveLines::rebuild_if_uneven(const Pose& pose, Archive& archive, int& strip) {
-  if (count() == 0 || !is_uneven(pose)) return;
-  leave_all(archive, strip);
-  strip = archive.new_strip();
 }
 
 }  // namespace skisnow

@@ -55,12 +55,14 @@ class GrooveLines {
   // Position along the straight ski under which a line passes (m).
   double station(std::int64_t number, const Pose& pose) const;
 
-  // Lay the lines that the ski will meet and drop those that it has left; what is dropped goes to the archive, unless
-  // it is a trial's (`archive` null). `strip`: the track of this runner in the archive.
-  void advance(const Runner& runner, const Pose& pose, const Snow& snow, Archive* archive, int strip);
+  // Lay the lines that the ski will meet.
+  void lay_ahead(const Runner& runner, const Pose& pose, const Snow& snow);
+  // Drop those that it has left into the archive, or in a trial (`archive` null) for good. `strip`: the track of this
+  // runner in the archive.
+  void drop_left(const Runner& runner, const Pose& pose, Archive* archive, int strip);
 
-  // Archive and drop all lines where they have come to lie unevenly or the ski has turned away from them.
-  void rebuild_if_uneven(const Pose& pose, Archive& archive, int& strip);
+  // Whether they have come to lie unevenly or the ski has turned away from them.
+  bool is_uneven(const Pose& pose) const;
   void leave_all(Archive& archive, int strip);
 
   // Energy lost in the grooves under the ski (J), older tracks' share taken off.
@@ -73,7 +75,6 @@ class GrooveLines {
 
   void lay(std::int64_t number, const Pose& pose, double station, const Snow& snow);
   void leave(std::int64_t number, Archive* archive, int strip);
-  bool is_uneven(const Pose& pose) const;
 };
 
 }  // namespace skisnow

@@ -139,7 +139,7 @@ void press(const Snow& snow, const GrooveLines& lines, Sections& s) {
     const V anchor = select(load<V>(lines.values[ANCHORED] + j) > 0.5, load<V>(lines.values[ANCHOR] + j),
                             select(load<V>(lines.values[ABOVE] + j) > 0.5, through, edge));
     store(s[SHEAR_USED] + i, select(wet, (anchor - edge) / snow.shear_displacement, none));
-    store(s[EDGE_STRENGTH] + i, select(wet, load<V>(lines.values[STRENGTH] + j), none));
+    store(s[EDGE_STRENGTH] + i, select(wet, snow.strength_share * load<V>(lines.values[STRENGTH] + j), none));
   });
 }
 

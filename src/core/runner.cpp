@@ -16,6 +16,8 @@ Vector3 rotation_vector(const double (&m)[3][3]) {
   return {factor * twice[0], factor * twice[1], factor * twice[2]};
 }
 
+}  // namespace
+
 void rotation_matrix(const Vector3& v, double (&out)[3][3]) {
   const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], angle = std::sqrt(square);
   const double s = angle > 1e-6 ? std::sin(angle) / angle : 1.0 - square / 6.0;
@@ -24,8 +26,6 @@ void rotation_matrix(const Vector3& v, double (&out)[3][3]) {
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) out[a][b] = (a == b ? 1.0 - c * square : 0.0) + s * cross[a][b] + c * v[a] * v[b];
 }
-
-}  // namespace
 
 Pose between(const Pose& from, const Pose& to, double share) {
   Pose middle = to;

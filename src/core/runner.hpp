@@ -26,6 +26,7 @@ struct Pose {
   Vector3 position{};
   double rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // [slope axis][ski axis]
   std::vector<double> beam;  // (nodes, 3): deflection (m), its slope towards the tail, twist (rad)
+  double extra[4] = {};      // deflection, rise ahead, twist and its slope, added everywhere: for differences
 
   Vector3 axis(int which) const { return {rotation[0][which], rotation[1][which], rotation[2][which]}; }
 };
@@ -39,5 +40,7 @@ struct Motion {
 // The pose a share (0 to 1) of the way from one to another, the rotation about the axis that leads from one to the
 // other.
 Pose between(const Pose& from, const Pose& to, double share);
+
+void rotation_matrix(const Vector3& rotation_vector, double (&out)[3][3]);
 
 }  // namespace skisnow

@@ -122,7 +122,8 @@ struct Shapes {
 
 // [bend] Height and slope of the bent base; sine and cosine of its twist.
 template <class V>
-void bend(const GrooveLines& lines, Sections& s) {
+void bend(const Pose& pose, const GrooveLines& lines, Sections& s) {
+  const double* extra = pose.extra;
   for_lanes<V>(s, lines, [&](int i, int) {
     const V z = load<V>(s[IN_ELEMENT] + i), h = load<V>(s[ELEMENT_LENGTH] + i), y = 1.0 - z, per_length = 1.0 / h;
     const V w = load<V>(s[FRONT_DEFLECTION] + i), a = load<V>(s[FRONT_SLOPE] + i), t = load<V>(s[FRONT_TWIST] + i);
@@ -130,10 +131,10 @@ void bend(const GrooveLines& lines, Sections& s) {
     const Shapes<V> shape(z, h);
     const V deflection = shape.front * w + shape.front_slope * a + shape.rear * v + shape.rear_slope * b;
     const V rise = 6.0 * z * y * per_length * (w - v) - y * (1.0 - 3.0 * z) * a - z * (3.0 * z - 2.0) * b;
-    const V twist = y * t + z * u, q = twist * twist;
-    store(s[BASE_HEIGHT] + i, load<V>(s[BASE_HEIGHT] + i) + deflection);
-    store(s[BASE_RISE] + i, load<V>(s[BASE_RISE] + i) + rise);
-    store(s[TWIST_SLOPE] + i, (t - u) * per_length);
+    const V twist = y * t + z * u + extra[2], q = twist * twist;
+    store(s[BASE_HEIGHT] + i, load<V>(s[BASE_HEIGHT] + i) + deflection + extra[0]);
+    store(s[BASE_RISE] + i, load<V>(s[BASE_RISE] + i) + rise + extra[1]);
+    store(s[TWIST_SLOPE] + i, (t - u) * per_length + extra[3]);
     // series: the next terms are below 1e-9 at 0.3 rad
     store(s[TWIST_COSINE] + i, 1.0 - q * (0.5 - q * (1.0 / 24.0 - q * (1.0 / 720.0))));
     store(s[TWIST_SINE] + i, twist * (1.0 - q * (1.0 / 6.0 - q * (1.0 / 120.0 - q * (1.0 / 5040.0)))));
@@ -215,7 +216,7 @@ void find_sections(const Runner& runner, const Pose& pose, const Snow& snow, con
   cross_edge<V>(runner, lines, s);
   give_share<V>(runner, lines, s);
   look_up(runner, pose, s);
-  bend<V>(lines, s);
+  bend<V>(pose, lines, s);
   cut_base<V>(snow, lines, s);
 }
 

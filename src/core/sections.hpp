@@ -38,10 +38,10 @@ enum SectionField {
   // the edge: shear strength S_f and the thrust off the snow that comes with it (Pa), the share of the displacement to
   // full strength in use
   EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED,
-  // velocity of the base at the centre of pressure along the edge (m/s); μ
-  SLIDING, FRICTION,
-  // shear across the edge, what acts along it (N); on the beam
-  SHEAR, PUSH, BEAM_FORCE, BEAM_MOMENT,
+  // velocity of the base at the centre of pressure along the edge (m/s); μ with its sign, and its growth with it
+  SLIDING, FRICTION, FRICTION_SLOPE,
+  // shear across the edge, what acts along it (N); force and moment about the boot in the ski's axes; on the beam
+  SHEAR, PUSH, FORCE_0, FORCE_1, FORCE_2, MOMENT_0, MOMENT_1, MOMENT_2, BEAM_FORCE, BEAM_MOMENT,
   SECTION_FIELDS
 };
 // clang-format on
@@ -55,6 +55,7 @@ struct Sections {
   const double* operator[](SectionField field) const { return values[field]; }
   int count() const { return blocks * BLOCK; }
   std::int64_t line(int i) const { return first_block * BLOCK + i; }
+  int index(std::int64_t line) const { return int(line - first_block * BLOCK); }
   bool touches(int i) const { return (*this)[SHARE][i] > 0.0 && (*this)[DEEPEST][i] > 0.0; }
   void prepare(const GrooveLines& lines);
 };

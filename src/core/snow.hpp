@@ -16,6 +16,7 @@ struct FrictionLaw {
 struct Snow {
   Grid surface;                        // height (m)
   Grid hardness, strength;             // H_V (N/m³), S_f (Pa)
+  double strength_share = 1.0;         // of S_f everywhere, which may change during a run
   double unloading_ratio = 1.0;        // k_u/H_V
   double shear_displacement = 0.5e-3;  // of the edge across, to full strength (m)
   double edge_blend_sine = 0.0349;     // sine of the edge angle above which the shear acts at the edge alone

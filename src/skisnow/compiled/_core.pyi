@@ -31,6 +31,7 @@ class Snow:
     surface: Grid
     hardness: Grid
     strength: Grid
+    strength_share: float
     unloading_ratio: float
     shear_displacement: float
     edge_blend_sine: float
@@ -63,3 +64,55 @@ class Contact:
         shear: Callable[[FloatArray, FloatArray], FloatArray] | None,
         fade_speed: float,
     ) -> None: ...
+
+class FlexibleSki: ...
+class Body: ...
+
+def flexible_ski(
+    boot: FloatArray,
+    axes: FloatArray,
+    unknown: FloatArray,
+    mass: FloatArray,
+    stiffness: FloatArray,
+    coupling: FloatArray,
+    damping: float,
+) -> FlexibleSki: ...
+def body(
+    inertia: FloatArray,
+    mass: float,
+    first_moment: FloatArray,
+    skis: Sequence[FlexibleSki],
+    gravity: FloatArray,
+    drag: float,
+    drag_height: float,
+) -> Body: ...
+
+class StepRule:
+    first: float
+    fixed: bool
+    tolerance: float
+    shortest: float
+    longest: float
+    closeness: float
+    keep: int
+
+class Dynamics:
+    time: float
+    position: FloatArray
+    rotation: FloatArray
+    velocity: FloatArray
+    bend: FloatArray
+    next_step: float
+    snow_energy: float
+    held_energy: float
+    touches: bool
+    energies: tuple[float, float, float]
+    work: tuple[float, float, float, float, float]
+    counts: tuple[int, int, int, int, int]
+    def __init__(self, body: Body, contact: Contact, rule: StepRule) -> None: ...
+    def set_pose(self, position: FloatArray, rotation: FloatArray) -> None: ...
+    def set_velocity(self, rate: FloatArray) -> None: ...
+    def settle(self) -> float: ...
+    def begin(self) -> None: ...
+    def advance(self, until: float, most: int) -> int: ...
+    def along(self, ski: int) -> FloatArray: ...

@@ -115,19 +115,19 @@ class SnowContact:
             known = ", ".join(core.instruction_sets())
             raise ParameterError(f"SnowContact: instruction_set is {instruction_set!r}; this machine has {known}")
         self.snow, self.runners = snow, tuple(runners)
-        self._core = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
+        self.compiled = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
         friction = snow.friction_in_python
         if friction is not None or snow.shear is not None:
             called = None if friction is None else _coefficient(friction)
-            self._core.set_laws(called, None if snow.shear is None else _strength(snow.shear), snow.fade_speed)
+            self.compiled.set_laws(called, None if snow.shear is None else _strength(snow.shear), snow.fade_speed)
 
     def __repr__(self) -> str:
-        return f"SnowContact({len(self.runners)} runners, {self._core.instruction_set})"
+        return f"SnowContact({len(self.runners)} runners, {self.compiled.instruction_set})"
 
     @property
     def instruction_set(self) -> str:
         """Of the core's loops on this machine; all give the same bits."""
-        return self._core.instruction_set
+        return self.compiled.instruction_set
 
     def force(
         self,
@@ -140,13 +140,13 @@ class SnowContact:
         beam_rates: Beams = None,
     ) -> ContactForces:
         """Forces at a pose that may or may not be accepted later; nothing is remembered of it."""
-        found, loads = self._core.force(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
+        found, loads = self.compiled.force(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
         return ContactForces(found, tuple(loads))
 
     def update(self, position: npt.ArrayLike, rotation: npt.ArrayLike, dt: float, *, beam_dofs: Beams = None) -> None:
         """Accept the step to a pose: the snow remembers all that the runners met on the way."""
         where, turned, _, step, beams, _ = self._asked(position, rotation, None, dt, beam_dofs, None)
-        self._core.update(where, turned, step, beams)
+        self.compiled.update(where, turned, step, beams)
 
     def tangent(
         self,
@@ -164,11 +164,11 @@ class SnowContact:
         unsymmetric; by central differences of 10⁻⁷ m and rad and 10⁻⁴ m/s and rad/s. Where a branch of a law changes
         within that, the mean of both sides.
         """
-        return self._core.tangent(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
+        return self.compiled.tangent(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
 
     def sections(self, runner: int = 0) -> Sections:
         """What was found along a runner at the last ``force`` or ``update``."""
-        return Sections(**self._core.sections(runner))
+        return Sections(**self.compiled.sections(runner))
 
     def tracks(self) -> FloatArray:
         """The grooves left in the snow, (n, 6): track, line, x, y, z on the surface (m), greatest depth ever (m).
@@ -176,25 +176,25 @@ class SnowContact:
         Rows of a line follow each other across; between them the ground is straight. Those of all contacts in this
         snow, and those under these runners.
         """
-        return self._core.tracks(self.snow.compiled)
+        return self.compiled.tracks(self.snow.compiled)
 
     @property
     def groove_energy(self) -> float:
         """Energy (J) lost in all grooves of this snow: ½ H_V ε² (1 - H_V/k_u) over their area."""
-        return self._core.groove_energy()
+        return self.compiled.groove_energy()
 
     @property
     def elastic_energy(self) -> float:
         """Energy (J) that the snow would give back, at the last pose looked at."""
-        return self._core.elastic_energy()
+        return self.compiled.elastic_energy()
 
     def state(self) -> State:
         """All that this contact remembers, to go back to; tracks of others that came later are forgotten with it."""
-        return self._core.state()
+        return self.compiled.state()
 
     def restore(self, state: State) -> None:
         """Go back to a state: what follows has the same bits as it had from there."""
-        self._core.restore(state)
+        self.compiled.restore(state)
 
     def _asked(
         self,

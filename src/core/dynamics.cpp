@@ -1,0 +1,364 @@
+#include "dynamics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace skisnow {
+
+namespace {
+
+constexpr int MOST_ITERATIONS = 12;
+constexpr double SLOW = 0.15;       // contraction from which on the matrix is made anew
+constexpr double SAME_REACH = 0.1;  // by which β may differ from that of a matrix that is kept
+constexpr double FARTHEST = 1.0;    // way (m), turn (rad), bend beyond which a step has diverged
+constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // of the step's choice
+constexpr double MILNE = 0.35;      // error of BDF2 over its distance from the predictor, at equal steps 8/23
+
+}  // namespace
+
+Dynamics::Dynamics(Body body, SnowContact& contact, const StepRule& rule)
+    : body_(std::move(body)), contact_(&contact), rule_(rule), layout_(body_.layout()), step_(rule.first) {
+  state = next_ = BodyState(layout_);
+  rate_before_ = moved_ = increment_ = residual_ = difference_ = state.rate;
+  system_ = BorderedSystem(layout_);
+  end_.poses.resize(body_.skis.size());
+  end_.motions.resize(body_.skis.size());
+}
+
+Dynamics::Formula Dynamics::formula(double h) const {
+  const double w = last_step_ > 0.0 ? h / last_step_ : 0.0;
+  const double newest = (1.0 + 2.0 * w) / (1.0 + w), before = w * w / (1.0 + w);
+  return {h, h / newest, before / newest, newest / h, (1.0 + w) / h, before / h, w};
+}
+
+// [predict] Rates at the end, extrapolated.
+void Dynamics::predict(const Formula& f) {
+  for (std::size_t i = 0; i < state.rate.size(); i++)
+    next_.rate[i] = state.rate[i] + f.ratio * (state.rate[i] - rate_before_[i]);
+  place(f);
+}
+
+// [place] Places at the end from the rates there: increments d = β v + (a₋/a₁) d₀, in the frame of the start.
+void Dynamics::place(const Formula& f) {
+  Numbers& d = increment_;
+  for (std::size_t i = 3; i < d.size(); i++) d[i] = f.reach * next_.rate[i] + f.keep * moved_[i];
+  const Vector3 velocity = rotated(d.data() + 3, next_.rate.data(), f.ratio > 0.0 ? 1.0 : 0.5);
+  for (std::size_t a = 0; a < 3; a++) d[a] = f.reach * velocity[a] + f.keep * moved_[a];
+  move(state, d, next_);
+}
+
+void Dynamics::fill_end() {
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    fill_pose(body_.skis[k], next_, layout_.first(int(k)), end_.poses[k]);
+    fill_motion(body_.skis[k], next_, layout_.first(int(k)), end_.motions[k]);
+  }
+}
+
+// Forces of the snow at the situation `end_`.
+void Dynamics::add_snow(Numbers& out) {
+  counts_.looks++;
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    const FlexibleSki& ski = body_.skis[k];
+    const Wrench& snow = contact_->look(int(k), end_.poses[k], end_.motions[k]);
+    Vector3 force{}, moment{};
+    for (std::size_t c = 0; c < 3; c++)
+      for (std::size_t a = 0; a < 3; a++) {
+        force[a] += ski.axes[c][a] * snow.force[c];
+        moment[a] += ski.axes[c][a] * snow.moment[c];
+      }
+    const Vector3& at = ski.boot;
+    const Vector3 lever{at[1] * force[2] - at[2] * force[1], at[2] * force[0] - at[0] * force[2],
+                        at[0] * force[1] - at[1] * force[0]};
+    for (std::size_t a = 0; a < 3; a++) out[a] += force[a], out[a + 3] += moment[a] + lever[a];
+    double* beam = out.data() + layout_.first(int(k));
+    for (std::size_t j = 0; j < ski.unknown.size(); j++)
+      for (int c = 0; c < 3 && ski.unknown[j] >= 0; c++) beam[ski.unknown[j] + c] += snow.beam[3 * j + std::size_t(c)];
+  }
+}
+
+// [residual] F(x, v) - K (u + c w) - M (a₁ v - (1 + ω) v₀ + a₋ v₋₁)/h at the end.
+void Dynamics::find_residual(const Formula& f) {
+  std::fill(residual_.begin(), residual_.end(), 0.0);
+  fill_end();
+  add_snow(residual_);
+  add_forces(body_, layout_, next_, residual_);
+  add_stiffness(body_, layout_, next_.bend, next_.rate, -1.0, residual_);
+  for (std::size_t i = 0; i < difference_.size(); i++)
+    difference_[i] = f.newest * next_.rate[i] - f.now * state.rate[i] + f.before * rate_before_[i];
+  add_mass(body_, layout_, difference_, -1.0, residual_);
+}
+
+// What the body does to a ski: the ski's way and rotation in its own axes by the body's.
+struct Carried {
+  double by[BODY][BODY] = {};
+
+  explicit Carried(const FlexibleSki& ski) {
+    const Vector3& r = ski.boot;
+    for (int c = 0; c < 3; c++) {
+      const Vector3& e = ski.axes[c];
+      const Vector3 turning{r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};
+      for (std::size_t a = 0; a < 3; a++) by[c][a] = by[c + 3][a + 3] = e[a], by[c][a + 3] = turning[a];
+    }
+  }
+};
+
+void Dynamics::add_contact_tangent(double stiffness, double damping) {
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    const FlexibleSki& ski = body_.skis[k];
+    contact_->find_tangent(int(k), end_.poses[k], end_.motions[k], stiffness, damping, tangent_);
+    const Carried carried(ski);
+    double half[BODY][BODY] = {};
+    for (int r = 0; r < BODY; r++)
+      for (int c = 0; c < BODY; c++)
+        for (int m = 0; m < BODY; m++) half[r][c] += tangent_.body[r][m] * carried.by[m][c];
+    for (int r = 0; r < BODY; r++)
+      for (int c = 0; c < BODY; c++)
+        for (int m = 0; m < BODY; m++) system_.corner[r][c] += carried.by[m][r] * half[m][c];
+    for (std::size_t j = 0; j < ski.unknown.size(); j++)
+      for (int c = 0; c < 3 && ski.unknown[j] >= 0; c++) {
+        const int row = ski.unknown[j] + c;
+        const auto node = 3 * j + std::size_t(c);
+        double* border = system_.border(int(k), row);
+        double* column = system_.border_column(int(k), row);
+        for (int a = 0; a < BODY; a++)
+          for (int m = 0; m < BODY; m++) {
+            border[a] += tangent_.beam_by_body[6 * node + std::size_t(m)] * carried.by[m][a];
+            column[a] += tangent_.body_by_beam[6 * node + std::size_t(m)] * carried.by[m][a];
+          }
+        double* band = system_.band(int(k), row);
+        for (int m = 0; m < 2 * HALF_BAND + 1; m++) {
+          const int other = row + m - HALF_BAND;
+          if (other >= 0 && other < ski.size()) band[m] += tangent_.beam[(2 * HALF_BAND + 1) * node + std::size_t(m)];
+        }
+      }
+  }
+}
+
+// [matrix] W = M + β (β + c) K + β² K_snow + β D_snow.
+bool Dynamics::factor(double reach) {
+  counts_.factored++;
+  system_.clear();
+  for (int a = 0; a < BODY; a++)
+    for (int b = 0; b < BODY; b++) system_.corner[a][b] = body_.inertia[a][b];
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    const FlexibleSki& ski = body_.skis[k];
+    const double stiff = reach * (reach + ski.damping);
+    for (int i = 0; i < ski.size(); i++) {
+      for (int j = 0; j <= std::min(i, HALF_BAND); j++) {
+        const auto at = std::size_t((HALF_BAND + 1) * i + j);
+        const double value = ski.mass[at] + stiff * ski.stiffness[at];
+        system_.band(int(k), i)[HALF_BAND - j] += value;
+        if (j > 0) system_.band(int(k), i - j)[HALF_BAND + j] += value;
+      }
+      for (int a = 0; a < BODY; a++)
+        system_.border(int(k), i)[a] = system_.border_column(int(k), i)[a] = ski.coupling[std::size_t(BODY * i + a)];
+    }
+  }
+  add_contact_tangent(reach * reach, reach);
+  reach_ = reach;
+  return system_.factor();
+}
+
+// How far rates move the boots, ends a metre off that turn with them, and the beams, in a time (m).
+double Dynamics::size_of(const Numbers& rates, double reach) const {
+  double most = 0.0;
+  for (std::size_t a = 0; a < BODY; a++) most = std::max(most, std::fabs(rates[a]));
+  for (int k = 0; k < layout_.beams(); k++)
+    for (int i = 0; i < layout_.size(k); i += 3)
+      most = std::max(most, std::fabs(rates[std::size_t(layout_.first(k) + i)]));
+  return most * reach;
+}
+
+// [newton] The rates at the step's end; whether they were found.
+bool Dynamics::solve_step(const Formula& f) {
+  const double close = std::min(rule_.closeness * rule_.tolerance, 0.1 * contact_->shear_displacement());
+  double last = std::numeric_limits<double>::infinity();
+  bool renew = kept_ <= 0 || std::fabs(f.reach - reach_) > SAME_REACH * reach_;
+  for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+    find_residual(f);
+    if (renew) {
+      if (!factor(f.reach)) return false;
+      kept_ = rule_.keep;
+      renew = false;
+    }
+    for (double& each : residual_) each *= f.reach;
+    system_.solve(residual_);
+    counts_.iterations++;
+    const double size = size_of(residual_, f.reach);
+    if (!(size < FARTHEST)) return false;
+    if (iteration > 0) {
+      contraction_ = std::min(size / last, 0.99);
+      renew = contraction_ > SLOW;
+    }
+    const double damping = iteration > 1 && size > 0.9 * last ? 0.5 : 1.0;
+    last = size;
+    for (std::size_t i = 0; i < residual_.size(); i++) next_.rate[i] += damping * residual_[i];
+    place(f);
+    if (contraction_ / (1.0 - contraction_) * size < close) {
+      kept_ -= iteration > 1 ? rule_.keep : 1;
+      return true;
+    }
+  }
+  return false;
+}
+
+// [error] Of place and rotation (m, rad), by Milne's device: distance from the explicit step of the same order.
+double Dynamics::error(const Formula& f) const {
+  const double now = f.h * (1.0 + 0.5 * f.ratio), before = -0.5 * f.h * f.ratio;
+  double foreseen[BODY], worst = 0.0;
+  for (std::size_t a = 0; a < BODY; a++) foreseen[a] = now * state.rate[a] + before * rate_before_[a];
+  const Vector3 way = rotated(foreseen + 3, foreseen, 0.5);
+  for (std::size_t a = 0; a < 3; a++) {
+    worst = std::max(worst, std::fabs(increment_[a] - way[a]));
+    worst = std::max(worst, std::fabs(increment_[a + 3] - foreseen[a + 3]));
+  }
+  return MILNE * worst;
+}
+
+// [powers] At the accepted end; energies by the trapezoidal rule.
+void Dynamics::add_work(double h) {
+  Work now;
+  for (std::size_t k = 0; k < body_.skis.size(); k++) {
+    const ContactPower snow = contact_->power(int(k), end_.poses[k], end_.motions[k]);
+    now.shear -= snow.shear;
+    now.friction -= snow.friction;
+    now.normal += snow.normal;
+  }
+  now.drag = drag_power(body_, next_);
+  now.damping = damping_power(body_, layout_, next_);
+  work_.shear += 0.5 * h * (power_.shear + now.shear);
+  work_.friction += 0.5 * h * (power_.friction + now.friction);
+  work_.normal += 0.5 * h * (power_.normal + now.normal);
+  work_.drag += 0.5 * h * (power_.drag + now.drag);
+  work_.damping += 0.5 * h * (power_.damping + now.damping);
+  power_ = now;
+}
+
+// [observe] Sections go to the two nodes beside them in proportion, their sum is kept; depths are interpolated.
+Along along_nodes(const Runner& runner, const Sections& s) {
+  const int last = runner.nodes() - 1;
+  const auto nodes = std::size_t(last + 1);
+  Along out{std::vector<double>(nodes), std::vector<double>(nodes), std::vector<double>(nodes)};
+  const auto& node = runner.node;
+  int e = last - 1, at = last, before = -1;
+  for (int i = 0; i < s.count(); i++) {  // from the tail
+    if (!(s[SHARE][i] > 0.0)) continue;
+    const double here = s[STATION][i], depth = s[DEEPEST][i];
+    while (e > 0 && here > node[std::size_t(e)]) e--;
+    const auto front = std::size_t(e), rear = front + 1;
+    const double z = std::clamp((node[front] - here) / (node[front] - node[rear]), 0.0, 1.0);
+    out.force[front] += (1.0 - z) * s[FORCE][i], out.force[rear] += z * s[FORCE][i];
+    out.shear[front] += (1.0 - z) * s[SHEAR][i], out.shear[rear] += z * s[SHEAR][i];
+    for (; at >= 0 && node[std::size_t(at)] <= here; at--) {
+      const double from = before < 0 ? here : s[STATION][before], way = here - from;
+      const double f = way > 0.0 && node[std::size_t(at)] > from ? (node[std::size_t(at)] - from) / way : 0.0;
+      out.depth[std::size_t(at)] = before < 0 ? depth : f * depth + (1.0 - f) * s[DEEPEST][before];
+    }
+    before = i;
+  }
+  for (; at >= 0 && before >= 0; at--) out.depth[std::size_t(at)] = s[DEEPEST][before];
+  for (std::size_t j = 0; j < nodes; j++) {
+    const double ahead = j > 0 ? node[j - 1] - node[j] : 0.0, behind = j + 1 < nodes ? node[j] - node[j + 1] : 0.0;
+    out.force[j] /= 0.5 * (ahead + behind);
+    out.shear[j] /= 0.5 * (ahead + behind);
+  }
+  return out;
+}
+
+void Dynamics::observe() {
+  along_.clear();
+  touches_ = false;
+  for (int k = 0; k < int(body_.skis.size()); k++) {
+    along_.push_back(along_nodes(contact_->runner(k), contact_->sections(k)));
+    touches_ = touches_ || contact_->touches(k);
+  }
+  snow_energy_ = contact_->elastic_energy();
+  held_energy_ = contact_->held_energy();
+}
+
+void Dynamics::accept(const Formula& f, bool observed) {
+  add_work(f.h);
+  if (observed) observe();
+  fill_end();
+  contact_->accept(end_);
+  rate_before_ = state.rate;
+  std::swap(state, next_);
+  moved_ = increment_;
+  const Vector3 way = rotated(increment_.data() + 3, increment_.data(), -1.0);
+  for (std::size_t a = 0; a < 3; a++) moved_[a] = way[a];
+  last_step_ = f.h;
+  counts_.steps++;
+}
+
+bool Dynamics::is_sound(double h) const {
+  double total = 0.0, farthest = 0.0;
+  for (std::size_t a = 0; a < BODY; a++) farthest = std::max(farthest, std::fabs(h * next_.rate[a]));
+  for (double each : next_.bend) total += each, farthest = std::max(farthest, std::fabs(each));
+  for (double each : next_.rate) total += each;
+  return std::isfinite(total) && farthest <= FARTHEST;
+}
+
+double Dynamics::on_ladder(double h) const {
+  return rule_.longest * std::exp2(0.25 * std::floor(4.0 * std::log2(h / rule_.longest) + 1e-6));
+}
+
+void Dynamics::begin() {
+  next_ = state;
+  fill_end();
+  end_.dt = 0.0;
+  contact_->begin(end_);
+  residual_.assign(residual_.size(), 0.0);
+  add_snow(residual_);
+  add_work(0.0);
+  observe();
+  contact_->accept(end_);
+  work_ = Work();
+  counts_ = Counts();
+  last_step_ = 0.0;
+  kept_ = 0;
+  step_ = rule_.fixed ? rule_.first : on_ladder(rule_.first);
+}
+
+Advance Dynamics::advance(double until, long most) {
+  for (long tries = 0; time < until; tries++) {
+    if (tries == most) return Advance::PAUSED;
+    const double left = until - time;
+    double h = std::min(step_, left);
+    if (rule_.fixed) {
+      h = left / std::max(1.0, std::ceil(left / step_ - 1e-9));
+      if (std::fabs(h - last_step_) < 1e-9 * h) h = last_step_;
+    } else if (h < left && h > 0.5 * left) {
+      h = 0.5 * left;  // no crumbs at the end
+    }
+    const Formula f = formula(h);
+    predict(f);
+    fill_end();
+    end_.dt = h;
+    contact_->begin(end_);
+    const bool solved = solve_step(f) && is_sound(h);
+    if (rule_.fixed) {
+      if (!solved) return Advance::NOT_FINITE;
+    } else {
+      const double wanted = solved ? SAFETY * std::cbrt(rule_.tolerance / std::max(error(f), 1e-30)) : 0.5;
+      if (!solved || wanted < SAFETY) {
+        counts_.rejected++;
+        kept_ = 0;
+        step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
+        if (step_ < rule_.shortest) return Advance::STEP_TOO_SMALL;
+        continue;
+      }
+      if (h >= step_ && wanted > UP)
+        step_ = std::min(rule_.longest, on_ladder(step_ * 1.19));
+      else if (wanted < DOWN)
+        step_ = on_ladder(h * wanted);
+    }
+    const bool reached = h >= left;
+    time = reached ? until : time + h;
+    accept(f, reached);
+  }
+  return Advance::REACHED;
+}
+
+}  // namespace skisnow

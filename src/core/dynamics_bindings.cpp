@@ -1,0 +1,135 @@
+// The dynamics in Python: plain arrays in and out. The package skisnow.dynamics gives it names, checks and
+// documentation.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+
+#include "dynamics.hpp"
+
+namespace nb = nanobind;
+
+namespace skisnow {
+namespace {
+
+using Array = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Result = nb::ndarray<nb::numpy, double>;
+
+Result array(std::vector<double> values, std::initializer_list<std::size_t> shape) {
+  auto* kept = new std::vector<double>(std::move(values));
+  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return Result(kept->data(), shape, owner);
+}
+
+std::vector<double> copied(const Array& a) { return {a.data(), a.data() + a.size()}; }
+
+FlexibleSki flexible_ski(const Array& boot, const Array& axes, const Array& unknown, const Array& mass,
+                         const Array& stiffness, const Array& coupling, double damping) {
+  FlexibleSki out;
+  std::copy_n(boot.data(), 3, out.boot.begin());
+  for (int c = 0; c < 3; c++) std::copy_n(axes.data() + 3 * c, 3, out.axes[c].begin());
+  for (std::size_t i = 0; i < unknown.size(); i++) out.unknown.push_back(int(unknown.data()[i]));
+  out.mass = copied(mass);
+  out.stiffness = copied(stiffness);
+  out.coupling = copied(coupling);
+  out.damping = damping;
+  return out;
+}
+
+// The unknowns of all skis, one after the other, without the empty places between them.
+std::vector<double> of_beams(const Layout& layout, const Numbers& numbers) {
+  std::vector<double> out;
+  for (int k = 0; k < layout.beams(); k++) {
+    const double* from = numbers.data() + layout.first(k);
+    out.insert(out.end(), from, from + layout.size(k));
+  }
+  return out;
+}
+
+}  // namespace
+
+void bind_dynamics(nb::module_& m) {
+  nb::class_<FlexibleSki>(m, "FlexibleSki");
+  m.def("flexible_ski", &flexible_ski);
+  nb::class_<Body>(m, "Body");
+  m.def("body", [](const Array& inertia, double mass, const Array& first_moment, std::vector<FlexibleSki> skis,
+                   const Array& gravity, double drag, double drag_height) {
+    Body out;
+    std::copy_n(inertia.data(), 36, &out.inertia[0][0]);
+    out.mass = mass;
+    std::copy_n(first_moment.data(), 3, out.first_moment.begin());
+    out.skis = std::move(skis);
+    std::copy_n(gravity.data(), 3, out.gravity.begin());
+    out.drag = drag;
+    out.drag_height = drag_height;
+    return out;
+  });
+  nb::class_<StepRule>(m, "StepRule")
+      .def(nb::init<>())
+      .def_rw("first", &StepRule::first)
+      .def_rw("fixed", &StepRule::fixed)
+      .def_rw("tolerance", &StepRule::tolerance)
+      .def_rw("shortest", &StepRule::shortest)
+      .def_rw("longest", &StepRule::longest)
+      .def_rw("closeness", &StepRule::closeness)
+      .def_rw("keep", &StepRule::keep);
+  nb::class_<Dynamics>(m, "Dynamics")
+      .def(nb::init<Body, SnowContact&, const StepRule&>(), nb::keep_alive<1, 3>())
+      .def_rw("time", &Dynamics::time)
+      .def("set_pose",
+           [](Dynamics& self, const Array& position, const Array& rotation) {
+             std::copy_n(position.data(), 3, self.state.position.begin());
+             std::copy_n(rotation.data(), 9, &self.state.rotation[0][0]);
+           })
+      .def("set_velocity", [](Dynamics& self, const Array& rate) { std::copy_n(rate.data(), 6, self.state.rate.begin()); })
+      .def("settle", &Dynamics::settle, nb::call_guard<nb::gil_scoped_release>())
+      .def("begin", &Dynamics::begin, nb::call_guard<nb::gil_scoped_release>())
+      .def(
+          "advance", [](Dynamics& self, double until, long most) { return int(self.advance(until, most)); },
+          nb::call_guard<nb::gil_scoped_release>())
+      .def_prop_ro("position", [](const Dynamics& self) {
+        return array({self.state.position.begin(), self.state.position.end()}, {3});
+      }, nb::rv_policy::move)
+      .def_prop_ro("rotation", [](const Dynamics& self) {
+        return array({&self.state.rotation[0][0], &self.state.rotation[0][0] + 9}, {3, 3});
+      }, nb::rv_policy::move)
+      .def_prop_ro("velocity", [](const Dynamics& self) {
+        return array({self.state.rate.begin(), self.state.rate.begin() + BODY}, {BODY});
+      }, nb::rv_policy::move)
+      .def_prop_ro("bend",
+                   [](const Dynamics& self) {
+                     std::vector<double> all = of_beams(self.layout(), self.state.bend);
+                     const std::size_t n = all.size();
+                     return array(std::move(all), {n});
+                   }, nb::rv_policy::move)
+      .def("along",
+           [](const Dynamics& self, int k) {
+             const Along& a = self.along(k);
+             std::vector<double> all(a.depth);
+             all.insert(all.end(), a.force.begin(), a.force.end());
+             all.insert(all.end(), a.shear.begin(), a.shear.end());
+             const std::size_t n = a.depth.size();
+             return array(std::move(all), {3, n});
+           })
+      .def_prop_ro("snow_energy", &Dynamics::snow_energy)
+      .def_prop_ro("held_energy", &Dynamics::held_energy)
+      .def_prop_ro("touches", &Dynamics::touches)
+      .def_prop_ro("next_step", &Dynamics::next_step)
+      .def_prop_ro("energies",
+                   [](const Dynamics& self) {
+                     const Energies e = energies(self.body(), self.layout(), self.state);
+                     return nb::make_tuple(e.kinetic, e.potential, e.elastic);
+                   })
+      .def_prop_ro("work",
+                   [](const Dynamics& self) {
+                     const Work& w = self.work();
+                     return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping);
+                   })
+      .def_prop_ro("counts", [](const Dynamics& self) {
+        const Counts& c = self.counts();
+        return nb::make_tuple(c.steps, c.rejected, c.looks, c.factored, c.iterations);
+      });
+}
+
+}  // namespace skisnow

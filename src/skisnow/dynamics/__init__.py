@@ -1,0 +1,6 @@
+"""Motion of a body on flexible skis over snow: implicit steps with error control, static equilibrium, energies."""
+
+from .body import Body, FlexibleSki
+from .motion import Dynamics, Ended, StepControl
+
+__all__ = ["Body", "Dynamics", "Ended", "FlexibleSki", "StepControl"]

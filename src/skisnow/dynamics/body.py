@@ -1,0 +1,82 @@
+"""A rigid body on flexible skis: masses, stiffness and what pulls at it, as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..compiled import core
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class FlexibleSki:
+    """A beam clamped to the body at its boot: three unknowns to a free node (deflection, its slope, twist).
+
+    Attributes
+    ----------
+    boot
+        Of the ski, in the body's frame (m), (3,).
+    axes
+        Ahead, left across the base, off the base, as rows in the body's frame, (3, 3).
+    unknown
+        First unknown of each node from tip to tail, -1 where the binding holds it, (nodes,).
+    mass, stiffness
+        Symmetric bands, lower half: [i, j] is A[i, i - j], (n, 6).
+    coupling
+        Of the mass matrix between the beam's unknowns and the body's six, (n, 6).
+    damping
+        Times the stiffness (s): Kelvin–Voigt damping.
+    """
+
+    boot: FloatArray
+    axes: FloatArray
+    unknown: FloatArray
+    mass: FloatArray
+    stiffness: FloatArray
+    coupling: FloatArray
+    damping: float
+
+    def compiled(self) -> core.FlexibleSki:
+        """What the core takes."""
+        arrays = (self.boot, self.axes, self.unknown, self.mass, self.stiffness, self.coupling)
+        return core.flexible_ski(*(np.ascontiguousarray(each, float) for each in arrays), self.damping)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Body:
+    """A rigid body on skis, SI, vectors in its own frame but for gravity.
+
+    Attributes
+    ----------
+    inertia
+        Mass matrix of the body with its undeformed skis: place, then rotation, (6, 6).
+    mass, first_moment
+        Of both together (kg); mass times place of the centre of mass (kg m), (3,).
+    skis
+        One or more.
+    gravity
+        In space (m/s²), (3,).
+    drag, drag_height
+        ½ ρ C_d A (kg/m); height of the air's centre of pressure above the body's origin (m).
+    """
+
+    inertia: FloatArray
+    mass: float
+    first_moment: FloatArray
+    skis: tuple[FlexibleSki, ...]
+    gravity: FloatArray
+    drag: float = 0.0
+    drag_height: float = 0.0
+
+    def compiled(self) -> core.Body:
+        """What the core takes."""
+        inertia, moment, gravity = (
+            np.ascontiguousarray(each, float) for each in (self.inertia, self.first_moment, self.gravity)
+        )
+        skis = [each.compiled() for each in self.skis]
+        return core.body(inertia, self.mass, moment, skis, gravity, self.drag, self.drag_height)

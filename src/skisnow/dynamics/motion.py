@@ -1,0 +1,181 @@
+"""Steps of a body on skis over snow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..compiled import core
+from ..contact import SnowContact
+from ..errors import ParameterError
+from .body import Body
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+STEPS_AT_ONCE: Final = 1000
+"""Steps after which compiled code comes back, so that an interrupt is heard."""
+TOLERANCE: Final = 3e-7
+"""Error of place (m) that one step may make by its own estimate (Choice, see the frontier in the docs)."""
+LONGEST_STEP: Final = 6e-3
+"""Longest step (s) (Choice: longer ones do not pay, the history must be marched within them)."""
+SHORTEST_STEP: Final = 1e-7
+"""Step (s) below which a run ends."""
+CLOSENESS: Final = 1e-3
+"""Share of the tolerance to which Newton's method solves a step (Choice: a smaller one changes no result)."""
+MATRIX_KEPT: Final = 8
+"""Steps over which Newton's matrix is kept while it serves (Choice)."""
+
+
+class Ended(IntEnum):
+    """How `Dynamics.advance` ended."""
+
+    REACHED = 0
+    STEP_TOO_SMALL = 1
+    NOT_FINITE = 2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepControl:
+    """Length of the steps.
+
+    Attributes
+    ----------
+    first
+        The first step, or with ``fixed`` every step (s).
+    fixed
+        Whether the step stays.
+    tolerance
+        Error of place of one step (m); one metre from the boots for rotations.
+    longest, shortest
+        Between which the error control chooses (s).
+    closeness, matrix_kept
+        Numerics, see the constants of this module.
+    """
+
+    first: float = 1e-4
+    fixed: bool = False
+    tolerance: float = TOLERANCE
+    longest: float = LONGEST_STEP
+    shortest: float = SHORTEST_STEP
+    closeness: float = CLOSENESS
+    matrix_kept: int = MATRIX_KEPT
+
+    def __post_init__(self) -> None:
+        for name in ("first", "tolerance", "longest", "shortest", "closeness"):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise ParameterError(f"StepControl: {name} is {getattr(self, name)!r}; it must be finite and above 0")
+        if self.matrix_kept < 1:
+            raise ParameterError(f"StepControl: matrix_kept is {self.matrix_kept!r}; it must be 1 or more")
+
+    def compiled(self) -> core.StepRule:
+        """What the core takes."""
+        rule = core.StepRule()
+        rule.first, rule.fixed, rule.tolerance = self.first, self.fixed, self.tolerance
+        rule.longest, rule.shortest = self.longest, self.shortest
+        rule.closeness, rule.keep = self.closeness, self.matrix_kept
+        return rule
+
+
+class Dynamics:
+    """A body on skis in motion, BDF2 with Newton's method at each step's end.
+
+    Parameters
+    ----------
+    body
+        Its masses and skis.
+    contact
+        Of the same number of runners, with the nodes of the skis' beams. The dynamics take it over: it must not be
+        updated by others.
+    position, rotation
+        Of the body's origin in space (m), (3,), and its axes as columns, (3, 3).
+    control
+        Of the steps.
+
+    Raises
+    ------
+    ParameterError
+        The contact has another number of runners than the body has skis.
+    """
+
+    def __init__(
+        self, body: Body, contact: SnowContact, position: FloatArray, rotation: FloatArray, control: StepControl
+    ) -> None:
+        if len(contact.runners) != len(body.skis):
+            raise ParameterError(f"the body has {len(body.skis)} skis, the contact {len(contact.runners)} runners")
+        self.body, self.contact = body, contact
+        self._core = core.Dynamics(body.compiled(), contact.compiled, control.compiled())
+        self._core.set_pose(np.ascontiguousarray(position, float), np.ascontiguousarray(rotation, float))
+
+    def settle(self) -> float:
+        """Move to equilibrium in height, roll, pitch and bend, place and heading held; Newton's last step (m)."""
+        return float(self._core.settle())
+
+    def begin(self, velocity: FloatArray) -> None:
+        """Let the motion begin where the body is: velocity and angular velocity in its own axes (6,)."""
+        self._core.set_velocity(np.ascontiguousarray(velocity, float))
+        self._core.begin()
+
+    def advance(self, until: float) -> Ended:
+        """Take steps until a time (s), which the last one meets; an interrupt is heard on the way."""
+        while True:
+            ended = self._core.advance(until, STEPS_AT_ONCE)
+            if ended <= max(Ended):
+                return Ended(ended)
+
+    @property
+    def time(self) -> float:
+        """Since `begin` (s)."""
+        return float(self._core.time)
+
+    @property
+    def position(self) -> FloatArray:
+        """Of the body's origin in space (m), (3,)."""
+        return self._core.position
+
+    @property
+    def rotation(self) -> FloatArray:
+        """The body's axes as columns in space, (3, 3)."""
+        return self._core.rotation
+
+    @property
+    def velocity(self) -> FloatArray:
+        """Velocity of the origin (m/s) and angular velocity (rad/s) in the body's axes, (6,)."""
+        return self._core.velocity
+
+    @property
+    def bend(self) -> FloatArray:
+        """The beams' unknowns, (skis, n)."""
+        return self._core.bend.reshape(len(self.body.skis), -1)
+
+    def along(self, ski: int) -> FloatArray:
+        """At the last time reached: depth of the edge (m), force and shear per length (N/m) at the nodes, (3, m)."""
+        return self._core.along(ski)
+
+    @property
+    def touches(self) -> bool:
+        """Whether any ski was in the snow at the last time reached."""
+        return bool(self._core.touches)
+
+    @property
+    def energies(self) -> tuple[float, float, float]:
+        """Kinetic, potential, elastic in the skis (J)."""
+        return self._core.energies
+
+    @property
+    def snow_energies(self) -> tuple[float, float]:
+        """Elastic in the snow, and held in the displaced shear of the edges, at the last time reached (J)."""
+        return float(self._core.snow_energy), float(self._core.held_energy)
+
+    @property
+    def work(self) -> tuple[float, float, float, float, float]:
+        """Taken since `begin` by shear and friction, given by the normal force, taken by air and the skis' damping (J)."""
+        return self._core.work
+
+    @property
+    def counts(self) -> tuple[int, int, int, int, int]:
+        """Steps, rejected steps, evaluations of the contact, matrices factored, iterations of Newton's method."""
+        return self._core.counts

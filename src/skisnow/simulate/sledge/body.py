@@ -1,0 +1,71 @@
+"""A sledge on two skis as a body in motion."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ...dynamics import Body, FlexibleSki
+from ...ski.beam.banded import dense
+from ...ski.beam.clamped import ClampedSki
+from .frames import base_lateral, base_normal
+from .inertia import RigidSledge, sledge_inertia
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+def sledge_body(
+    sledge: RigidSledge, ski: ClampedSki, *, damping_ratio: float, gravity: FloatArray, drag: float, drag_height: float
+) -> Body:
+    """A sledge on two of these skis, its origin between the boots on the level of the bases.
+
+    Parameters
+    ----------
+    sledge, ski
+        The rigid part, and the ski of both sides.
+    damping_ratio
+        Of the ski's first bending mode as it is clamped, ≥ 0: damping in proportion to the stiffness.
+    gravity
+        In space (m/s²), (3,).
+    drag, drag_height
+        ½ ρ C_d A (kg/m), height of the centre of pressure (m).
+    """
+    inertia, side = sledge_inertia(sledge, ski), sledge.stance_width / 2.0
+    axes = np.array([[1.0, 0.0, 0.0], base_lateral(sledge.edge_angle), base_normal(sledge.edge_angle)])
+    mass, stiffness = _lower(ski.mass), _lower(ski.stiffness)
+    damping = 2.0 * damping_ratio / _first_bending_frequency(ski)
+    skis = tuple(
+        FlexibleSki(
+            boot=np.array([0.0, y, 0.0]), axes=axes, unknown=_first_unknowns(ski), mass=mass, stiffness=stiffness,
+            coupling=inertia.coupling[k], damping=damping,
+        )
+        for k, y in enumerate((side, -side))
+    )  # fmt: skip
+    return Body(
+        inertia=inertia.rigid, mass=inertia.mass, first_moment=inertia.first_moment, skis=skis, gravity=gravity,
+        drag=drag, drag_height=drag_height,
+    )  # fmt: skip
+
+
+def _first_unknowns(ski: ClampedSki) -> FloatArray:
+    """First unknown of each node, -1 where held: (nodes,)."""
+    return np.append(ski.dof[:, 0], ski.dof[-1, 3]).astype(float)
+
+
+def _lower(matrix: FloatArray) -> FloatArray:
+    """Lower half of a symmetric band: from (n, 11) to (n, 6)."""
+    lower = np.ascontiguousarray(matrix[:, 5::-1])
+    for i in range(5):
+        lower[i, i + 1 :] = 0.0
+    return lower
+
+
+def _first_bending_frequency(ski: ClampedSki) -> float:
+    """Angular frequency (rad/s) of the softest bending mode of the clamped ski."""
+    from scipy.linalg import eigh
+
+    bending = np.arange(ski.size) % 3 != 2
+    stiffness, mass = dense(ski.stiffness)[np.ix_(bending, bending)], dense(ski.mass)[np.ix_(bending, bending)]
+    return float(np.sqrt(eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 0])[0]))
