@@ -11,9 +11,11 @@ namespace {
 
 constexpr int MOST_ITERATIONS = 12;
 constexpr double SLOW = 0.15;       // contraction from which on the matrix is made anew
+constexpr double UNSEEN = 0.3;      // contraction to reckon with before it was seen
 constexpr double SAME_REACH = 0.1;  // by which β may differ from that of a matrix that is kept
 constexpr double FARTHEST = 1.0;    // way (m), turn (rad), bend beyond which a step has diverged
 constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // of the step's choice
+constexpr double ROUNDING = 1e-9;    // of a step's length
 constexpr double MILNE = 0.35;      // error of BDF2 over its distance from the predictor, at equal steps 8/23
 
 }  // namespace
@@ -196,7 +198,8 @@ bool Dynamics::solve_step(const Formula& f) {
     last = size;
     for (std::size_t i = 0; i < residual_.size(); i++) next_.rate[i] += damping * residual_[i];
     place(f);
-    if (contraction_ / (1.0 - contraction_) * size < close) {
+    const double contraction = iteration > 0 ? contraction_ : std::max(contraction_, UNSEEN);
+    if (contraction / (1.0 - contraction) * size < close) {
       kept_ -= iteration > 1 ? rule_.keep : 1;
       return true;
     }
@@ -327,9 +330,9 @@ Advance Dynamics::advance(double until, long most) {
     const double left = until - time;
     double h = std::min(step_, left);
     if (rule_.fixed) {
-      h = left / std::max(1.0, std::ceil(left / step_ - 1e-9));
-      if (std::fabs(h - last_step_) < 1e-9 * h) h = last_step_;
-    } else if (h < left && h > 0.5 * left) {
+      h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));
+      if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
+    } else if (h < left * (1.0 - ROUNDING) && h > 0.5 * left) {
       h = 0.5 * left;  // no crumbs at the end
     }
     const Formula f = formula(h);
@@ -354,7 +357,7 @@ Advance Dynamics::advance(double until, long most) {
       else if (wanted < DOWN)
         step_ = on_ladder(h * wanted);
     }
-    const bool reached = h >= left;
+    const bool reached = h >= left * (1.0 - ROUNDING);
     time = reached ? until : time + h;
     accept(f, reached);
   }

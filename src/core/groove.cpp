@@ -51,6 +51,8 @@ void merge_piece(const Ground& old, int j, const Segment& pressed, Ground& out) 
   if (to < b) out.append(to, old_to);
 }
 
+constexpr double ALIKE = 1.0 + 1e-4, TINY_AREA = 1e-24;  // (m²): of areas that are alike but for rounding
+
 }  // namespace
 
 void Ground::append(double at, double deep) {
@@ -110,22 +112,37 @@ bool Ground::press(double a, double depth_a, double b, double depth_b) {
   return true;
 }
 
+// Two that are alike but for rounding go together, the outermost first: the mirror image is simplified as its original.
 void Ground::simplify(double area, int most) {
   if (count < 3) return;
   double size[ROOM];
   for (int j = 1; j + 1 < count; j++) size[j] = triangle(*this, j - 1, j, j + 1);
   while (count > 2) {
     const int least = int(std::min_element(size + 1, size + count - 1) - size);
+    const double alike = size[least] * ALIKE + TINY_AREA;
     if (size[least] > area && count <= most) break;
-    for (int j = least; j + 1 < count; j++) {
-      place[j] = place[j + 1];
-      depth[j] = depth[j + 1];
-      size[j] = size[j + 1];
+    int first = 1, last = count - 2;
+    while (size[first] > alike) first++;
+    while (size[last] > alike) last--;
+    if (last - first < 2) {
+      drop(least, size);
+    } else {
+      drop(last, size);
+      drop(first, size);
     }
-    count--;
-    if (least > 1) size[least - 1] = triangle(*this, least - 2, least - 1, least);
-    if (least + 1 < count) size[least] = triangle(*this, least - 1, least, least + 1);
   }
+}
+
+// Drop a knot; `size` are the triangles of the knots with their neighbours.
+void Ground::drop(int knot, double* size) {
+  for (int j = knot; j + 1 < count; j++) {
+    place[j] = place[j + 1];
+    depth[j] = depth[j + 1];
+    size[j] = size[j + 1];
+  }
+  count--;
+  if (knot > 1) size[knot - 1] = triangle(*this, knot - 2, knot - 1, knot);
+  if (knot + 1 < count) size[knot] = triangle(*this, knot - 1, knot, knot + 1);
 }
 
 double Ground::squared() const {

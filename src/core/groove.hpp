@@ -34,6 +34,9 @@ struct Ground {
 
   // ∫ depth² over the place (m³).
   double squared() const;
+
+ private:
+  void drop(int knot, double* size);
 };
 
 }  // namespace skisnow

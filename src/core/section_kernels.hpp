@@ -34,6 +34,15 @@ inline void store_table_place(const Runner& runner, Sections& s, int i, V statio
   store(s[TABLE_PLACE] + i, within((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.000001));
 }
 
+// [edge_side] From the ski's middle (0) to one of its edges (1, -1) as the edge angle grows to that of the blend. Of a
+// level base it does not move as the base rolls: the hold of the snow would be drawn along, and a run straight down
+// begin to swing by itself.
+template <class V>
+inline V edge_side_of(V tilt) {
+  const V within_one = within(tilt, -1.0, 1.0), size = absolute(within_one);
+  return within_one * size * (3.0 - 2.0 * size);
+}
+
 // [cross_axis] Where along the ski's straight axis each line passes.
 template <class V>
 void cross_axis(const Runner& runner, const Snow& snow, const GrooveLines& lines, Sections& s) {
@@ -42,7 +51,7 @@ void cross_axis(const Runner& runner, const Snow& snow, const GrooveLines& lines
     const Vector<V> from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
     const V forwards = 1.0 / ahead.x;
     const V crossing = from.x + (from.y * ahead.y + from.z * ahead.z) * forwards;
-    const V edge_side = within(-load<V>(s[LINE_NORMAL_1] + i) * per_blend, -1.0, 1.0);
+    const V edge_side = edge_side_of<V>(-load<V>(s[LINE_NORMAL_1] + i) * per_blend);
     store(s[AXIS_CROSSING] + i, crossing);
     store(s[TOWARD_EDGE] + i, edge_side * ahead.y * forwards);
     store(s[UPWARD] + i, ahead.z * forwards);
@@ -155,7 +164,7 @@ struct Cut {
     middle = (from.x - station) * normal.x + from.y * normal.y + (from.z - height) * normal.z;
     sine = sp * normal.z - cp * normal.y;
     deepest = middle + half * absolute(sine);
-    side = within(sine * per_blend, -1.0, 1.0);
+    side = edge_side_of<V>(sine * per_blend);
     reach = side * half;
     edge_depth = middle + reach * sine;
     edge_left = reach * cp;

@@ -98,13 +98,16 @@ double Dynamics::static_square(const Numbers& left) const {
   return total;
 }
 
-// Lift or lower the body, its skis as they are bent, to where the snow bears its weight.
+// Lift or lower the body along its own normal, its skis as they are bent, to where the snow bears its weight.
 void Dynamics::find_height(Numbers& left) {
+  const auto lifted = [&](double height) {
+    BodyState out = state;
+    for (std::size_t a = 0; a < 3; a++) out.position[a] += height * state.rotation[a][2];
+    return out;
+  };
   const auto surplus = [&](double height) {
-    BodyState lifted = state;
-    lifted.position[2] += height;
-    static_residual(lifted, left);
-    return state.in_space({left[0], left[1], left[2]})[2];
+    static_residual(lifted(height), left);
+    return left[2];
   };
   double low = 0.0, high = 0.0, way = LIFT;
   if (surplus(0.0) > 0.0) {
@@ -113,7 +116,7 @@ void Dynamics::find_height(Numbers& left) {
     for (; surplus(low) <= 0.0 && way < 1.0; way *= 2.0) high = low, low -= way;
   }
   while (high - low > LIFT_EXACT) (surplus(0.5 * (low + high)) > 0.0 ? low : high) = 0.5 * (low + high);
-  state.position[2] += 0.5 * (low + high);
+  state.position = lifted(0.5 * (low + high)).position;
 }
 
 double Dynamics::settle() {

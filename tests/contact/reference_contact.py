@@ -137,7 +137,7 @@ class _Section:
         to_line = line.origin - pose.position
         gap = float(to_line @ ahead / (self.x @ ahead))
         blend = math.sin(whole.snow.edge_blend_angle)
-        down = float(np.clip(-(across @ n) / blend, -1.0, 1.0))
+        down = _edge_side(-(across @ n) / blend)
         s = gap
         for _ in range(2):
             half, height = (float(np.interp(s, whole.table, column)) for column in whole.columns[:2])
@@ -153,7 +153,7 @@ class _Section:
         self.t, self.r = math.cos(phi) * across - math.sin(phi) * up, math.cos(phi) * up + math.sin(phi) * across
         axis = s * self.x + height * up
         depth, self.sine = float((to_line - axis) @ n), float(-self.t @ n)
-        self.reach = float(np.clip(self.sine / blend, -1.0, 1.0)) * half
+        self.reach = _edge_side(self.sine / blend) * half
         along = self.x + slope * up + self.reach / half * flare * self.t - self.reach * self.twist_s * self.r
         missing = float((to_line - axis - self.reach * self.t) @ ahead)
         edge = float((axis + self.reach * self.t + missing / float(along @ ahead) * along - to_line) @ y)
@@ -280,3 +280,9 @@ def _bearing(
         return [(a, b)]
     zero = a + (b - a) * at_a / (at_a - at_b)
     return [(a, zero)] if at_a > 0.0 else [(zero, b)]
+
+
+def _edge_side(tilt: float) -> float:
+    """From the middle (0) to an edge (1, -1), smoothly; it stands still where the base is level."""
+    size = min(abs(float(tilt)), 1.0)
+    return math.copysign(size**2 * (3.0 - 2.0 * size), tilt)
