@@ -14,12 +14,12 @@ namespace skisnow {
 
 // A beam clamped to the body at its boot. Three unknowns to a free node: deflection (m), slope towards the tail, twist.
 struct FlexibleSki {
-  Vector3 boot{};                            // in the body's frame
-  Vector3 axes[3] = {};                      // ahead, left across the base, off the base, in the body's frame
-  std::vector<int> unknown;                  // (nodes,) the first of each node, -1 where it is held
-  std::vector<double> mass, stiffness;       // (n, 6): [i, j] is A[i, i - j]
-  std::vector<double> coupling;              // (n, 6) of the mass matrix, with the body
-  double damping = 0.0;                      // times the stiffness (s)
+  Vector3 boot{};                       // in the body's frame
+  Vector3 axes[3] = {};                 // ahead, left across the base, off the base, in the body's frame
+  std::vector<int> unknown;             // (nodes,) the first of each node, -1 where it is held
+  std::vector<double> mass, stiffness;  // (n, 6): [i, j] is A[i, i - j]
+  std::vector<double> coupling;         // (n, 6) of the mass matrix, with the body
+  double damping = 0.0;                 // times the stiffness (s)
   int size() const { return int(mass.size()) / (HALF_BAND + 1); }
 };
 
@@ -28,8 +28,8 @@ struct Body {
   double mass = 0.0;                // of both (kg)
   Vector3 first_moment{};           // (kg m)
   std::vector<FlexibleSki> skis;
-  Vector3 gravity{};                           // in space (m/s²)
-  double drag = 0.0, drag_height = 0.0;        // ½ ρ C_d A (kg/m); of the centre of pressure (m)
+  Vector3 gravity{};                     // in space (m/s²)
+  double drag = 0.0, drag_height = 0.0;  // ½ ρ C_d A (kg/m); of the centre of pressure (m)
   Layout layout() const;
 };
 
@@ -66,7 +66,7 @@ struct Energies {
   double kinetic, potential, elastic;  // (J)
 };
 Energies energies(const Body& body, const Layout& layout, const BodyState& state);
-double drag_power(const Body& body, const BodyState& state);                             // (W), taken by the air
+double drag_power(const Body& body, const BodyState& state);                           // (W), taken by the air
 double damping_power(const Body& body, const Layout& layout, const BodyState& state);  // (W), taken in the skis
 
 }  // namespace skisnow

@@ -106,8 +106,8 @@ double interpolated(const std::vector<std::pair<double, double>>& table, double 
 }
 
 constexpr double TANGENT_STEP = 1e-8;  // m, rad
-constexpr double POSE_STEP = 1e-7;    // m, rad
-constexpr double MOTION_STEP = 1e-4;  // m/s, rad/s
+constexpr double POSE_STEP = 1e-7;     // m, rad
+constexpr double MOTION_STEP = 1e-4;   // m/s, rad/s
 
 }  // namespace
 
@@ -318,11 +318,10 @@ ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) c
       twisting = reach * (y * rate[2] + z * rate[5]);
     }
     const double at[3] = {s[STATION][i], s[EDGE_LEFT][i], s[EDGE_UP][i]};
-    const double velocity[3] = {
-        v[0] + o[1] * at[2] - o[2] * at[1], v[1] + o[2] * at[0] - o[0] * at[2] - s[TWIST_SINE][i] * twisting,
-        v[2] + o[0] * at[1] - o[1] * at[0] + lifting - s[TWIST_COSINE][i] * twisting};
-    const double across =
-        velocity[0] * s[ACROSS_0][i] + velocity[1] * s[ACROSS_1][i] + velocity[2] * s[ACROSS_2][i];
+    const double velocity[3] = {v[0] + o[1] * at[2] - o[2] * at[1],
+                                v[1] + o[2] * at[0] - o[0] * at[2] - s[TWIST_SINE][i] * twisting,
+                                v[2] + o[0] * at[1] - o[1] * at[0] + lifting - s[TWIST_COSINE][i] * twisting};
+    const double across = velocity[0] * s[ACROSS_0][i] + velocity[1] * s[ACROSS_1][i] + velocity[2] * s[ACROSS_2][i];
     out.shear += s[SHEAR][i] * across;
     out.friction -= s[FRICTION][i] * s[FORCE][i] * s[SLIDING][i];
   }

@@ -2,18 +2,19 @@
 // control over a ladder of steps, and the static equilibrium from which a run starts.
 #pragma once
 
+#include "along.hpp"
 #include "body.hpp"
 #include "contact.hpp"
 
 namespace skisnow {
 
 struct StepRule {
-  double first = 1e-4;         // step (s), with `fixed` every step
+  double first = 1e-4;  // step (s), with `fixed` every step
   bool fixed = false;
-  double tolerance = 3e-7;     // error of place (m) of one step, by its own estimate
+  double tolerance = 3e-7;                 // error of place (m) of one step, by its own estimate
   double shortest = 1e-7, longest = 6e-3;  // (s)
-  double closeness = 0.01;     // of the tolerance, to which Newton's method solves a step
-  int keep = 8;                // steps over which the matrix may be kept
+  double closeness = 0.01;                 // of the tolerance, to which Newton's method solves a step
+  int keep = 8;                            // steps over which the matrix may be kept
 };
 
 enum class Advance { REACHED = 0, STEP_TOO_SMALL = 1, NOT_FINITE = 2, PAUSED = 3 };
@@ -28,11 +29,6 @@ struct Work {
   double shear = 0.0, friction = 0.0, normal = 0.0, drag = 0.0, damping = 0.0;
 };
 
-// What the snow does along one ski at the last moment that `advance` or `begin` reached, at the beam's nodes.
-struct Along {
-  std::vector<double> depth, force, shear;  // of the deeper edge (m); per length of ski (N/m)
-};
-
 class Dynamics {
  public:
   Dynamics(Body body, SnowContact& contact, const StepRule& rule);
@@ -45,6 +41,7 @@ class Dynamics {
   const Counts& counts() const { return counts_; }
   const Work& work() const { return work_; }
   double next_step() const { return step_; }
+  // What the snow does along one ski at the last moment that `advance` or `begin` reached.
   const Along& along(int k) const { return along_[std::size_t(k)]; }
   double snow_energy() const { return snow_energy_; }  // elastic (J), at that moment
   double held_energy() const { return held_energy_; }  // in the displaced shear (J)
@@ -83,9 +80,9 @@ class Dynamics {
   double reach_ = 0.0, contraction_ = 0.5;  // β of the matrix; of Newton's method, as last seen
 
   struct Formula {
-    double h, reach, keep;             // β = h/a₁; share of the last increments
-    double newest, now, before;        // of the rates: a₁, 1 + ω, a₋, over h
-    double ratio;                      // ω, 0 for Euler's step
+    double h, reach, keep;       // β = h/a₁; share of the last increments
+    double newest, now, before;  // of the rates: a₁, 1 + ω, a₋, over h
+    double ratio;                // ω, 0 for Euler's step
   };
   Formula formula(double h) const;
   void predict(const Formula& f);

@@ -82,27 +82,35 @@ void bind_dynamics(nb::module_& m) {
              std::copy_n(position.data(), 3, self.state.position.begin());
              std::copy_n(rotation.data(), 9, &self.state.rotation[0][0]);
            })
-      .def("set_velocity", [](Dynamics& self, const Array& rate) { std::copy_n(rate.data(), 6, self.state.rate.begin()); })
+      .def("set_velocity",
+           [](Dynamics& self, const Array& rate) { std::copy_n(rate.data(), 6, self.state.rate.begin()); })
       .def("settle", &Dynamics::settle, nb::call_guard<nb::gil_scoped_release>())
       .def("begin", &Dynamics::begin, nb::call_guard<nb::gil_scoped_release>())
       .def(
           "advance", [](Dynamics& self, double until, long most) { return int(self.advance(until, most)); },
           nb::call_guard<nb::gil_scoped_release>())
-      .def_prop_ro("position", [](const Dynamics& self) {
-        return array({self.state.position.begin(), self.state.position.end()}, {3});
-      }, nb::rv_policy::move)
-      .def_prop_ro("rotation", [](const Dynamics& self) {
-        return array({&self.state.rotation[0][0], &self.state.rotation[0][0] + 9}, {3, 3});
-      }, nb::rv_policy::move)
-      .def_prop_ro("velocity", [](const Dynamics& self) {
-        return array({self.state.rate.begin(), self.state.rate.begin() + BODY}, {BODY});
-      }, nb::rv_policy::move)
-      .def_prop_ro("bend",
-                   [](const Dynamics& self) {
-                     std::vector<double> all = of_beams(self.layout(), self.state.bend);
-                     const std::size_t n = all.size();
-                     return array(std::move(all), {n});
-                   }, nb::rv_policy::move)
+      .def_prop_ro(
+          "position",
+          [](const Dynamics& self) { return array({self.state.position.begin(), self.state.position.end()}, {3}); },
+          nb::rv_policy::move)
+      .def_prop_ro(
+          "rotation",
+          [](const Dynamics& self) {
+            return array({&self.state.rotation[0][0], &self.state.rotation[0][0] + 9}, {3, 3});
+          },
+          nb::rv_policy::move)
+      .def_prop_ro(
+          "velocity",
+          [](const Dynamics& self) { return array({self.state.rate.begin(), self.state.rate.begin() + BODY}, {BODY}); },
+          nb::rv_policy::move)
+      .def_prop_ro(
+          "bend",
+          [](const Dynamics& self) {
+            std::vector<double> all = of_beams(self.layout(), self.state.bend);
+            const std::size_t n = all.size();
+            return array(std::move(all), {n});
+          },
+          nb::rv_policy::move)
       .def("along",
            [](const Dynamics& self, int k) {
              const Along& a = self.along(k);

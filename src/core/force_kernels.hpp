@@ -100,12 +100,8 @@ void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out
     const Vector<V> edge{load<V>(s[STATION] + i), load<V>(s[EDGE_LEFT] + i), load<V>(s[EDGE_UP] + i)};
     const Vector<V> moment = cross(centre.at, a), edge_moment = cross(edge, z);
     const V sp = load<V>(s[TWIST_SINE] + i), cp = load<V>(s[TWIST_COSINE] + i);
-    const V parts[6] = {a.x + z.x,
-                        a.y + z.y,
-                        a.z + z.z,
-                        moment.x + edge_moment.x,
-                        moment.y + edge_moment.y,
-                        moment.z + edge_moment.z};
+    const V parts[6] = {
+        a.x + z.x, a.y + z.y, a.z + z.z, moment.x + edge_moment.x, moment.y + edge_moment.y, moment.z + edge_moment.z};
     for (int c = 0; c < 6; c++) {
       const V part = select(wet, parts[c], none);
       store(s[SectionField(FORCE_0 + c)] + i, part);

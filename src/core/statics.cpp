@@ -11,12 +11,12 @@ namespace skisnow {
 namespace {
 
 constexpr int MOST_STEPS = 300;
-constexpr double LONGEST = 0.02;                     // step (m)
-constexpr double SETTLED = 1e-11;                    // last step (m) that counts as equilibrium
-constexpr double ROUNDING = 1e-8;                    // step (m) from which on one that does not shrink is rounding
-constexpr double FIRST_INERTIA = 1e4;                // of the mass matrix (1/s²)
+constexpr double LONGEST = 0.02;       // step (m)
+constexpr double SETTLED = 1e-11;      // last step (m) that counts as equilibrium
+constexpr double ROUNDING = 1e-8;      // step (m) from which on one that does not shrink is rounding
+constexpr double FIRST_INERTIA = 1e4;  // of the mass matrix (1/s²)
 constexpr double LEAST_INERTIA = 1e-6, LITTLE_INERTIA = 1.0, MOST_INERTIA = 1e12;
-constexpr double LIFT = 1e-3, LIFT_EXACT = 1e-9;     // (m) of the search for the height at which rigid skis bear
+constexpr double LIFT = 1e-3, LIFT_EXACT = 1e-9;  // (m) of the search for the height at which rigid skis bear
 constexpr bool HELD[BODY] = {true, true, false, false, false, true};
 
 // How far (m) an unknown moves the base, about: angles have their arms.
@@ -78,8 +78,7 @@ bool Dynamics::factor_static(double inertia) {
       for (int m = 0; m < 3; m++) system_.corner[a + 3][b + 3] -= lever[a][m] * turned[m][b];
       for (std::size_t k = 0; k < body_.skis.size(); k++)
         for (int i = 0; i < body_.skis[k].size(); i++)
-          system_.border(int(k), i)[b + 3] -=
-              body_.skis[k].coupling[std::size_t(BODY * i + a)] * turned[a][b];
+          system_.border(int(k), i)[b + 3] -= body_.skis[k].coupling[std::size_t(BODY * i + a)] * turned[a][b];
     }
   for (int a = 0; a < BODY; a++) {
     if (!HELD[a]) continue;

@@ -43,8 +43,11 @@ class FlexibleSki:
 
     def compiled(self) -> core.FlexibleSki:
         """What the core takes."""
-        arrays = (self.boot, self.axes, self.unknown, self.mass, self.stiffness, self.coupling)
-        return core.flexible_ski(*(np.ascontiguousarray(each, float) for each in arrays), self.damping)
+        boot, axes, unknown, mass, stiffness, coupling = (
+            np.ascontiguousarray(each, float)
+            for each in (self.boot, self.axes, self.unknown, self.mass, self.stiffness, self.coupling)
+        )
+        return core.flexible_ski(boot, axes, unknown, mass, stiffness, coupling, self.damping)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

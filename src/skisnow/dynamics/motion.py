@@ -172,7 +172,7 @@ class Dynamics:
 
     @property
     def work(self) -> tuple[float, float, float, float, float]:
-        """Taken since `begin` by shear and friction, given by the normal force, taken by air and the skis' damping (J)."""
+        """Since `begin` (J): taken by shear, by friction, given by the normal force, taken by air, by the skis' damping."""
         return self._core.work
 
     @property
