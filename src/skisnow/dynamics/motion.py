@@ -172,7 +172,7 @@ class Dynamics:
 
     @property
     def work(self) -> tuple[float, float, float, float, float]:
-        """Since `begin` (J): taken by shear, by friction, given by the normal force, taken by air, by the skis' damping."""
+        """Since `begin` (J): taken by shear and friction, given by the normal force, taken by air and damping."""
         return self._core.work
 
     @property
