@@ -9,22 +9,41 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .motion.advance import NOT_FINITE, PAUSED, STEP_TOO_SMALL
-from .motion.forces import HELD
-from .motion.history import History, longer, new_history
-from .motion.outputs import advance_outputs
-from .motion.path import energy_in_snow
+from ..dynamics import Ended
 from .run import LOST, STORED, Outcome, SkiHistory
 from .run_setup import Setup
+from .scenario import Plane
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 GAINED_SHARE, GAINED = 0.05, 10.0
 """Share of the energy turned over, and energy (J), that may seem to be gained before numbers have run away (Choice)."""
 _MECHANICAL = 3  # kinetic, potential, elastic in the skis
-_ROOM = 64
-"""Moments for which a record begins with room."""
-_TROUBLES: Final[dict[int, Outcome]] = {STEP_TOO_SMALL: "step_too_small", NOT_FINITE: "not_finite"}
+_TROUBLES: Final[dict[Ended, Outcome]] = {Ended.STEP_TOO_SMALL: "step_too_small", Ended.NOT_FINITE: "not_finite"}
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """What is kept of one moment of output, SI.
+
+    Attributes
+    ----------
+    time, place, attitude, velocity
+        Of the boots' middle, in space: (), (3,), (3, 3), (3,).
+    energies
+        Kinetic, potential, elastic in the skis and in the snow; lost to penetration, shear, friction, drag and damping
+        since the start (J), (9,).
+    along
+        Depth of the edge (m), force and shear per length (N/m), deflection (m) and twist (rad) at the nodes, of both
+        skis: (5, 2, m).
+    """
+
+    time: float
+    place: FloatArray
+    attitude: FloatArray
+    velocity: FloatArray
+    energies: FloatArray
+    along: FloatArray
 
 
 @dataclass(slots=True)
@@ -33,104 +52,128 @@ class Record:
 
     setup: Setup
     run_length: float = 0.0
-    _history: History = field(init=False)
-    _count: int = 0
-    _lost_before: float = field(init=False)
-    _held_first: float = field(init=False)
+    _moments: list[Moment] = field(default_factory=list)
+    _snow_first: tuple[float, float] = field(init=False)
 
     def __post_init__(self) -> None:
-        setup = self.setup
-        self._history = new_history(_ROOM, len(setup.model.node))
-        self._lost_before = energy_in_snow(setup.snow, setup.lines, setup.archive)
-        self._held_first = float(setup.memory.start.power[HELD])
+        self._snow_first = self.setup.dynamics.snow_energies
+        self._moments.append(self._present())
 
-    def add(self) -> None:
-        """Keep the present moment; nothing moves, but all loops are compiled then."""
-        self.advance(np.array([self.setup.time]))
+    def advance(self, moment: float, *, replace: bool = False) -> Outcome | None:
+        """Let the run go on to a moment (s) and keep it, with `replace` in place of the last one kept.
 
-    def advance(self, moments: FloatArray, *, replace: bool = False) -> Outcome | None:
-        """Let the run go on to the moments (s) and keep each, at most until one that asks for a look.
-
-        With `replace` the first takes the place of the last one kept. The outcome if the steps cannot go on.
+        The outcome if the steps cannot go on.
         """
-        setup, solver = self.setup, self.setup.scenario.solver
-        self._make_room(len(moments))
-        setup.keep_room()
-        fixed = solver.fixed or solver.method == "fast"
-        noted, trouble = 0, PAUSED
-        while trouble == PAUSED:  # between two calls an interrupt is heard
-            more, trouble = advance_outputs(
-                setup.model, setup.snow, setup.world, setup.lines, setup.archive, setup.memory, solver.method == "fast",
-                solver.step, None if fixed else solver.tolerance, moments[noted:], setup.end, setup.shares,
-                self._lost_before, self._held_first, self._history, self._count + noted,
-            )  # fmt: skip
-            noted += int(more)
-        self._take(noted, replace=replace)
-        return _TROUBLES.get(int(trouble))
+        ended = self.setup.dynamics.advance(moment)
+        last, present = self._moments[-1], self._present()
+        self.run_length += _arc(last, present)
+        if (replace and len(self._moments) > 1) or present.time <= last.time:
+            self._moments[-1] = present
+        else:
+            self._moments.append(present)
+        return _TROUBLES.get(ended)
 
-    def _make_room(self, moments: int) -> None:
-        while self._count + moments > len(self._history.time):
-            self._history = longer(self._history)
+    def _present(self) -> Moment:
+        dynamics = self.setup.dynamics
+        rotation = dynamics.rotation
+        bend = _at_nodes(dynamics.bend, dynamics.body.skis[0].unknown)
+        along = np.concatenate(
+            [np.stack([dynamics.along(k) for k in range(len(bend))], axis=1), bend[:, :, 0][None], bend[:, :, 2][None]]
+        )
+        return Moment(
+            dynamics.time, dynamics.position, rotation, rotation @ dynamics.velocity[:3], self._energies(), along
+        )
 
-    def _take(self, moments: int, *, replace: bool) -> None:
-        """Count the moments that were noted after the last one."""
-        for _ in range(moments):
-            row = self._count
-            if row:
-                self.run_length += self._arc(row - 1, row)
-            same = row > 0 and self._history.time[row] <= self._history.time[row - 1]
-            if same or (replace and row > 1):
-                for each in self._history:
-                    each[row - 1 : -1] = each[row:].copy()
-            else:
-                self._count += 1
-            replace = False
+    def _energies(self) -> FloatArray:
+        """Where the energy is, and where it went.
+
+        Penetration: what the normal force took, less what the snow gives back. An edge that is pressed deeper holds
+        more: what its hold gains so is paid by what presses. And what sideways motion stressed and then lifts the skis
+        comes from the shear, which pays for sideways motion.
+        """
+        dynamics = self.setup.dynamics
+        (springy, held), (springy_first, held_first) = dynamics.snow_energies, self._snow_first
+        by_shear, by_friction, normal, by_drag, by_damping = dynamics.work
+        penetration, shear = -normal - (springy - springy_first), by_shear - (held - held_first)
+        by_press = min(shear, 0.0)
+        lifted = min(penetration + by_press, 0.0)
+        lost = (penetration + by_press - lifted, shear - by_press + lifted, by_friction, by_drag, by_damping)
+        return np.array([*dynamics.energies, springy + held, *lost])
 
     @property
     def last_interval(self) -> float:
         """Time (s) between the last two moments; 0 while there is but one."""
-        time = self._history.time
-        return float(time[self._count - 1] - time[self._count - 2]) if self._count > 1 else 0.0
+        return self._moments[-1].time - self._moments[-2].time if len(self._moments) > 1 else 0.0
 
     @property
     def gains_energy(self) -> bool:
-        """Whether motion, height and bend hold more energy than at the start: numbers have run away."""
-        first, last = self._history.energies[0], self._history.energies[self._count - 1]
+        """Whether motion, height and bend hold more energy than at the start: numbers have diverged."""
+        first, last = self._moments[0].energies, self._moments[-1].energies
         gained = float(last[:_MECHANICAL].sum() - first[:_MECHANICAL].sum())
         turned_over = float(first[0] + max(0.0, first[1] - last[1]))
         return not gained <= GAINED_SHARE * turned_over + GAINED
 
     def drop(self) -> None:
         """Forget the last moment."""
-        if self._count > 1:
-            self._count -= 1
-            self.run_length -= self._arc(self._count - 1, self._count)
-
-    def _arc(self, one: int, other: int) -> float:
-        """Length of path between two moments (m), by the velocities at both ends and the chord."""
-        place, velocity = self._history.place, self._history.velocity
-        chord = math.dist(place[one], place[other])
-        before, after = math.hypot(*velocity[one]), math.hypot(*velocity[other])
-        if before * after == 0.0:
-            return chord
-        angle2 = max(0.0, 2.0 * (1.0 - float(velocity[one] @ velocity[other]) / (before * after)))
-        return chord * (1.0 + angle2 / 24.0) if angle2 < 1.0 else chord
+        if len(self._moments) > 1:
+            gone = self._moments.pop()
+            self.run_length -= _arc(self._moments[-1], gone)
 
     def histories(self) -> dict[str, Any]:
         """The arrays of a `Run`."""
-        kept = History(*(each[: self._count].copy() for each in self._history))
-        normal = np.array([self.setup.slope_normal(float(x)) for x in kept.place[:, 0]])
-        skis = {name: kept.along[:, i] for i, name in enumerate(_ALONG)}
+        time, place, attitude, velocity, energies, along = (
+            np.array([getattr(each, name) for each in self._moments]) for name in Moment.__slots__
+        )
+        normal = np.array([self.setup.slope_normal(float(x)) for x in place[:, 0]])
+        skis = {name: along[:, i] for i, name in enumerate(_ALONG)}
+        track, node = self._tracks(place, attitude), self.setup.node
         return {
-            "time": kept.time,
-            "place": kept.place,
-            "attitude": kept.turn,
-            "velocity": kept.velocity,
-            "heading": _heading(kept.turn, normal),
-            "turn_radius": turn_radius(kept.time, kept.velocity, kept.turn[:, :, 2]),
-            "skis": SkiHistory(station=self.setup.model.node, track=kept.edge, depth=kept.boot_depth, **skis),
-            "energies": {name: kept.energies[:, i] for i, name in enumerate((*STORED, *LOST))},
+            "time": time,
+            "place": place,
+            "attitude": attitude,
+            "velocity": velocity,
+            "heading": _heading(attitude, normal),
+            "turn_radius": turn_radius(time, velocity, attitude[:, :, 2]),
+            "skis": SkiHistory(station=node, track=track, depth=_at_boot(node, along[:, 0]), **skis),
+            "energies": {name: energies[:, i] for i, name in enumerate((*STORED, *LOST))},
         }
+
+    def _tracks(self, place: FloatArray, attitude: FloatArray) -> FloatArray:
+        """The edge of each ski that is down at the boot, brought to the slope's surface: (n, 2, 3)."""
+        scenario, tracks = self.setup.scenario, []
+        at_boot = scenario.ski.at(0.0)
+        for ski in self.setup.dynamics.body.skis:
+            leans = attitude[:, 2] @ ski.axes[1]
+            side = np.where(np.abs(leans) > 1e-9, -np.sign(leans), 0.0) * float(at_boot.width) / 2.0
+            in_body = ski.boot + float(at_boot.base_height) * ski.axes[2] + side[:, None] * ski.axes[1]
+            tracks.append(place + np.einsum("nab,nb->na", attitude, in_body))
+        out = np.stack(tracks, axis=1)
+        out[:, :, 2] = 0.0 if isinstance(scenario.slope, Plane) else scenario.slope.heights(out[:, :, 0])
+        return out
+
+
+def _at_nodes(bend: FloatArray, unknown: FloatArray) -> FloatArray:
+    """Unknowns of the free nodes (skis, n) at all nodes, zero where held: (skis, nodes, 3)."""
+    out = np.zeros((len(bend), len(unknown), 3))
+    out[:, unknown >= 0] = bend.reshape(len(bend), -1, 3)
+    return out
+
+
+def _at_boot(node: FloatArray, values: FloatArray) -> FloatArray:
+    """Values (..., m) at station 0, interpolated between the nodes, which go from tip to tail."""
+    i = min(int(np.count_nonzero(node > 0.0)), len(node) - 1) - 1
+    f = node[i] / (node[i] - node[i + 1])
+    return np.asarray(values[..., i] + f * (values[..., i + 1] - values[..., i]))
+
+
+def _arc(one: Moment, other: Moment) -> float:
+    """Length of path between two moments (m), by the velocities at both ends and the chord."""
+    chord = math.dist(one.place, other.place)
+    before, after = math.hypot(*one.velocity), math.hypot(*other.velocity)
+    if before * after == 0.0:
+        return chord
+    angle2 = max(0.0, 2.0 * (1.0 - float(one.velocity @ other.velocity) / (before * after)))
+    return chord * (1.0 + angle2 / 24.0) if angle2 < 1.0 else chord
 
 
 _ALONG = ("edge_depth", "force_per_length", "shear_per_length", "bending", "twist")

@@ -9,7 +9,6 @@ from dataclasses import replace
 from typing import Final, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from ..errors import SolverError
 from .run import OPEN_SHARE, Groove, Outcome, Run
@@ -18,7 +17,6 @@ from .run_setup import AT_REST, Setup, set_up
 from .scenario import Scenario
 from .standing import why_no_start
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Progress: TypeAlias = Callable[[float, float], None]
 """Takes the simulated time (s), and the share of the run that is done, 0 to 1."""
 Strength: TypeAlias = Callable[[float], float]
@@ -31,7 +29,7 @@ LONGEST_FLIGHT: Final = 0.3
 SINKING_DEPTH: Final = 0.5
 """Depth (m) of the boots below the surface at which the sledge has sunk (Choice)."""
 OUTPUTS_AT_ONCE: Final = 5
-"""Outputs between which nothing is told or asked while all goes well."""
+"""Outputs between which no progress is reported."""
 _COMPUTED_WRONG: Final = ("step_too_small", "not_finite", "interrupted")
 """Outcomes that an open balance does not take the place of."""
 _REACHED: Final = 1e-6
@@ -88,12 +86,10 @@ def simulated_run(
     """
     setup = set_up(scenario)
     record = Record(setup)
-    if setup.height < -SINKING_DEPTH or (setup.unrest > AT_REST and setup.sinks):
-        record.add()
+    if setup.height < -SINKING_DEPTH or (not setup.unrest <= AT_REST and setup.sinks):
         return computed_run(setup, record, "sunk", 0.0)
-    if setup.unrest > AT_REST:
+    if not setup.unrest <= AT_REST:
         raise SolverError(why_no_start(setup))
-    record.add()
     begin = time.perf_counter()
     try:
         outcome = _loop(setup, record, progress, strength_along)
@@ -104,7 +100,6 @@ def simulated_run(
 
 def _loop(setup: Setup, record: Record, progress: Progress | None, strength_along: Strength | None) -> Outcome:
     """Go from output to output until something ends the run."""
-    strength = setup.snow.shear_stress
     stop, interval = setup.scenario.stop, setup.scenario.solver.output_interval
     duration = math.inf if stop.duration is None else stop.duration
     length = math.inf if stop.length is None else stop.length
@@ -116,20 +111,18 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
         left = length - record.run_length
         if left <= _REACHED:
             return "distance_reached"
-        moments = _moments(number, interval, duration)
-        was_near, nearing = nearing, setup.speed * (moments[0] - now) > left
+        moment = min((number + 1) * interval, duration)
+        was_near, nearing = nearing, setup.speed * (moment - now) > left
         if nearing:
-            moments = np.array([now + max(left / setup.speed, 1e-9)])
-        elif strength_along is not None or not _far(setup.speed, moments[-1] - now, left):
-            moments = moments[:1]
+            moment = now + max(left / setup.speed, 1e-9)
         if strength_along is not None:
-            setup.snow = setup.snow._replace(shear_stress=strength * strength_along(record.run_length))
-        trouble = record.advance(moments, replace=was_near)
+            setup.snow.compiled.strength_share = strength_along(record.run_length)
+        trouble = record.advance(moment, replace=was_near)
         number = math.floor(setup.time / interval + 1e-9)
         if record.gains_energy:
             record.drop()
             return "not_finite"
-        if progress is not None:
+        if progress is not None and number % OUTPUTS_AT_ONCE == 0:
             progress(setup.time, min(1.0, max(setup.time / duration, record.run_length / length)))
         if trouble is not None:
             return trouble
@@ -137,17 +130,6 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
         ended = _ended(setup, flying)
         if ended is not None:
             return ended
-
-
-def _moments(number: int, interval: float, duration: float) -> FloatArray:
-    """The next outputs (s) after output `number`, none after the duration."""
-    times = [(number + 1 + i) * interval for i in range(OUTPUTS_AT_ONCE)]
-    return np.array([time for time in times if time <= duration] or [duration])
-
-
-def _far(speed: float, duration: float, left: float) -> bool:
-    """Whether the run cannot come to its end within a duration (s), at 10 m/s² more than its speed."""
-    return speed * duration + 5.0 * duration * duration < left
 
 
 def _ended(setup: Setup, flying: float) -> Outcome | None:
@@ -162,7 +144,7 @@ def _ended(setup: Setup, flying: float) -> Outcome | None:
 
 def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) -> Run:
     """What came out; an end with the balance of energy open is no such end."""
-    counts = setup.memory.clock.counts
+    steps, rejected, *_ = setup.dynamics.counts
     run = Run(
         scenario=setup.scenario,
         outcome=outcome,
@@ -170,8 +152,8 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
         **record.histories(),
         groove=_groove(setup),
         run_length=record.run_length,
-        steps=int(counts[0]),
-        rejected_steps=int(counts[1]),
+        steps=steps,
+        rejected_steps=rejected,
         wall_s=wall,
         numbers=setup.numbers,
     )
@@ -181,7 +163,17 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
 
 
 def _groove(setup: Setup) -> Groove:
-    frame, place, width, depth = setup.left_behind()
-    left = frame[:, 6:9]
+    """The lines with a groove, each as one piece from its first knot to its last."""
+    rows = setup.dynamics.contact.tracks()
+    if not len(rows):
+        return Groove(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(0))
+    first = np.flatnonzero(np.any(np.diff(rows[:, :2], axis=0, prepend=-1.0) != 0.0, axis=1))
+    last = np.append(first[1:], len(rows)) - 1
+    depth = np.maximum.reduceat(rows[:, 5], first)
+    across = rows[last, 2:5] - rows[first, 2:5]
+    width = np.linalg.norm(across, axis=1)
+    kept = width > 0.0
+    left = across[kept] / width[kept, None]
+    middle = 0.5 * (rows[first, 2:5] + rows[last, 2:5])[kept]
     ratio = 1.0 - 1.0 / setup.scenario.contact.unloading_ratio
-    return Groove(frame[:, :3] + place[:, None] * left, left, width, depth, depth * ratio)
+    return Groove(middle, left, width[kept], depth[kept], depth[kept] * ratio)

@@ -43,7 +43,7 @@ def weight_meets_base(setup: Setup) -> tuple[float, float]:
     start, normal = setup.scenario.start, setup.slope_normal(setup.scenario.start.x)
     down = np.array([normal[2], 0.0, -normal[0]])
     forward = math.cos(start.heading) * down + math.sin(start.heading) * np.array([0.0, 1.0, 0.0])
-    gravity, centre = setup.world.gravity, setup.model.first_moment / setup.model.total_mass
+    gravity, centre = setup.dynamics.body.gravity, setup.dynamics.body.first_moment / setup.dynamics.body.mass
     pulls = np.array([gravity @ forward, gravity @ np.cross(normal, forward), gravity @ normal])
     ahead, left, _ = centre - pulls * centre[2] / pulls[2]
     return float(ahead), float(left)
@@ -55,7 +55,7 @@ def _carried_across(setup: Setup) -> tuple[float, float]:
     width, length = float(ski.width.max()), float(ski.station[0] - ski.station[-1])
     tangent = max(math.tan(abs(angle)), 1e-9)
     # all of the weight on one ski; a sledge that leans may double it
-    depth = math.sqrt(4.0 * setup.numbers["load_N"] * tangent / (setup.snow.hardness * 0.8 * length))
+    depth = math.sqrt(4.0 * setup.numbers["load_N"] * tangent / (setup.scenario.contact.snow.snow_hardness * 0.8 * length))
     side, wet = setup.scenario.sledge.stance_width / 2.0, min(2.0 * depth / tangent, width)
     beyond = wet - width / 2.0
     return (side + beyond, side + width / 2.0) if angle > 0.0 else (side + width / 2.0, side + beyond)

@@ -89,7 +89,7 @@ class Solver:
 
     method: Method = "ros2"
     step: float = 0.5e-3
-    tolerance: float = 1e-6
+    tolerance: float = 3e-7
     fixed: bool = False
     elements: int | None = None
     line_spacing: float | None = None
