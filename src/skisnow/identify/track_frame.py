@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..simulate.input_keys import nearest
+from ..inputs import nearest
 from ..simulate.scenario import Plane, ScenarioFile
 from ..simulate.scenario.identify_section import SITE
 from ..track.projection import GeodeticPoint, east_north_up

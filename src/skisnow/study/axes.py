@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..simulate.input_keys import InputKey, nearest
+from ..inputs import Quantity, nearest
 from .study import Point
 
 FloatArray = npt.NDArray[np.float64]
@@ -40,14 +40,14 @@ class Axis:
         Whether the range is even in the logarithm.
     """
 
-    key: InputKey
+    key: Quantity
     values: tuple[Any, ...] = ()
     ends: tuple[float, float] = (0.0, 0.0)
     n: int | None = None
     log: bool = False
 
     @classmethod
-    def of(cls, key: InputKey, value: object) -> Self:
+    def of(cls, key: Quantity, value: object) -> Self:
         """Read what stands behind a key: one value, a list of values, or {from, to, n, log}.
 
         Raises
@@ -67,7 +67,7 @@ class Axis:
         return cls(key, checked)
 
     @classmethod
-    def _of_range(cls, key: InputKey, table: Mapping[str, Any]) -> Self:
+    def _of_range(cls, key: Quantity, table: Mapping[str, Any]) -> Self:
         for name in table:
             if name not in _RANGE_KEYS:
                 raise ParameterError(f"{key.name}: {name} is no key of a range. {nearest(name, _RANGE_KEYS)}")
@@ -137,12 +137,12 @@ def require_count(n: int) -> None:
         raise ParameterError(f"the study has {n} points; at most {MOST_POINTS} are allowed. Take fewer values")
 
 
-def _is_one(key: InputKey, value: list[Any]) -> bool:
+def _is_one(key: Quantity, value: list[Any]) -> bool:
     """Whether a list is one value: three numbers."""
     return key.kind == "three numbers" and not any(isinstance(each, list) for each in value)
 
 
-def _end(key: InputKey, table: Mapping[str, Any], name: str) -> float:
+def _end(key: Quantity, table: Mapping[str, Any], name: str) -> float:
     if name not in table:
         raise ParameterError(f"{key.name}: {name} is missing; a range is written {{ from = 20, to = 70, n = 11 }}")
     value = table[name]

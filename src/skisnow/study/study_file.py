@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from ..errors import ParameterError
 from ..given import read_toml
-from ..simulate.input_keys import InputKey, InputValue, nearest
+from ..inputs import InputValue, Quantity, nearest
 from .axes import Axis, grid_points, hypercube_points
 from .carve_subject import CarveSubject
 from .scenario_subject import ScenarioSubject
@@ -87,7 +87,7 @@ def _table(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     return table
 
 
-def _fixed(table: Mapping[str, Any], keys: Mapping[str, InputKey]) -> Point:
+def _fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
     fixed = {}
     for name, value in table.items():
         _require_key("fixed", name, keys)
@@ -97,21 +97,21 @@ def _fixed(table: Mapping[str, Any], keys: Mapping[str, InputKey]) -> Point:
     return fixed
 
 
-def _in_range(key: InputKey, value: object) -> InputValue:
+def _in_range(key: Quantity, value: object) -> InputValue:
     try:
         return key.in_range(value)
     except ParameterError as error:
         raise ParameterError(f"fixed.{error}") from error
 
 
-def _axis(form: str, name: str, value: object, keys: Mapping[str, InputKey], fixed: Point) -> Axis:
+def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
     _require_key(form, name, keys)
     if name in fixed:
         raise ParameterError(f"{name} stands in [{form}] and in [fixed]. Remove one of them")
     return Axis.of(keys[name], value)
 
 
-def _require_key(table: str, name: str, keys: Mapping[str, InputKey]) -> None:
+def _require_key(table: str, name: str, keys: Mapping[str, Quantity]) -> None:
     if name not in keys:
         raise ParameterError(f"{table}.{name} is no input. {nearest(name, keys)}")
 

@@ -5,18 +5,43 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Mapping
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Annotated, Any, Final
 
 from ...errors import ParameterError
-from ..input_keys import nearest
+from ...inputs import Quantity, nearest, quantities
 from .free_keys import free_key
 
-GIVEN: Final = ("start", "lower", "upper", "prior_mean", "prior_sd")
-"""What may stand in ``[identify."KEY"]``."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sought:
+    """What may stand in ``[identify."KEY"]``, in the unit of that key."""
+
+    start: Annotated[float | None, Quantity("start", "where the search begins; left out: the scenario's value")] = None
+    lower: Annotated[float | None, Quantity("lower", "bound")] = None
+    upper: Annotated[float | None, Quantity("upper", "bound")] = None
+    prior_mean: Annotated[
+        float | None, Quantity("prior_mean", "mean of what is known of it, a normal distribution")
+    ] = None
+    prior_sd: Annotated[float | None, Quantity("prior_sd", "its standard deviation", lowest=0.0, above=True)] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Site:
+    """What may stand in ``[identify.site]``, in the units that the names say."""
+
+    fall_line_azimuth_deg: Annotated[
+        float, Quantity("fall_line_azimuth_deg", "compass direction in which the slope falls")
+    ]
+    latitude_deg: Annotated[float | None, Quantity("latitude_deg", "where x = y = 0 is")] = None
+    longitude_deg: Annotated[float | None, Quantity("longitude_deg", "where x = y = 0 is")] = None
+    height_m: Annotated[float | None, Quantity("height_m", "of that place above the ellipsoid")] = None
+
+
+GIVEN: Final = tuple(each.name for each in quantities(Sought))
 NO_KEYS: Final = ("runs", "site", "clock")
 """Entries of ``[identify]`` that are no parameters."""
-SITE: Final = ("fall_line_azimuth_deg", "latitude_deg", "longitude_deg", "height_m")
-"""What may stand in ``[identify.site]``."""
+SITE: Final = tuple(each.name for each in quantities(Site))
 CLOCKS: Final = ("start", "free")
 
 

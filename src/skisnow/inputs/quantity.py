@@ -1,14 +1,14 @@
-"""A key that a user gives a value to: its unit, range, default and where that comes from."""
+"""A quantity that a user gives a value to, declared once: its name with unit, meaning, range, default and more."""
 
 from __future__ import annotations
 
-import difflib
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
+from numbers import Real
 from typing import Any, Literal, TypeAlias
 
 from ..errors import ParameterError
+from ..units import unit_of_name
 
 Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "three numbers"]
 SMALLEST, LARGEST = 1e-100, 1e100
@@ -16,55 +16,92 @@ SMALLEST, LARGEST = 1e-100, 1e100
 InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class InputKey:
-    """What may stand under one key.
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How a quantity is looked for: size in its unit (of its logarithm where `logarithmic`), and usual bounds.
+
+    Attributes
+    ----------
+    size
+        Derivatives step by 1 to 5 % of it.
+    lower, upper
+        Bounds where the user gives none; where `about` is set they count from the start of the search.
+    """
+
+    size: float
+    lower: float
+    upper: float
+    about: bool = False
+    logarithmic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """What may stand under one key; stands in the annotation of the field that holds it, see `declared`.
 
     Attributes
     ----------
     name
-        With its unit, as users write it.
+        With its unit, as users write it; a scenario's begins with its section.
     meaning
         In words.
-    kind
-        Of its value.
-    unit, factor
-        The unit's symbol, and its size in SI.
     lowest, highest
-        Ends of the range in that unit; `above` leaves the lowest value itself out.
+        Ends of the range in the unit of the name; `above` leaves the lowest value itself out.
     infinite
         Whether an infinite number has a meaning.
-    choices
-        The words that are allowed; empty: any.
-    default
-        None where there is none.
     origin
         Where the default or the range comes from.
     example
         How it is given on the command line, with what its values mean.
+    search
+        How it is looked for; None: by the value that the search begins with.
+    index
+        Its place, where the field holds several numbers.
+    needed
+        Whether a value must be given, where the field has no default.
+    kind, choices, default, field
+        Come from the field: what its type allows, the words of a ``Literal``, the default in the unit of the name (None
+        where there is none), the field's name.
 
     The range of three numbers is that of each.
     """
 
     name: str
     meaning: str
-    kind: Kind = "number"
-    unit: str = ""
-    factor: float = 1.0
+    _: KW_ONLY
     lowest: float = -math.inf
     highest: float = math.inf
     above: bool = False
     infinite: bool = False
-    choices: tuple[str, ...] = ()
-    default: InputValue | None = None
     origin: str = ""
     example: str = ""
+    search: Search | None = None
+    index: int | None = None
+    kind: Kind = "number"
+    choices: tuple[str, ...] = ()
+    default: InputValue | None = None
+    field: str = ""
+    needed: bool = True
+
+    @property
+    def unit(self) -> str:
+        """The unit's symbol, from the name.
+
+        >>> Quantity("load_N", "load").unit, Quantity("friction.mu_0", "friction").unit
+        ('N', '')
+        """
+        return unit_of_name(self.name).symbol
+
+    @property
+    def factor(self) -> float:
+        """The unit's size in SI."""
+        return unit_of_name(self.name).size
 
     @property
     def allowed(self) -> str:
         """The range in words.
 
-        >>> InputKey(name="load_N", meaning="load", lowest=0.0, above=True).allowed
+        >>> Quantity("load_N", "load", lowest=0.0, above=True).allowed
         'above 0'
         """
         if self.kind == "switch":
@@ -134,6 +171,46 @@ class InputKey:
             raise ParameterError(f"{self.name} is {_shown(value)}; allowed is {self.allowed}{unit}")
         return checked
 
+    @property
+    def _held(self) -> float:
+        """Size in SI of the unit that the field holds it in: a field that bears the whole name holds it as given."""
+        return 1.0 if self.field == self.name.rpartition(".")[2] else self.factor
+
+    def in_si(self, value: Any) -> Any:
+        """Give a value in SI, three numbers as a tuple; what is no number stays.
+
+        >>> Quantity("solver.step_ms", "step").in_si(0.5)
+        0.0005
+        """
+        if self.kind == "three numbers":
+            return tuple(each * self._held for each in value)
+        return value * self._held if self.kind == "number" else value
+
+    def in_unit(self, value: Any) -> Any:
+        """Give a field's value in the unit of the name, three numbers as a list; None stays.
+
+        >>> Quantity("snow.H_V_N_per_mm3", "snow hardness").in_unit(2e8)
+        0.2
+        """
+        if self.kind == "three numbers" and value is not None:
+            return [each / self._held for each in value]
+        return value / self._held if self.kind == "number" and value is not None else value
+
+    def require(self, value: object) -> None:
+        """Refuse a field's value, as Python gives it, that no file could give.
+
+        Raises
+        ------
+        ParameterError
+            As `in_range`, with the value in the unit of the name.
+        """
+        if self.kind == "three numbers" and isinstance(value, list | tuple):
+            self.in_range([_plain(each, self._held) for each in value])
+        elif self.kind in ("number", "whole number"):
+            self.in_range(_plain(value, self._held))
+        elif self.in_range(value) != value:  # a file's text may have blanks around it
+            raise ParameterError(f"{self.name} is {_shown(value)}; allowed is {self.allowed}")
+
     def _allows(self, value: InputValue) -> bool:
         if isinstance(value, str):
             return bool(value) and (not self.choices or value in self.choices)
@@ -146,21 +223,12 @@ class InputKey:
         return self.lowest <= value <= self.highest and not (self.above and value == self.lowest)
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """The known word most like a misspelt one as a question, and all of them."""
-    words = list(known)
-    return f"{meant(word, words)}There are {', '.join(words)}"
-
-
-def meant(word: str, known: Iterable[str]) -> str:
-    """The known word most like a misspelt one as a question with a space behind; empty where none is like it.
-
-    >>> meant("angel", ["angle", "mass"])
-    'Is angle meant? '
-    """
-    by_small = {each.lower(): each for each in known}
-    like = difflib.get_close_matches(word.lower(), by_small, n=1, cutoff=0.5)
-    return f"Is {by_small[like[0]]} meant? " if like else ""
+def _plain(value: object, factor: float) -> object:
+    """A number of any library in a unit, without the last digits that the unit's size leaves uncertain."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return value
+    number = float(value) / factor
+    return float(f"{number:.14g}")
 
 
 def _shown(value: Any, limit: int = 80) -> str:

@@ -1,0 +1,21 @@
+"""A quantity, declared once on the dataclass that holds it: for files, checks, command line, schemas, docs, forms."""
+
+from .declared import Section, Word, made, own_quantities, quantities, require_declared, values_of
+from .nearest import meant, nearest
+from .quantity import InputValue, Kind, Quantity, Search
+
+__all__ = [
+    "InputValue",
+    "Kind",
+    "Quantity",
+    "Search",
+    "Section",
+    "Word",
+    "made",
+    "meant",
+    "nearest",
+    "own_quantities",
+    "quantities",
+    "require_declared",
+    "values_of",
+]
