@@ -17,11 +17,17 @@ from skisnow.inputs.page_table import page_table
 from skisnow.simulate.carve_keys import CARVE_KEYS
 from skisnow.simulate.scenario import schema as scenario
 from skisnow.simulate.scenario.keys import SCENARIO_KEYS
+from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 
 DOCS = Path(__file__).resolve().parent
 PACKAGE = Path(skisnow.__file__).resolve().parent
 SCHEMAS = {scenario.FILE: scenario.scenario_schema}
-TABLES = {"scenario": SCENARIO_KEYS, "carve": CARVE_KEYS}
+TABLES = {
+    "scenario": page_table(SCENARIO_KEYS.values()),
+    "carve": page_table(CARVE_KEYS.values()),
+    "ski": page_table(SKI_KEYS.values(), ("key", "meaning", "unit", "range", "usual", "left out")),
+    "stations": page_table(COLUMNS.values(), ("column", "meaning", "unit", "range", "usual", "instead of")),
+}
 TABLE = re.compile(r"(?P<mark><!-- keys of (?P<name>[\w -]+) -->\n)(?P<rows>.*?)(?=<!-- end of keys -->)", re.DOTALL)
 
 
@@ -31,7 +37,7 @@ def anew() -> dict[Path, str]:
     for page in sorted((DOCS / "files").glob("*.md")):
         text = page.read_text(encoding="utf-8")
         if TABLE.search(text):
-            found[page] = TABLE.sub(lambda mark: mark["mark"] + page_table(TABLES[mark["name"]].values()), text)
+            found[page] = TABLE.sub(lambda mark: mark["mark"] + TABLES[mark["name"]], text)
     return found
 
 

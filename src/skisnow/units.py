@@ -83,4 +83,5 @@ def without_unit(name: str) -> str:
 
 @cache
 def _ending(name: str) -> str:
+    name = name.partition("[")[0]  # of a list each
     return next((ending for ending in _BY_ENDING if name.endswith(f"_{ending}")), "")

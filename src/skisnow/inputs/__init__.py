@@ -2,9 +2,10 @@
 
 from .declared import Section, Word, made, own_quantities, quantities, require_declared, values_of
 from .nearest import meant, nearest
-from .quantity import InputValue, Kind, Quantity, Search
+from .quantity import SMALLEST, InputValue, Kind, Quantity, Search
 
 __all__ = [
+    "SMALLEST",
     "InputValue",
     "Kind",
     "Quantity",

@@ -24,7 +24,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
 from .quantity import Kind, Quantity
 
@@ -187,6 +187,16 @@ def _slot(owner: type, field: Field[Any]) -> _Slot:
     )
 
 
+_KINDS: Final[dict[Any, Kind]] = {
+    float: "number",
+    int: "whole number",
+    str: "text",
+    bool: "switch",
+    tuple[float, ...]: "numbers",
+    tuple[float, float, float]: "three numbers",
+}
+
+
 def _members(hint: Any) -> tuple[Any, ...]:
     return get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
 
@@ -195,8 +205,7 @@ def _resolved(quantity: Quantity, field: Field[Any], members: tuple[Any, ...], n
     """With what the field says: kind, choices, default."""
     (type_,) = (each for each in members if each is not NoneType)
     choices = get_args(type_) if get_origin(type_) is Literal else ()
-    kinds: dict[Any, Kind] = {float: "number", int: "whole number", str: "text", bool: "switch"}
-    kind = "text" if choices else kinds.get(type_, "number" if quantity.index is not None else "three numbers")
+    kind = "text" if choices else "number" if quantity.index is not None else _KINDS[type_]
     default = quantity.default
     resolved = replace(
         quantity, kind=kind, choices=choices, field=field.name, needed=quantity.needed and needed and default is None

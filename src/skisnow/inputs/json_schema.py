@@ -26,6 +26,8 @@ def schema_of(quantity: Quantity) -> Schema:
     if quantity.kind == "three numbers":
         items = {"type": "number", **_range(quantity)}
         return {"type": "array", "description": words, "minItems": 3, "maxItems": 3, "items": items}
+    if quantity.kind == "numbers":
+        return {"type": "array", "description": words, "minItems": 1, "items": {"type": "number", **_range(quantity)}}
     limits = _range(quantity) if quantity.kind != "text" else _words(quantity)
     return {"type": _TYPES[quantity.kind], "description": words, **limits, **default}
 

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from typing import Final
 
 from .quantity import Quantity
 
-_HEAD = """| key | unit | range | default | where default or range comes from | meaning |
-| --- | --- | --- | --- | --- | --- |
-"""
+
+def _allowed(quantity: Quantity) -> str:
+    if quantity.kind == "text" and not quantity.choices:
+        return "a text"
+    return quantity.allowed + (", `inf`" if quantity.infinite else "")
 
 
-def page_table(quantities: Iterable[Quantity]) -> str:
-    """A table in Markdown with a row for each quantity."""
-    return _HEAD + "".join(_row(each) for each in quantities)
-
-
-def _row(quantity: Quantity) -> str:
-    is_any = quantity.kind == "text" and not quantity.choices
-    allowed = "a text" if is_any else quantity.allowed + (", `inf`" if quantity.infinite else "")
-    cells = (f"`{quantity.name}`", quantity.unit, allowed, _default(quantity), quantity.origin, quantity.meaning)
-    return "|" + "|".join(f" {cell} " if cell else " " for cell in cells) + "|\n"
+def _usual(quantity: Quantity) -> str:
+    return "" if quantity.usual is None else "{:g} to {:g}".format(*quantity.usual)
 
 
 def _default(quantity: Quantity) -> str:
@@ -30,3 +25,25 @@ def _default(quantity: Quantity) -> str:
     if isinstance(default, bool):
         return f"`{str(default).lower()}`"
     return f"`{default}`" if isinstance(default, str) else f"{default:g}"
+
+
+_CELLS: Final[dict[str, Callable[[Quantity], str]]] = {
+    "key": lambda quantity: f"`{quantity.name}`",
+    "column": lambda quantity: f"`{quantity.name}`",
+    "unit": lambda quantity: quantity.unit,
+    "range": _allowed,
+    "usual": _usual,
+    "default": _default,
+    "where default or range comes from": lambda quantity: quantity.origin,
+    "left out": lambda quantity: quantity.origin,
+    "instead of": lambda quantity: quantity.origin,
+    "meaning": lambda quantity: quantity.meaning,
+}
+USUAL_COLUMNS: Final = ("key", "unit", "range", "default", "where default or range comes from", "meaning")
+
+
+def page_table(quantities: Iterable[Quantity], columns: Iterable[str] = USUAL_COLUMNS) -> str:
+    """A table in Markdown with a row for each quantity."""
+    named = tuple(columns)
+    rows = [named, ("---",) * len(named), *(tuple(_CELLS[name](each) for name in named) for each in quantities)]
+    return "".join("|" + "|".join(f" {cell} " if cell else " " for cell in row) + "|\n" for row in rows)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import KW_ONLY, dataclass, replace
 from numbers import Real
 from typing import Any, Literal, TypeAlias
@@ -10,7 +11,7 @@ from typing import Any, Literal, TypeAlias
 from ..errors import ParameterError
 from ..units import unit_of_name
 
-Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "three numbers"]
+Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "numbers", "three numbers"]
 SMALLEST, LARGEST = 1e-100, 1e100
 """Sizes of numbers that can be squared and divided by (Choice)."""
 InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
@@ -53,6 +54,8 @@ class Quantity:
         Where the default or the range comes from.
     example
         How it is given on the command line, with what its values mean.
+    usual
+        Ends of what is usual, in the unit of the name; None: all of the range.
     search
         How it is looked for; None: by the value that the search begins with.
     index
@@ -63,7 +66,7 @@ class Quantity:
         Come from the field: what its type allows, the words of a ``Literal``, the default in the unit of the name (None
         where there is none), the field's name.
 
-    The range of three numbers is that of each.
+    The range of numbers is that of each.
     """
 
     name: str
@@ -75,6 +78,7 @@ class Quantity:
     infinite: bool = False
     origin: str = ""
     example: str = ""
+    usual: tuple[float, float] | None = None
     search: Search | None = None
     index: int | None = None
     kind: Kind = "number"
@@ -108,8 +112,8 @@ class Quantity:
             return "true or false"
         if self.kind == "text":
             return " or ".join(self.choices) or "a text that is not blank"
-        if self.kind == "three numbers":
-            return f"three numbers, each {replace(self, kind='number').allowed}"
+        if self.kind in ("numbers", "three numbers"):
+            return f"{self.kind}, each {replace(self, kind='number').allowed}"
         kind = "whole numbers " if self.kind == "whole number" else ""
         if self.highest < math.inf:
             return f"{kind}{'above' if self.above else 'from'} {self.lowest:g} to {self.highest:g}"
@@ -132,6 +136,8 @@ class Quantity:
         if self.kind == "three numbers" and isinstance(value, list | tuple) and len(value) == 3:
             one = replace(self, kind="number")
             return tuple(float(one.of_kind(each)) for each in value)  # type: ignore[arg-type]
+        if self.kind == "numbers" and isinstance(value, list | tuple) and value:
+            return tuple(float(one.of_kind(each)) for one, each in self.each_of(value))  # type: ignore[arg-type]
         if self.infinite and value == "inf":
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
@@ -139,6 +145,7 @@ class Quantity:
         wanted = {
             "switch": "true or false without quotes",
             "text": "a text in quotes",
+            "numbers": "a list of numbers in brackets",
             "three numbers": "[a, b, c]",
         }.get(self.kind, f"a {self.kind}")
         raise ParameterError(f"{self.name} is {_shown(value)}; it must be {wanted}")
@@ -157,6 +164,11 @@ class Quantity:
             raise ParameterError(f"{self.name} is {_shown(value)}; it must be a whole number")
         return int(value)
 
+    def each_of(self, values: Iterable[object]) -> Iterator[tuple[Quantity, object]]:
+        """The numbers of a list, each with the quantity that it is by its place."""
+        for place, each in enumerate(values, start=1):
+            yield replace(self, kind="number", name=f"{self.name}[{place}]"), each
+
     def in_range(self, value: object) -> InputValue:
         """Give the value in its kind.
 
@@ -166,6 +178,9 @@ class Quantity:
             It is of another kind or outside the range.
         """
         checked = self.of_kind(value)
+        if self.kind == "numbers" and isinstance(value, list | tuple):
+            for one, each in self.each_of(value):
+                one.in_range(each)
         if not self._allows(checked):
             unit = f" {self.unit}" if self.unit else ""
             raise ParameterError(f"{self.name} is {_shown(value)}; allowed is {self.allowed}{unit}")
@@ -182,7 +197,7 @@ class Quantity:
         >>> Quantity("solver.step_ms", "step").in_si(0.5)
         0.0005
         """
-        if self.kind == "three numbers":
+        if self.kind in ("numbers", "three numbers"):
             return tuple(each * self._held for each in value)
         return value * self._held if self.kind == "number" else value
 
@@ -192,7 +207,7 @@ class Quantity:
         >>> Quantity("snow.H_V_N_per_mm3", "snow hardness").in_unit(2e8)
         0.2
         """
-        if self.kind == "three numbers" and value is not None:
+        if self.kind in ("numbers", "three numbers") and value is not None:
             return [each / self._held for each in value]
         return value / self._held if self.kind == "number" and value is not None else value
 
@@ -204,7 +219,7 @@ class Quantity:
         ParameterError
             As `in_range`, with the value in the unit of the name.
         """
-        if self.kind == "three numbers" and isinstance(value, list | tuple):
+        if self.kind in ("numbers", "three numbers") and isinstance(value, list | tuple):
             self.in_range([_plain(each, self._held) for each in value])
         elif self.kind in ("number", "whole number"):
             self.in_range(_plain(value, self._held))
