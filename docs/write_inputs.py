@@ -12,6 +12,9 @@ import sys
 from pathlib import Path
 
 import skisnow
+from skisnow.field.reading import campaign_schema
+from skisnow.field.reading.campaign_file import CAMPAIGN_KEYS
+from skisnow.field.reading.table_forms import PENETRATION, SHEAR
 from skisnow.inputs.json_schema import schema_text
 from skisnow.inputs.page_table import page_table
 from skisnow.simulate.carve_keys import CARVE_KEYS
@@ -21,11 +24,18 @@ from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 
 DOCS = Path(__file__).resolve().parent
 PACKAGE = Path(skisnow.__file__).resolve().parent
-SCHEMAS = {scenario.FILE: scenario.scenario_schema}
+SCHEMAS = {
+    scenario.FILE: scenario.scenario_schema,
+    campaign_schema.FILE: campaign_schema.campaign_schema,
+}
+_OF_CSV = ("column", "unit", "range", "meaning")
 TABLES = {
     "scenario": page_table(SCENARIO_KEYS.values()),
     "carve": page_table(CARVE_KEYS.values()),
     "ski": page_table(SKI_KEYS.values(), ("key", "meaning", "unit", "range", "usual", "left out")),
+    "campaign": page_table(CAMPAIGN_KEYS.values(), ("key", "unit", "range", "meaning")),
+    "penetration": page_table(PENETRATION.numbers, _OF_CSV),
+    "shear": page_table(SHEAR.numbers[:4], _OF_CSV),
     "stations": page_table(COLUMNS.values(), ("column", "meaning", "unit", "range", "usual", "instead of")),
 }
 TABLE = re.compile(r"(?P<mark><!-- keys of (?P<name>[\w -]+) -->\n)(?P<rows>.*?)(?=<!-- end of keys -->)", re.DOTALL)

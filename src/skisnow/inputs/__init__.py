@@ -3,6 +3,7 @@
 from .declared import Section, Word, made, own_quantities, quantities, require_declared, values_of
 from .nearest import meant, nearest
 from .quantity import SMALLEST, InputValue, Kind, Quantity, Search
+from .table import checked_table
 
 __all__ = [
     "SMALLEST",
@@ -12,6 +13,7 @@ __all__ = [
     "Search",
     "Section",
     "Word",
+    "checked_table",
     "made",
     "meant",
     "nearest",

@@ -27,7 +27,8 @@ def schema_of(quantity: Quantity) -> Schema:
         items = {"type": "number", **_range(quantity)}
         return {"type": "array", "description": words, "minItems": 3, "maxItems": 3, "items": items}
     if quantity.kind == "numbers":
-        return {"type": "array", "description": words, "minItems": 1, "items": {"type": "number", **_range(quantity)}}
+        least = {"minItems": 1} if quantity.default is None else {}
+        return {"type": "array", "description": words, **least, "items": {"type": "number", **_range(quantity)}}
     limits = _range(quantity) if quantity.kind != "text" else _words(quantity)
     return {"type": _TYPES[quantity.kind], "description": words, **limits, **default}
 
@@ -52,9 +53,12 @@ def schema_text(schema: Schema) -> str:
 
 def _range(quantity: Quantity) -> Schema:
     least = "exclusiveMinimum" if quantity.above else "minimum"
-    ends = {least: quantity.lowest, "maximum": quantity.highest}
+    most = "exclusiveMaximum" if quantity.below else "maximum"
+    ends = {least: quantity.lowest, most: quantity.highest}
     return {name: end for name, end in ends.items() if math.isfinite(end)}
 
 
 def _words(quantity: Quantity) -> Schema:
-    return {"enum": list(quantity.choices)} if quantity.choices else {"pattern": "\\S"}
+    if quantity.choices:
+        return {"enum": list(quantity.choices)}
+    return {} if quantity.blank else {"pattern": "\\S"}

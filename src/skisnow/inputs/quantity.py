@@ -47,9 +47,9 @@ class Quantity:
     meaning
         In words.
     lowest, highest
-        Ends of the range in the unit of the name; `above` leaves the lowest value itself out.
-    infinite
-        Whether an infinite number has a meaning.
+        Ends of the range in the unit of the name; `above` leaves the lowest value itself out, `below` the highest.
+    infinite, blank
+        Whether an infinite number has a meaning; whether a text may be blank.
     origin
         Where the default or the range comes from.
     example
@@ -75,7 +75,9 @@ class Quantity:
     lowest: float = -math.inf
     highest: float = math.inf
     above: bool = False
+    below: bool = False
     infinite: bool = False
+    blank: bool = False
     origin: str = ""
     example: str = ""
     usual: tuple[float, float] | None = None
@@ -111,12 +113,13 @@ class Quantity:
         if self.kind == "switch":
             return "true or false"
         if self.kind == "text":
-            return " or ".join(self.choices) or "a text that is not blank"
+            return " or ".join(self.choices) or ("a text" if self.blank else "a text that is not blank")
         if self.kind in ("numbers", "three numbers"):
             return f"{self.kind}, each {replace(self, kind='number').allowed}"
         kind = "whole numbers " if self.kind == "whole number" else ""
         if self.highest < math.inf:
-            return f"{kind}{'above' if self.above else 'from'} {self.lowest:g} to {self.highest:g}"
+            low, high = "above" if self.above else "from", "below " if self.below else ""
+            return f"{kind}{low} {self.lowest:g} to {high}{self.highest:g}"
         if self.lowest > -math.inf:
             return kind + (f"above {self.lowest:g}" if self.above else f"{self.lowest:g} or more")
         return f"any {'whole' if kind else 'finite'} number"
@@ -136,7 +139,7 @@ class Quantity:
         if self.kind == "three numbers" and isinstance(value, list | tuple) and len(value) == 3:
             one = replace(self, kind="number")
             return tuple(float(one.of_kind(each)) for each in value)  # type: ignore[arg-type]
-        if self.kind == "numbers" and isinstance(value, list | tuple) and value:
+        if self.kind == "numbers" and isinstance(value, list | tuple) and (value or self.default is not None):
             return tuple(float(one.of_kind(each)) for one, each in self.each_of(value))  # type: ignore[arg-type]
         if self.infinite and value == "inf":
             return math.inf
@@ -228,14 +231,15 @@ class Quantity:
 
     def _allows(self, value: InputValue) -> bool:
         if isinstance(value, str):
-            return bool(value) and (not self.choices or value in self.choices)
+            return bool(value or self.blank) and (not self.choices or value in self.choices)
         if isinstance(value, bool):
             return True
         if isinstance(value, tuple):
             return all(self._allows(each) for each in value)
         if math.isinf(value):
             return self.infinite and value > 0
-        return self.lowest <= value <= self.highest and not (self.above and value == self.lowest)
+        at_end = (self.above and value == self.lowest) or (self.below and value == self.highest)
+        return self.lowest <= value <= self.highest and not at_end
 
 
 def _plain(value: object, factor: float) -> object:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import difflib
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Final
 
 from ...errors import ParameterError
-from ...inputs import Quantity, nearest, quantities
+from ...inputs import Quantity, checked_table, nearest, quantities
 from .free_keys import free_key
 
 
@@ -86,7 +85,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
                 f'identify."{word}" is {table!r}; it must be a table with {", ".join(GIVEN)}, begun by the line '
                 f'[identify."{key}"]. A value of the scenario stands in its own section, [{key.partition(".")[0]}]'
             )
-        found[key] = {name: _number(key, name, value) for name, value in table.items()}
+        found[key] = checked_table(Sought, table, f'[identify."{key}"]')
     return found
 
 
@@ -108,11 +107,3 @@ def _table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
         what = f"[identify.{name}]" if name == "site" else f'[identify.{name}."NAME"]'
         raise ParameterError(f"identify.{name} is {table!r}; it must be a table, begun by the line {what}")
     return table
-
-
-def _number(key: str, name: str, value: object) -> float:
-    if name not in GIVEN:
-        raise ParameterError(f'[identify."{key}"]: there is no {name!r}. {nearest(name, GIVEN)}')
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ParameterError(f'[identify."{key}"]: {name} is {value!r}; it must be a finite number')
-    return float(value)
