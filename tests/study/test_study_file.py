@@ -118,9 +118,15 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED.replace("published", "results") + GRID, "race-piste cannot be read"),
         (OUT + FIXED + GRID + "S_f_N_per_mm2 = [0.2]\n", "which has its own S_f"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 3, n = 6 }\n", r"under \[fixed\]"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n", "to is nan; allowed is any finite number"),
+        (
+            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n",
+            "to is nan; allowed is any finite number",
+        ),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 0, to = 3, n = 6, log = true }\n", "both ends above 0"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 1 }\n", "n is 1; allowed is whole numbers 2 or more"),
+        (
+            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 1 }\n",
+            "n is 1; allowed is whole numbers 2 or more",
+        ),
         (OUT + FIXED + '[grid]\nedge_angle_deg = { from = 3, to = 60, n = 6, log = "yes" }\n', "true or false"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 2000000 }\n", "2000000 points"),
         (OUT + FIXED + "[grid]\ntwist = { from = 0, to = 1, n = 2 }\n", "twist has no range"),

@@ -21,7 +21,7 @@ def schema_of(quantity: Quantity) -> Schema:
     >>> schema_of(Quantity("load_N", "load", lowest=0.0, above=True))
     {'type': 'number', 'description': 'load (N)', 'exclusiveMinimum': 0.0}
     """
-    words = f"{quantity.meaning} ({quantity.unit})" if quantity.unit else quantity.meaning
+    words = quantity.described
     default = {} if quantity.default is None else {"default": quantity.default}
     if quantity.kind == "three numbers":
         items = {"type": "number", **_range(quantity)}

@@ -6,10 +6,17 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import KW_ONLY, dataclass, replace
 from numbers import Real
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from ..errors import ParameterError
 from ..units import unit_of_name
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    FloatArray: TypeAlias = npt.NDArray[np.float64]
+    BoolArray: TypeAlias = npt.NDArray[np.bool_]
 
 Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "numbers", "three numbers"]
 SMALLEST, LARGEST = 1e-100, 1e100
@@ -54,6 +61,8 @@ class Quantity:
         Where the default or the range comes from.
     example
         How it is given on the command line, with what its values mean.
+    label, symbol
+        What people call it, such as on the axis of a figure, and its symbol there.
     usual
         Ends of what is usual, in the unit of the name; None: all of the range.
     search
@@ -80,6 +89,8 @@ class Quantity:
     blank: bool = False
     origin: str = ""
     example: str = ""
+    label: str = ""
+    symbol: str = ""
     usual: tuple[float, float] | None = None
     search: Search | None = None
     index: int | None = None
@@ -123,6 +134,30 @@ class Quantity:
         if self.lowest > -math.inf:
             return kind + (f"above {self.lowest:g}" if self.above else f"{self.lowest:g} or more")
         return f"any {'whole' if kind else 'finite'} number"
+
+    @property
+    def described(self) -> str:
+        """Meaning and unit.
+
+        >>> Quantity("load_N", "force on the ski").described
+        'force on the ski (N)'
+        """
+        return f"{self.meaning} ({self.unit})" if self.unit else self.meaning
+
+    @property
+    def axis_label(self) -> str:
+        """Label, symbol and unit; the name where there is neither label nor symbol.
+
+        >>> Quantity("load_N", "force on the ski", label="load").axis_label
+        'load (N)'
+        """
+        words = " ".join(filter(None, (self.label, self.symbol)))
+        return f"{words}{f' ({self.unit})' if self.unit else ''}" if words else self.name
+
+    def outside(self, values: FloatArray) -> BoolArray:
+        """Which of an array's values, in the unit of the name, are outside the range; NaN is not."""
+        low = values <= self.lowest if self.above else values < self.lowest
+        return low | (values >= self.highest if self.below else values > self.highest)
 
     def of_kind(self, value: object) -> InputValue:
         """Give the value in its kind, a number as float; its range is not looked at.

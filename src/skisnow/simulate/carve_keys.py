@@ -26,13 +26,18 @@ class CarveQuestion:
         Quantity(
             "edge_angle_deg",
             "angle ϑ of the base under the boot to the snow surface",
+            label="edge angle",
+            symbol="ϑ",
             lowest=0.0,
             highest=round(math.degrees(GREATEST_EDGE_ANGLE), 9),
             origin="at 90° the side force of a balanced turn has no bound",
         ),
     ]
     load_N: Annotated[
-        float, Quantity("load_N", "force on this ski along the snow normal, at the boot", lowest=0.0, above=True)
+        float,
+        Quantity(
+            "load_N", "force on this ski along the snow normal, at the boot", label="load", lowest=0.0, above=True
+        ),
     ]
     H_V_N_per_mm3: Annotated[float | None, _SNOW["H_V_N_per_mm3"]] = None
     S_f_N_per_mm2: Annotated[
@@ -46,6 +51,7 @@ class CarveQuestion:
         Quantity(
             "unloading_ratio",
             "k_u/H_V: 1 is elastic snow, inf rigid-plastic snow (computed as 1000); plays no part at rest",
+            symbol="$k_u/H_V$",
             lowest=1.0,
             infinite=True,
             origin="not published: a parameter",
@@ -57,6 +63,7 @@ class CarveQuestion:
         Quantity(
             "moment_Nm",
             "boot moment about the cross axis (see moment_balance), positive where it presses the tip down",
+            label="boot moment",
             origin="load at the boot",
         ),
     ] = 0.0
@@ -74,6 +81,7 @@ class CarveQuestion:
         Quantity(
             "clamp_length_m",
             "length of ski that boot and binding keep straight",
+            label="clamp length",
             lowest=0.0,
             origin="choice: about a boot's sole",
         ),
@@ -103,6 +111,7 @@ class CarveQuestion:
         Quantity(
             "elements",
             "finite elements over the whole ski",
+            label="elements",
             lowest=4,
             highest=MOST_ELEMENTS,
             origin="choice: 1 cm each",

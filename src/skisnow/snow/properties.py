@@ -42,6 +42,8 @@ class SnowProperties:
         Quantity(
             "H_V_N_per_mm3",
             "snow hardness H_V",
+            label="snow hardness",
+            symbol="$H_V$",
             lowest=0.0,
             above=True,
             origin="measured 0.022 to 90; a warning beyond",
@@ -53,6 +55,8 @@ class SnowProperties:
         Quantity(
             "S_f_N_per_mm2",
             "failure shear stress S_f",
+            label="failure shear stress",
+            symbol="$S_f$",
             lowest=0.0,
             above=True,
             origin="measured 0.04 to 0.52; a warning beyond",

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..problems import error
 from .number_cells import is_number, numbers
-from .table_forms import allowed_words, is_outside
+from .table_forms import allowed_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -127,7 +127,7 @@ class NumberCollector:
             cell = cells[index].strip()
             if cell or self._column.needed:
                 found.append(self._refusal("not_a_number", index, cell, rows, self._how_to_write(cell)))
-        outside = is_outside(self._column, values)
+        outside = self._column.outside(values)
         for index in np.flatnonzero(outside).tolist():
             action = "Correct the cell; its unit stands in the column's name."
             found.append(self._refusal("out_of_range", index, cells[index].strip(), rows, action))

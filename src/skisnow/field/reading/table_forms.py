@@ -9,10 +9,7 @@ from ...constants import ICE_DENSITY
 from ...inputs import Quantity, own_quantities
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
-    from ..records import FloatArray
+    pass
 
 
 def allowed_words(column: Quantity) -> str:
@@ -23,13 +20,6 @@ def allowed_words(column: Quantity) -> str:
     """
     words = column.allowed.removeprefix("any ")
     return f"a {words}" if words.startswith("finite") else f"a number {'of ' if words[0].isdigit() else ''}{words}"
-
-
-def is_outside(column: Quantity, values: FloatArray) -> npt.NDArray[np.bool_]:
-    """Tell which values are outside the limits of a column; NaN is not."""
-    below = values <= column.lowest if column.above else values < column.lowest
-    above = values >= column.highest if column.below else values > column.highest
-    return below | above
 
 
 @dataclass(frozen=True, slots=True)

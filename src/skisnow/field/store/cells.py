@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import ParameterError
 from ..reading.number_cells import number
-from ..reading.table_forms import TABLES, allowed_words, is_outside
+from ..reading.table_forms import TABLES, allowed_words
 
 if TYPE_CHECKING:
     from ...inputs import Quantity
@@ -47,7 +47,7 @@ def _number_cell(rule: Quantity, text: str) -> str:
         return ""
     mark = "," if "," in text and "." not in text else "."
     value = number(text, mark)
-    if math.isnan(value) or bool(is_outside(rule, np.array([value]))[0]):
+    if math.isnan(value) or bool(rule.outside(np.array([value]))[0]):
         found = f"{text!r} stands there" if text else "it is blank"
         raise ParameterError(f"{rule.name} is {allowed_words(rule)}; {found}")
     return text.replace(",", ".")
