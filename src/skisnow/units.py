@@ -6,7 +6,8 @@ The only place where 1 N/mm³ = 10⁹ N/m³ and its likes are written.
 200000000.0
 """
 
-from typing import Final
+from functools import cache
+from typing import Final, NamedTuple
 
 MM: Final = 1e-3
 """Metres in a millimetre."""
@@ -24,3 +25,63 @@ N_PER_MM3: Final = 1e9
 """N/m³ in 1 N/mm³, the unit of H_V."""
 DEGREE: Final = 0.017453292519943295
 """Radians in a degree."""
+MS: Final = 1e-3
+"""Seconds in a millisecond."""
+
+
+class Unit(NamedTuple):
+    """A unit as people write it, and its size in SI."""
+
+    symbol: str
+    size: float
+
+
+_NONE: Final = Unit("", 1.0)
+_BY_ENDING: Final = {
+    "N_per_mm3": Unit("N/mm³", N_PER_MM3),
+    "N_per_mm2": Unit("N/mm²", N_PER_MM2),
+    "N_per_mm": Unit("N/mm", N_PER_MM),
+    "kg_per_m3": Unit("kg/m³", 1.0),
+    "kg_per_m": Unit("kg/m", 1.0),
+    "m_per_s2": Unit("m/s²", 1.0),
+    "m_per_s": Unit("m/s", 1.0),
+    "s_per_m": Unit("s/m", 1.0),
+    "kg_m2": Unit("kg m²", 1.0),
+    "N_m2": Unit("N m²", 1.0),
+    "deg": Unit("°", DEGREE),
+    "mm": Unit("mm", MM),
+    "ms": Unit("ms", MS),
+    "Nm": Unit("N m", 1.0),
+    "m2": Unit("m²", 1.0),
+    "kg": Unit("kg", 1.0),
+    "C": Unit("°C", 1.0),
+    "N": Unit("N", 1.0),
+    "m": Unit("m", 1.0),
+    "s": Unit("s", 1.0),
+}
+"""Endings of keys and columns, longer ones before those that end like them."""
+
+
+def unit_of_name(name: str) -> Unit:
+    """The unit that a name of a key or column ends with; none: a number without unit, of size 1.
+
+    >>> unit_of_name("snow.H_V_N_per_mm3"), unit_of_name("friction.mu_0").symbol
+    (Unit(symbol='N/mm³', size=1000000000.0), '')
+    """
+    return _BY_ENDING.get(_ending(name), _NONE)
+
+
+def without_unit(name: str) -> str:
+    """A name without its unit.
+
+    >>> without_unit("start.speed_m_per_s"), without_unit("friction.mu_0")
+    ('start.speed', 'friction.mu_0')
+    """
+    ending = _ending(name)
+    return name.removesuffix(f"_{ending}") if ending else name
+
+
+@cache
+def _ending(name: str) -> str:
+    name = name.partition("[")[0]  # of a list each
+    return next((ending for ending in _BY_ENDING if name.endswith(f"_{ending}")), "")

@@ -9,10 +9,8 @@ from typing import Any, get_args
 import pytest
 
 import skisnow
-from skisnow.simulate.input_keys import InputKey
 from skisnow.simulate.run import Outcome
 from skisnow.simulate.scenario import read_scenario, scenario_file
-from skisnow.simulate.scenario.keys import SCENARIO_KEYS
 from skisnow.simulate.track_table import COLUMNS
 from skisnow.study import read_study
 from skisnow.study.scenario_subject import RESULTS
@@ -21,21 +19,6 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = (DOCS / "files" / "scenario.md").read_text(encoding="utf-8")
 RUNS = (DOCS / "files" / "run.md").read_text(encoding="utf-8")
 HOW_TO = (DOCS / "how-to" / "simulate.md").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize("key", SCENARIO_KEYS.values(), ids=lambda key: key.name)
-def test_every_key_is_told_with_unit_range_default_origin_and_meaning(key: InputKey) -> None:
-    (row,) = [line for line in PAGE.splitlines() if line.startswith(f"| `{key.name}` |")]
-    unit, allowed, default, origin, meaning = (cell.strip() for cell in row.split("|")[2:-1])
-    assert (unit, origin, meaning) == (key.unit, key.origin, key.meaning)
-    assert allowed == ("a text" if key.kind == "text" and not key.choices else key.allowed)
-    told = "none" if key.default is None else str(key.default).lower()
-    assert default.strip("`") in (told, told.removesuffix(".0"))
-
-
-def test_no_other_key_is_told() -> None:
-    told = [line.split("`")[1] for line in PAGE.splitlines() if line.startswith("| `")]
-    assert [name for name in told if "." in name] == list(SCENARIO_KEYS)
 
 
 def keys_of(schema: Any) -> Iterator[str]:

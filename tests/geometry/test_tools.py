@@ -141,5 +141,5 @@ def test_a_tool_without_a_length_is_refused(length: float) -> None:
 def test_each_length_of_each_tool_is_asked_for(shape: type[Tool], name: str) -> None:
     whole = {field.name: 0.1 for field in fields(shape)}  # type: ignore[arg-type]
     shape(**whole)
-    with pytest.raises(ParameterError, match=f"{shape.__name__}: {name} is 0.0 m; it must be a finite length above 0"):
+    with pytest.raises(ParameterError, match=f"{name}_mm is 0.0; allowed is above 0 mm"):
         shape(**whole | {name: 0.0})

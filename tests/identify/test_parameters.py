@@ -58,7 +58,7 @@ def test_bounds_that_exclude_the_start_are_refused() -> None:
         ({"mu_0": {"prior_mean": 0.1}}, "prior_sd is missing"),
         ({"mu_0": {"prior_mean": 0.1, "prior_sd": 0.0}}, "above 0"),
         ({"mu_0": {"lower": 0.3, "upper": 0.2}}, "lower must be below upper"),
-        ({"mu_0": {"upper": True}}, "finite number"),
+        ({"mu_0": {"upper": True}}, "upper is True; it must be a number"),
         ({"mu_0": 0.3}, "must be a table"),
         ({"muu_0": {"upper": 0.3}}, "friction.mu_0"),
         ({"S_f": {"lower": -1.0}}, "allowed is above 0"),

@@ -1,47 +1,32 @@
+"""What a ski file and its table declare."""
+
 from __future__ import annotations
 
-import re
-from pathlib import Path
+import pytest
 
-from skisnow.ski.file_keys import COLUMNS, KEYS, LIST_KEYS, NUMBER_KEYS, NumberKey
-
-PAGE = Path(__file__).parents[2] / "docs" / "files" / "ski.md"
-
-
-def rows(heading: str) -> dict[str, list[str]]:
-    """Cells of the first table below a heading of the page, by the name in their first cell."""
-    below = PAGE.read_text(encoding="utf-8").split(f"\n## {heading}\n")[1].split("\n## ")[0]
-    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in below.splitlines() if line[:2] == "| "]
-    return {found[1]: row[1:] for row in cells if (found := re.match(r"`(\w+)`$", row[0]))}
-
-
-def number(text: str) -> float:
-    return 1e8 if text == "10⁸" else float(text.replace("−", "-"))
-
-
-def interval(text: str) -> tuple[float, float]:
-    low, high = text.split("–")
-    return number(low), number(high)
-
-
-def require_ranges(table: dict[str, list[str]], keys: dict[str, NumberKey]) -> None:
-    for name, key in keys.items():
-        assert interval(table[name][1]) == (key.lowest, key.highest), name
-        assert interval(table[name][2]) == key.usual, name
-
-
-def test_the_page_lists_every_key_with_its_ranges() -> None:
-    table = rows("Keys")
-    assert set(table) == set(KEYS)
-    require_ranges(table, {**NUMBER_KEYS, **LIST_KEYS})
-
-
-def test_the_page_lists_every_column_with_its_ranges() -> None:
-    table = rows("The table")
-    assert set(table) == set(COLUMNS)
-    require_ranges(table, COLUMNS)
+from skisnow.errors import ParameterError
+from skisnow.ski.base_profile import BaseShape
+from skisnow.ski.file_keys import BASE, COLUMNS, SKI_KEYS, SkiFile
 
 
 def test_what_is_usual_is_allowed() -> None:
-    for name, key in {**NUMBER_KEYS, **LIST_KEYS, **COLUMNS}.items():
-        assert key.lowest <= key.usual[0] < key.usual[1] <= key.highest, name
+    for key in (*SKI_KEYS.values(), *COLUMNS.values()):
+        if key.kind in ("number", "numbers"):
+            assert key.usual is not None
+            assert key.lowest <= key.usual[0] < key.usual[1] <= key.highest, key.name
+
+
+def test_a_file_says_shape_stiffness_mass_and_where_the_rest_stands() -> None:
+    assert len(SKI_KEYS) == 26
+    assert {key.kind for key in SKI_KEYS.values()} == {"text", "number", "numbers", "switch"}
+    assert all(SKI_KEYS[name].factor == 1e-3 for name in BASE)
+
+
+def test_a_base_in_python_is_held_to_the_ranges_of_files() -> None:
+    with pytest.raises(ParameterError, match=r"camber_mm is 60\.0; allowed is from -50 to 50 mm"):
+        BaseShape(camber=0.06)
+
+
+def test_defaults_in_si() -> None:
+    empty = SkiFile()
+    assert (empty.tail_overhang, empty.boot_position, empty.base_bevel, empty.edge_width) == (0.02, 0.0, 0.0, 0.002)

@@ -101,7 +101,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED + '[grid]\nedge_angle_deg = [30, "forty"]\n', "'forty'; it must be a number"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = [true]\n", "True; it must be a number"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60 }\n", "n, the number of values, is missing"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, till = 60 }\n", "till is no key of a range"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, till = 60 }\n", "edge_angle_deg: there is no 'till'"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, n = 60 }\n", "to is missing"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 60, to = 3, n = 6 }\n", "from must be the smaller one"),
         (OUT + FIXED.replace("race-piste", "race-pist") + GRID, "did you mean 'race-piste'"),
@@ -118,9 +118,15 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED.replace("published", "results") + GRID, "race-piste cannot be read"),
         (OUT + FIXED + GRID + "S_f_N_per_mm2 = [0.2]\n", "which has its own S_f"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 3, n = 6 }\n", r"under \[fixed\]"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n", "nan; it must be a finite"),
+        (
+            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n",
+            "to is nan; allowed is any finite number",
+        ),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 0, to = 3, n = 6, log = true }\n", "both ends above 0"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 1 }\n", "whole number from 2"),
+        (
+            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 1 }\n",
+            "n is 1; allowed is whole numbers 2 or more",
+        ),
         (OUT + FIXED + '[grid]\nedge_angle_deg = { from = 3, to = 60, n = 6, log = "yes" }\n', "true or false"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 2000000 }\n", "2000000 points"),
         (OUT + FIXED + "[grid]\ntwist = { from = 0, to = 1, n = 2 }\n", "twist has no range"),
@@ -129,7 +135,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED + "[latin_hypercube]\nn = 5\nedge_angle_deg = { from = 3, to = 60 }\n", "seed is missing"),
         (
             OUT + FIXED + "[latin_hypercube]\nn = 0\nseed = 1\nelements = [80]\n",
-            "n is 0; it must be a whole number from 1",
+            "n is 0; allowed is whole numbers 1 or more",
         ),
         (
             OUT + FIXED + "[latin_hypercube]\nn = 5\nseed = 1\nedge_angle_deg = { from = 3, to = 60, n = 3 }\n",

@@ -52,14 +52,14 @@ def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:
     create(page, served)
     fill(page, {"Site": "A", "Edge angle (°)": "95"})
     page.keyboard.press("Enter")
-    page.get_by_text("Not begun: edge_angle_deg is a number of at least 0 and below 90").wait_for()
+    page.get_by_text("Not begun: edge_angle_deg is a number from 0 to below 90").wait_for()
     ready(page)
     fill(page, {"Edge angle (°)": "30"})
     page.keyboard.press("Enter")
     page.get_by_label("Depth under 20 N (mm)").and_(page.locator(":focus")).wait_for()
     page.keyboard.type("1.5.2")
     page.keyboard.press("Enter")
-    page.get_by_text("Not stored: depth_mm is a number of at least 0").wait_for()
+    page.get_by_text("Not stored: depth_mm is a number of 0 or more").wait_for()
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
         assert head.n_entries == 1

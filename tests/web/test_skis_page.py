@@ -88,10 +88,10 @@ def test_what_cannot_be_is_said_and_nothing_is_saved(page: Page, served: Served)
     type_into(page, "GJ (N m²) at 0.000 m", "1x")
     page.get_by_text("GJ (N m²) at 0.000 m: '1x' is no number").wait_for()
     type_into(page, "GJ (N m²) at 0.000 m", "-3")
-    page.get_by_text("GJ_N_m2 at station 0.000 m is -3; allowed is").wait_for()
+    page.get_by_text("station 0.000 m: GJ_N_m2 is -3.0; allowed is").wait_for()
     page.get_by_label("New name", exact=True).fill("never")
     page.get_by_role("button", name="Save in the lab").click()
-    page.get_by_text("Not saved: GJ_N_m2 at station").wait_for()
+    page.get_by_text("Not saved: station").wait_for()
     assert LabSkis(served.store.parent / "lab").saved() == []
     type_into(page, "GJ (N m²) at 0.000 m", "")  # emptied: as it was
     page.get_by_role("columnheader", name="carver").nth(1).wait_for()

@@ -14,10 +14,11 @@ import numpy as np
 
 from ..constants import ICE_DENSITY
 from ..errors import FieldDataError
+from ..inputs import Quantity
 from ..units import CM
 from .problems import error
 from .reading.raw_files import RawFiles
-from .reading.table_forms import NumberColumn, TableForm
+from .reading.table_forms import TableForm
 from .reading.tables import read_table
 from .reading.text import UnreadableTextError, look_at_csv
 
@@ -121,9 +122,9 @@ def _form(file: str) -> TableForm:
         key="ID",
         names=("ID",),
         numbers=(
-            NumberColumn("TOP", low=0, low_allowed=False),
-            NumberColumn("BOTTOM", low=0),
-            NumberColumn("RHO", low=0, low_allowed=False, high=ICE_DENSITY),
+            Quantity("TOP", "height of the layer's top, cm", lowest=0.0, above=True),
+            Quantity("BOTTOM", "height of its bottom, cm", lowest=0.0),
+            Quantity("RHO", "density, kg/m³", lowest=0.0, above=True, highest=ICE_DENSITY),
         ),
         optional=("NOTES", "TYPE"),
     )

@@ -11,15 +11,22 @@ from __future__ import annotations
 
 import abc
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from ..inputs import Quantity, require_declared
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 GeometryForm: TypeAlias = Literal["extended", "paper"]
+
+LIKELY_LENGTH_MM: Final = (2.0, 5000.0)
+"""Lengths of tools beyond it are hardly in mm."""
+
+
+def _length(name: str, meaning: str) -> Quantity:
+    return Quantity(name, meaning, lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
 
 
 class Tool(abc.ABC):
@@ -50,12 +57,6 @@ class Tool(abc.ABC):
         """Depth (m) beyond which this tool is no longer the body that its name says; readings deeper are marked."""
 
 
-def _require_positive(owner: object, **lengths: float) -> None:
-    for name, value in lengths.items():
-        if not (np.isfinite(value) and value > 0):
-            raise ParameterError(f"{type(owner).__name__}: {name} is {value!r} m; it must be a finite length above 0")
-
-
 @dataclass(frozen=True, slots=True)
 class SkiPiece(Tool):
     """A flat piece of ski, length L along its edge and width W, tilted by the edge angle ϑ about that edge.
@@ -82,11 +83,13 @@ class SkiPiece(Tool):
     10000.0
     """
 
-    length: float
-    width: float
+    length: Annotated[
+        float, Quantity("length_mm", "length along the edge", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
+    ]
+    width: Annotated[float, _length("width_mm", "width of the base")]
 
     def __post_init__(self) -> None:
-        _require_positive(self, length=self.length, width=self.width)
+        require_declared(self)
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.contact_area`."""
@@ -131,11 +134,13 @@ class PlainWedge(Tool):
     Kept to reproduce the paper. Beyond e = W sin ϑ it counts snow beside the tool; such readings are marked.
     """
 
-    length: float
-    width: float
+    length: Annotated[
+        float, Quantity("length_mm", "length along the edge", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
+    ]
+    width: Annotated[float, _length("width_mm", "width of the base")]
 
     def __post_init__(self) -> None:
-        _require_positive(self, length=self.length, width=self.width)
+        require_declared(self)
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.contact_area`."""
@@ -177,10 +182,10 @@ class Disc(Tool):
     157.08
     """
 
-    diameter: float
+    diameter: Annotated[float, _length("diameter_mm", "diameter")]
 
     def __post_init__(self) -> None:
-        _require_positive(self, diameter=self.diameter)
+        require_declared(self)
 
     @property
     def _face(self) -> float:
@@ -219,11 +224,13 @@ class LyingCylinder(Tool):
     392.699
     """
 
-    radius: float
-    width: float
+    radius: Annotated[float, _length("radius_mm", "radius")]
+    width: Annotated[
+        float, Quantity("width_mm", "length along the axis", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
+    ]
 
     def __post_init__(self) -> None:
-        _require_positive(self, radius=self.radius, width=self.width)
+        require_declared(self)
 
     def _half_chord(self, e: FloatArray) -> FloatArray:
         chord = np.sqrt(np.maximum(e * (2.0 * self.radius - e), 0.0))

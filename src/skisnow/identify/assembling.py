@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from ..errors import ParameterError
 from ..given import is_file
-from ..simulate.input_keys import nearest
+from ..inputs import nearest
 from ..simulate.scenario import ScenarioFile
 from ..simulate.scenario.free_keys import EACH, free_key
 from ..simulate.scenario.given import GivenScenario

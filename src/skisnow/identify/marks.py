@@ -4,18 +4,35 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..units import MM
+from ..inputs import Quantity, own_quantities
 from .table_file import TableFile, read_table
 
 FloatArray = npt.NDArray[np.float64]
-COLUMNS: Final = ("depth_mm", "width_mm", "turn_radius_m")
-SPREADS: Final = ("depth_sd_mm", "width_sd_mm", "turn_radius_sd_m")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MarkRow:
+    """A row of a file of marks; what was not measured is left out."""
+
+    depth: Annotated[float | None, Quantity("depth_mm", "depth of the groove", lowest=0.0, above=True)] = None
+    width: Annotated[float | None, Quantity("width_mm", "width of the groove", lowest=0.0, above=True)] = None
+    turn_radius: Annotated[float | None, Quantity("turn_radius_m", "radius of the track on either side")] = None
+    depth_sd: Annotated[float | None, Quantity("depth_sd_mm", "of the depth", lowest=0.0, above=True)] = None
+    width_sd: Annotated[float | None, Quantity("width_sd_mm", "of the width", lowest=0.0, above=True)] = None
+    turn_radius_sd: Annotated[float | None, Quantity("turn_radius_sd_m", "of the radius", lowest=0.0, above=True)] = (
+        None
+    )
+
+
+_ROW: Final = own_quantities(MarkRow)
+COLUMNS: Final = tuple(each.name for each in _ROW[:3])
+SPREADS: Final = tuple(each.name for each in _ROW[3:])
 FEWEST_FOR_SCATTER: Final = 3
 
 
@@ -82,10 +99,11 @@ def marks_of(table: TableFile) -> Marks:
     table.require_no_slip((*COLUMNS, *SPREADS))
     columns = {}
     stated = True
-    for name, spread, unit in zip(COLUMNS, SPREADS, (MM, MM, 1.0), strict=True):
-        values = _column(table, name) * unit
+    for quantity, spread in zip(_ROW[:3], _ROW[3:], strict=True):
+        name = quantity.name
+        values = _column(table, quantity) * quantity.factor
         known = np.isfinite(values)
-        sd = _column(table, spread) * unit
+        sd = _column(table, spread) * spread.factor
         if np.isfinite(sd[known]).all():
             columns[name] = (values, sd)
             continue
@@ -97,10 +115,10 @@ def marks_of(table: TableFile) -> Marks:
     return Marks(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
 
 
-def _column(table: TableFile, name: str) -> FloatArray:
-    if name not in table.columns:
+def _column(table: TableFile, quantity: Quantity) -> FloatArray:
+    if quantity.name not in table.columns:
         return np.full(len(table.rows), np.nan)
-    return table.numbers(name, may_be_empty=True)
+    return table.numbers(quantity)
 
 
 def _scatter(file: str, name: str, values: FloatArray) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..simulate.input_keys import nearest
+from ..inputs import nearest
 from ..simulate.scenario.free_keys import EACH
 
 FloatArray = npt.NDArray[np.float64]

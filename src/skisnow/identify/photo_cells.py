@@ -4,16 +4,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..inputs import Quantity, own_quantities
 from .table_file import TableFile, read_table
 
 FloatArray = npt.NDArray[np.float64]
-COLUMNS: Final = ("run", "station_m", "time_s")
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """A row of a file of photo cells."""
+
+    run: Annotated[str, Quantity("run", "name of the run")]
+    station: Annotated[float, Quantity("station_m", "length of the way from the start down, which no cell lies before")]
+    time: Annotated[float, Quantity("time_s", "of the passage")]
+    time_sd: Annotated[float | None, Quantity("time_sd_s", "standard deviation of it", lowest=0.0, above=True)] = None
+
+
+_PASSAGE: Final = own_quantities(Passage)
+COLUMNS: Final = tuple(each.name for each in _PASSAGE if each.needed)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,10 +94,11 @@ def read_photo_cells(path: str | Path) -> PhotoCells:
 def photo_cells_of(table: TableFile) -> PhotoCells:
     """The runs of a table that was read."""
     table.require(COLUMNS)
-    table.require_no_slip((*COLUMNS, "time_sd_s"))
+    table.require_no_slip(tuple(each.name for each in _PASSAGE))
     names = table.texts("run")
-    station, time = table.numbers("station_m"), table.numbers("time_s")
-    sd = table.numbers("time_sd_s", may_be_empty=True) if "time_sd_s" in table.columns else None
+    _, station_m, time_s, time_sd_s = _PASSAGE
+    station, time = table.numbers(station_m), table.numbers(time_s)
+    sd = table.numbers(time_sd_s) if time_sd_s.name in table.columns else None
     runs = []
     for name in dict.fromkeys(names):
         rows = np.array([each == name for each in names])

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..inputs import Quantity
 from ..spreadsheet_text import number
 from ..track.text import cells_of, mark_of, require_width, text_of
 
@@ -74,13 +75,14 @@ class TableFile:
             found.append(text)
         return found
 
-    def numbers(self, column: str, *, may_be_empty: bool = False) -> FloatArray:
-        """The numbers of a column, NaN where a cell may be empty and is."""
+    def numbers(self, quantity: Quantity) -> FloatArray:
+        """The numbers of a column, in the unit of its name; NaN where a cell may be empty and is."""
+        column = quantity.name
         place = self.columns.index(column)
         found = []
         for row, cells in self.rows:
             text = cells[place] if place < len(cells) else ""
-            if not text and may_be_empty:
+            if not text and not quantity.needed:
                 found.append(math.nan)
                 continue
             value = number(text, self.mark)
@@ -89,6 +91,10 @@ class TableFile:
                     f"{self.name}, row {row}, column {column}: {text!r} is no finite number; write one with a decimal "
                     f"{'comma, as others in the file' if self.mark == ',' else 'point'}, without its unit"
                 )
+            try:
+                quantity.in_range(value)
+            except ParameterError as error:
+                raise ParameterError(f"{self.name}, row {row}: {error}") from None
             found.append(value)
         return np.array(found)
 

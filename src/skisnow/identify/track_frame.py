@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..simulate.input_keys import nearest
+from ..inputs import checked_table, made
 from ..simulate.scenario import Plane, ScenarioFile
-from ..simulate.scenario.identify_section import SITE
+from ..simulate.scenario.identify_section import SITE, Site
 from ..track.projection import GeodeticPoint, east_north_up
 from ..track.slope_frame import in_slope_frame
 from ..track.track import Track
@@ -50,11 +50,12 @@ def in_scenario_frame(track: Track, asked: ScenarioFile, site: object) -> tuple[
             "of its x = y = 0; without these the track's first point is taken as the scenario's start"
         )
     said = _site(site)
-    azimuth = said["fall_line_azimuth_deg"] * DEGREE
+    azimuth = said.fall_line_azimuth_deg * DEGREE
     slope = asked.scenario.slope
     angle = slope.angle if isinstance(slope, Plane) else None
-    if "latitude_deg" in said and track.origin is not None:
-        point = GeodeticPoint(said["latitude_deg"], said["longitude_deg"], said.get("height_m", track.origin.height))
+    if said.latitude_deg is not None and said.longitude_deg is not None and track.origin is not None:
+        height = track.origin.height if said.height_m is None else said.height_m
+        point = GeodeticPoint(said.latitude_deg, said.longitude_deg, height)
         origin = _place_of(point, track)
         turned = in_slope_frame(
             track, fall_line_azimuth=azimuth, slope_angle=angle, origin=origin, missing_height="on_slope"
@@ -90,20 +91,10 @@ def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
     return at
 
 
-def _site(site: object) -> dict[str, float]:
+def _site(site: object) -> Site:
     if not isinstance(site, Mapping):
         raise ParameterError(f"identify.site is {site!r}; it must be a table with {', '.join(SITE)}")
-    found = {}
-    for name, value in site.items():
-        if name not in SITE:
-            raise ParameterError(f"[identify.site]: there is no {name!r}. {nearest(name, SITE)}")
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise ParameterError(f"[identify.site]: {name} is {value!r}; it must be a finite number")
-        found[name] = float(value)
-    if "fall_line_azimuth_deg" not in found:
-        raise ParameterError(
-            "[identify.site]: fall_line_azimuth_deg is missing: the compass direction of the fall line"
-        )
-    if ("latitude_deg" in found) != ("longitude_deg" in found):
+    found = made(Site, checked_table(Site, site, "[identify.site]"))
+    if (found.latitude_deg is None) != (found.longitude_deg is None):
         raise ParameterError("[identify.site]: latitude_deg and longitude_deg go together; one is missing")
     return found

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.io import netcdf_file
 
 from ..files import write_file
+from ..simulate.scenario.keys import SCENARIO_KEYS
 from .run_variables import PIECE, RUN_VARIABLES, SKI, STATION, TIME
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ def write_run_file(
     run
         What `skisnow.simulate.simulated_run` gave.
     values
-        The scenario's keys with their values, as they stand in summary.json: the global attribute ``scenario``.
+        The scenario's keys with their values, as they stand in summary.json: the global attribute ``scenario``. What
+        each key means, with its unit, stands in ``scenario_keys``.
     path
         Of the file, which is replaced where it exists.
     provenance
@@ -74,6 +76,7 @@ def _attributes(file: Any, run: Run, values: Mapping[str, Any], provenance: Mapp
         "outcome": run.outcome,
         "remedy": run.remedy,
         "scenario": json.dumps(values, allow_nan=False, ensure_ascii=False),
+        "scenario_keys": json.dumps({name: key.described for name, key in SCENARIO_KEYS.items()}, ensure_ascii=False),
         "provenance": json.dumps(provenance, allow_nan=False, ensure_ascii=False),
         "comment": "x down the fall line, y to the left of it, z out of the snow; on a measured profile x is "
         "horizontal and z vertical. Heading 0 is the fall line; heading and turn radius are positive to the left.",

@@ -14,9 +14,8 @@ from ..given import is_file
 from ..ski import Ski, read_ski, ski_names
 from ..snow import SnowProperties, published_snow, snow_from_results
 from .carve import Equilibrium, carve, rest
-from .carve_keys import CARVE_KEYS
+from .carve_keys import CARVE_KEYS, CarveQuestion
 from .carve_limits import require_clamp, require_stress, suspicions, with_stress
-from .carve_question import CarveQuestion
 
 T = TypeVar("T")
 

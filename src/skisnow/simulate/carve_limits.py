@@ -9,8 +9,7 @@ from ..errors import ParameterError
 from ..ski import Ski
 from ..snow import SnowProperties
 from ..units import MM, N_PER_MM3
-from .carve_keys import CARVE_KEYS, in_degrees_if_radians
-from .carve_question import CarveQuestion
+from .carve_keys import CARVE_KEYS, CarveQuestion, in_degrees_if_radians
 
 USUAL_LOADS_N: Final = (20.0, 5000.0)
 """Loads beyond it look like another unit: 2 kg of ski, and six times the weight of a heavy skier (Choice)."""

@@ -3,39 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Any
 
 from ..errors import ParameterError
-from .carve_keys import CARVE_KEYS
-from .input_keys import nearest
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CarveQuestion:
-    """The inputs by their names in `CARVE_KEYS`; None where one is not given and has no default."""
-
-    ski: str
-    edge_angle_deg: float
-    load_N: float
-    H_V_N_per_mm3: float | None
-    S_f_N_per_mm2: float | None
-    results: str | None
-    site: str | None
-    published: str | None
-    unloading_ratio: float | None
-    moment_Nm: float
-    moment_balance: Literal["boot", "free"]
-    clamp_length_m: float
-    side_force_bending: bool
-    groove: Literal["edge", "path"]
-    twist: bool
-    elements: int
-    at_rest: bool
-
-    def as_dict(self) -> dict[str, Any]:
-        """The inputs under their names."""
-        return asdict(self)
+from ..inputs import nearest
+from .carve_keys import CARVE_KEYS, CarveQuestion
 
 
 def carve_question(values: Mapping[str, object]) -> CarveQuestion:
@@ -60,9 +32,8 @@ def carve_question(values: Mapping[str, object]) -> CarveQuestion:
     """
     require_known(values)
     require_complete(values)
-    given = {name: CARVE_KEYS[name].in_range(value) for name, value in values.items()}
-    every: dict[str, Any] = {name: given.get(name, key.default) for name, key in CARVE_KEYS.items()}
-    return CarveQuestion(**every)
+    given: dict[str, Any] = {name: CARVE_KEYS[name].in_range(value) for name, value in values.items()}
+    return CarveQuestion(**given)
 
 
 def require_known(names: Iterable[str]) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..inputs import Quantity, require_declared
 
 if TYPE_CHECKING:
     from .layout import Layout
@@ -41,13 +42,86 @@ class BaseShape:
     A height left out where nothing is beyond the contact point counts as 0.
     """
 
-    camber: float = 0.0
-    shovel_height: float | None = None
-    tail_height: float | None = None
-    tip_rocker_length: float = 0.0
-    tip_rocker_height: float = 0.0
-    tail_rocker_length: float = 0.0
-    tail_rocker_height: float = 0.0
+    camber: Annotated[
+        float,
+        Quantity(
+            "camber_mm",
+            "height of the arch over the line through the contact points",
+            lowest=-50,
+            highest=50,
+            usual=(0.5, 25),
+            origin="0",
+        ),
+    ] = 0.0
+    shovel_height: Annotated[
+        float | None,
+        Quantity(
+            "shovel_height_mm",
+            "height of the tip over that line",
+            lowest=0,
+            highest=300,
+            usual=(5, 150),
+            origin="50 (Choice)",
+        ),
+    ] = None
+    tail_height: Annotated[
+        float | None,
+        Quantity(
+            "tail_height_mm",
+            "height of the tail over that line",
+            lowest=0,
+            highest=300,
+            usual=(1, 150),
+            origin="8 (Choice)",
+        ),
+    ] = None
+    tip_rocker_length: Annotated[
+        float,
+        Quantity(
+            "tip_rocker_length_mm",
+            "by how much the front contact point is drawn in",
+            lowest=0,
+            highest=1500,
+            usual=(20, 800),
+            origin="0",
+        ),
+    ] = 0.0
+    tip_rocker_height: Annotated[
+        float,
+        Quantity(
+            "tip_rocker_height_mm",
+            "height of the base at the front end of the running length",
+            lowest=0,
+            highest=200,
+            usual=(0.5, 100),
+            origin="0",
+        ),
+    ] = 0.0
+    tail_rocker_length: Annotated[
+        float,
+        Quantity(
+            "tail_rocker_length_mm",
+            "by how much the rear contact point is drawn in",
+            lowest=0,
+            highest=1500,
+            usual=(20, 800),
+            origin="0",
+        ),
+    ] = 0.0
+    tail_rocker_height: Annotated[
+        float,
+        Quantity(
+            "tail_rocker_height_mm",
+            "height of the base at the rear end of the running length",
+            lowest=0,
+            highest=200,
+            usual=(0.5, 100),
+            origin="0",
+        ),
+    ] = 0.0
+
+    def __post_init__(self) -> None:
+        require_declared(self)
 
     def height_at(self, station: FloatArray, layout: Layout) -> FloatArray:
         """Height (m) of the base at stations (m), 0 at the boot.

@@ -138,9 +138,6 @@ def _require(edit: SkiEdit) -> None:
             allowed = f"{1.0 / _LARGEST_FACTOR:g} to {_LARGEST_FACTOR:g}"
             raise ParameterError(f"the factor of {column} is {factor:g}; allowed is {allowed}. Correct it")
     for column, values in edit.values.items():
-        key = COLUMNS[column]
-        for station, value in zip(edit.station, values / key.unit, strict=True):
-            if not (np.isnan(value) or key.lowest <= value <= key.highest):
-                raise ParameterError(
-                    f"{column} at station {station:.3f} m is {value:g}; allowed is {key.allowed}. Correct it"
-                )
+        for station, value in zip(edit.station, values, strict=True):
+            if not np.isnan(value):
+                replace(COLUMNS[column], name=f"station {station:.3f} m: {column}").require(value)

@@ -1,120 +1,266 @@
-"""The keys of a ski file: unit, range, usual range and default, in one place."""
+"""What a ski file and its table say: each key and column with its range, what is usual, and what stands for it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, field
+from typing import Annotated, Final
 
-from ..units import DEGREE, MM
-
-_LENGTHS: Final = (("metres", 1e3), ("centimetres", 10.0), ("inches", 25.4))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NumberKey:
-    """What a number of a ski file may be; all in the unit that its key names.
-
-    Attributes
-    ----------
-    unit
-        Factor to SI.
-    lowest, highest
-        What lies beyond is an error.
-    usual
-        What lies beyond, and is not 0, is warned of.
-    other_units
-        Units that people write by mistake: name and factor to the key's unit.
-    """
-
-    unit: float
-    lowest: float
-    highest: float
-    usual: tuple[float, float]
-    other_units: tuple[tuple[str, float], ...] = ()
-
-    @property
-    def allowed(self) -> str:
-        """The range in words."""
-        return f"{self.lowest:g} to {self.highest:g}"
-
-    def is_usual(self, value: float) -> bool:
-        """Whether skis have such a value (in the key's unit)."""
-        return self.usual[0] <= value <= self.usual[1]
-
-    def likely_unit(self, value: float) -> str:
-        """Name the unit in which an unusual value would be a usual one, as a question; or nothing."""
-        for name, factor in self.other_units:
-            if self.is_usual(value * factor):
-                return f" Is it in {name}? Then write {value * factor:g}."
-        return ""
-
-
-def _mm(lowest: float, highest: float, usual: tuple[float, float]) -> NumberKey:
-    return NumberKey(unit=MM, lowest=lowest, highest=highest, usual=usual, other_units=_LENGTHS)
-
-
-_STIFFNESS_UNITS = (("N mm²", 1e-6), ("kN m²", 1e3))
-
-NUMBER_KEYS: Final[dict[str, NumberKey]] = {
-    "length_mm": _mm(20, 3000, (180, 2300)),
-    "running_length_mm": _mm(20, 3000, (180, 2300)),
-    "sidecut_length_mm": _mm(20, 3000, (180, 2300)),
-    "tip_width_mm": _mm(15, 500, (40, 350)),
-    "waist_width_mm": _mm(15, 500, (40, 350)),
-    "tail_width_mm": _mm(15, 500, (40, 350)),
-    "tail_overhang_mm": _mm(0, 500, (1, 250)),
-    "boot_position_mm": _mm(-500, 500, (-200, 200)),
-    "camber_mm": _mm(-50, 50, (0.5, 25)),
-    "shovel_height_mm": _mm(0, 300, (5, 150)),
-    "tail_height_mm": _mm(0, 300, (1, 150)),
-    "tip_rocker_length_mm": _mm(0, 1500, (20, 800)),
-    "tip_rocker_height_mm": _mm(0, 200, (0.5, 100)),
-    "tail_rocker_length_mm": _mm(0, 1500, (20, 800)),
-    "tail_rocker_height_mm": _mm(0, 200, (0.5, 100)),
-    "mass_kg": NumberKey(unit=1.0, lowest=0.01, highest=50, usual=(0.1, 10), other_units=(("grams", 1e-3),)),
-    "base_bevel_deg": NumberKey(
-        unit=DEGREE, lowest=0, highest=5, usual=(0.1, 3), other_units=(("radians", 1.0 / DEGREE),)
-    ),
-    "edge_width_mm": _mm(0, 20, (0.5, 5)),
-}
-"""Keys with one number."""
-
-LIST_KEYS: Final[dict[str, NumberKey]] = {
-    "EI_N_m2": NumberKey(unit=1.0, lowest=1e-3, highest=1e8, usual=(5, 5000), other_units=_STIFFNESS_UNITS),
-    "GJ_N_m2": NumberKey(unit=1.0, lowest=1e-3, highest=1e8, usual=(2, 5000), other_units=_STIFFNESS_UNITS),
-    "stiffness_station_mm": _mm(-3000, 3000, (-1500, 1500)),
-}
-"""Keys with a list of numbers, tip to tail."""
-
-COLUMNS: Final[dict[str, NumberKey]] = {
-    "station_m": NumberKey(unit=1.0, lowest=-3, highest=3, usual=(-1.5, 2.0), other_units=(("mm", 1e-3), ("cm", 1e-2))),
-    "width_mm": _mm(1, 500, (5, 350)),
-    "base_height_mm": _mm(-300, 300, (-150, 200)),
-    "EI_N_m2": LIST_KEYS["EI_N_m2"],
-    "GJ_N_m2": LIST_KEYS["GJ_N_m2"],
-    "mass_per_length_kg_per_m": NumberKey(
-        unit=1.0, lowest=0.01, highest=50, usual=(0.1, 10), other_units=(("g/m", 1e-3),)
-    ),
-}
-"""Columns of a table, a row for each station from tip to tail."""
-
-TEXT_KEYS: Final = ("name", "source", "table", "shape")
-"""Keys with a text."""
+from ..inputs import Quantity, quantities
+from .base_profile import BaseShape
+from .layout import TAIL_OVERHANG
 
 RIGID: Final = 1e6
 """EI and GJ of a rigid ski (N m²). Choice: 200 mm of it, held in the middle, bend by 0.03 micrometre under 500 N."""
 
-WIDTHS: Final = ("tip_width_mm", "waist_width_mm", "tail_width_mm")
-LENGTHS: Final = ("length_mm", "tail_overhang_mm")
-BASE: Final = (
-    "camber_mm",
-    "shovel_height_mm",
-    "tail_height_mm",
-    "tip_rocker_length_mm",
-    "tip_rocker_height_mm",
-    "tail_rocker_length_mm",
-    "tail_rocker_height_mm",
-)
 
-KEYS: Final = (*TEXT_KEYS, *NUMBER_KEYS, *LIST_KEYS, "rigid")
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SkiFile:
+    """A ski file in SI; None where a key is left out that has no default. Lists go from tip to tail."""
+
+    name: Annotated[str | None, Quantity("name", "what it is called", origin="the file's name")] = None
+    source: Annotated[str | None, Quantity("source", "where the numbers come from", origin="the file's name")] = None
+    length: Annotated[
+        float | None,
+        Quantity(
+            "length_mm",
+            "from tip to tail along the base; at least 2.5 times the tip width",
+            lowest=20,
+            highest=3000,
+            usual=(180, 2300),
+            origin="needed; with a table: its reach",
+        ),
+    ] = None
+    running_length: Annotated[
+        float | None,
+        Quantity(
+            "running_length_mm",
+            "between the contact points of the base",
+            lowest=20,
+            highest=3000,
+            usual=(180, 2300),
+            origin="needed",
+        ),
+    ] = None
+    sidecut_length: Annotated[
+        float | None,
+        Quantity(
+            "sidecut_length_mm",
+            "between the widest points in front and behind",
+            lowest=20,
+            highest=3000,
+            usual=(180, 2300),
+            origin="needed",
+        ),
+    ] = None
+    tip_width: Annotated[
+        float | None,
+        Quantity(
+            "tip_width_mm",
+            "width at the front end of the sidecut length",
+            lowest=15,
+            highest=500,
+            usual=(40, 350),
+            origin="needed, or a column",
+        ),
+    ] = None
+    waist_width: Annotated[
+        float | None,
+        Quantity(
+            "waist_width_mm",
+            "width at its middle, not above the other two",
+            lowest=15,
+            highest=500,
+            usual=(40, 350),
+            origin="needed, or a column",
+        ),
+    ] = None
+    tail_width: Annotated[
+        float | None,
+        Quantity(
+            "tail_width_mm",
+            "width at its rear end",
+            lowest=15,
+            highest=500,
+            usual=(40, 350),
+            origin="needed, or a column",
+        ),
+    ] = None
+    tail_overhang: Annotated[
+        float,
+        Quantity(
+            "tail_overhang_mm",
+            "length of ski behind the sidecut length; the rest is the tip",
+            lowest=0,
+            highest=500,
+            usual=(1, 250),
+            origin="20 (Choice)",
+        ),
+    ] = TAIL_OVERHANG
+    boot_position: Annotated[
+        float,
+        Quantity(
+            "boot_position_mm",
+            "boot in front of the middle of the running length, negative behind",
+            lowest=-500,
+            highest=500,
+            usual=(-200, 200),
+            origin="0 (Choice)",
+        ),
+    ] = 0.0
+    mass: Annotated[
+        float | None,
+        Quantity(
+            "mass_kg",
+            "mass of one ski without binding",
+            lowest=0.01,
+            highest=50,
+            usual=(0.1, 10),
+            origin="needed, or a column",
+        ),
+    ] = None
+    base: BaseShape = field(default_factory=BaseShape)
+    base_bevel: Annotated[
+        float,
+        Quantity(
+            "base_bevel_deg",
+            "angle by which the edge strip is ground up from the base",
+            lowest=0,
+            highest=5,
+            usual=(0.1, 3),
+            origin="0",
+        ),
+    ] = 0.0
+    edge_width: Annotated[
+        float,
+        Quantity(
+            "edge_width_mm",
+            "width of that strip, below half the waist",
+            lowest=0,
+            highest=20,
+            usual=(0.5, 5),
+            origin="2 (Choice: a usual steel edge)",
+        ),
+    ] = 2e-3
+    bending_stiffness: Annotated[
+        tuple[float, ...] | None,
+        Quantity(
+            "EI_N_m2",
+            "bending stiffnesses, a list; one value holds everywhere",
+            lowest=0.001,
+            highest=100000000.0,
+            usual=(5, 5000),
+            origin="needed, a column, or `rigid`",
+        ),
+    ] = None
+    torsional_stiffness: Annotated[
+        tuple[float, ...] | None,
+        Quantity(
+            "GJ_N_m2",
+            "torsional stiffnesses, a list",
+            lowest=0.001,
+            highest=100000000.0,
+            usual=(2, 5000),
+            origin="needed, a column, or `rigid`",
+        ),
+    ] = None
+    stiffness_station: Annotated[
+        tuple[float, ...] | None,
+        Quantity(
+            "stiffness_station_mm",
+            "stations of both lists",
+            lowest=-3000,
+            highest=3000,
+            usual=(-1500, 1500),
+            origin="evenly over the running length (Choice)",
+        ),
+    ] = None
+    rigid: Annotated[bool, Quantity("rigid", "`true`: EI and GJ are 10⁶ N m² everywhere", origin="`false`")] = False
+    table: Annotated[
+        str | None, Quantity("table", "CSV file with columns of the next section, a path from this file", origin="none")
+    ] = None
+    shape: Annotated[
+        str | None, Quantity("shape", "design file of MonkeyCAM, see below, a path from this file", origin="none")
+    ] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StationRow:
+    """A row of a ski's table in SI; its origin is what the column stands for."""
+
+    station: Annotated[
+        float,
+        Quantity(
+            "station_m",
+            "from the boot, positive forward, falling; needed",
+            lowest=-3,
+            highest=3,
+            usual=(-1.5, 2.0),
+            origin="`length_mm`, `tail_overhang_mm`",
+        ),
+    ]
+    width: Annotated[
+        float | None,
+        Quantity(
+            "width_mm",
+            "from edge to edge",
+            lowest=1,
+            highest=500,
+            usual=(5, 350),
+            origin="the three widths",
+        ),
+    ] = None
+    base_height: Annotated[
+        float | None,
+        Quantity(
+            "base_height_mm",
+            "of the unloaded base, away from the snow; from any level, the height at the boot is subtracted",
+            lowest=-300,
+            highest=300,
+            usual=(-150, 200),
+            origin="camber, shovel, tail and rocker",
+        ),
+    ] = None
+    bending_stiffness: Annotated[
+        float | None,
+        Quantity(
+            "EI_N_m2",
+            "bending stiffness",
+            lowest=0.001,
+            highest=100000000.0,
+            usual=(5, 5000),
+            origin="the list of that name",
+        ),
+    ] = None
+    torsional_stiffness: Annotated[
+        float | None,
+        Quantity(
+            "GJ_N_m2",
+            "torsional stiffness",
+            lowest=0.001,
+            highest=100000000.0,
+            usual=(2, 5000),
+            origin="the list of that name",
+        ),
+    ] = None
+    mass_per_length: Annotated[
+        float | None,
+        Quantity(
+            "mass_per_length_kg_per_m",
+            "mass per length",
+            lowest=0.01,
+            highest=50,
+            usual=(0.1, 10),
+            origin="`mass_kg`",
+        ),
+    ] = None
+
+
+SKI_KEYS: Final = {key.name: key for key in quantities(SkiFile)}
 """Every key of a ski file."""
+COLUMNS: Final = {column.name: column for column in quantities(StationRow)}
+"""Columns of a table, a row for each station from tip to tail."""
+
+WIDTHS: Final = ("tip_width_mm", "waist_width_mm", "tail_width_mm")
+BASE: Final = tuple(key.name for key in quantities(BaseShape))
+STIFFNESSES: Final = ("EI_N_m2", "GJ_N_m2")
+LISTS: Final = (*STIFFNESSES, "stiffness_station_mm")

@@ -10,9 +10,8 @@ import numpy as np
 
 from ..errors import ParameterError, RangeWarning
 from .assembling import SkiParts, stiffness_table
-from .base_profile import BaseShape
-from .file_keys import BASE, LIST_KEYS, RIGID, WIDTHS
-from .layout import TAIL_OVERHANG, Layout, layout_of_lengths
+from .file_keys import BASE, LISTS, RIGID, STIFFNESSES, WIDTHS
+from .layout import Layout, layout_of_lengths
 from .monkeycam import monkeycam_shape
 from .outline import ArcOutline
 from .side_line import width_of_table
@@ -47,14 +46,14 @@ class FileParts:
     def ski(self) -> Ski:
         """Put the ski together."""
         values = self.values
-        if LIST_KEYS.keys() - {"stiffness_station_mm"} <= self.table.keys():
+        if self.table.keys() >= set(STIFFNESSES):
             values.refuse_together(["stiffness_station_mm"], "a table with both stiffnesses", "Leave it out")
         layout, width, name = self._shaped() if "shape" in values else self._laid_out()
-        bevel, edge = values.number("base_bevel_deg"), values.number("edge_width_mm")
+        said = values.said
         mass_per_length = self.table.get("mass_per_length_kg_per_m")
         ski = SkiParts(
-            name=values.text("name") or name,
-            source=values.text("source") or f"file {values.file.name}",
+            name=said.name or name,
+            source=said.source or f"file {values.file.name}",
             layout=layout,
             width=width,
             base_height=self._base_height(layout),
@@ -62,8 +61,8 @@ class FileParts:
             torsional_stiffness=self._stiffness("GJ_N_m2", layout),
             mass_per_length=mass_per_length.at if mass_per_length else None,
             mass=0.0 if mass_per_length else values.needed("mass_kg"),
-            base_bevel=0.0 if bevel is None else bevel,
-            edge_width=0.002 if edge is None else edge,
+            base_bevel=said.base_bevel,
+            edge_width=said.edge_width,
             stations=self.table["station_m"].station if self.table else None,
         ).assembled()
         self._require_mass(ski)
@@ -72,10 +71,10 @@ class FileParts:
 
     def _shaped(self) -> tuple[Layout, Along, str]:
         values = self.values
-        said = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, "tail_overhang_mm", "boot_position_mm")
-        values.refuse_together(said, "shape", "Leave one of them out")
+        outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, "tail_overhang_mm", "boot_position_mm")
+        values.refuse_together(outlined, "shape", "Leave one of them out")
         file = values.beside("shape") or values.file
-        shape = monkeycam_shape(file, running_length=values.number("running_length_mm"))
+        shape = monkeycam_shape(file, running_length=values.said.running_length)
         return shape.outline.layout, shape.outline.width_at, shape.name
 
     def _laid_out(self) -> tuple[Layout, Along, str]:
@@ -94,8 +93,8 @@ class FileParts:
 
     def _layout_of_keys(self) -> Layout:
         values = self.values
-        overhang, length = values.number("tail_overhang_mm"), values.needed("length_mm")
-        least = _LEAST_LENGTH_IN_WIDTHS * (values.number("tip_width_mm") or 0.0)
+        length = values.needed("length_mm")
+        least = _LEAST_LENGTH_IN_WIDTHS * (values.said.tip_width or 0.0)
         if length < least:
             allowed = f"at least {least * 1e3:.0f}, {_LEAST_LENGTH_IN_WIDTHS:g} times the tip width"
             values.refuse("length_mm", values.values["length_mm"], allowed, "Is it in centimetres? Write it in mm")
@@ -103,15 +102,15 @@ class FileParts:
             length=length,
             running_length=values.needed("running_length_mm"),
             sidecut_length=values.needed("sidecut_length_mm"),
-            tail_overhang=TAIL_OVERHANG if overhang is None else overhang,
-            boot_position=values.number("boot_position_mm") or 0.0,
+            tail_overhang=values.said.tail_overhang,
+            boot_position=values.said.boot_position,
         )
 
     def _layout_of_table(self) -> Layout:
         values = self.values
         values.refuse_together(["tail_overhang_mm"], "a table, which reaches from tip to tail", "Leave it out")
         station = self.table["station_m"].station
-        length, reach = values.number("length_mm"), float(station[0] - station[-1])
+        length, reach = values.said.length, float(station[0] - station[-1])
         if length is not None and abs(length - reach) > _SAME_LENGTH:
             kind = "shorter" if reach < length else "longer"
             what = (
@@ -121,7 +120,7 @@ class FileParts:
         return Layout(
             tip=float(station[0]),
             tail=float(station[-1]),
-            middle=-(values.number("boot_position_mm") or 0.0),
+            middle=-values.said.boot_position,
             running_length=values.needed("running_length_mm"),
             sidecut_length=values.needed("sidecut_length_mm"),
         )
@@ -131,14 +130,13 @@ class FileParts:
         if "base_height_mm" in self.table:
             values.refuse_together(BASE, "the column base_height_mm", "Leave one of them out")
             return self.table["base_height_mm"].at
-        given = {key.removesuffix("_mm"): number for key in BASE if (number := values.number(key)) is not None}
-        shape = BaseShape(**given)
+        shape = values.said.base
         return lambda station: shape.height_at(station, layout)
 
     def _stiffness(self, key: str, layout: Layout) -> Along:
         values = self.values
-        if values.switch("rigid"):
-            values.refuse_together(LIST_KEYS, "rigid", "Leave one of them out")
+        if values.said.rigid:
+            values.refuse_together(LISTS, "rigid", "Leave one of them out")
             if key in self.table:
                 raise ParameterError(f"the column {key} cannot stand beside rigid = true. Leave one of them out.")
             return lambda station: np.full(np.shape(station), RIGID)
@@ -153,7 +151,7 @@ class FileParts:
             raise ParameterError(f"{key} and stiffness_station_mm: {error}") from error
 
     def _require_mass(self, ski: Ski) -> None:
-        mass = self.values.number("mass_kg")
+        mass = self.values.said.mass
         if mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
             allowed = f"{ski.mass:.4g}, which the column mass_per_length_kg_per_m integrates to"
             self.values.refuse("mass_kg", mass, allowed, "Correct one of them or leave mass_kg out")

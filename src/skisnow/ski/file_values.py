@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
-import difflib
-import math
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError, RangeWarning
 from ..given import read_toml
-from .file_keys import KEYS, LIST_KEYS, NUMBER_KEYS
+from ..inputs import InputValue, Quantity, made, nearest
+from ..units import DEGREE
+from .base_profile import BaseShape
+from .file_keys import SKI_KEYS, SkiFile
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from .file_keys import NumberKey
+    from collections.abc import Iterable, Mapping
 
 FloatArray = npt.NDArray[np.float64]
+
+
+_OTHER_UNITS: Final = {
+    "mm": (("metres", 1e3), ("centimetres", 10.0), ("inches", 25.4)),
+    "m": (("mm", 1e-3), ("cm", 1e-2)),
+    "kg": (("grams", 1e-3),),
+    "kg/m": (("g/m", 1e-3),),
+    "°": (("radians", 1.0 / DEGREE),),
+    "N m²": (("N mm²", 1e-6), ("kN m²", 1e3)),
+}
+"""Units that people write by mistake: name and factor to the key's unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,59 +44,35 @@ class FileValues:
         Its path.
     values
         As parsed.
+    said
+        The same, checked, in SI.
     """
 
     file: Path
     values: dict[str, Any]
+    said: SkiFile
 
     def __contains__(self, key: str) -> bool:
         return key in self.values
 
-    def text(self, key: str) -> str | None:
-        """Give a text, None where it is absent."""
-        value = self.values.get(key)
-        if value is not None and not (isinstance(value, str) and value.strip()):
-            self.refuse(key, value, "a text in quotes", "Correct it")
-        return value
-
     def beside(self, key: str) -> Path | None:
         """Give the path of a file that the key names, counted from this file's folder."""
-        name = self.text(key)
+        name = getattr(self.said, key)
         return self.file.parent / name if name else None
-
-    def switch(self, key: str) -> bool:
-        """Give a true or false, false where it is absent."""
-        value = self.values.get(key, False)
-        if not isinstance(value, bool):
-            self.refuse(key, value, "true or false, without quotes", "Correct it")
-        return value
-
-    def number(self, key: str) -> float | None:
-        """Give a number in SI, None where it is absent."""
-        if key not in self.values:
-            return None
-        value = checked_number(self.file, key, self.values[key], NUMBER_KEYS[key])
-        warn_of_unusual(self.file, {key: value}, NUMBER_KEYS[key])
-        return value * NUMBER_KEYS[key].unit
 
     def needed(self, key: str) -> float:
         """Give a number in SI that the file must have."""
-        number = self.number(key)
+        number: float | None = getattr(self.said, SKI_KEYS[key].field)
         if number is None:
             raise ParameterError(f"{self.file}: the key {key} is missing. Add it, in the unit that it names.")
         return number
 
     def numbers(self, key: str) -> FloatArray:
         """Give a list of numbers in SI that the file must have."""
-        if key not in self.values:
+        numbers = getattr(self.said, SKI_KEYS[key].field)
+        if numbers is None:
             raise ParameterError(f"{self.file}: the key {key} is missing. Add a list such as {key} = [100, 440, 100].")
-        values = self.values[key]
-        if not isinstance(values, list) or not values:
-            self.refuse(key, values, "a list of numbers from tip to tail, in brackets", "Put the numbers in brackets")
-        named = {f"{key}[{place}]": value for place, value in enumerate(values, start=1)}
-        checked = {place: checked_number(self.file, place, value, LIST_KEYS[key]) for place, value in named.items()}
-        warn_of_unusual(self.file, checked, LIST_KEYS[key])
-        return np.array(list(checked.values())) * LIST_KEYS[key].unit
+        return np.array(numbers)
 
     def refuse(self, key: str, value: object, allowed: str, action: str) -> NoReturn:
         """Raise the error for a key."""
@@ -105,31 +91,51 @@ def refuse(file: Path, place: str, value: object, allowed: str, action: str) -> 
     raise ParameterError(f"{file}: {place} is {shown(value)}; allowed is {allowed}. {action}.")
 
 
-def checked_number(file: Path, place: str, value: object, key: NumberKey) -> float:
-    """Give a number of a file, in the file's unit.
+def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
+    """Give a value of a file, in the file's unit; its place is the quantity's name.
 
     Raises
     ------
     ParameterError
-        It is no finite number, or outside its range; a likely mistake of unit is named.
+        It is of another kind, or outside its range; a likely mistake of unit is named.
     """
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        refuse(file, place, value, f"a finite number, {key.allowed}", "Write a number with a decimal point, no quotes")
-    if not key.lowest <= value <= key.highest:
-        remedy = f"Correct it.{key.likely_unit(value)}".removesuffix(".")
-        refuse(file, place, value, key.allowed, remedy)
-    return float(value)
+    try:
+        return quantity.in_range(value)
+    except ParameterError as error:
+        raise ParameterError(f"{file}: {error}. {_remedy(value, quantity)}".removesuffix(".") + ".") from None
 
 
-def warn_of_unusual(file: Path, values: dict[str, float], key: NumberKey) -> None:
+def _remedy(value: object, quantity: Quantity) -> str:
+    numbers: list[Any] = value if isinstance(value, list) else [value]
+    if any(isinstance(each, bool) or not isinstance(each, int | float) for each in numbers):
+        lists = "Put the numbers in brackets" if quantity.kind == "numbers" else "Write a number with a decimal point"
+        return "Correct it" if quantity.kind in ("text", "switch") else f"{lists}, no quotes"
+    units = (_likely_unit(float(each), quantity) for each in numbers)
+    return f"Correct it.{next((unit for unit in units if unit), '')}"
+
+
+def _is_usual(value: float, quantity: Quantity) -> bool:
+    return quantity.usual is None or quantity.usual[0] <= value <= quantity.usual[1]
+
+
+def _likely_unit(value: float, quantity: Quantity) -> str:
+    """Name the unit in which an unusual value would be a usual one, as a question; or nothing."""
+    if not _is_usual(value, quantity):
+        for name, factor in _OTHER_UNITS.get(quantity.unit, ()):
+            if _is_usual(value * factor, quantity):
+                return f" Is it in {name}? Then write {value * factor:g}."
+    return ""
+
+
+def warn_of_unusual(file: Path, values: Mapping[str, float], quantity: Quantity) -> None:
     """Warn once of numbers, in the file's unit and by their places, that are beyond what skis usually have."""
-    unusual = [(place, value) for place, value in values.items() if value and not key.is_usual(value)]
-    if not unusual:
+    unusual = [(place, value) for place, value in values.items() if value and not _is_usual(value, quantity)]
+    if not unusual or quantity.usual is None:
         return
     place, value = unusual[0]
     more = f" (and {len(unusual) - 1} more)" if len(unusual) > 1 else ""
-    usual = f"usual is {key.usual[0]:g} to {key.usual[1]:g}"
-    text = f"{file}: {place} is {value:g}{more}; {usual}. It is used as it stands.{key.likely_unit(value)}"
+    usual = "usual is {:g} to {:g}".format(*quantity.usual)
+    text = f"{file}: {place} is {value:g}{more}; {usual}. It is used as it stands.{_likely_unit(value, quantity)}"
     warnings.warn(text, RangeWarning, stacklevel=2)
 
 
@@ -143,18 +149,15 @@ def file_values(path: Path) -> FileValues:
     """
     values = read_toml(path)
     for key in values:
-        if key not in KEYS:
-            raise ParameterError(f"{path}: the key {key} is not known. {nearest(key, KEYS)}")
-    return FileValues(path, values)
-
-
-def nearest(word: str, known: Iterable[str]) -> str:
-    """Name the known word most like a misspelt one, and all of them."""
-    words = list(known)
-    by_small = {each.lower(): each for each in reversed(words)}
-    like = difflib.get_close_matches(word.lower(), by_small, n=1, cutoff=0.5)
-    question = f"Is {by_small[like[0]]} meant? " if like else ""
-    return f"{question}There are {', '.join(words)}."
+        if key not in SKI_KEYS:
+            raise ParameterError(f"{path}: the key {key} is not known. {nearest(key, SKI_KEYS)}.")
+    given = {key: checked(path, value, SKI_KEYS[key]) for key, value in values.items()}
+    for key, value in given.items():
+        if isinstance(value, tuple):
+            warn_of_unusual(path, {f"{key}[{n}]": each for n, each in enumerate(value, start=1)}, SKI_KEYS[key])
+        elif isinstance(value, float):
+            warn_of_unusual(path, {key: value}, SKI_KEYS[key])
+    return FileValues(path, values, made(SkiFile, given, base=made(BaseShape, given)))
 
 
 def shown(value: object, limit: int = 80) -> str:

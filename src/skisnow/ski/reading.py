@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from ..errors import ParameterError
 from ..given import is_file
+from ..inputs import nearest
 from .file_parts import FileParts
-from .file_values import file_values, nearest
+from .file_values import file_values
 from .table_file import read_table
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def ski_names() -> tuple[str, ...]:
 
 def _no_such_ski(name: str) -> ParameterError:
     others = "Any other ski is read from a file ending in .toml."
-    return ParameterError(f"there is no ski named {name!r}. {nearest(name, ski_names())} {others}")
+    return ParameterError(f"there is no ski named {name!r}. {nearest(name, ski_names())}. {others}")
 
 
 def _ski_in(path: Path) -> Ski:

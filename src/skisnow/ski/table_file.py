@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..inputs import nearest
 from .file_keys import COLUMNS
-from .file_values import checked_number, nearest, refuse, warn_of_unusual
+from .file_values import checked, refuse, warn_of_unusual
 from .station_table import StationTable
 
 if TYPE_CHECKING:
@@ -37,7 +39,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
     first, header = lines[0]
     for place, name in enumerate(header):
         if name not in COLUMNS:
-            raise ParameterError(f"{path}, line {first}: the column {name!r} is not known. {nearest(name, COLUMNS)}")
+            raise ParameterError(f"{path}, line {first}: the column {name!r} is not known. {nearest(name, COLUMNS)}.")
         if name in header[:place]:
             raise ParameterError(f"{path}, line {first}: the column {name} stands there twice. Remove one.")
     if "station_m" not in header or len(header) < 2:
@@ -50,7 +52,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
     for name, column in columns.items():
         places = {f"line {line}, {name}": float(value) for line, value in zip(numbers, column, strict=True)}
         warn_of_unusual(path, places, COLUMNS[name])
-    return {name: StationTable(station, column * COLUMNS[name].unit) for name, column in columns.items()}
+    return {name: StationTable(station, column * COLUMNS[name].factor) for name, column in columns.items()}
 
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
@@ -79,12 +81,14 @@ def _row(path: Path, line: int, header: list[str], cells: list[str]) -> list[flo
 
 
 def _cell(path: Path, line: int, name: str, cell: str) -> float:
-    place = f"line {line}, {name}"
+    column = replace(COLUMNS[name], name=f"line {line}, {name}")
     try:
-        value = float(cell)
+        value: object = float(cell)
     except ValueError:
-        refuse(path, place, cell, f"a finite number, {COLUMNS[name].allowed}", "Write it with a decimal point")
-    return checked_number(path, place, value, COLUMNS[name])
+        value = cell
+    number = checked(path, value, column)
+    assert isinstance(number, float)
+    return number
 
 
 def _require_falling(path: Path, station: FloatArray, lines: list[int]) -> None:

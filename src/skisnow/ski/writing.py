@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import OutputError
 from ..files import write_file
+from ..inputs import SMALLEST
 from ..units import DEGREE, MM
 from .file_keys import COLUMNS, RIGID
 
@@ -68,8 +69,8 @@ def _table_text(ski: Ski) -> str:
     }
     if _is_rigid(ski):
         del tables["EI_N_m2"], tables["GJ_N_m2"]
-    columns = [table / COLUMNS[name].unit for name, table in tables.items()]
-    rows = (",".join(f"{value:.15g}" for value in row) for row in zip(*columns, strict=True))
+    columns = [table / COLUMNS[name].factor for name, table in tables.items()]
+    rows = (",".join(f"{_plain(value):.15g}" for value in row) for row in zip(*columns, strict=True))
     return "\n".join([",".join(tables), *rows, ""])
 
 
@@ -78,8 +79,8 @@ def _is_rigid(ski: Ski) -> bool:
 
 
 def _plain(value: float) -> float:
-    """The number without the last digits, which the change of unit made up."""
-    return float(f"{value:.15g}") + 0.0
+    """The number without the last digits, which the change of unit made up, and none that is no quantity."""
+    return 0.0 if abs(value) < SMALLEST else float(f"{value:.15g}")
 
 
 def _toml(value: str | float) -> str:

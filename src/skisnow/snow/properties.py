@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Annotated, TypeAlias
 
-from ..errors import ParameterError
+from ..inputs import Quantity, Search, Word, require_declared
 
 Interval: TypeAlias = tuple[float, float]
 
@@ -38,13 +37,40 @@ class SnowProperties:
     200000000.0
     """
 
-    snow_hardness: float
-    failure_shear_stress: float | None
-    source: str
+    snow_hardness: Annotated[
+        float,
+        Quantity(
+            "H_V_N_per_mm3",
+            "snow hardness H_V",
+            label="snow hardness",
+            symbol="$H_V$",
+            lowest=0.0,
+            above=True,
+            origin="measured 0.022 to 90; a warning beyond",
+            search=Search(3.0, 0.002, 1000.0, logarithmic=True),  # ten times beyond what was measured
+        ),
+    ]
+    failure_shear_stress: Annotated[
+        float | None,
+        Quantity(
+            "S_f_N_per_mm2",
+            "failure shear stress S_f",
+            label="failure shear stress",
+            symbol="$S_f$",
+            lowest=0.0,
+            above=True,
+            origin="measured 0.04 to 0.52; a warning beyond",
+            search=Search(3.0, 0.004, 5.0, logarithmic=True),
+        ),
+    ]
+    source: Annotated[
+        str,
+        Word("results", "results.json of an analysed campaign, in place of H_V and S_f", names_file=True),
+        Word("site", "one site of those results; left out: all of them"),
+        Word("published", "name of a published snow, in place of H_V and S_f"),
+    ]
     snow_hardness_interval: Interval | None = None
     failure_shear_stress_interval: Interval | None = None
 
     def __post_init__(self) -> None:
-        for name, value in (("H_V", self.snow_hardness), ("S_f", self.failure_shear_stress)):
-            if value is not None and not (math.isfinite(value) and value > 0):
-                raise ParameterError(f"{name} is {value!r}; a snow needs a finite value above 0")
+        require_declared(self)

@@ -6,20 +6,29 @@ import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Self
+from typing import Annotated, Any, Final, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..simulate.input_keys import InputKey, nearest
+from ..inputs import Quantity, checked_table, made
 from .study import Point
 
 FloatArray = npt.NDArray[np.float64]
 
 MOST_POINTS: Final = 1_000_000
 """Of one study: a table of half a gigabyte (Choice)."""
-_RANGE_KEYS: Final = ("from", "to", "n", "log")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Range:
+    """What stands behind a key in place of its values: ends in the unit of the key."""
+
+    first: Annotated[float, Quantity("from", "the first value; a range is written { from = 20, to = 70, n = 11 }")]
+    last: Annotated[float, Quantity("to", "the last value; a range is written { from = 20, to = 70, n = 11 }")]
+    n: Annotated[int | None, Quantity("n", "number of values on a grid", lowest=2)] = None
+    log: Annotated[bool, Quantity("log", "whether it is even in the logarithm")] = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,14 +49,14 @@ class Axis:
         Whether the range is even in the logarithm.
     """
 
-    key: InputKey
+    key: Quantity
     values: tuple[Any, ...] = ()
     ends: tuple[float, float] = (0.0, 0.0)
     n: int | None = None
     log: bool = False
 
     @classmethod
-    def of(cls, key: InputKey, value: object) -> Self:
+    def of(cls, key: Quantity, value: object) -> Self:
         """Read what stands behind a key: one value, a list of values, or {from, to, n, log}.
 
         Raises
@@ -67,25 +76,18 @@ class Axis:
         return cls(key, checked)
 
     @classmethod
-    def _of_range(cls, key: InputKey, table: Mapping[str, Any]) -> Self:
-        for name in table:
-            if name not in _RANGE_KEYS:
-                raise ParameterError(f"{key.name}: {name} is no key of a range. {nearest(name, _RANGE_KEYS)}")
+    def _of_range(cls, key: Quantity, table: Mapping[str, Any]) -> Self:
         if key.kind not in ("number", "whole number"):
             raise ParameterError(f"{key.name} has no range; write a list such as {key.name} = [...]")
-        low, high = (_end(key, table, name) for name in ("from", "to"))
-        log, n = table.get("log", False), table.get("n")
-        if not isinstance(log, bool):
-            raise ParameterError(f"{key.name}: log is {log!r}; it must be true or false")
+        asked = made(Range, checked_table(Range, table, key.name))
+        low, high, log = asked.first, asked.last, asked.log
         if log and not (low > 0 and high > 0):
             raise ParameterError(f"{key.name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}")
-        if n is not None and (isinstance(n, bool) or not isinstance(n, int) or n < 2):
-            raise ParameterError(f"{key.name}: n is {n!r}; it must be a whole number from 2 on")
         if low > high:
             raise ParameterError(f"{key.name}: from is {low:g} and to is {high:g}; from must be the smaller one")
         if low == high:
             raise ParameterError(f"{key.name}: from and to are both {low:g}; write the value under [fixed]")
-        return cls(key, ends=(low, high), n=n, log=log)
+        return cls(key, ends=(low, high), n=asked.n, log=log)
 
     def on_grid(self) -> list[Any]:
         """The values of a grid."""
@@ -137,15 +139,6 @@ def require_count(n: int) -> None:
         raise ParameterError(f"the study has {n} points; at most {MOST_POINTS} are allowed. Take fewer values")
 
 
-def _is_one(key: InputKey, value: list[Any]) -> bool:
+def _is_one(key: Quantity, value: list[Any]) -> bool:
     """Whether a list is one value: three numbers."""
     return key.kind == "three numbers" and not any(isinstance(each, list) for each in value)
-
-
-def _end(key: InputKey, table: Mapping[str, Any], name: str) -> float:
-    if name not in table:
-        raise ParameterError(f"{key.name}: {name} is missing; a range is written {{ from = 20, to = 70, n = 11 }}")
-    value = table[name]
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ParameterError(f"{key.name}: {name} is {value!r}; it must be a finite number")
-    return float(value)

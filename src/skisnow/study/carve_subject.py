@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..errors import SkisnowError
+from ..inputs import Quantity
 from ..simulate.batch_file import Row
 from ..simulate.carve import CLAMP_LENGTH
 from ..simulate.carve_answer import CarveAnswer, Sources, answered
@@ -17,7 +18,6 @@ from ..simulate.carve_dict import finite, inputs_dict, scalars_dict
 from ..simulate.carve_keys import CARVE_KEYS
 from ..simulate.carve_limits import require_clamp, require_stress
 from ..simulate.carve_question import carve_question, require_complete
-from ..simulate.input_keys import InputKey
 from ..units import MM
 from .study import Point
 
@@ -54,7 +54,7 @@ class CarveSubject:
         self._sources = Sources(self.folder)
 
     @property
-    def keys(self) -> Mapping[str, InputKey]:
+    def keys(self) -> Mapping[str, Quantity]:
         """The inputs by name."""
         return CARVE_KEYS
 

@@ -10,21 +10,15 @@ from typing import Any, Final
 import numpy as np
 
 from ..errors import ParameterError, SkisnowError
+from ..inputs import Quantity
 from ..simulate.batch_file import Row
 from ..simulate.carve_answer import Sources
 from ..simulate.carve_dict import finite
-from ..simulate.input_keys import InputKey
 from ..simulate.run import Run
 from ..simulate.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
 from ..simulate.scenario import ScenarioFile
-from ..simulate.scenario.given import (
-    PATH_KEYS,
-    GivenScenario,
-    full_name,
-    given_scenario,
-    scenario_names,
-    scenario_place,
-)
+from ..simulate.scenario.built_in import scenario_names, scenario_place
+from ..simulate.scenario.given import PATH_KEYS, GivenScenario, full_name, given_scenario
 from ..simulate.scenario.keys import SCENARIO_KEYS, SECTIONS
 from ..simulate.scenario.reading import files_of, resolved
 from ..units import MM
@@ -88,7 +82,7 @@ class ScenarioSubject:
         self._base = given_scenario(self.scenario if built_in else self.folder / self.scenario)
 
     @property
-    def keys(self) -> Mapping[str, InputKey]:
+    def keys(self) -> Mapping[str, Quantity]:
         """The scenario's keys by full name."""
         return SCENARIO_KEYS
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
 from ..given import is_file
+from ..inputs import Quantity
 from ..simulate.batch_file import Row
-from ..simulate.input_keys import InputKey
 
 Point: TypeAlias = dict[str, Any]
 
@@ -21,7 +21,7 @@ class Subject(Protocol):
     """What can be studied. It is pickled for each worker; one more subject is one more class."""
 
     @property
-    def keys(self) -> Mapping[str, InputKey]:
+    def keys(self) -> Mapping[str, Quantity]:
         """The inputs by name, in the order of the table's columns."""
         ...
 

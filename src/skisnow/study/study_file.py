@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 from ..errors import ParameterError
 from ..given import read_toml
-from ..simulate.input_keys import InputKey, InputValue, nearest
+from ..inputs import InputValue, Quantity, checked_table, made, nearest
 from .axes import Axis, grid_points, hypercube_points
 from .carve_subject import CarveSubject
 from .scenario_subject import ScenarioSubject
@@ -16,7 +17,14 @@ from .study import Point, Study, Subject, SubjectIn
 
 FORMS: Final = ("grid", "latin_hypercube")
 TOP_KEYS: Final = ("out", "scenario", "fixed", *FORMS)
-MOST_SEED: Final = 2**63 - 1
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """How many points a sample has, and what they are drawn with."""
+
+    n: Annotated[int, Quantity("n", "number of points", lowest=1)]
+    seed: Annotated[int, Quantity("seed", "a whole number that the points follow from", lowest=0)]
 
 
 def read_study(path: str | Path, *, subject: SubjectIn = CarveSubject) -> Study:
@@ -87,7 +95,7 @@ def _table(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     return table
 
 
-def _fixed(table: Mapping[str, Any], keys: Mapping[str, InputKey]) -> Point:
+def _fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
     fixed = {}
     for name, value in table.items():
         _require_key("fixed", name, keys)
@@ -97,34 +105,29 @@ def _fixed(table: Mapping[str, Any], keys: Mapping[str, InputKey]) -> Point:
     return fixed
 
 
-def _in_range(key: InputKey, value: object) -> InputValue:
+def _in_range(key: Quantity, value: object) -> InputValue:
     try:
         return key.in_range(value)
     except ParameterError as error:
         raise ParameterError(f"fixed.{error}") from error
 
 
-def _axis(form: str, name: str, value: object, keys: Mapping[str, InputKey], fixed: Point) -> Axis:
+def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
     _require_key(form, name, keys)
     if name in fixed:
         raise ParameterError(f"{name} stands in [{form}] and in [fixed]. Remove one of them")
     return Axis.of(keys[name], value)
 
 
-def _require_key(table: str, name: str, keys: Mapping[str, InputKey]) -> None:
+def _require_key(table: str, name: str, keys: Mapping[str, Quantity]) -> None:
     if name not in keys:
         raise ParameterError(f"{table}.{name} is no input. {nearest(name, keys)}")
 
 
 def _sample(table: Mapping[str, Any]) -> tuple[int, int]:
-    numbers = []
-    for name, lowest, highest in (("n", 1, MOST_SEED), ("seed", 0, MOST_SEED)):
-        value = table.get(name)
-        if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
-            found = "is missing" if value is None else f"is {value!r}"
-            raise ParameterError(f"latin_hypercube.{name} {found}; it must be a whole number from {lowest} on")
-        numbers.append(value)
-    return numbers[0], numbers[1]
+    own = {name: table[name] for name in ("n", "seed") if name in table}
+    asked = made(Sample, checked_table(Sample, own, "[latin_hypercube]"))
+    return asked.n, asked.seed
 
 
 def _out(path: Path, values: Mapping[str, Any]) -> Path:

@@ -12,8 +12,8 @@ from typing import Any
 
 from ..errors import ParameterError
 from ..given import json_value
+from ..inputs import Quantity
 from ..simulate.batch_file import Row
-from ..simulate.input_keys import InputKey
 from ..spreadsheet_text import guarded, unguarded
 
 
@@ -53,7 +53,7 @@ class StudyTable:
         return dict(sorted(((each, outcomes.count(each)) for each in set(outcomes)), key=lambda pair: (-pair[1], pair)))
 
 
-def read_table(path: str | Path, keys: Mapping[str, InputKey], *, varied: Sequence[str] = ()) -> StudyTable:
+def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequence[str] = ()) -> StudyTable:
     """Read a study's table back.
 
     Parameters
@@ -88,7 +88,7 @@ def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
         raise ParameterError(f"{path} is no table of a study: its first line names no columns outcome and study")
 
 
-def _row(place: str, columns: Sequence[str], cells: Sequence[str], keys: Mapping[str, InputKey]) -> Row:
+def _row(place: str, columns: Sequence[str], cells: Sequence[str], keys: Mapping[str, Quantity]) -> Row:
     if len(cells) != len(columns):
         raise ParameterError(
             f"{place}: a row of this table has {len(columns)} cells, this line has {len(cells)}. Remove the line"
@@ -115,7 +115,7 @@ def _cell(value: Any) -> str:
 _TEXTS = ("outcome", "ski_name", "warnings", "reason", "study")
 
 
-def _value(name: str, cell: str, keys: Mapping[str, InputKey]) -> Any:
+def _value(name: str, cell: str, keys: Mapping[str, Quantity]) -> Any:
     is_text = name in _TEXTS or (name in keys and keys[name].kind == "text")
     if cell == "":
         return "" if name in ("warnings", "reason") else None

@@ -5,27 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .marks import FASTEST, GAP_FACTOR, point_marks
-from .projection import HIGHEST, GeodeticPoint, east_north_up, turned_to_origin
+from .point import GEODETIC, LOCAL, MOTION
+from .projection import GeodeticPoint, east_north_up, turned_to_origin
 from .track import Axes, Track
 from .trouble import refusal
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from ..inputs import Quantity
     from .solution import SolutionArray
 
     BoolArray = npt.NDArray[np.bool_]
     FloatArray = npt.NDArray[np.float64]
-
-FARTHEST: Final = 1e8
-"""Places, times and distances (m, s) beyond this are not those of a ski run."""
-FASTEST_NUMBER: Final = 1e4
-"""Speeds (m/s) beyond this are no speeds of anything that touches snow."""
 
 
 @dataclass(eq=False)
@@ -212,29 +209,18 @@ def _told_time(recording: Recording, point: int) -> str:
 
 def _require_in_range(recording: Recording) -> None:
     """Refuse numbers that are in no unit a ski run's; they would be nonsense on the way, or overflow."""
-    words = ("latitude", "longitude", "height") if recording.is_geodetic else ("x", "y", "z")
-    limits = (90.0, 180.0, HIGHEST) if recording.is_geodetic else (FARTHEST,) * 3
-    units = ("degrees", "degrees", "m") if recording.is_geodetic else ("m",) * 3
-    for axis, (word, limit, unit) in enumerate(zip(words, limits, units, strict=True)):
-        column = recording.columns.get("xyz"[axis], word)
-        _require_within(recording, column, recording.place[:, axis], (-limit, limit), unit)
-    _require_within(recording, "speed", recording.speed, (-FASTEST_NUMBER, FASTEST_NUMBER), "m/s")
-    _require_within(recording, "odometer", recording.odometer, (-FARTHEST, FARTHEST), "m")
-    _require_within(recording, "speed_sd", recording.speed_sd, (0.0, FASTEST_NUMBER), "m/s")
-    for axis in range(3):
-        if recording.place_sd is not None:
-            _require_within(recording, "place_sd", recording.place_sd[:, axis], (0.0, FARTHEST), "m")
-        if recording.velocity is not None:
-            limits_of_speed = (-FASTEST_NUMBER, FASTEST_NUMBER)
-            _require_within(recording, "velocity", recording.velocity[:, axis], limits_of_speed, "m/s")
+    places = GEODETIC if recording.is_geodetic else LOCAL
+    for axis, quantity in enumerate(places):
+        column = recording.columns.get("xyz"[axis], quantity.field)
+        _require_within(recording, column, recording.place[:, axis], quantity)
+    for name, quantity in MOTION.items():
+        values = getattr(recording, name)
+        for each in [] if values is None else [values] if values.ndim == 1 else list(values.T):
+            _require_within(recording, name, each, quantity)
 
 
-def _require_within(
-    recording: Recording, column: str, values: FloatArray | None, limits: tuple[float, float], unit: str
-) -> None:
-    if values is None:
-        return
-    outside = np.flatnonzero((values < limits[0]) | (values > limits[1]))
+def _require_within(recording: Recording, column: str, values: FloatArray, quantity: Quantity) -> None:
+    outside = np.flatnonzero(quantity.outside(values))
     if len(outside):
         point = int(outside[0])
         raise refusal(
@@ -243,6 +229,6 @@ def _require_within(
             place=recording.places_in_file[point],
             column=column,
             value=f"{values[point]:.12g}",
-            allowed=f"a number from {limits[0]:g} to {limits[1]:g} {unit}",
+            allowed=f"a number {quantity.allowed} {quantity.unit}",
             action="Correct the value; is it in another unit, or in another column?",
         )

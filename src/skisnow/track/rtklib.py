@@ -15,8 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..spreadsheet_text import number
+from .point import FARTHEST, FASTEST_NUMBER
 from .projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
-from .recording import FARTHEST, FASTEST_NUMBER, Recording
+from .recording import Recording
 from .rtklib_header import PLACES, Header, header_of
 from .solution import Solution, solution_array
 from .trouble import refusal

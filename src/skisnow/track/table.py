@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..spreadsheet_text import number
-from .recording import FARTHEST, Recording
+from .point import FARTHEST
+from .recording import Recording
 from .text import Cells, cells_of, mark_of, moment, require_width
 from .trouble import refusal
 

@@ -71,13 +71,13 @@ def ski_found(asked: SkiAsked, *, name: str = "") -> SkiFound:
     factors = {key: typed_number(f"the factor of {FACTORS[key]}", text) for key, text in asked.factors.items()}
     wanted = {column: np.full(station.size, np.nan) for column in EDITED_COLUMNS}
     for (column, i), text in asked.cells.items():
-        wanted[column][i] = typed_number(f"{CELLS[column]} at {station[i]:.3f} m", text) * COLUMNS[column].unit
+        wanted[column][i] = typed_number(f"{CELLS[column]} at {station[i]:.3f} m", text) * COLUMNS[column].factor
     source = ski.source if asked.is_file else f"edited in the lab ({_told(asked, station)}) from: {ski.source}"
     own = ski.name if asked.is_file else f"{ski.name}, edited"
     edited = edited_ski(ski, SkiEdit(station, factors, wanted), name=name or own, source=source)
     shown = values_at(edited, station)
     cells = {
-        (column, i): f"{round(values[i] / COLUMNS[column].unit, 6) + 0.0:.4g}"
+        (column, i): f"{round(values[i] / COLUMNS[column].factor, 6) + 0.0:.4g}"
         for column, values in shown.items()
         for i in range(station.size)
     }

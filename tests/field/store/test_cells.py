@@ -35,7 +35,7 @@ def test_what_is_written_down(column: str, typed: str, written: str) -> None:
         ("load_N", "0", "'0' stands there"),
         ("load_N", "1,234.5", "stands there"),
         ("load_N", "seventy", "stands there"),
-        ("snow_density_kg_per_m3", "918", "at most 917"),
+        ("snow_density_kg_per_m3", "918", "above 0 to 917"),
         ("remark", "x" * (LONGEST_TEXT + 1), "at most 200 letters"),
         ("remark", "two\nlines", "one line"),
     ],

@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from skisnow import Scenario, Ski
-from skisnow.simulate.scenario import Plane, Profile
-from skisnow.simulate.scenario.scenario import Air, Contact, Solver, Start, Stop
+from skisnow.simulate.scenario import Air, Contact, Plane, Profile, Solver, Start, Stop
 from skisnow.simulate.sledge import RigidSledge
 
 from ..equilibrium.synthetic import Along, plain_ski, snow

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from skisnow import Run, read_scenario, simulated_run
-from skisnow.simulate.scenario.scenario import Solver
+from skisnow.simulate.scenario import Solver
 from skisnow.simulate.verification import verified
 
 from ..motion.test_free_flight import energy, tumbling

@@ -16,8 +16,7 @@ from skisnow.simulate.motion.advance import PAUSED
 from skisnow.simulate.motion.outputs import advance_outputs
 from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import set_up
-from skisnow.simulate.scenario import Plane, Profile, Scenario
-from skisnow.simulate.scenario.scenario import Start
+from skisnow.simulate.scenario import Plane, Profile, Scenario, Start
 from skisnow.simulate.simulated_run import computed_run
 
 from ..equilibrium.synthetic import shovel

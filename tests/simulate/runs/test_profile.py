@@ -10,8 +10,7 @@ import numpy.typing as npt
 import pytest
 
 from skisnow import Run, Scenario, read_scenario, simulated_run
-from skisnow.simulate.scenario import Plane, Profile
-from skisnow.simulate.scenario.scenario import Solver
+from skisnow.simulate.scenario import Plane, Profile, Solver
 
 from ..equilibrium.synthetic import shovel
 from .sledges import rigid_ski, scenario

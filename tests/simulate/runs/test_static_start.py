@@ -17,9 +17,10 @@ from skisnow.simulate.motion.equations import add_forces
 from skisnow.simulate.motion.model import PADDING
 from skisnow.simulate.motion.system import add_band, new_vector
 from skisnow.simulate.run_setup import set_up
-from skisnow.simulate.scenario.scenario import Solver
+from skisnow.simulate.scenario import Solver
 from skisnow.simulate.standing import why_no_start
 
+from ..beyond_ranges import beyond
 from ..equilibrium.synthetic import snow
 from .sledges import GRAVITY, load, rigid_ski, scenario, total_mass
 
@@ -147,7 +148,8 @@ def test_rigid_edged(edge_deg: float) -> None:
 
 def test_rigid_edged_with_half_the_weight_each() -> None:
     """Skis a kilometre apart bear the same within 6e-5, and the sledge does not lean: the plain formula."""
-    given = scenario(ski=rigid_ski(), hardness=HARDNESS, edge_deg=35.0, stance=1000.0)
+    given = scenario(ski=rigid_ski(), hardness=HARDNESS, edge_deg=35.0)
+    given = replace(given, sledge=beyond(given.sledge, stance_width=1000.0))
     expected = math.sqrt(load(given) * math.tan(math.radians(35.0)) / (HARDNESS * 1e9 * LENGTH))
     depth = at_start(given).skis.edge_depth[0]
     assert depth == pytest.approx(np.full_like(depth, expected), rel=3e-4)  # it leans by 1e-9 rad: 0.5 µm of 1.6 mm
@@ -162,7 +164,8 @@ def test_flexible_as_at_rest(edge_deg: float, hardness: float) -> None:
     ski = read_ski("giant-slalom")
     ski = replace(ski, mass_per_length=np.full_like(ski.station, 1e-4))
     fine = Solver(elements=160, line_spacing=6e-3)
-    given = scenario(ski=ski, hardness=hardness, edge_deg=edge_deg, stance=1000.0, mass=160.0, solver=fine)
+    given = scenario(ski=ski, hardness=hardness, edge_deg=edge_deg, mass=160.0, solver=fine)
+    given = replace(given, sledge=beyond(given.sledge, stance_width=1000.0))
     found = rest(ski, snow(hardness), edge_angle=math.radians(edge_deg), load=80.0 * GRAVITY)
     assert found.edge_depth is not None
     run = at_start(given)

@@ -13,7 +13,7 @@ import pytest
 
 from skisnow import Run, simulated_run
 from skisnow.contact.snow_field import SHEAR_DISPLACEMENT as HOLDING
-from skisnow.simulate.scenario.scenario import Solver
+from skisnow.simulate.scenario import Solver
 
 from ..equilibrium.synthetic import circular_sidecut
 from .sledges import GRAVITY, arc_base, rigid_ski, scenario, total_mass

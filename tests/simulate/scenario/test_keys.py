@@ -1,9 +1,8 @@
-"""The table of keys says what holds: defaults, ranges, schema."""
+"""What the dataclasses of a scenario declare holds in files: defaults, ranges, schema."""
 
 import json
 import math
 import tomllib
-from dataclasses import fields
 from importlib.resources import files
 from typing import Any
 
@@ -12,30 +11,11 @@ import pytest
 
 import skisnow
 from skisnow.errors import ParameterError
-from skisnow.simulate.input_keys import InputKey
-from skisnow.simulate.scenario import Contact, Scenario, Solver, Start, read_scenario, scenario_names, scenario_text
-from skisnow.simulate.scenario.keys import REQUIRED, SCENARIO_KEYS, in_si
+from skisnow.simulate.scenario import Solver, read_scenario, scenario_names, scenario_text
+from skisnow.simulate.scenario.keys import SCENARIO_KEYS
 
 SCHEMAS = files(skisnow.simulate) / "schemas"
 SCHEMA = json.loads((SCHEMAS / "scenario.schema.json").read_text(encoding="utf-8"))
-DATACLASS_DEFAULTS = [
-    (Solver, "step", "solver.step_ms"),
-    (Solver, "tolerance", "solver.tolerance_mm"),
-    (Solver, "output_interval", "run.output_ms"),
-    (Scenario, "clamp_length", "ski.clamp_length_m"),
-    (Scenario, "damping_ratio", "ski.damping_ratio"),
-    (Scenario, "gravity", "slope.gravity_m_per_s2"),
-    (Contact, "friction_by_speed", "friction.mu_1_s_per_m"),
-    (Start, "x", "start.x_m"),
-    (Start, "y", "start.y_m"),
-    (Start, "heading", "start.heading_deg"),
-]
-
-
-@pytest.mark.parametrize(("owner", "name", "key"), DATACLASS_DEFAULTS)
-def test_default_of_a_file_is_that_of_python(owner: type, name: str, key: str) -> None:
-    (default,) = [field.default for field in fields(owner) if field.name == name]
-    assert in_si(key, SCENARIO_KEYS[key].default) == pytest.approx(default, rel=1e-15)
 
 
 def test_switches_and_words_have_pythons_defaults() -> None:
@@ -44,62 +24,52 @@ def test_switches_and_words_have_pythons_defaults() -> None:
     assert (Solver().method, Solver().fixed) == ("ros2", False)
 
 
+def test_defaults_stand_in_the_unit_of_their_key() -> None:
+    told = {key: SCENARIO_KEYS[key].default for key in ("solver.step_ms", "solver.tolerance_mm", "run.output_ms")}
+    assert told == pytest.approx({"solver.step_ms": 0.5, "solver.tolerance_mm": 0.001, "run.output_ms": 10.0})
+    assert (Solver().step, Solver().tolerance, Solver().output_interval) == (0.5e-3, 1e-6, 0.01)
+
+
+def test_what_must_be_given() -> None:
+    """Slope, snow, ski and the end of the run have rules of their own."""
+    assert {name for name, key in SCENARIO_KEYS.items() if key.needed} == {
+        "friction.mu_0",
+        "drag.drag_area_m2",
+        "sledge.mass_kg",
+        "sledge.inertia_kg_m2",
+        "sledge.centre_of_mass_height_m",
+        "sledge.stance_width_m",
+        "sledge.edge_angle_deg",
+        "start.speed_m_per_s",
+    }
+
+
 def test_what_makes_a_scenario_has_no_default() -> None:
     without = {name for name, key in SCENARIO_KEYS.items() if key.default is None}
-    assert set(REQUIRED) <= without
     assert {"snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.unloading_ratio", "slope.angle_deg"} <= without
 
 
-def test_units_stand_in_the_names() -> None:
-    ending = {
-        "°": "_deg",
-        "m": "_m",
-        "ms": "_ms",
-        "mm": "_mm",
-        "s": "_s",
-        "kg": "_kg",
-        "m²": "_m2",
-        "m/s": "_m_per_s",
-        "m/s²": "_m_per_s2",
-        "s/m": "_s_per_m",
-        "kg m²": "_kg_m2",
-        "kg/m³": "_kg_per_m3",
-        "N/mm³": "_N_per_mm3",
-        "N/mm²": "_N_per_mm2",
+def test_units_come_from_the_names() -> None:
+    """Every unit that a scenario's keys have, and the keys without one."""
+    found = {name.rpartition(".")[2]: key.unit for name, key in SCENARIO_KEYS.items()}
+    assert {name: found[name] for name in ("H_V_N_per_mm3", "S_f_N_per_mm2", "inertia_kg_m2", "mu_1_s_per_m")} == {
+        "H_V_N_per_mm3": "N/mm³",
+        "S_f_N_per_mm2": "N/mm²",
+        "inertia_kg_m2": "kg m²",
+        "mu_1_s_per_m": "s/m",
     }
-    for key in SCENARIO_KEYS.values():
-        if key.unit:
-            assert key.name.endswith(ending[key.unit]), key.name
+    assert (found["gravity_m_per_s2"], found["air_density_kg_per_m3"]) == ("m/s²", "kg/m³")
+    assert (found["step_ms"], found["cell_mm"], found["heading_deg"], found["x_m"]) == ("ms", "mm", "°", "m")
+    numbers = {name.rpartition(".")[2] for name, key in SCENARIO_KEYS.items() if key.kind == "number"}
+    assert {name for name in numbers if not found[name]} == {"unloading_ratio", "mu_0", "damping_ratio"}
 
 
 def test_factors_lead_to_si() -> None:
-    assert in_si("snow.H_V_N_per_mm3", 0.2) == 2e8
-    assert in_si("snow.S_f_N_per_mm2", 0.5) == 5e5
-    assert in_si("sledge.edge_angle_deg", 30.0) == pytest.approx(math.pi / 6.0, rel=1e-15)
-    assert in_si("solver.cell_mm", 4.0) == 0.004
-    assert in_si("run.output_ms", 10.0) == 0.01
-
-
-def of_schema(key: InputKey) -> dict[str, Any]:
-    section, name = key.name.split(".")
-    found: dict[str, Any] = SCHEMA["properties"][section]["properties"][name]
-    return found
-
-
-@pytest.mark.parametrize("key", SCENARIO_KEYS.values(), ids=lambda key: key.name)
-def test_schema_has_the_ranges_of_the_table(key: InputKey) -> None:
-    told = of_schema(key)
-    of_number = told.get("items", told)
-    lowest = of_number.get("exclusiveMinimum" if key.above else "minimum", -math.inf)
-    assert (lowest, of_number.get("maximum", math.inf)) == (key.lowest, key.highest)
-    assert tuple(told.get("enum", ())) == key.choices
-    assert told.get("default") == key.default
-
-
-def test_schema_has_no_other_keys() -> None:
-    sections = {name: part for name, part in SCHEMA["properties"].items() if name != "identify"}
-    told = {f"{section}.{name}" for section, part in sections.items() for name in part["properties"]}
-    assert told == set(SCENARIO_KEYS)
+    assert SCENARIO_KEYS["snow.H_V_N_per_mm3"].in_si(0.2) == 2e8
+    assert SCENARIO_KEYS["snow.S_f_N_per_mm2"].in_si(0.5) == 5e5
+    assert SCENARIO_KEYS["sledge.edge_angle_deg"].in_si(30.0) == pytest.approx(math.pi / 6.0, rel=1e-15)
+    assert SCENARIO_KEYS["solver.cell_mm"].in_si(4.0) == 0.004
+    assert SCENARIO_KEYS["run.output_ms"].in_si(10.0) == 0.01
 
 
 @pytest.mark.parametrize("name", scenario_names())

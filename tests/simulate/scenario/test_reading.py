@@ -317,7 +317,7 @@ def test_a_copy_of_a_built_in_scenario_is_warned_of(tmp_path: Path) -> None:
         ("[identify]\nclok = 'free'", "Or is clock meant"),
         ("[identify]\nclock = 'fre'", 'it must be "start" or "free"'),
         ("[identify.mu_0]\nlowr = 0", "Is lower meant"),
-        ("[identify.mu_0]\nlower = nan", "must be a finite number"),
+        ("[identify.mu_0]\nlower = nan", "lower is nan; allowed is any finite number"),
         ("[identify.site]\nfall_line_azimut_deg = 0", "Is fall_line_azimuth_deg meant"),
         ("[identify]\nsite = 3", r"begun by the line \[identify.site\]"),
         ('[identify.runs."a"]\nmas_kg = 3', r"sledge\.mass_kg"),

@@ -14,9 +14,9 @@ UTAH, CALIFORNIA = MEASURED / "utah-2010-surface.csv", MEASURED / "california-20
 measured = pytest.mark.skipif(not UTAH.is_file(), reason="the measured profiles are not beside the repository")
 
 
-@pytest.mark.parametrize("degrees", [-1.0, 90.0, math.nan])
-def test_plane_has_a_slope_from_0_to_below_90_degrees(degrees: float) -> None:
-    with pytest.raises(ParameterError, match="0 to below 90"):
+@pytest.mark.parametrize("degrees", [-1.0, 75.1, 90.0, math.nan])
+def test_plane_is_no_cliff(degrees: float) -> None:
+    with pytest.raises(ParameterError, match="allowed is from 0 to 75 °"):
         Plane(math.radians(degrees))
 
 

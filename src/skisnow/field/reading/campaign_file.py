@@ -3,42 +3,35 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
+from ...geometry import Tool
+from ...geometry.tools import LIKELY_LENGTH_MM
 from ...given import GivenError, toml_values
-from ...units import MM
+from ...inputs import Quantity, own_quantities
 from ..marks import ALWAYS_EXCLUDE, MARKS
 from ..problems import error, warning
 from .toml_values import TomlValues
 from .tool_shapes import SHAPES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from ...geometry import Tool
     from ..problems import Problem
 
 CAMPAIGN_FILE: Final = "campaign.toml"
 
-LIKELY_LENGTH_MM: Final = (2.0, 5000.0)
-LIKELY_GAUGE_STEP_MM: Final = (0.0005, 5.0)
-_TOP_KEYS: Final = (
-    "name",
-    "place",
-    "observers",
-    "gauge_resolution_mm",
-    "load_uncertainty_N",
-    "moment_uncertainty_Nm",
-    "lever_arm_uncertainty_mm",
-    "load_steps_N",
-    "tool",
-    "plate",
-    "screening",
-)
-
 
 @dataclass(frozen=True, slots=True)
+class Plate:
+    """A blade for shear tests."""
+
+    length: Annotated[
+        float, Quantity("length_mm", "length of the blade", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
+    ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CampaignFile:
     """What campaign.toml says, in SI; the fields are those of `skisnow.field.records.Campaign`.
 
@@ -46,20 +39,49 @@ class CampaignFile:
     an edge, for which only the edge angle 0 has a meaning.
     """
 
-    name: str | None
-    place: str
-    observers: tuple[str, ...]
-    gauge_resolution: float | None
-    load_uncertainty: float | None
-    moment_uncertainty: float | None
-    lever_arm_uncertainty: float | None
-    load_steps: tuple[float, ...]
+    name: Annotated[str | None, Quantity("name", "name of the campaign; left out or blank: the folder's", blank=True)]
+    place: Annotated[str, Quantity("place", "where", blank=True)] = ""
+    observers: tuple[str, ...] = ()
+    gauge_resolution: Annotated[
+        float | None,
+        Quantity(
+            "gauge_resolution_mm",
+            "step of the depth gauge; a reading's standard uncertainty is step/√12. Left out: no depth uncertainty and "
+            "no `below_resolution` mark, which the report says",
+            lowest=0.0,
+            above=True,
+            usual=(0.0005, 5.0),
+        ),
+    ] = None
+    load_uncertainty: Annotated[
+        float | None,
+        Quantity(
+            "load_uncertainty_N",
+            "standard uncertainty of a load; left out it counts as 0, which the report says, as for the next two",
+            lowest=0.0,
+        ),
+    ] = None
+    moment_uncertainty: Annotated[
+        float | None, Quantity("moment_uncertainty_Nm", "standard uncertainty of a moment", lowest=0.0)
+    ] = None
+    lever_arm_uncertainty: Annotated[
+        float | None, Quantity("lever_arm_uncertainty_mm", "standard uncertainty of a lever arm", lowest=0.0)
+    ] = None
+    load_steps: Annotated[
+        tuple[float, ...], Quantity("load_steps_N", "the campaign's own discs, for entry", lowest=0.0, above=True)
+    ] = ()
     tools: Mapping[str, Tool]
     plates: Mapping[str, float]
     tool_names: frozenset[str]
     plate_names: frozenset[str]
     flat_tools: frozenset[str]
     excluding: frozenset[str]
+
+
+CAMPAIGN_KEYS: Final = {key.name: key for key in own_quantities(CampaignFile)}
+"""Keys with one value or a list of numbers."""
+(PLATE_LENGTH,) = own_quantities(Plate)
+_TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], "tool", "plate", "screening")
 
 
 def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
@@ -87,11 +109,11 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
         name=top.text("name", blank_allowed=True),
         place=top.text("place", blank_allowed=True) or "",
         observers=top.texts("observers"),
-        gauge_resolution=_scaled(_likely(top, "gauge_resolution_mm", LIKELY_GAUGE_STEP_MM)),
-        load_uncertainty=top.number("load_uncertainty_N", zero_allowed=True),
-        moment_uncertainty=top.number("moment_uncertainty_Nm", zero_allowed=True),
-        lever_arm_uncertainty=_scaled(top.number("lever_arm_uncertainty_mm", zero_allowed=True)),
-        load_steps=top.positive_numbers("load_steps_N"),
+        gauge_resolution=_length(top, CAMPAIGN_KEYS["gauge_resolution_mm"]),
+        load_uncertainty=top.number(CAMPAIGN_KEYS["load_uncertainty_N"]),
+        moment_uncertainty=top.number(CAMPAIGN_KEYS["moment_uncertainty_Nm"]),
+        lever_arm_uncertainty=_length(top, CAMPAIGN_KEYS["lever_arm_uncertainty_mm"]),
+        load_steps=top.numbers(CAMPAIGN_KEYS["load_steps_N"]),
         tools=tools,
         plates=plates,
         tool_names=tool_names,
@@ -99,10 +121,6 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
         flat_tools=flat_tools,
         excluding=_excluding(top),
     )
-
-
-def _scaled(value_mm: float | None) -> float | None:
-    return None if value_mm is None else value_mm * MM
 
 
 def _parsed(text: str, found: list[Problem]) -> dict[str, Any] | None:
@@ -126,7 +144,7 @@ def _tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[
             continue
         shape = SHAPES[shape_name]
         entry.refuse_misspelt(("name", "shape", *shape.argument_of_key))
-        lengths = {argument: _length(entry, key) for key, argument in shape.argument_of_key.items()}
+        lengths = {each.field: _needed_length(entry, each) for each in shape.lengths}
         if name is not None and all(length is not None for length in lengths.values()):
             tools[name] = shape.tool(**lengths)
         if name is not None and not shape.has_edge:
@@ -140,7 +158,7 @@ def _plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
     for entry in top.tables("plate"):
         name = _new_name(entry, names)
         entry.refuse_misspelt(("name", "length_mm"))
-        length = _length(entry, "length_mm")
+        length = _needed_length(entry, PLATE_LENGTH)
         if name is not None and length is not None:
             plates[name] = length
     return plates, frozenset(names)
@@ -172,29 +190,29 @@ def _shape_name(entry: TomlValues) -> str | None:
     return None
 
 
-def _length(entry: TomlValues, key: str) -> float | None:
-    if key not in entry.values:
-        entry.refuse(key, "a length in mm above 0", f"Add {key}.")
-    return _scaled(_likely(entry, key, LIKELY_LENGTH_MM))
+def _needed_length(entry: TomlValues, quantity: Quantity) -> float | None:
+    if quantity.name not in entry.values:
+        entry.refuse(quantity.name, "a length in mm above 0", f"Add {quantity.name}.")
+    return _length(entry, quantity)
 
 
-def _likely(entry: TomlValues, key: str, limits: tuple[float, float]) -> float | None:
-    """A number above 0 in mm; one that hardly is in mm is warned of."""
-    value = entry.number(key, zero_allowed=False)
-    low, high = limits
-    if value is not None and not low <= value <= high:
+def _length(entry: TomlValues, quantity: Quantity) -> float | None:
+    """A length in m; one that hardly is in mm is warned of."""
+    value = entry.number(quantity)
+    if value is not None and quantity.usual is not None and not quantity.usual[0] <= value <= quantity.usual[1]:
+        low, high = quantity.usual
         unit = "m" if value < low else "µm"
         entry.found.append(
             warning(
                 "unlikely_unit",
                 CAMPAIGN_FILE,
-                column=entry.path_of(key),
+                column=entry.path_of(quantity.name),
                 value=f"{value:g}",
                 allowed=f"a number in mm; {low:g} to {high:g} is usual",
                 action=f"If this is in {unit} convert it to mm; if it is in mm nothing need be done.",
             )
         )
-    return value
+    return None if value is None else quantity.in_si(value)
 
 
 def _excluding(top: TomlValues) -> frozenset[str]:

@@ -9,13 +9,14 @@ import numpy as np
 
 from ..problems import error
 from .number_cells import is_number, numbers
+from .table_forms import allowed_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from ...inputs import Quantity
     from ..problems import Problem
     from ..records import BoolArray, FloatArray, IntArray
-    from .table_forms import NumberColumn
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +115,7 @@ class NameCollector:
 class NumberCollector:
     """Collects numbers in the file's own unit; NaN where a cell is blank or refused."""
 
-    def __init__(self, column: NumberColumn, mark: str) -> None:
+    def __init__(self, column: Quantity, mark: str) -> None:
         self._column = column
         self._mark = mark
         self._parts: list[FloatArray] = []
@@ -124,9 +125,9 @@ class NumberCollector:
         values = numbers(cells, self._mark)
         for index in np.flatnonzero(np.isnan(values)).tolist():
             cell = cells[index].strip()
-            if cell or self._column.required:
+            if cell or self._column.needed:
                 found.append(self._refusal("not_a_number", index, cell, rows, self._how_to_write(cell)))
-        outside = self._column.is_outside(values)
+        outside = self._column.outside(values)
         for index in np.flatnonzero(outside).tolist():
             action = "Correct the cell; its unit stands in the column's name."
             found.append(self._refusal("out_of_range", index, cells[index].strip(), rows, action))
@@ -135,7 +136,7 @@ class NumberCollector:
 
     def _refusal(self, code: str, index: int, cell: str, rows: Rows, action: str) -> Problem:
         return rows.problem(
-            code, index, column=self._column.name, value=cell, allowed=self._column.allowed, action=action
+            code, index, column=self._column.name, value=cell, allowed=allowed_words(self._column), action=action
         )
 
     def _how_to_write(self, cell: str) -> str:

@@ -2,48 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
-
-import numpy as np
+from typing import TYPE_CHECKING, Annotated, Final
 
 from ...constants import ICE_DENSITY
+from ...inputs import Quantity, own_quantities
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from ..records import FloatArray
+    pass
 
 
-@dataclass(frozen=True, slots=True)
-class NumberColumn:
-    """A column of finite numbers between two limits, in the unit that its name says.
+def allowed_words(column: Quantity) -> str:
+    """Say in words which numbers are allowed.
 
-    >>> NumberColumn("edge_angle_deg", low=0, high=90, high_allowed=False).allowed
-    'a number of at least 0 and below 90'
+    >>> allowed_words(Quantity("edge_angle_deg", "edge angle", lowest=0, highest=90, below=True))
+    'a number from 0 to below 90'
     """
-
-    name: str
-    low: float = -math.inf
-    high: float = math.inf
-    low_allowed: bool = True
-    high_allowed: bool = True
-    required: bool = True
-
-    @property
-    def allowed(self) -> str:
-        """Say in words which numbers are allowed."""
-        low = f"{'of at least' if self.low_allowed else 'above'} {self.low:g}" if self.low > -math.inf else ""
-        high = f"{'at most' if self.high_allowed else 'below'} {self.high:g}" if self.high < math.inf else ""
-        limits = " and ".join(filter(None, (low, high)))
-        return f"a number {limits}" if limits else "a finite number"
-
-    def is_outside(self, values: FloatArray) -> npt.NDArray[np.bool_]:
-        """Tell which values are outside the limits; NaN is not."""
-        below = values < self.low if self.low_allowed else values <= self.low
-        above = values > self.high if self.high_allowed else values >= self.high
-        return below | above
+    words = column.allowed.removeprefix("any ")
+    return f"a {words}" if words.startswith("finite") else f"a number {'of ' if words[0].isdigit() else ''}{words}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +49,7 @@ class TableForm:
     file: str
     key: str
     names: tuple[str, ...]
-    numbers: tuple[NumberColumn, ...] = ()
+    numbers: tuple[Quantity, ...] = ()
     texts: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
     further: tuple[str, ...] = ()
@@ -82,7 +58,7 @@ class TableForm:
     @property
     def required(self) -> tuple[str, ...]:
         """Columns that the file must have."""
-        return self.names + tuple(column.name for column in self.numbers if column.required) + self.texts
+        return self.names + tuple(column.name for column in self.numbers if column.needed) + self.texts
 
     @property
     def known(self) -> tuple[str, ...]:
@@ -91,32 +67,77 @@ class TableForm:
         return tuple(dict.fromkeys(self.names + numbers + self.texts + self.optional + self.further))
 
 
-def _density(*, required: bool) -> NumberColumn:
-    return NumberColumn("snow_density_kg_per_m3", low=0, low_allowed=False, high=ICE_DENSITY, required=required)
+_DENSITY: Final = Quantity("snow_density_kg_per_m3", "density of the snow", lowest=0.0, above=True, highest=ICE_DENSITY)
+_DROP_CONE: Final = Quantity("drop_cone_depth_mm", "depth of the drop cone: larger where snow is *softer*", lowest=0.0)
+_AIR: Final = Quantity("air_temperature_C", "temperature of the air")
+_SNOW: Final = Quantity("snow_temperature_C", "temperature of the snow")
+_DEPTH: Final = Quantity("depth_mm", "penetration depth", lowest=0.0)
 
 
-def _drop_cone(*, required: bool) -> NumberColumn:
-    return NumberColumn("drop_cone_depth_mm", low=0, required=required)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PenetrationRow:
+    """The numbers of a row of penetration.csv."""
+
+    edge_angle: Annotated[
+        float,
+        Quantity("edge_angle_deg", "above 60 a warning; disc and cylinder: 0", lowest=0.0, highest=90.0, below=True),
+    ]
+    load: Annotated[float, Quantity("load_N", "load", lowest=0.0, above=True)]
+    depth: Annotated[float, _DEPTH]
+    snow_density: Annotated[float | None, _DENSITY] = None
+    drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
+    air_temperature: Annotated[float | None, _AIR] = None
+    snow_temperature: Annotated[float | None, _SNOW] = None
 
 
-_TEMPERATURES: Final = (
-    NumberColumn("air_temperature_C", required=False),
-    NumberColumn("snow_temperature_C", required=False),
-)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShearRow:
+    """The numbers of a row of shear.csv."""
+
+    edge_angle: Annotated[float, Quantity("edge_angle_deg", "edge angle", lowest=0.0, above=True, highest=90.0)]
+    depth: Annotated[float, _DEPTH]
+    lever_arm: Annotated[float, Quantity("lever_arm_mm", "lever arm", lowest=0.0, above=True)]
+    moment: Annotated[float, Quantity("moment_Nm", "moment", lowest=0.0)]
+    snow_density: Annotated[float | None, _DENSITY] = None
+    drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
+    air_temperature: Annotated[float | None, _AIR] = None
+    snow_temperature: Annotated[float | None, _SNOW] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DensityRow:
+    """The numbers of a row of density.csv."""
+
+    snow_density: Annotated[float, _DENSITY]
+    drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
+    air_temperature: Annotated[float | None, _AIR] = None
+    snow_temperature: Annotated[float | None, _SNOW] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DropConeRow:
+    """The numbers of a row of drop_cone.csv."""
+
+    drop_cone_depth: Annotated[float, _DROP_CONE]
+    snow_density: Annotated[float | None, _DENSITY] = None
+    air_temperature: Annotated[float | None, _AIR] = None
+    snow_temperature: Annotated[float | None, _SNOW] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CorrectionRow:
+    """The number of a row of corrections.csv."""
+
+    row: Annotated[float, Quantity("row", "line of the file", lowest=1.0)]
+
+
 _REMARKS: Final = ("time", "air_temperature_C", "snow_temperature_C", "snow_type", "remark")
 
 PENETRATION: Final = TableForm(
     file="penetration.csv",
     key="experiment",
     names=("experiment", "site", "tool"),
-    numbers=(
-        NumberColumn("edge_angle_deg", low=0, high=90, high_allowed=False),
-        NumberColumn("load_N", low=0, low_allowed=False),
-        NumberColumn("depth_mm", low=0),
-        _density(required=False),
-        _drop_cone(required=False),
-        *_TEMPERATURES,
-    ),
+    numbers=own_quantities(PenetrationRow),
     optional=("spot", "status"),
     further=_REMARKS,
 )
@@ -124,15 +145,7 @@ SHEAR: Final = TableForm(
     file="shear.csv",
     key="experiment",
     names=("experiment", "site", "plate"),
-    numbers=(
-        NumberColumn("edge_angle_deg", low=0, low_allowed=False, high=90),
-        NumberColumn("depth_mm", low=0),
-        NumberColumn("lever_arm_mm", low=0, low_allowed=False),
-        NumberColumn("moment_Nm", low=0),
-        _density(required=False),
-        _drop_cone(required=False),
-        *_TEMPERATURES,
-    ),
+    numbers=own_quantities(ShearRow),
     optional=("spot", "status"),
     further=_REMARKS,
 )
@@ -140,7 +153,7 @@ DENSITY: Final = TableForm(
     file="density.csv",
     key="sample",
     names=("sample", "site"),
-    numbers=(_density(required=True), _drop_cone(required=False), *_TEMPERATURES),
+    numbers=own_quantities(DensityRow),
     optional=("status",),
     further=("spot", "drop_cone_depth_mm", *_REMARKS),
 )
@@ -148,7 +161,7 @@ DROP_CONE: Final = TableForm(
     file="drop_cone.csv",
     key="test",
     names=("test", "site", "repeat"),
-    numbers=(_drop_cone(required=True), _density(required=False), *_TEMPERATURES),
+    numbers=own_quantities(DropConeRow),
     optional=("status",),
     further=("spot", "snow_density_kg_per_m3", *_REMARKS),
 )
@@ -156,7 +169,7 @@ CORRECTIONS: Final = TableForm(
     file="corrections.csv",
     key="experiment",
     names=("file", "experiment", "column"),
-    numbers=(NumberColumn("row", low=1),),
+    numbers=own_quantities(CorrectionRow),
     texts=("old", "new", "who", "when", "why"),
     may_be_empty=True,
 )

@@ -6,16 +6,16 @@ Paths count from 1, ``tool[2].length_mm`` is the second tool's length.
 from __future__ import annotations
 
 import difflib
-import math
-import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from ...errors import ParameterError
 from ..problems import error, warning
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from ...inputs import Quantity
     from ..problems import Problem
 
 _SIMILAR = 0.8  # from here a key is taken for a misspelt one
@@ -74,37 +74,34 @@ class TomlValues:
             return ()
         return tuple(item.strip() for item in each if item.strip())
 
-    def number(self, key: str, *, zero_allowed: bool) -> float | None:
-        """Give a finite number above (or from) 0; None where absent or wrong."""
-        if key not in self.values:
-            return None
-        return self._checked(key, self.values[key], zero_allowed=zero_allowed)
+    def number(self, quantity: Quantity) -> float | None:
+        """Give a number in the unit of its key; None where absent or wrong."""
+        key = quantity.name
+        return self._checked(self.values[key], quantity) if key in self.values else None
 
-    def positive_numbers(self, key: str) -> tuple[float, ...]:
-        """Give a list of numbers above 0; wrong ones are left out."""
+    def numbers(self, quantity: Quantity) -> tuple[float, ...]:
+        """Give a list of numbers; wrong ones are left out."""
+        key = quantity.name
         values = self.values.get(key, [])
         if not isinstance(values, list):
             self.refuse(key, "a list of numbers such as [50, 100, 150]", f"Put the numbers of {key} in brackets.")
             return ()
-        checked = [
-            self._checked(f"{key}[{place}]", value, zero_allowed=False) for place, value in enumerate(values, start=1)
-        ]
+        checked = (self._checked(value, one) for one, value in quantity.each_of(values))
         return tuple(value for value in checked if value is not None)
 
-    def _checked(self, key: str, value: object, *, zero_allowed: bool) -> float | None:
-        allowed = f"a finite number {'of at least' if zero_allowed else 'above'} 0"
+    def _checked(self, value: object, quantity: Quantity) -> float | None:
+        allowed = f"a finite number {quantity.allowed}"
         if isinstance(value, bool) or not isinstance(value, int | float):
-            self.refuse(key, allowed, "Write a number with a decimal point, without quotes.", value=value)
+            action = "Write a number with a decimal point, without quotes."
+            self.refuse(quantity.name, allowed, action, value=value)
             return None
         try:
-            number = float(value)
-        except OverflowError:
-            number = math.inf
-        if not math.isfinite(number) or not (number >= sys.float_info.min or (number == 0 and zero_allowed)):
+            quantity.in_range(value)
+        except ParameterError:
             action = "Correct the number; its unit stands in the key's name."
-            self.refuse(key, allowed, action, code="out_of_range", value=value)
+            self.refuse(quantity.name, allowed, action, code="out_of_range", value=value)
             return None
-        return number
+        return float(value)
 
     def table(self, key: str) -> TomlValues:
         """Give a table below this one; empty where absent or wrong."""

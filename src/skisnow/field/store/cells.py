@@ -9,10 +9,11 @@ import numpy as np
 
 from ...errors import ParameterError
 from ..reading.number_cells import number
-from ..reading.table_forms import TABLES
+from ..reading.table_forms import TABLES, allowed_words
 
 if TYPE_CHECKING:
-    from ..reading.table_forms import NumberColumn, TableForm
+    from ...inputs import Quantity
+    from ..reading.table_forms import TableForm
 
 FORMS: Final = {form.file: form for form in TABLES}
 """What each table must and may have, by its file."""
@@ -41,12 +42,12 @@ def checked_cell(form: TableForm, column: str, typed: str) -> str:
     return text
 
 
-def _number_cell(rule: NumberColumn, text: str) -> str:
-    if not text and not rule.required:
+def _number_cell(rule: Quantity, text: str) -> str:
+    if not text and not rule.needed:
         return ""
     mark = "," if "," in text and "." not in text else "."
     value = number(text, mark)
-    if math.isnan(value) or bool(rule.is_outside(np.array([value]))[0]):
+    if math.isnan(value) or bool(rule.outside(np.array([value]))[0]):
         found = f"{text!r} stands there" if text else "it is blank"
-        raise ParameterError(f"{rule.name} is {rule.allowed}; {found}")
+        raise ParameterError(f"{rule.name} is {allowed_words(rule)}; {found}")
     return text.replace(",", ".")

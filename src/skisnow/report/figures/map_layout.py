@@ -35,32 +35,6 @@ _CAPTION_LETTERS: Final = 125
 _LETTERS: Final = 105
 """Of a title, over the whole width of a figure."""
 
-LABELS: Final = {
-    "edge_angle_deg": "edge angle ϑ (°)",
-    "load_N": "load (N)",
-    "H_V_N_per_mm3": "snow hardness $H_V$ (N/mm³)",
-    "S_f_N_per_mm2": "failure shear stress $S_f$ (N/mm²)",
-    "unloading_ratio": "$k_u/H_V$",
-    "moment_Nm": "boot moment (N m)",
-    "clamp_length_m": "clamp length (m)",
-    "elements": "elements",
-}
-"""Axis labels; an input that is not here is labelled by its name."""
-_SHORT: Final = {
-    "edge_angle_deg": "ϑ = {}°",
-    "load_N": "{} N",
-    "H_V_N_per_mm3": "$H_V$ = {} N/mm³",
-    "S_f_N_per_mm2": "$S_f$ = {} N/mm²",
-    "unloading_ratio": "$k_u/H_V$ = {}",
-    "moment_Nm": "{} N m",
-    "clamp_length_m": "clamp {} m",
-    "elements": "{} elements",
-    "ski": "{}",
-    "published": "{}",
-    "results": "{}",
-    "site": "{}",
-}
-
 
 @dataclass(frozen=True, slots=True)
 class MapLayout:
@@ -193,16 +167,28 @@ def short(name: str, value: Any) -> str:
     >>> short("load_N", 800.0), short("ski", "slalom"), short("twist", False)
     ('800 N', 'slalom', 'twist false')
     """
+    before, behind = _around(name)
     if isinstance(value, bool):
         text = "true" if value else "false"
     else:
         text = figure_text(value) if isinstance(value, str) else f"{value:.4g}".replace("-", "−")
-    return _SHORT.get(name, name.replace("_", " ") + " {}").format(text)
+    return f"{before}{text}{behind}"
 
 
 def label(name: str) -> str:
     """The axis label of an input."""
-    return LABELS.get(name, name)
+    return CARVE_KEYS[name].axis_label if name in CARVE_KEYS else name
+
+
+def _around(name: str) -> tuple[str, str]:
+    """What stands before and behind a value in few letters."""
+    key = CARVE_KEYS.get(name)
+    if key is None or not (key.label or key.symbol or (key.kind == "text" and not key.choices)):
+        return f"{name.replace('_', ' ')} ", ""
+    unit = key.unit if key.unit == "°" else f" {key.unit}".rstrip()
+    if key.symbol:
+        return f"{key.symbol} = ", unit
+    return ("clamp ", unit) if name == "clamp_length_m" else ("", unit or f" {key.label}".rstrip())
 
 
 def axes_of_panels(figure: Figure, titles: Sequence[str], columns: int) -> list[Axes]:

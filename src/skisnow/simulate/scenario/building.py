@@ -6,20 +6,19 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...errors import ParameterError
+from ...inputs import made, meant
 from ...ski import Ski, ski_names
 from ...snow import SnowProperties
 from ..carve_answer import Sources
 from ..carve_limits import require_stress, with_stress
-from ..input_keys import meant
 from ..sledge import RigidSledge
+from .contact import ELASTIC, Contact
 from .given import GivenScenario
-from .keys import REQUIRED, SCENARIO_KEYS, in_si
+from .keys import SCENARIO_KEYS
 from .profile_file import read_profile
-from .scenario import Air, Contact, Scenario, Solver, Start, Stop
+from .scenario import Air, Scenario, Start, Stop
 from .slope import Plane, Profile
-
-ELASTIC = 1.0
-"""k_u/H_V of snow that springs back."""
+from .solver import Solver
 
 
 def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, ...]]:
@@ -30,56 +29,52 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
     ParameterError
         A key is missing, two say the same or do not go together, or a file that one names cannot be read.
     """
-    values = {name: given.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()}
-    if values["solver.method"] == "fast":
-        values["solver.fixed"] = given.values.get("solver.fixed", True)
-    for name in REQUIRED:
-        if values[name] is None:
-            raise ParameterError(f"{name} is missing: {SCENARIO_KEYS[name].meaning}. It has no default")
+    values = dict(given.values)
+    if values.get("solver.method") == "fast":
+        values.setdefault("solver.fixed", True)
+    for name, key in SCENARIO_KEYS.items():
+        if key.needed and name not in values:
+            raise ParameterError(_missing(name))
     ski, told = _ski(given, sources)
-    scenario = Scenario(
+    scenario = made(
+        Scenario,
+        values,
         slope=_slope(given, values),
         contact=_contact(values, _snow(given, sources)),
         air=_air(values),
-        sledge=_sledge(values),
+        sledge=made(RigidSledge, values),
         ski=ski,
-        clamp_length=_number(values, "ski.clamp_length_m"),
-        damping_ratio=_number(values, "ski.damping_ratio"),
-        start=Start(
-            x=_number(values, "start.x_m"),
-            y=_number(values, "start.y_m"),
-            speed=_number(values, "start.speed_m_per_s"),
-            heading=_number(values, "start.heading_deg"),
-        ),
+        start=made(Start, values),
         stop=_stop(values),
-        solver=_solver(values),
-        gravity=_number(values, "slope.gravity_m_per_s2"),
+        solver=made(Solver, values),
     )
     return scenario, told
 
 
-def _number(values: Mapping[str, Any], name: str) -> float:
-    return in_si(name, values[name])
-
-
-def _optional(values: Mapping[str, Any], name: str) -> float | None:
-    return None if values[name] is None else in_si(name, values[name])
+def _missing(name: str) -> str:
+    return f"{name} is missing: {SCENARIO_KEYS[name].meaning}. It has no default"
 
 
 def _slope(given: GivenScenario, values: Mapping[str, Any]) -> Plane | Profile:
-    kind = values["slope.kind"]
+    kind = values.get("slope.kind", _default("slope.kind"))
     for name, of in (("slope.angle_deg", "plane"), ("slope.profile", "profile"), ("slope.profile_gap", "profile")):
         if name in given.values and kind != of:
             raise ParameterError(f'{name} goes with slope.kind = "{of}"; it is "{kind}". Change one of them')
     if kind == "plane":
         _require(values, "slope.angle_deg", 'or a measured profile: slope.kind = "profile" and slope.profile')
-        return Plane(_number(values, "slope.angle_deg"))
+        return made(Plane, values)
     _require(values, "slope.profile", 'or a plane: slope.kind = "plane" and slope.angle_deg')
-    return read_profile(given.path("slope.profile"), gap=values["slope.profile_gap"])
+    return read_profile(
+        given.path("slope.profile"), gap=values.get("slope.profile_gap", SCENARIO_KEYS["slope.profile_gap"].default)
+    )
+
+
+def _default(name: str) -> Any:
+    return SCENARIO_KEYS[name].default
 
 
 def _require(values: Mapping[str, Any], name: str, other: str) -> None:
-    if values[name] is None:
+    if name not in values:
         raise ParameterError(f"{name} is missing: {SCENARIO_KEYS[name].meaning}. Give it, {other}")
 
 
@@ -103,8 +98,7 @@ def _snow(given: GivenScenario, sources: Sources) -> SnowProperties:
 def _snow_of_numbers(given: GivenScenario) -> SnowProperties:
     if "snow.S_f_N_per_mm2" not in given.values:
         raise ParameterError("snow.S_f_N_per_mm2 is missing: the failure shear stress S_f. It has no default")
-    hardness, stress = (in_si(name, given.values[name]) for name in ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2"))
-    return SnowProperties(hardness, stress, source="given as numbers")
+    return made(SnowProperties, given.values, section="snow", source="given as numbers")
 
 
 def _named_snow(given: GivenScenario, sources: Sources) -> SnowProperties:
@@ -114,43 +108,21 @@ def _named_snow(given: GivenScenario, sources: Sources) -> SnowProperties:
 
 
 def _contact(values: Mapping[str, Any], snow: SnowProperties) -> Contact:
-    ratio = values["snow.unloading_ratio"]
-    if values["snow.penetration"] == "elastic":
+    ratio = values.get("snow.unloading_ratio")
+    if values.get("snow.penetration") == "elastic":
         if ratio not in (None, ELASTIC):
             raise ParameterError(
                 f'snow.unloading_ratio is {ratio:g} beside snow.penetration = "elastic", which is 1. Leave one out'
             )
         ratio = ELASTIC
     if ratio is None:
-        raise ParameterError(
-            f"snow.unloading_ratio is missing: {SCENARIO_KEYS['snow.unloading_ratio'].meaning}. It has no default"
-        )
-    return Contact(
-        snow=snow,
-        unloading_ratio=ratio,
-        compaction_resistance=values["snow.compaction_resistance"],
-        friction=values["friction.mu_0"],
-        friction_by_speed=values["friction.mu_1_s_per_m"],
-    )
+        raise ParameterError(_missing("snow.unloading_ratio"))
+    return made(Contact, values, snow=snow, unloading_ratio=ratio)
 
 
 def _air(values: Mapping[str, Any]) -> Air:
-    height = values["drag.centre_of_pressure_height_m"]
-    return Air(
-        drag_area=values["drag.drag_area_m2"],
-        density=values["drag.air_density_kg_per_m3"],
-        centre_of_pressure_height=values["sledge.centre_of_mass_height_m"] if height is None else height,
-    )
-
-
-def _sledge(values: Mapping[str, Any]) -> RigidSledge:
-    return RigidSledge(
-        mass=values["sledge.mass_kg"],
-        inertia=values["sledge.inertia_kg_m2"],
-        centre_of_mass=(values["sledge.centre_of_mass_forward_m"], values["sledge.centre_of_mass_height_m"]),
-        stance_width=values["sledge.stance_width_m"],
-        edge_angle=_number(values, "sledge.edge_angle_deg"),
-    )
+    height = {"drag.centre_of_pressure_height_m": values["sledge.centre_of_mass_height_m"]}
+    return made(Air, {**height, **values})
 
 
 def _ski(given: GivenScenario, sources: Sources) -> tuple[Ski, tuple[str, ...]]:
@@ -167,20 +139,7 @@ def _ski(given: GivenScenario, sources: Sources) -> tuple[Ski, tuple[str, ...]]:
 
 
 def _stop(values: Mapping[str, Any]) -> Stop:
-    stop = Stop(duration=_optional(values, "run.duration_s"), length=_optional(values, "run.length_m"))
+    stop = made(Stop, values)
     if stop.duration is stop.length is None:
         raise ParameterError("the run has no end: give run.duration_s or run.length_m")
     return stop
-
-
-def _solver(values: Mapping[str, Any]) -> Solver:
-    return Solver(
-        method=values["solver.method"],
-        step=_number(values, "solver.step_ms"),
-        tolerance=_number(values, "solver.tolerance_mm"),
-        fixed=values["solver.fixed"],
-        elements=values["solver.elements"],
-        line_spacing=_optional(values, "solver.line_spacing_mm"),
-        cell=_optional(values, "solver.cell_mm"),
-        output_interval=_number(values, "run.output_ms"),
-    )

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Iterable, Mapping
 from typing import Final
 
 from ...errors import ParameterError
+from ...units import without_unit
 from .keys import SCENARIO_KEYS
 
-_UNIT: Final = re.compile(r"_(N_per_mm3|N_per_mm2|kg_per_m3|m_per_s2|m_per_s|s_per_m|kg_m2|deg|mm|ms|m2|kg|m|s)$")
 _HOW_IT_IS_COMPUTED: Final = ("run.", "solver.")
 
 EACH: Final = "each"
@@ -28,12 +27,12 @@ def short_name(key: str) -> str:
     ('S_f', 'speed@second')
     """
     own, at, run = key.partition("@")
-    return _UNIT.sub("", own.partition(".")[2]) + at + run
+    return without_unit(own.partition(".")[2]) + at + run
 
 
 def _forms(key: str) -> tuple[str, str, str, str]:
-    section, _, bare = key.partition(".")
-    return key, bare, f"{section}.{_UNIT.sub('', bare)}", _UNIT.sub("", bare)
+    bare = key.partition(".")[2]
+    return key, bare, without_unit(key), without_unit(bare)
 
 
 def _by_word() -> Mapping[str, tuple[str, ...]]:

@@ -4,37 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
 from ...errors import ParameterError
 from ...given import MOST_TOML_BYTES, GivenError, is_file, plain_text, toml_values
-from ..input_keys import InputValue, meant, nearest
+from ...inputs import InputValue, Word, meant, nearest
+from .built_in import scenario_names, scenario_text
 from .identify_section import require_known
 from .keys import SCENARIO_KEYS, SECTIONS
+from .replaced import replaced
 
-PATH_KEYS: Final = ("slope.profile", "snow.results", "ski.file")
+PATH_KEYS: Final = tuple(name for name, key in SCENARIO_KEYS.items() if isinstance(key, Word) and key.names_file)
 """Keys that name a file."""
 
 IDENTIFY: Final = "identify"
 """The section that says what is looked for."""
 
 _BARE: Final = {name.split(".")[1]: name for name in SCENARIO_KEYS}
-_SNOW_WAYS: Final = {
-    "snow.H_V_N_per_mm3": ("snow.results", "snow.site", "snow.published"),
-    "snow.results": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.published"),
-    "snow.published": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.results", "snow.site"),
-}
-_REPLACED: Final = {**_SNOW_WAYS, "ski.name": ("ski.file",), "ski.file": ("ski.name",)}
-_REPLACED_BY_VALUE: Final = {
-    ("slope.kind", "plane"): ("slope.profile", "slope.profile_gap"),
-    ("slope.kind", "profile"): ("slope.angle_deg",),
-    ("snow.penetration", "elastic"): ("snow.unloading_ratio",),
-    ("solver.method", "fast"): ("solver.fixed",),
-}
-
-_BUILT_IN = files(__package__.rpartition(".")[0]) / "scenarios"
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,44 +70,11 @@ class GivenScenario:
             A name is unknown (the nearest is named), or a value is of the wrong kind or outside its range.
         """
         new = in_ranges({full_name(name): value for name, value in changes.items()})
-        gone = {each for name, value in new.items() for each in _replaced(name, value)} - set(new)
+        gone = {each for name, value in new.items() for each in replaced(name, value)} - set(new)
         values = {name: value for name, value in self.values.items() if name not in gone} | new
         folders = dict(self.folders)
         folders.update((name, folder or Path()) for name in PATH_KEYS if name in new)
         return GivenScenario(self.title, self.file, values, folders, self.identify)
-
-
-def _replaced(name: str, value: InputValue) -> tuple[str, ...]:
-    by_value = _REPLACED_BY_VALUE.get((name, value), ()) if isinstance(value, str) else ()
-    return (*_REPLACED.get(name, ()), *by_value)
-
-
-def scenario_names() -> tuple[str, ...]:
-    """Names of the built-in scenarios.
-
-    >>> scenario_names()
-    ('carved-46m', 'carver-42m', 'giant-slalom-67m')
-    """
-    there = (entry.name for entry in _BUILT_IN.iterdir())
-    return tuple(sorted(name.removesuffix(".toml") for name in there if name.endswith(".toml")))
-
-
-def scenario_place(name: str) -> Path:
-    """Where a built-in scenario lies."""
-    return Path(str(_BUILT_IN / f"{name}.toml"))
-
-
-def scenario_text(name: str) -> str:
-    """The text of a built-in scenario, every key with where its value comes from.
-
-    Raises
-    ------
-    ParameterError
-        There is no such scenario; the nearest is named.
-    """
-    if name not in scenario_names():
-        raise ParameterError(f"there is no built-in scenario {name!r}. {nearest(name, scenario_names())}")
-    return (_BUILT_IN / f"{name}.toml").read_text(encoding="utf-8")
 
 
 def given_scenario(name_or_path: str | Path) -> GivenScenario:

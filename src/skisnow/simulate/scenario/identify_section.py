@@ -3,20 +3,44 @@
 from __future__ import annotations
 
 import difflib
-import math
 from collections.abc import Mapping
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Annotated, Any, Final
 
 from ...errors import ParameterError
-from ..input_keys import nearest
+from ...inputs import Quantity, checked_table, nearest, quantities
 from .free_keys import free_key
 
-GIVEN: Final = ("start", "lower", "upper", "prior_mean", "prior_sd")
-"""What may stand in ``[identify."KEY"]``."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sought:
+    """What may stand in ``[identify."KEY"]``, in the unit of that key."""
+
+    start: Annotated[float | None, Quantity("start", "where the search begins; left out: the scenario's value")] = None
+    lower: Annotated[float | None, Quantity("lower", "bound")] = None
+    upper: Annotated[float | None, Quantity("upper", "bound")] = None
+    prior_mean: Annotated[
+        float | None, Quantity("prior_mean", "mean of what is known of it, a normal distribution")
+    ] = None
+    prior_sd: Annotated[float | None, Quantity("prior_sd", "its standard deviation", lowest=0.0, above=True)] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Site:
+    """What may stand in ``[identify.site]``, in the units that the names say."""
+
+    fall_line_azimuth_deg: Annotated[
+        float, Quantity("fall_line_azimuth_deg", "compass direction in which the slope falls")
+    ]
+    latitude_deg: Annotated[float | None, Quantity("latitude_deg", "where x = y = 0 is")] = None
+    longitude_deg: Annotated[float | None, Quantity("longitude_deg", "where x = y = 0 is")] = None
+    height_m: Annotated[float | None, Quantity("height_m", "of that place above the ellipsoid")] = None
+
+
+GIVEN: Final = tuple(each.name for each in quantities(Sought))
 NO_KEYS: Final = ("runs", "site", "clock")
 """Entries of ``[identify]`` that are no parameters."""
-SITE: Final = ("fall_line_azimuth_deg", "latitude_deg", "longitude_deg", "height_m")
-"""What may stand in ``[identify.site]``."""
+SITE: Final = tuple(each.name for each in quantities(Site))
 CLOCKS: Final = ("start", "free")
 
 
@@ -61,7 +85,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
                 f'identify."{word}" is {table!r}; it must be a table with {", ".join(GIVEN)}, begun by the line '
                 f'[identify."{key}"]. A value of the scenario stands in its own section, [{key.partition(".")[0]}]'
             )
-        found[key] = {name: _number(key, name, value) for name, value in table.items()}
+        found[key] = checked_table(Sought, table, f'[identify."{key}"]')
     return found
 
 
@@ -83,11 +107,3 @@ def _table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
         what = f"[identify.{name}]" if name == "site" else f'[identify.{name}."NAME"]'
         raise ParameterError(f"identify.{name} is {table!r}; it must be a table, begun by the line {what}")
     return table
-
-
-def _number(key: str, name: str, value: object) -> float:
-    if name not in GIVEN:
-        raise ParameterError(f'[identify."{key}"]: there is no {name!r}. {nearest(name, GIVEN)}')
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ParameterError(f'[identify."{key}"]: {name} is {value!r}; it must be a finite number')
-    return float(value)

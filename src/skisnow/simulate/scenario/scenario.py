@@ -1,100 +1,154 @@
-"""A scenario: everything that a simulated turn follows from, SI, radians."""
+"""A scenario: everything that a simulated turn follows from, SI, radians.
+
+Each field declares what a file may say of it: its key with unit, range, origin of the default, size for a search.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from typing import Annotated
 
+from ...constants import STANDARD_GRAVITY
 from ...errors import ParameterError
-from ...ski import Ski
-from ...snow import SnowProperties
+from ...inputs import Quantity, Search, Word, require_declared
+from ...ski import Ski, ski_names
 from ..sledge import RigidSledge
 from .checks import require_sound
+from .contact import Contact
 from .slope import Plane, Profile
-
-Penetration: TypeAlias = Literal["hypoplastic", "elastic"]
-Method: TypeAlias = Literal["ros2", "fast"]
+from .solver import Solver
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Contact:
-    """How snow and skis meet.
+def _slope_kind(slope: Plane | Profile) -> str:
+    return "plane" if isinstance(slope, Plane) else "profile"
 
-    Attributes
-    ----------
-    snow
-        With H_V and S_f.
-    unloading_ratio
-        k_u/H_V ≥ 1; 1: elastic.
-    compaction_resistance
-        Whether the base's slope along the ski counts as resistance.
-    friction, friction_by_speed
-        μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m).
-    """
 
-    snow: SnowProperties
-    unloading_ratio: float
-    compaction_resistance: bool = True
-    friction: float
-    friction_by_speed: float = 0.0
+def _ski_name(ski: Ski) -> str | None:
+    return ski.name if ski.name in ski_names() else None
+
+
+def _ski_file(ski: Ski) -> str | None:
+    return None if ski.name in ski_names() else ski.name
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Air:
     """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m)."""
 
-    drag_area: float
-    density: float
-    centre_of_pressure_height: float
+    drag_area: Annotated[
+        float,
+        Quantity(
+            "drag.drag_area_m2",
+            "drag area C_dA; 0: no drag",
+            lowest=0.0,
+            highest=10.0,
+            origin="skiers 0.23 to 0.66; a warning beyond",
+            search=Search(1.0, 0.0, 3.0),
+        ),
+    ]
+    density: Annotated[
+        float,
+        Quantity(
+            "drag.air_density_kg_per_m3",
+            "density of the air",
+            lowest=0.0,
+            highest=2.0,
+            above=True,
+            origin="choice: 0 °C at 700 m above the sea",
+            search=Search(1.0, 0.5, 2.0),
+        ),
+    ] = 1.2
+    centre_of_pressure_height: Annotated[
+        float,
+        Quantity(
+            "drag.centre_of_pressure_height_m",
+            "height of the centre of pressure above the bases; left out: that of the centre of mass",
+            lowest=0.0,
+            highest=3.0,
+            search=Search(0.5, 0.0, 3.0),
+            needed=False,
+        ),
+    ]
+
+    def __post_init__(self) -> None:
+        require_declared(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Start:
     """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad)."""
 
-    x: float = 0.0
-    y: float = 0.0
-    speed: float
-    heading: float = 0.0
+    x: Annotated[
+        float,
+        Quantity(
+            "start.x_m",
+            "place of the boots' middle down the slope; on a profile its horizontal distance",
+            origin="choice: where x begins",
+            search=Search(1.0, -20.0, 20.0, about=True),
+        ),
+    ] = 0.0
+    y: Annotated[
+        float,
+        Quantity(
+            "start.y_m",
+            "place to the left",
+            origin="choice: where y begins",
+            search=Search(1.0, -20.0, 20.0, about=True),
+        ),
+    ] = 0.0
+    speed: Annotated[
+        float,
+        Quantity(
+            "start.speed_m_per_s",
+            "speed along the skis",
+            lowest=0.0,
+            highest=100.0,
+            search=Search(10.0, 0.0, 60.0),
+        ),
+    ]
+    heading: Annotated[
+        float,
+        Quantity(
+            "start.heading_deg",
+            "heading of the skis from the fall line, positive left",
+            lowest=-180.0,
+            highest=180.0,
+            origin="choice: down the fall line",
+            search=Search(30.0, -45.0, 45.0, about=True),
+        ),
+    ] = 0.0
+
+    def __post_init__(self) -> None:
+        require_declared(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stop:
     """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first."""
 
-    duration: float | None = None
-    length: float | None = None
+    duration: Annotated[
+        float | None,
+        Quantity(
+            "run.duration_s",
+            "simulated time; with length_m beside it, whichever comes first",
+            lowest=0.0,
+            highest=3600.0,
+            above=True,
+        ),
+    ] = None
+    length: Annotated[
+        float | None,
+        Quantity(
+            "run.length_m",
+            "length of the path of the boots' middle after which the run is done",
+            lowest=0.0,
+            highest=100_000.0,
+            above=True,
+        ),
+    ] = None
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Solver:
-    """How it is computed.
-
-    Attributes
-    ----------
-    method
-        "ros2" or "fast" (linearly implicit BDF2).
-    step
-        The first step (s), or with `fixed` every step.
-    tolerance
-        Largest error of place that a step may make by its own estimate (m).
-    fixed
-        Whether the step stays.
-    elements, line_spacing, cell
-        Finite elements over a ski, spacing of the snow's lines along the path (m), cells across (m); None: from ski and
-        snow.
-    output_interval
-        Between what is kept (s).
-    """
-
-    method: Method = "ros2"
-    step: float = 0.5e-3
-    tolerance: float = 3e-7
-    fixed: bool = False
-    elements: int | None = None
-    line_spacing: float | None = None
-    cell: float | None = None
-    output_interval: float = 0.01
+    def __post_init__(self) -> None:
+        require_declared(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,17 +171,58 @@ class Scenario:
         (m/s²), > 0.
     """
 
-    slope: Plane | Profile
+    slope: Annotated[
+        Plane | Profile,
+        Word(
+            "slope.kind",
+            "a plane, or a measured profile of heights",
+            choices=("plane", "profile"),
+            default="plane",
+            origin="choice: the simpler one",
+            told=_slope_kind,
+        ),
+    ]
     contact: Contact
     air: Air
     sledge: RigidSledge
-    ski: Ski
-    clamp_length: float = 0.3
-    damping_ratio: float = 0.02
+    ski: Annotated[
+        Ski,
+        Word("ski.name", "a ski of the catalogue", told=_ski_name),
+        Word("ski.file", "the path of a ski file, in place of a name", told=_ski_file, names_file=True),
+    ]
+    clamp_length: Annotated[
+        float,
+        Quantity(
+            "ski.clamp_length_m",
+            "length of ski that boot and binding keep straight",
+            lowest=0.0,
+            origin="choice: about a boot's sole",
+        ),
+    ] = 0.3
+    damping_ratio: Annotated[
+        float,
+        Quantity(
+            "ski.damping_ratio",
+            "damping ratio of the ski's first bending mode",
+            lowest=0.0,
+            highest=1.0,
+            origin="choice: a lightly damped beam",
+        ),
+    ] = 0.02
     start: Start
     stop: Stop
     solver: Solver = field(default_factory=Solver)
-    gravity: float = 9.81
+    gravity: Annotated[
+        float,
+        Quantity(
+            "slope.gravity_m_per_s2",
+            "acceleration of gravity",
+            lowest=0.0,
+            highest=100.0,
+            above=True,
+            origin="the value that the skiing literature computes with",
+        ),
+    ] = STANDARD_GRAVITY
 
     def __post_init__(self) -> None:
         if self.contact.snow.failure_shear_stress is None:
@@ -136,4 +231,5 @@ class Scenario:
             )
         if self.stop.duration is None and self.stop.length is None:
             raise ParameterError("the run has no end: give a duration or a length")
+        require_declared(self)
         require_sound(self)

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ...errors import ParameterError
+from ...inputs import Quantity, Search, Word, require_declared
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -23,21 +24,28 @@ Gap: TypeAlias = Literal["error", "interpolate"]
 FEWEST_POINTS: Final = 4
 LONGEST_GAP: Final = 5.0
 """Distance (m) between points of a profile beyond which it is not joined unasked (Choice)."""
-STEEPEST: Final = math.radians(75.0)
-"""Slope angle (rad) that a profile may have; steeper is a cliff (Choice)."""
+STEEPEST_DEG: Final = 75.0
+"""Slope angle (degrees) that a slope may have; steeper is a cliff (Choice)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A plane with its inclination (rad), 0 to below 90°."""
+    """A plane with its inclination (rad)."""
 
-    angle: float
+    angle: Annotated[
+        float,
+        Quantity(
+            "slope.angle_deg",
+            'inclination of the plane; only with kind = "plane"',
+            lowest=0.0,
+            highest=STEEPEST_DEG,
+            origin="choice: steeper is a cliff",
+            search=Search(10.0, -15.0, 15.0, about=True),
+        ),
+    ]
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.angle < math.pi / 2.0:
-            raise ParameterError(
-                f"the slope angle is {math.degrees(self.angle):g} degrees; it must be from 0 to below 90"
-            )
+        require_declared(self)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,10 +56,10 @@ class Profile:
     ----------
     x, height
         Horizontal distance, strictly rising, and height (m), (n,), n ≥ 4.
-    gap
-        What to do where neighbouring points are more than 5 m apart: "error", or "interpolate" over it.
     source
         Where it comes from, in words.
+    gap
+        What to do where neighbouring points are more than 5 m apart: "error", or "interpolate" over it.
 
     Raises
     ------
@@ -72,11 +80,27 @@ class Profile:
 
     x: FloatArray
     height: FloatArray
-    gap: Gap = field(default="error", kw_only=True)
-    source: str = field(default="given as numbers", kw_only=True)
+    source: Annotated[
+        str,
+        Word(
+            "slope.profile",
+            'CSV file with the columns x and y, horizontal distance and height in m; only with kind = "profile"',
+            told=str,
+            names_file=True,
+        ),
+    ] = field(default="given as numbers", kw_only=True)
+    gap: Annotated[
+        Gap,
+        Quantity(
+            "slope.profile_gap",
+            "what to do where points of the profile are more than 5 m apart",
+            origin="choice: nobody measured what lies between",
+        ),
+    ] = field(default="error", kw_only=True)
     _curve: PchipInterpolator = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        require_declared(self)
         from scipy.interpolate import PchipInterpolator  # slow to load, and no plane asks for it
 
         for name in ("x", "height"):
@@ -148,10 +172,10 @@ def _require_no_cliff(x: FloatArray, coefficients: FloatArray) -> None:
     at = np.stack([np.zeros_like(width), np.clip(turning, 0.0, width), width])
     steepness = np.abs((3.0 * a * at + 2.0 * b) * at + c)
     worst, piece = np.unravel_index(int(np.argmax(steepness)), steepness.shape)
-    if steepness[worst, piece] > math.tan(STEEPEST):
+    if steepness[worst, piece] > math.tan(math.radians(STEEPEST_DEG)):
         degrees = math.degrees(math.atan(steepness[worst, piece]))
         raise ParameterError(
             f"the profile has a cliff of {degrees:.3g} degrees between x = {x[piece]:g} m and {x[piece + 1]:g} m; at "
-            f"most {math.degrees(STEEPEST):g} degrees are allowed, a ski cannot follow more. Correct its heights or "
+            f"most {STEEPEST_DEG:g} degrees are allowed, a ski cannot follow more. Correct its heights or "
             "end it there"
         )

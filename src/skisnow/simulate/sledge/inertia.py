@@ -10,12 +10,13 @@ mass × w × v × ω.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ...errors import ParameterError
+from ...inputs import Quantity, Search, require_declared
 from ...ski.beam.clamped import ClampedSki
 from ...ski.beam.elements import GAUSS_POINTS, GAUSS_WEIGHTS, deflection_shape, twist_shape
 from .frames import base_normal, cross_matrix
@@ -42,18 +43,65 @@ class RigidSledge:
         Of both skis' bases, positive: left edges down (rad).
     """
 
-    mass: float
-    inertia: tuple[float, float, float]
-    centre_of_mass: tuple[float, float]
-    stance_width: float
-    edge_angle: float
+    mass: Annotated[float, Quantity("sledge.mass_kg", "mass without the skis", lowest=0.0, highest=1000.0, above=True)]
+    inertia: Annotated[
+        tuple[float, float, float],
+        Quantity(
+            "sledge.inertia_kg_m2",
+            "roll, pitch and yaw moments of inertia at the centre of mass, without the skis",
+            lowest=0.0,
+            above=True,
+            origin="none is more than the sum of the others",
+        ),
+    ]
+    centre_of_mass: Annotated[
+        tuple[float, float],
+        Quantity(
+            "sledge.centre_of_mass_height_m",
+            "height of the centre of mass above the bases",
+            lowest=0.0,
+            highest=3.0,
+            search=Search(0.5, 0.0, 3.0),
+            index=1,
+        ),
+        Quantity(
+            "sledge.centre_of_mass_forward_m",
+            "how far the centre of mass lies before the boots",
+            lowest=-1.0,
+            highest=1.0,
+            default=0.0,
+            origin="choice: over the boots",
+            search=Search(0.5, -1.0, 1.0),
+            index=0,
+        ),
+    ]
+    stance_width: Annotated[
+        float,
+        Quantity(
+            "sledge.stance_width_m",
+            "between the middles of the skis; at least a ski's greatest width",
+            lowest=0.0,
+            highest=3.0,
+            above=True,
+            search=Search(0.5, 0.0, 3.0),
+        ),
+    ]
+    edge_angle: Annotated[
+        float,
+        Quantity(
+            "sledge.edge_angle_deg",
+            "angle of both skis' bases to the sledge; positive: left edges down, a turn to the left",
+            lowest=-85.0,
+            highest=85.0,
+            origin="at 90° an edge bears nothing",
+            search=Search(30.0, -30.0, 30.0, about=True),
+        ),
+    ]
 
     def __post_init__(self) -> None:
-        for name, value in (("mass", self.mass), ("stance_width", self.stance_width)):
-            if not (np.isfinite(value) and value > 0.0):
-                raise ParameterError(f"{name} is {value}; it must be a finite number above 0")
+        require_declared(self)
         roll, pitch, yaw = self.inertia
-        if not (min(self.inertia) > 0.0 and 2.0 * max(self.inertia) <= roll + pitch + yaw):
+        if 2.0 * max(self.inertia) > roll + pitch + yaw:
             raise ParameterError(
                 f"inertia is {self.inertia} kg m²; each moment must be above 0 and none more than the sum of the others"
             )

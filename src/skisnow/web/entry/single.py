@@ -31,7 +31,7 @@ class SingleForm:
         self._beside = beside
         self._places = places
         table = sheet.form
-        required = [column.name for column in table.numbers if column.required]
+        required = [column.name for column in table.numbers if column.needed]
         self._columns = (*table.names, *OPTIONAL.get(table.file, ()), *required)
         self._numeric = {column.name for column in table.numbers}
         self._fields: dict[str, ui.input | ui.select] = {}

@@ -1,0 +1,73 @@
+"""Schemas and tables of keys, from what the dataclasses declare: python docs/write_inputs.py [--check].
+
+In a page a table stands between the lines ``<!-- keys of NAME -->`` and ``<!-- end of keys -->``, which no reader sees.
+Without ``--check`` schemas and pages are written anew, and git shows what has changed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from pathlib import Path
+
+import skisnow
+from skisnow.field.reading import campaign_schema
+from skisnow.field.reading.campaign_file import CAMPAIGN_KEYS
+from skisnow.field.reading.table_forms import PENETRATION, SHEAR
+from skisnow.inputs.json_schema import schema_text
+from skisnow.inputs.page_table import page_table
+from skisnow.simulate.carve_keys import CARVE_KEYS
+from skisnow.simulate.scenario import schema as scenario
+from skisnow.simulate.scenario.keys import SCENARIO_KEYS
+from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
+
+DOCS = Path(__file__).resolve().parent
+PACKAGE = Path(skisnow.__file__).resolve().parent
+SCHEMAS = {
+    scenario.FILE: scenario.scenario_schema,
+    campaign_schema.FILE: campaign_schema.campaign_schema,
+}
+_OF_CSV = ("column", "unit", "range", "meaning")
+TABLES = {
+    "scenario": page_table(SCENARIO_KEYS.values()),
+    "carve": page_table(CARVE_KEYS.values()),
+    "ski": page_table(SKI_KEYS.values(), ("key", "meaning", "unit", "range", "usual", "left out")),
+    "campaign": page_table(CAMPAIGN_KEYS.values(), ("key", "unit", "range", "meaning")),
+    "penetration": page_table(PENETRATION.numbers, _OF_CSV),
+    "shear": page_table(SHEAR.numbers[:4], _OF_CSV),
+    "stations": page_table(COLUMNS.values(), ("column", "meaning", "unit", "range", "usual", "instead of")),
+}
+TABLE = re.compile(r"(?P<mark><!-- keys of (?P<name>[\w -]+) -->\n)(?P<rows>.*?)(?=<!-- end of keys -->)", re.DOTALL)
+
+
+def anew() -> dict[Path, str]:
+    """The text of every schema and of every page with such a table."""
+    found = {PACKAGE / name: schema_text(schema()) for name, schema in SCHEMAS.items()}
+    for page in sorted((DOCS / "files").glob("*.md")):
+        text = page.read_text(encoding="utf-8")
+        if TABLE.search(text):
+            found[page] = TABLE.sub(lambda mark: mark["mark"] + TABLES[mark["name"]], text)
+    return found
+
+
+def stale() -> dict[Path, str]:
+    """Those that say something else today."""
+    return {path: text for path, text in anew().items() if path.read_text(encoding="utf-8") != text}
+
+
+def main() -> int:
+    """Number of files that said something else."""
+    parser = argparse.ArgumentParser(description="Schemas and tables of keys, from what the dataclasses declare.")
+    parser.add_argument("--check", action="store_true", help="write nothing; the exit status tells how many differ")
+    options = parser.parse_args()
+    found = stale()
+    for path, text in found.items():
+        print(path)
+        if not options.check:
+            path.write_text(text, encoding="utf-8")
+    return len(found) if options.check else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,24 @@
+"""A quantity, declared once on the dataclass that holds it: for files, checks, command line, schemas, docs, forms."""
+
+from .declared import Section, Word, made, own_quantities, quantities, require_declared, values_of
+from .nearest import meant, nearest
+from .quantity import SMALLEST, InputValue, Kind, Quantity, Search
+from .table import checked_table
+
+__all__ = [
+    "SMALLEST",
+    "InputValue",
+    "Kind",
+    "Quantity",
+    "Search",
+    "Section",
+    "Word",
+    "checked_table",
+    "made",
+    "meant",
+    "nearest",
+    "own_quantities",
+    "quantities",
+    "require_declared",
+    "values_of",
+]

@@ -1,0 +1,64 @@
+"""JSON Schemas of what files may say, from the quantities that dataclasses declare."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable
+from typing import Any, Final
+
+from .quantity import Quantity
+
+Schema = dict[str, Any]
+
+DRAFT: Final = "https://json-schema.org/draft/2020-12/schema"
+_TYPES: Final = {"number": "number", "whole number": "integer", "text": "string", "switch": "boolean"}
+
+
+def schema_of(quantity: Quantity) -> Schema:
+    """The schema of one value.
+
+    >>> schema_of(Quantity("load_N", "load", lowest=0.0, above=True))
+    {'type': 'number', 'description': 'load (N)', 'exclusiveMinimum': 0.0}
+    """
+    words = quantity.described
+    default = {} if quantity.default is None else {"default": quantity.default}
+    if quantity.kind == "three numbers":
+        items = {"type": "number", **_range(quantity)}
+        return {"type": "array", "description": words, "minItems": 3, "maxItems": 3, "items": items}
+    if quantity.kind == "numbers":
+        least = {"minItems": 1} if quantity.default is None else {}
+        return {"type": "array", "description": words, **least, "items": {"type": "number", **_range(quantity)}}
+    limits = _range(quantity) if quantity.kind != "text" else _words(quantity)
+    return {"type": _TYPES[quantity.kind], "description": words, **limits, **default}
+
+
+def table_schema(quantities: Iterable[Quantity]) -> Schema:
+    """The schema of a table of a file: its keys, no others, and which of them are needed."""
+    listed = list(quantities)
+    own = [each.name.rpartition(".")[2] for each in listed]
+    needed = [name for name, each in zip(own, listed, strict=True) if each.needed]
+    return {
+        "type": "object",
+        "additionalProperties": False,
+        **({"required": needed} if needed else {}),
+        "properties": {name: schema_of(each) for name, each in zip(own, listed, strict=True)},
+    }
+
+
+def schema_text(schema: Schema) -> str:
+    """A schema as it stands in its file."""
+    return json.dumps(schema, ensure_ascii=False, indent=1) + "\n"
+
+
+def _range(quantity: Quantity) -> Schema:
+    least = "exclusiveMinimum" if quantity.above else "minimum"
+    most = "exclusiveMaximum" if quantity.below else "maximum"
+    ends = {least: quantity.lowest, most: quantity.highest}
+    return {name: end for name, end in ends.items() if math.isfinite(end)}
+
+
+def _words(quantity: Quantity) -> Schema:
+    if quantity.choices:
+        return {"enum": list(quantity.choices)}
+    return {} if quantity.blank else {"pattern": "\\S"}

@@ -1,0 +1,28 @@
+"""What a change of a scenario replaces: the other ways of saying the same."""
+
+from __future__ import annotations
+
+from typing import Final
+
+_SNOW_WAYS: Final = {
+    "snow.H_V_N_per_mm3": ("snow.results", "snow.site", "snow.published"),
+    "snow.results": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.published"),
+    "snow.published": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.results", "snow.site"),
+}
+_REPLACED: Final = {**_SNOW_WAYS, "ski.name": ("ski.file",), "ski.file": ("ski.name",)}
+_REPLACED_BY_VALUE: Final = {
+    ("slope.kind", "plane"): ("slope.profile", "slope.profile_gap"),
+    ("slope.kind", "profile"): ("slope.angle_deg",),
+    ("snow.penetration", "elastic"): ("snow.unloading_ratio",),
+    ("solver.method", "fast"): ("solver.fixed",),
+}
+
+
+def replaced(name: str, value: object) -> tuple[str, ...]:
+    """The keys that give room when a key gets a value.
+
+    >>> replaced("ski.file", "mine.toml"), replaced("solver.method", "fast")
+    (('ski.name',), ('solver.fixed',))
+    """
+    by_value = _REPLACED_BY_VALUE.get((name, value), ()) if isinstance(value, str) else ()
+    return (*_REPLACED.get(name, ()), *by_value)

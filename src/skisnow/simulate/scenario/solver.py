@@ -1,0 +1,93 @@
+"""How a run is computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal, TypeAlias
+
+from ...inputs import Quantity, require_declared
+from ..carve_keys import MOST_ELEMENTS
+
+Method: TypeAlias = Literal["ros2", "fast"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solver:
+    """How it is computed; lengths in m, times in s. What is None follows from ski and snow."""
+
+    method: Annotated[
+        Method,
+        Quantity(
+            "solver.method",
+            "ROS2, or the linearly implicit BDF2 of the fast mode, both of second order",
+            origin="choice: the more exact one",
+        ),
+    ] = "ros2"
+    step: Annotated[
+        float,
+        Quantity(
+            "solver.step_ms",
+            "the first time step; with fixed = true every step",
+            lowest=0.001,  # below, rounding counts
+            highest=5.0,  # above, a ski's first bending mode is not resolved
+            origin="choice: near what soft snow takes",
+        ),
+    ] = 0.5e-3
+    tolerance: Annotated[
+        float,
+        Quantity(
+            "solver.tolerance_mm",
+            "largest error of place that one step may make by its own estimate",
+            lowest=1e-9,
+            highest=10.0,
+            origin="choice: see the tests of convergence",
+        ),
+    ] = 1e-6
+    fixed: Annotated[
+        bool,
+        Quantity(
+            "solver.fixed",
+            "whether the step stays as it is, without control of the error; left out with method = fast: true",
+            origin="choice: a step that is too long is wrong without a sign",
+        ),
+    ] = False
+    elements: Annotated[
+        int | None,
+        Quantity(
+            "solver.elements",
+            "finite elements over a ski; left out: from ski and snow",
+            lowest=4,
+            highest=MOST_ELEMENTS,
+        ),
+    ] = None
+    line_spacing: Annotated[
+        float | None,
+        Quantity(
+            "solver.line_spacing_mm",
+            "distance along the path between the lines that keep the snow's groove; left out: from ski and snow",
+            lowest=0.1,
+            highest=200.0,
+        ),
+    ] = None
+    cell: Annotated[
+        float | None,
+        Quantity(
+            "solver.cell_mm",
+            "cells of such a line across the path; left out: from ski and snow",
+            lowest=0.01,
+            highest=100.0,
+        ),
+    ] = None
+    output_interval: Annotated[
+        float,
+        Quantity(
+            "run.output_ms",
+            "time between the rows that are kept",
+            lowest=0.1,
+            highest=1000.0,
+            origin="choice: a tenth of a metre at 10 m/s",
+        ),
+    ] = 0.01
+
+    def __post_init__(self) -> None:
+        require_declared(self)

@@ -1,0 +1,16 @@
+"""Parts of scenarios that no scenario may have, where an equation is known for them."""
+
+from __future__ import annotations
+
+import copy
+from typing import TypeVar
+
+T = TypeVar("T")
+
+
+def beyond(thing: T, **values: object) -> T:
+    """The same with values that its constructor refuses."""
+    changed = copy.copy(thing)
+    for name, value in values.items():
+        object.__setattr__(changed, name, value)
+    return changed
