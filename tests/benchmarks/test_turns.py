@@ -57,7 +57,7 @@ def test_rows_of_the_tables_have_the_columns_of_their_heads(found: list[speed.Sp
 
 def test_finer_in_space() -> None:
     found = list(speed.finer(Runs(SECONDS), DEFAULT_STEP.changes))
-    assert [each.key for each in found] == ["solver.elements", "solver.line_spacing_mm", "solver.cell_mm"]
+    assert [each.key for each in found] == ["solver.elements", "solver.line_spacing_mm", "solver.groove_tolerance"]
     assert all(0.0 < each.end_moves_m < 0.01 for each in found)
 
 

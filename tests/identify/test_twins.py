@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from skisnow import read_scenario, simulated_run
+from skisnow.simulate.scenario import Solver
 
 from .twins import grooves, tables
 from .twins.__main__ import DOCS, KINDS, main
@@ -39,7 +40,7 @@ def test_the_truth_has_finer_numbers_than_the_identification() -> None:
     chosen, solver = simulated_run(asked).numbers, finer(asked).solver
     assert solver.elements == 2 * chosen["elements"]
     assert solver.line_spacing == pytest.approx(chosen["line_spacing_m"] / 2.0)
-    assert solver.cell == pytest.approx(chosen["cell_mm"] / 2000.0)
+    assert solver.groove_tolerance == pytest.approx(Solver().groove_tolerance / 2.0)
     assert solver.tolerance == asked.solver.tolerance / 2.0
 
 

@@ -61,7 +61,7 @@ def circle_run(
         outcome="finished", remedy="", time=time, place=place, attitude=attitude, velocity=SPEED * forward,
         heading=heading, turn_radius=np.full(count, turn * radius), skis=skis,
         groove=_groove(skis), energies=energies, run_length=SPEED * duration, steps=8000, rejected_steps=3,
-        wall_s=0.5, numbers={"elements": 40.0, "line_spacing_m": 0.02, "cell_mm": 4.0},
+        wall_s=0.5, numbers={"elements": 40.0, "line_spacing_m": 0.02},
     )  # fmt: skip
 
 

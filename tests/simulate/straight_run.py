@@ -77,7 +77,7 @@ def straight_run(
         steps=1000,
         rejected_steps=7,
         wall_s=0.5,
-        numbers={"elements": float(elements), "line_spacing_m": 0.018, "cell_mm": 4.0},
+        numbers={"elements": float(elements), "line_spacing_m": 0.018},
     )
 
 

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from skisnow.simulate import compilation
 from skisnow.simulate.scenario import read_scenario
-from skisnow.simulate.simulated_run import simulated_run
+from skisnow.simulate.judge.simulated_run import simulated_run
 
 unit = 1024.0 if sys.platform != "darwin" else 1.0
 for changes in json.loads(sys.argv[1]):

@@ -10,7 +10,7 @@ from skisnow.simulate.verification import refined_solvers, verification_dict, ve
 
 from .straight_run import STRAIGHT, straight_run
 
-KEYS = ["solver.tolerance_mm", "solver.elements", "solver.line_spacing_mm", "solver.cell_mm"]
+KEYS = ["solver.tolerance_mm", "solver.elements", "solver.line_spacing_mm", "solver.groove_tolerance"]
 
 
 def test_each_repetition_refines_one_choice_from_what_was_in_force() -> None:
@@ -20,7 +20,7 @@ def test_each_repetition_refines_one_choice_from_what_was_in_force() -> None:
         "solver.tolerance_mm": replace(plain, tolerance=plain.tolerance / 2.0),
         "solver.elements": replace(plain, elements=80),
         "solver.line_spacing_mm": replace(plain, line_spacing=0.009),
-        "solver.cell_mm": replace(plain, cell=0.002),
+        "solver.groove_tolerance": replace(plain, groove_tolerance=5e-5),
     }
 
 
@@ -41,7 +41,7 @@ def test_end_moves_by_what_the_choice_changes() -> None:
         "solver.tolerance_mm": pytest.approx((0.001, 0.0005)),
         "solver.elements": (40.0, 80.0),
         "solver.line_spacing_mm": pytest.approx((18.0, 9.0)),
-        "solver.cell_mm": pytest.approx((4.0, 2.0)),
+        "solver.groove_tolerance": pytest.approx((1e-4, 5e-5)),
     }
     assert {each["outcome"] for each in found.values()} == {"finished"}
 

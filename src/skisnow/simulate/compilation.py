@@ -130,7 +130,7 @@ def make_part(name: str, sources: str) -> None:
 
 def _calls(name: str) -> list[Call]:
     """What is compiled for one part, called as a run calls it."""
-    from .run_setup import laid_out  # which needs this module
+    from .judge.run_setup import laid_out  # which needs this module
 
     run = laid_out(read_scenario("carved-46m"))
     model, snow, world, lines, archive, memory = run.model, run.snow, run.world, run.lines, run.archive, run.memory

@@ -123,7 +123,7 @@ class Run:
     wall_s
         Time it took, without compiling (s).
     numbers
-        What the solver chose: elements, line_spacing_m, cell_mm.
+        What the solver chose: elements, line_spacing_m.
     """
 
     scenario: Scenario

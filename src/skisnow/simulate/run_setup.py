@@ -31,8 +31,6 @@ AT_REST: Final = 1e-6
 """Last step (m) of Newton's method that counts as equilibrium."""
 PROFILE_STEP: Final = 0.02
 """Spacing (m) of a profile's table."""
-FAST_TOLERANCE: Final = 10.0
-"""Tolerance of the fast mode over that of the default."""
 
 
 @dataclass(slots=True)
@@ -132,8 +130,7 @@ def laid_out(scenario: Scenario) -> Setup:
 
 def _control(scenario: Scenario) -> StepControl:
     solver = scenario.solver
-    tolerance = solver.tolerance * (FAST_TOLERANCE if solver.method == "fast" else 1.0)
-    return StepControl(first=solver.step, fixed=solver.fixed, tolerance=tolerance)
+    return StepControl(first=solver.step, fixed=solver.fixed, tolerance=solver.tolerance)
 
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
@@ -166,6 +163,7 @@ def _snow(scenario: Scenario) -> SnowField:
         friction=friction,
         surface=_surface(scenario),
         compaction_resistance=contact.compaction_resistance,
+        knot_area=scenario.solver.groove_tolerance,
     )
 
 

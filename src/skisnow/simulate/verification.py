@@ -8,7 +8,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from ..units import CM, MM
+from ..units import CM
 from .carve_dict import finite
 from .run import Outcome, Run
 from .scenario import Scenario, Solver
@@ -46,7 +46,7 @@ def refined_solvers(run: Run) -> dict[str, Solver]:
     """Solvers that are finer in one choice each, by the scenario's key.
 
     A run with control of the error gets half the tolerance, one with a fixed step half the step; twice the elements,
-    half the spacing of the snow's lines, and half the cells.
+    half the spacing of the snow's lines, and half the tolerance of the groove.
     """
     solver = run.scenario.solver
     shorter, stricter = replace(solver, step=solver.step / FINER), replace(solver, tolerance=solver.tolerance / FINER)
@@ -54,7 +54,7 @@ def refined_solvers(run: Run) -> dict[str, Solver]:
         **({"solver.step_ms": shorter} if solver.fixed else {"solver.tolerance_mm": stricter}),
         "solver.elements": replace(solver, elements=round(run.numbers["elements"] * FINER)),
         "solver.line_spacing_mm": replace(solver, line_spacing=run.numbers["line_spacing_m"] / FINER),
-        "solver.cell_mm": replace(solver, cell=run.numbers["cell_mm"] * MM / FINER),
+        "solver.groove_tolerance": replace(solver, groove_tolerance=solver.groove_tolerance / FINER),
     }
 
 
@@ -101,7 +101,6 @@ def _in_force(run: Run, key: str) -> float:
         run.scenario.solver,
         elements=round(numbers["elements"]),
         line_spacing=numbers["line_spacing_m"],
-        cell=numbers["cell_mm"] * MM,
     )
     return _chosen(chosen, key)
 

@@ -12,7 +12,6 @@ import numpy as np
 from skisnow import Run, read_scenario, simulated_run
 from skisnow.simulate.scenario import Scenario
 from skisnow.track.track import Track
-from skisnow.units import MM
 
 SCENARIOS: Final = ("giant-slalom-67m", "carver-42m")
 SEEDS: Final = range(200)
@@ -62,14 +61,14 @@ def _strength_along(distance: float) -> float:
 
 
 def finer(asked: Scenario) -> Scenario:
-    """Half the tolerance and, against what would be chosen, twice the elements, half the lines' spacing and cells."""
+    """Half the tolerance and, against what would be chosen, twice the elements, half the spacing and the groove's tolerance."""
     chosen = simulated_run(replace(asked, stop=replace(asked.stop, duration=1e-3, length=None))).numbers
     solver = replace(
         asked.solver,
         tolerance=asked.solver.tolerance / FINER,
         elements=round(chosen["elements"] * FINER),
         line_spacing=chosen["line_spacing_m"] / FINER,
-        cell=chosen["cell_mm"] * MM / FINER,
+        groove_tolerance=asked.solver.groove_tolerance / FINER,
     )
     return replace(asked, solver=solver)
 

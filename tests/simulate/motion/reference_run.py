@@ -10,9 +10,9 @@ import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
+from skisnow.simulate.judge.run_setup import Setup
 from skisnow.simulate.motion.lines import CELLS
 from skisnow.simulate.motion.model import Snow, World
-from skisnow.simulate.run_setup import Setup
 from skisnow.ski.beam.clamped import clamped
 
 from .reference import Body, Motion, felt, motion_of, ros2_step

@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from skisnow.simulate.judge.run_record import Record
+from skisnow.simulate.judge.run_setup import Setup, set_up
 from skisnow.simulate.motion.advance import observe
 from skisnow.simulate.motion.equations import add_forces, drag_power, move
 from skisnow.simulate.motion.forces import HELD, NORMAL, RELEASED, SHEAR, SIDEWAYS, SPRINGY, feel, new_forces
@@ -17,8 +19,6 @@ from skisnow.simulate.motion.lines import ANCHOR, DEPTH, EDGE, TOUCHED
 from skisnow.simulate.motion.model import PADDING, new_state
 from skisnow.simulate.motion.path import energy_in_snow, press
 from skisnow.simulate.motion.system import new_vector
-from skisnow.simulate.run_record import Record
-from skisnow.simulate.run_setup import Setup, set_up
 from skisnow.simulate.scenario import read_scenario
 
 FloatArray = npt.NDArray[np.float64]

@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from skisnow.simulate.judge.run_record import Record
+from skisnow.simulate.judge.run_setup import Setup, set_up
 from skisnow.simulate.motion.archive import new_archive, put_away
 from skisnow.simulate.motion.forces import Forces, feel, new_forces
 from skisnow.simulate.motion.lines import (
@@ -33,8 +35,6 @@ from skisnow.simulate.motion.lines import (
 )
 from skisnow.simulate.motion.model import PADDING, State
 from skisnow.simulate.motion.path import press
-from skisnow.simulate.run_record import Record
-from skisnow.simulate.run_setup import Setup, set_up
 from skisnow.simulate.scenario import read_scenario
 
 FloatArray = npt.NDArray[np.float64]

@@ -10,11 +10,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from skisnow.simulate.judge.run_record import Record
+from skisnow.simulate.judge.run_setup import Setup, set_up
+from skisnow.simulate.judge.simulated_run import simulated_run
 from skisnow.simulate.motion.model import sledge_model
-from skisnow.simulate.run_record import Record
-from skisnow.simulate.run_setup import Setup, set_up
 from skisnow.simulate.scenario import read_scenario
-from skisnow.simulate.simulated_run import simulated_run
 from skisnow.simulate.sledge import RigidSledge
 
 from ..beyond_ranges import beyond

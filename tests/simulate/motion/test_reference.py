@@ -9,14 +9,14 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from skisnow.simulate.judge.run_record import Record
+from skisnow.simulate.judge.run_setup import Setup, set_up
 from skisnow.simulate.motion.equations import add_forces, channel_rows
 from skisnow.simulate.motion.forces import FRICTION, NORMAL, SHEAR, feel
 from skisnow.simulate.motion.lines import ANCHORED, CELLS, KEPT, TOUCHED, WINDOW, cells_of
 from skisnow.simulate.motion.model import PADDING
 from skisnow.simulate.motion.system import factor, new_vector
 from skisnow.simulate.motion.tangent import CHANNELS
-from skisnow.simulate.run_record import Record
-from skisnow.simulate.run_setup import Setup, set_up
 from skisnow.simulate.scenario import read_scenario
 
 from .reference import felt, free_forces, motion_of

@@ -19,7 +19,7 @@ class Solver:
         Method,
         Quantity(
             "solver.method",
-            "ROS2, or the linearly implicit BDF2 of the fast mode, both of second order",
+            "implicit steps of BDF2 with the error controlled, or fixed ones of the fast mode",
             origin="choice: the more exact one",
         ),
     ] = "ros2"
@@ -30,7 +30,7 @@ class Solver:
             "the first time step; with fixed = true every step",
             lowest=0.001,  # below, rounding counts
             highest=5.0,  # above, a ski's first bending mode is not resolved
-            origin="choice: near what soft snow takes",
+            origin="choice: near what a start takes",
         ),
     ] = 0.5e-3
     tolerance: Annotated[
@@ -42,7 +42,7 @@ class Solver:
             highest=10.0,
             origin="choice: see the tests of convergence",
         ),
-    ] = 1e-6
+    ] = 3e-7
     fixed: Annotated[
         bool,
         Quantity(
@@ -69,11 +69,21 @@ class Solver:
             highest=200.0,
         ),
     ] = None
+    groove_tolerance: Annotated[
+        float,
+        Quantity(
+            "solver.groove_tolerance",
+            "share of a contact's depth times width by which the groove on a line may be simplified",
+            lowest=1e-9,
+            highest=0.1,
+            origin="choice: see the tests of convergence",
+        ),
+    ] = 1e-4
     cell: Annotated[
         float | None,
         Quantity(
             "solver.cell_mm",
-            "cells of such a line across the path; left out: from ski and snow",
+            "has no effect since the groove is kept as straight pieces; read so that older files stay good",
             lowest=0.01,
             highest=100.0,
         ),

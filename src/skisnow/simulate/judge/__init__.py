@@ -1,0 +1,1 @@
+"""The solver before the compiled core, kept to judge it: machine code by Numba, linearly implicit steps."""

@@ -1,0 +1,186 @@
+"""A scenario computed: the loop over output times, how a run ends, what is kept of it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ...errors import SolverError
+from ..run import OPEN_SHARE, Groove, Outcome, Run
+from ..scenario import Scenario
+from .run_record import Record
+from .run_setup import AT_REST, Setup, set_up
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Progress: TypeAlias = Callable[[float, float], None]
+"""Takes the simulated time (s), and the share of the run that is done, 0 to 1."""
+Strength: TypeAlias = Callable[[float], float]
+"""Takes the distance run (m), and gives S_f over that of the scenario, > 0."""
+
+TIPPED: Final = math.radians(60.0)
+"""Angle between the sledge and the snow's normal at which it has tipped over (Choice)."""
+LONGEST_FLIGHT: Final = 0.3
+"""Time (s) with both skis off the snow after which it is airborne (Choice)."""
+SINKING_DEPTH: Final = 0.5
+"""Depth (m) of the boots below the surface at which the sledge has sunk (Choice)."""
+OUTPUTS_AT_ONCE: Final = 5
+"""Outputs between which nothing is told or asked while all goes well."""
+_COMPUTED_WRONG: Final = ("step_too_small", "not_finite", "interrupted")
+"""Outcomes that an open balance does not take the place of."""
+_REACHED: Final = 1e-6
+"""Run length (m) that counts as none left."""
+
+REMEDIES: Final[dict[Outcome, str]] = {
+    "finished": "The duration was simulated to its end.",
+    "distance_reached": "The run length was reached.",
+    "end_of_slope": "The tips reached the end of the profile. Give a longer profile, or a shorter run.",
+    "tipped_over": "The sledge leant more than 60° from the snow's normal: it has tipped over. Lower its centre of "
+    "mass, widen the stance, or take less edge or speed.",
+    "airborne": "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a "
+    "smoother slope.",
+    "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
+    "Take harder snow, less mass or a wider ski.",
+    "energy_open": "The balance of energy is open by more than a tenth of what was turned over: these numbers are not "
+    "those of a sledge on snow. Take smaller steps, or the error control (solver.method ros2, solver.fixed false); on "
+    "very hard snow, or at more than 50° of edge angle, a smaller tolerance.",
+    "step_too_small": "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen "
+    "the tolerance, or take a smaller k_u/H_V.",
+    "not_finite": "The numbers diverged. Take a smaller step, or leave the error control on.",
+    "interrupted": "The run was stopped; what had been computed is kept.",
+}
+
+
+def simulated_run(
+    scenario: Scenario, *, progress: Progress | None = None, strength_along: Strength | None = None
+) -> Run:
+    """Simulate a scenario from static equilibrium.
+
+    Parameters
+    ----------
+    scenario
+        What to simulate.
+    progress
+        Is told the simulated time and the share that is done, after every five outputs at the latest.
+    strength_along
+        S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places. Asked
+        once for each output interval, for both skis and all along them.
+
+    Returns
+    -------
+    Run
+        Whatever the outcome, with what was computed so far. Ctrl-C ends a run with the outcome "interrupted".
+
+    Raises
+    ------
+    SolverError
+        The sledge finds no equilibrium to start from.
+
+    Notes
+    -----
+    One thread; the same scenario gives the same bits on the same machine.
+    """
+    setup = set_up(scenario)
+    record = Record(setup)
+    if setup.height < -SINKING_DEPTH or (setup.unrest > AT_REST and setup.sinks):
+        record.add()
+        return computed_run(setup, record, "sunk", 0.0)
+    if setup.unrest > AT_REST:
+        raise SolverError("the search for the sledge at rest did not come to an end")
+    record.add()
+    begin = time.perf_counter()
+    try:
+        outcome = _loop(setup, record, progress, strength_along)
+    except KeyboardInterrupt:
+        outcome = "interrupted"
+    return computed_run(setup, record, outcome, time.perf_counter() - begin)
+
+
+def _loop(setup: Setup, record: Record, progress: Progress | None, strength_along: Strength | None) -> Outcome:
+    """Go from output to output until something ends the run."""
+    strength = setup.snow.shear_stress
+    stop, interval = setup.scenario.stop, setup.scenario.solver.output_interval
+    duration = math.inf if stop.duration is None else stop.duration
+    length = math.inf if stop.length is None else stop.length
+    flying, number, nearing = 0.0, 0, False
+    while True:
+        now = setup.time
+        if now >= duration:
+            return "finished"
+        left = length - record.run_length
+        if left <= _REACHED:
+            return "distance_reached"
+        moments = _moments(number, interval, duration)
+        was_near, nearing = nearing, setup.speed * (moments[0] - now) > left
+        if nearing:
+            moments = np.array([now + max(left / setup.speed, 1e-9)])
+        elif strength_along is not None or not _far(setup.speed, moments[-1] - now, left):
+            moments = moments[:1]
+        if strength_along is not None:
+            setup.snow = setup.snow._replace(shear_stress=strength * strength_along(record.run_length))
+        trouble = record.advance(moments, replace=was_near)
+        number = math.floor(setup.time / interval + 1e-9)
+        if record.gains_energy:
+            record.drop()
+            return "not_finite"
+        if progress is not None:
+            progress(setup.time, min(1.0, max(setup.time / duration, record.run_length / length)))
+        if trouble is not None:
+            return trouble
+        flying = 0.0 if setup.touches else flying + record.last_interval
+        ended = _ended(setup, flying)
+        if ended is not None:
+            return ended
+
+
+def _moments(number: int, interval: float, duration: float) -> FloatArray:
+    """The next outputs (s) after output `number`, none after the duration."""
+    times = [(number + 1 + i) * interval for i in range(OUTPUTS_AT_ONCE)]
+    return np.array([time for time in times if time <= duration] or [duration])
+
+
+def _far(speed: float, duration: float, left: float) -> bool:
+    """Whether the run cannot come to its end within a duration (s), at 10 m/s² more than its speed."""
+    return speed * duration + 5.0 * duration * duration < left
+
+
+def _ended(setup: Setup, flying: float) -> Outcome | None:
+    if setup.leaning > TIPPED:
+        return "tipped_over"
+    if flying >= LONGEST_FLIGHT:
+        return "airborne"
+    if setup.height < -SINKING_DEPTH:
+        return "sunk"
+    return "end_of_slope" if setup.past_end else None
+
+
+def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) -> Run:
+    """What came out; an end with the balance of energy open is no such end."""
+    counts = setup.memory.clock.counts
+    run = Run(
+        scenario=setup.scenario,
+        outcome=outcome,
+        remedy=REMEDIES[outcome],
+        **record.histories(),
+        groove=_groove(setup),
+        run_length=record.run_length,
+        steps=int(counts[0]),
+        rejected_steps=int(counts[1]),
+        wall_s=wall,
+        numbers=setup.numbers,
+    )
+    if outcome in _COMPUTED_WRONG or not run.is_open_by(OPEN_SHARE):
+        return run
+    return replace(run, outcome="energy_open", remedy=REMEDIES["energy_open"])
+
+
+def _groove(setup: Setup) -> Groove:
+    frame, place, width, depth = setup.left_behind()
+    left = frame[:, 6:9]
+    ratio = 1.0 - 1.0 / setup.scenario.contact.unloading_ratio
+    return Groove(frame[:, :3] + place[:, None] * left, left, width, depth, depth * ratio)
