@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skisnow.simulate.run_record import Record
-from skisnow.simulate.run_setup import set_up
+from skisnow.simulate.run_setup import laid_out
 from skisnow.simulate.scenario import read_scenario
 
 from .cases import SCENARIO, fixed
@@ -19,25 +19,26 @@ LIFTED_M = 100.0
 """Height above the slope; a second's fall is 5 m."""
 
 
-def released(step_ms: float) -> Record:
+def released(step_ms: float, lifted_m: float = LIFTED_M) -> Record:
     """The sledge with skis bent as they rest in the snow, lifted off it."""
-    setup = set_up(read_scenario(SCENARIO, changes=fixed(step_ms)))
-    setup.memory.state.place[2] += LIFTED_M
-    record = Record(setup)
-    record.add()
-    return record
+    setup = laid_out(read_scenario(SCENARIO, changes=fixed(step_ms)))
+    dynamics = setup.dynamics
+    dynamics.settle()
+    dynamics.move_to(dynamics.position + np.array([0.0, 0.0, lifted_m]), dynamics.rotation)
+    dynamics.begin(np.array([setup.scenario.start.speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    return Record(setup)
 
 
 def flown(record: Record, duration_s: float) -> None:
     """Fly on, without output on the way."""
-    trouble = record.advance(np.array([record.setup.time + duration_s]))
+    trouble = record.advance(record.setup.time + duration_s)
     if trouble is not None or record.setup.touches:
         raise AssertionError(f"our sledge did not fly: {trouble or 'it touches snow'}")
 
 
 def tips(record: Record) -> FloatArray:
     """Places of both skis' tips, as if the skis had no shovel (2, 3) (m)."""
-    model, state = record.setup.model, record.setup.memory.state
-    bent = state.bend[:, int(model.at[0, 0])]
-    here = model.middle + model.node[0] * np.array([1.0, 0.0, 0.0]) + np.outer(bent, model.normal)
-    return np.asarray(state.place + here @ state.turn.T)
+    dynamics, tip = record.setup.dynamics, record.setup.node[0]
+    bent = dynamics.bend[:, 0]  # the first unknown: the deflection of the node at the tip
+    here = [ski.boot + tip * ski.axes[0] + w * ski.axes[2] for ski, w in zip(dynamics.body.skis, bent, strict=True)]
+    return np.asarray(dynamics.position + np.array(here) @ dynamics.rotation.T)

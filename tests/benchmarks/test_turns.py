@@ -108,16 +108,15 @@ def test_a_peer_that_is_absent_is_named(monkeypatch: pytest.MonkeyPatch) -> None
 def test_our_sledge_flies() -> None:
     """In 0.2 s it falls as a stone, but for what skis and air do; a sledge that is not lifted is refused."""
     record = own_flight.released(0.5)
-    state = record.setup.memory.state
-    height, tips, rising = state.place[2], own_flight.tips(record), state.turn[2] @ state.velocity[:3]
+    flying = record.setup.dynamics
+    height, tips, rising = flying.position[2], own_flight.tips(record), flying.rotation[2] @ flying.velocity[:3]
     own_flight.flown(record, 0.2)
-    fallen = 0.5 * 0.2**2 * -record.setup.world.gravity[2] - 0.2 * rising
-    assert height - state.place[2] == pytest.approx(fallen, rel=0.01)
+    fallen = 0.5 * 0.2**2 * -flying.body.gravity[2] - 0.2 * rising
+    assert height - flying.position[2] == pytest.approx(fallen, rel=0.01)
     assert tips[:, 2] - own_flight.tips(record)[:, 2] == pytest.approx(fallen, abs=0.05)  # they unbend by a centimetre
     found = peers.own(duration_s=SECONDS, repeats=1)
     assert 0.0 < found.tip_off_m < 0.005
-    on_snow = own_flight.released(0.5)
-    on_snow.setup.memory.state.place[2] -= own_flight.LIFTED_M
+    on_snow = own_flight.released(0.5, lifted_m=0.0)
     with pytest.raises(AssertionError, match="touches snow"):
         own_flight.flown(on_snow, 0.002)
 

@@ -114,6 +114,10 @@ class Dynamics:
         """Move to equilibrium in height, roll, pitch and bend, place and heading held; Newton's last step (m)."""
         return float(self._core.settle())
 
+    def move_to(self, position: FloatArray, rotation: FloatArray) -> None:
+        """Put the body elsewhere before it begins, its skis bent as they are."""
+        self._core.set_pose(np.ascontiguousarray(position, float), np.ascontiguousarray(rotation, float))
+
     def begin(self, velocity: FloatArray) -> None:
         """Let the motion begin where the body is: velocity and angular velocity in its own axes (6,)."""
         self._core.set_velocity(np.ascontiguousarray(velocity, float))

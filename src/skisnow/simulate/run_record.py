@@ -76,7 +76,7 @@ class Record:
     def _present(self) -> Moment:
         dynamics = self.setup.dynamics
         rotation = dynamics.rotation
-        bend = _at_nodes(dynamics.bend, dynamics.body.skis[0].unknown)
+        bend = at_nodes(dynamics.bend, dynamics.body.skis[0].unknown)
         along = np.concatenate(
             [np.stack([dynamics.along(k) for k in range(len(bend))], axis=1), bend[:, :, 0][None], bend[:, :, 2][None]]
         )
@@ -152,7 +152,7 @@ class Record:
         return out
 
 
-def _at_nodes(bend: FloatArray, unknown: FloatArray) -> FloatArray:
+def at_nodes(bend: FloatArray, unknown: FloatArray) -> FloatArray:
     """Unknowns of the free nodes (skis, n) at all nodes, zero where held: (skis, nodes, 3)."""
     out = np.zeros((len(bend), len(unknown), 3))
     out[:, unknown >= 0] = bend.reshape(len(bend), -1, 3)

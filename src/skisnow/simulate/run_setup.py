@@ -98,16 +98,16 @@ class Setup:
         return self.surface_height(x), self.slope_normal(x)
 
 
-def set_up(scenario: Scenario) -> Setup:
-    """Choose the solver's numbers, lay the snow out and set the sledge down on it."""
-    setup = laid_out(scenario)
+def set_up(scenario: Scenario, snow: SnowField | None = None) -> Setup:
+    """Choose the solver's numbers, lay the snow out, or take this one, and set the sledge down on it."""
+    setup = laid_out(scenario, snow)
     setup.unrest = setup.dynamics.settle()
     setup.dynamics.begin(np.array([scenario.start.speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
     return setup
 
 
-def laid_out(scenario: Scenario) -> Setup:
-    """The sledge above the snow, before anything moves."""
+def laid_out(scenario: Scenario, snow: SnowField | None = None) -> Setup:
+    """The sledge above the snow, before anything moves; above this one, with the tracks in it, where it is given."""
     load, depth, wavelength = _contact(scenario)
     solver, air = scenario.solver, scenario.air
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])
@@ -118,7 +118,7 @@ def laid_out(scenario: Scenario) -> Setup:
         scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity(scenario),
         drag=0.5 * air.density * air.drag_area, drag_height=air.centre_of_pressure_height,
     )  # fmt: skip
-    snow = _snow(scenario)
+    snow = snow or _snow(scenario)
     runner = Runner.of(scenario.ski, nodes=ski.node)
     contact = SnowContact(snow, [runner, runner], spacing=spacing)
     dynamics = Dynamics(body, contact, *_start(scenario, depth), _control(scenario))

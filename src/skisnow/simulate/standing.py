@@ -55,9 +55,8 @@ def _carried_across(setup: Setup) -> tuple[float, float]:
     width, length = float(ski.width.max()), float(ski.station[0] - ski.station[-1])
     tangent = max(math.tan(abs(angle)), 1e-9)
     # all of the weight on one ski; a sledge that leans may double it
-    depth = math.sqrt(
-        4.0 * setup.numbers["load_N"] * tangent / (setup.scenario.contact.snow.snow_hardness * 0.8 * length)
-    )
+    hardness = setup.scenario.contact.snow.snow_hardness
+    depth = math.sqrt(4.0 * setup.numbers["load_N"] * tangent / (hardness * 0.8 * length))
     side, wet = setup.scenario.sledge.stance_width / 2.0, min(2.0 * depth / tangent, width)
     beyond = wet - width / 2.0
     return (side + beyond, side + width / 2.0) if angle > 0.0 else (side + width / 2.0, side + beyond)

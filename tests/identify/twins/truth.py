@@ -61,7 +61,7 @@ def _strength_along(distance: float) -> float:
 
 
 def finer(asked: Scenario) -> Scenario:
-    """Half the tolerance and, against what would be chosen, twice the elements, half the spacing and the groove's tolerance."""
+    """Half the tolerance and, against what would be chosen, twice the elements, half the other choices."""
     chosen = simulated_run(replace(asked, stop=replace(asked.stop, duration=1e-3, length=None))).numbers
     solver = replace(
         asked.solver,

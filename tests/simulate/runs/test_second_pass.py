@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow import Run, simulated_run
+from skisnow.simulate.scenario import Solver
 
 from ..equilibrium.synthetic import shovel
 from .sledges import GRAVITY, rigid_ski, scenario
@@ -27,6 +28,7 @@ def up_and_back(unloading_ratio: float, *, duration: float = 3.2) -> Run:
             heading_deg=180.0,
             speed=SPEED,
             duration=duration,
+            solver=Solver(tolerance=3e-8),
         )
     )
 

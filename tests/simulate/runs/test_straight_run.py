@@ -51,7 +51,7 @@ def test_without_compaction() -> None:
     run = straight(compaction=False)
     assert run.outcome == "finished"
     assert run.speed**2 == pytest.approx(squared_speed(run.scenario, run.place[:, 0], 0.0, SPEED**2), rel=2e-4)
-    assert np.abs(run.place[:, 1]).max() < 1e-9
+    assert np.abs(run.place[:, 1]).max() < 1e-8  # rounding, which the shovels amplify
     assert run.run_length == pytest.approx(run.place[-1, 0], rel=1e-6)
     assert run.energies["friction"][-1] == pytest.approx(FRICTION * load(run.scenario) * run.place[-1, 0], rel=1e-3)
 
