@@ -10,6 +10,8 @@ from hashlib import sha256
 import sqlalchemy as sa
 from alembic import op
 
+from skisnow.given import json_value
+
 revision = "0004"
 down_revision = "0003"
 branch_labels = None
@@ -48,7 +50,7 @@ def _sha256(row: Mapping[str, bytes | None]) -> str:
 def _sums(row: Mapping[str, bytes | None]) -> str:
     particulars = {name: _crc32(row[name]) for name in PARTICULARS}
     try:
-        said = json.loads((row["cells"] or b"").decode(errors="replace"))
+        said = json_value((row["cells"] or b"").decode(errors="replace"))
         cells = {column: _crc32(cell.encode()) for column, cell in said.items()}
     except (ValueError, AttributeError):
         cells = {}  # damaged before: it is told as before
