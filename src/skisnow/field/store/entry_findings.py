@@ -41,7 +41,11 @@ def _of_form(connection: Connection, row: _Row) -> Iterator[Finding]:
     """What was never written down, whatever its checksum."""
     asked = select(journal_entry).where(journal_entry.c.sequence == int(_text(row["sequence"])))
     try:
-        readable_entry(connection.execute(asked).mappings().one())
+        found = connection.execute(asked).mappings().first()
+        if found is None:
+            yield _finding(row, _place(row, None), "it is not found by its number")
+        else:
+            readable_entry(found)
     except StoreError as error:
         yield Finding(_text(row["journal_id"]), None, str(error))
     except (DatabaseError, UnicodeDecodeError):
