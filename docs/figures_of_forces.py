@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -349,13 +349,13 @@ FIGURES: Final[dict[str, Callable[[Axes], None]]] = {
 """Drawing by page."""
 
 
-def draw(folder: Path) -> None:
-    """Write all figures as PNG into the folder."""
+def draw(folder: Path, names: Iterable[str] = tuple(FIGURES)) -> None:
+    """Write figures, all unless named, as PNG into the folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    for name, fill in FIGURES.items():
+    for name in names:
         with journal_style():
             figure = new_figure(width_mm=105.0, height_mm=68.0)
-            fill(figure.add_subplot())
+            FIGURES[name](figure.add_subplot())
             figure.savefig(folder / f"{name}.png", dpi=150, metadata={"Software": None})
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from itertools import count
 
 import pytest
@@ -12,6 +13,9 @@ import pytest
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from skisnow.report.figures.drawing import Drawing, Picture
+
+# what is started in the background is told to ignore Ctrl-C, which tests of an interrupt would wait for
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

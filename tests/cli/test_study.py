@@ -117,10 +117,7 @@ def test_bad_input_is_refused_in_a_sentence(
 
 
 def started(path: Path, *words: str) -> subprocess.Popen[bytes]:
-    # tests that run in the background ignore Ctrl-C, and hand that on
-    heard = "signal.signal(signal.SIGINT, signal.default_int_handler)"
-    program = f"import runpy, signal; {heard}; runpy.run_module('skisnow', run_name='__main__')"
-    words = (sys.executable, "-c", program, "study", str(path), *words)
+    words = (sys.executable, "-m", "skisnow", "study", str(path), *words)
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 

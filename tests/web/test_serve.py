@@ -51,15 +51,24 @@ def test_the_first_line_is_the_address_of_this_machine_alone(served: Served) -> 
     assert "default-src 'none'" in headers["content-security-policy"]
 
 
+@pytest.fixture
+def unserved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What would be served fails the test."""
+    monkeypatch.setattr("skisnow.web.server.serve", lambda *_, **__: pytest.fail("it is served"))
+
+
+@pytest.mark.usefixtures("unserved")
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.0.2.1"])
-def test_another_host_needs_a_token(host: str, tmp_path: Path) -> None:
-    done = command("--host", host, store=tmp_path / "s.sqlite3")
-    assert done.returncode == 1 and done.stdout == ""
-    assert "add --token" in done.stderr and "Traceback" not in done.stderr
+def test_another_host_needs_a_token(host: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serve", "--host", host, "--store", str(tmp_path / "s.sqlite3")]) == 1
+    out, err = capsys.readouterr()
+    assert out == "" and "add --token" in err and "Traceback" not in err
 
 
-def test_a_blank_token_is_none(tmp_path: Path) -> None:
-    assert "token is blank" in command("--token", " ", store=tmp_path / "s.sqlite3").stderr
+@pytest.mark.usefixtures("unserved")
+def test_a_blank_token_is_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serve", "--token", " ", "--store", str(tmp_path / "s.sqlite3")]) == 1
+    assert "token is blank" in capsys.readouterr().err
 
 
 def test_a_port_that_is_taken_is_said(served: Served, tmp_path: Path) -> None:

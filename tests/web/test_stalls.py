@@ -7,9 +7,10 @@ import json
 import os
 import signal
 import time
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -26,6 +27,7 @@ if not hasattr(signal, "SIGSTOP"):
     pytest.skip("no process can be stopped here", allow_module_level=True)
 
 STALL_S = 60.0
+HELD = "JSON.parse(sessionStorage.getItem('skisnow.page.' + location.pathname))?.held?.length"
 UNANSWERED = "Object.keys(localStorage).filter((key) => key.startsWith('skisnow.reading'))"
 
 
@@ -52,6 +54,12 @@ def rows(served: Served, file: str, *columns: str) -> list[list[str]]:
         (head,) = Journals(store).list()
         tests = grown(Journals(store).entries(head.id)).of_file(file)
     return [[row.cells[column] for column in columns] for test in tests for row in test.rows]
+
+
+def the_description(served: Served) -> dict[str, Any]:
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        return tomllib.loads(grown(Journals(store).entries(head.id)).description)
 
 
 def opened(page: Page, served: Served, table: str = "") -> None:
@@ -84,6 +92,74 @@ def test_a_series_while_the_lab_stands_still(page: Page, served: Served, seconds
     assert depths(served) == {"1": ["1.5", "2.15", "2.6"], "2": ["1.9", "2.7", "3.3"]}
     assert page.evaluate("window.isSamePage")
     assert page.evaluate(UNANSWERED) == []
+
+
+@of_seconds(2.0)
+def test_a_campaign_is_described_while_the_lab_stands_still(page: Page, served: Served, seconds: float) -> None:
+    """A hand goes on by Tab and Enter: into a row that is not there yet, then into the first series."""
+    page.goto(f"{served.address}describe")
+    fill(page, {"Length (mm) of tool 1": "200", "Width (mm) of tool 1": "62"})
+    page.get_by_label("Name of tool 1", exact=True).fill("pie")
+    page.evaluate("window.isSamePage = true")
+    with stopped(served, seconds):
+        page.keyboard.type("ce")
+        page.get_by_label("Loads of the disc set (N), with blanks between", exact=True).press("End")
+        page.keyboard.type("20 40 60")
+        page.get_by_role("button", name="Another tool").press("Enter")
+        page.keyboard.type("disc\n50\n40\n")
+        page.wait_for_function(f"{HELD} === 12")  # with the Enter on the button
+    page.wait_for_function("document.activeElement.getAttribute('aria-label') === 'Name of plate 1'")
+    ready(page)
+    page.get_by_label("Name of the campaign", exact=True).press("End")
+    with stopped(served, seconds):
+        page.keyboard.type("one")
+        page.get_by_role("button", name="Store and enter tests").press("Enter")
+        assert page.evaluate("window.isSamePage")
+        page.keyboard.type("A\n30\n1.5\n")
+        page.wait_for_function(f"{HELD} === 9")
+    page.get_by_text("Stored: 1.5 mm under 20 N.").wait_for()
+    page.keyboard.type("2.5\n")
+    page.get_by_text("Stored: 2.5 mm under 40 N.").wait_for()
+    assert depths(served) == {"1": ["1.5", "2.5"]}
+    described = the_description(served)
+    assert described["name"] == "one" and described["load_steps_N"] == [20.0, 40.0, 60.0]
+    tools = [(each["name"], each["length_mm"], each["width_mm"]) for each in described["tool"]]
+    assert tools == [("piece", 200.0, 62.0), ("disc", 50.0, 40.0)]
+
+
+def test_all_rows_outlive_a_reload_and_a_kill(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}describe")
+    fill(page, {"Name of the campaign": "one", "Loads of the disc set (N), with blanks between": "20 40"})
+    fill(page, {"Name of tool 1": "piece", "Length (mm) of tool 1": "200", "Width (mm) of tool 1": "62"})
+    for name, length in (("round", "50"), ("third", "70")):
+        page.get_by_role("button", name="Another tool").press("Enter")
+        ready(page)
+        page.keyboard.type(f"{name}\n{length}")
+    page.get_by_label("Shape of tool 2", exact=True).click()
+    page.get_by_role("option", name="disc", exact=True).click()
+    fill(page, {"Diameter (mm) of tool 2": "30", "Width (mm) of tool 3": "40"})
+    page.get_by_role("button", name="Another plate").press("Enter")
+    ready(page)
+    page.keyboard.type("second")
+    page.reload()
+    ready(page)
+    page.locator("[aria-label='Name of plate 2']:focus").wait_for()
+    with stopped(served, 0.0):
+        page.get_by_role("button", name="Another plate").press("Enter")
+        page.keyboard.type("thi")
+        killed_while(page, served, "rd\n9")
+    page.get_by_label("Name of plate 3", exact=True).wait_for()
+    ready(page)
+    fill(page, {f"Length (mm) of plate {number}": f"{number}00" for number in (2, 3)})
+    page.get_by_role("button", name="Store and enter tests").press("Enter")
+    page.get_by_role("heading", name="New series").wait_for()
+    described = the_description(served)
+    assert [tuple(each.values()) for each in described["tool"]] == [
+        ("piece", "ski", 200.0, 62.0),
+        ("round", "disc", 30.0),
+        ("third", "ski", 70.0, 40.0),
+    ]
+    assert [tuple(each.values()) for each in described["plate"]] == [("second", 200.0), ("third", 300.0)]
 
 
 @pytest.mark.slow

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     Act: TypeAlias = Callable[[], bool | None]
 
 ASK: Final = "() => lab.ask(emit)"
+ASK_FOR_ROW: Final = "() => lab.ask(emit, 'row')"
 ENTER: Final = "(event) => lab.enter(event, emit)"
 ONWARD: Final = "(event) => lab.onward(event)"
 LONGEST: Final = 200
@@ -110,6 +111,16 @@ def _asked_of(said: Any) -> Asked:
 def asking_button(text: str, act: Act, kind: str = "") -> ui.button:
     """A button whose answer puts the focus somewhere; see `skisnow.web.fields.button`."""
     return button(text, None, kind).on("click", answering(act), js_handler=ASK)
+
+
+def row_button(text: str, act: Act) -> ui.button:
+    """A button that adds a row to a form, stores nothing, and puts the focus into the row."""
+    return button(text, None, "adds").on("click", answering(act), js_handler=ASK_FOR_ROW)
+
+
+def go_on(address: str) -> None:
+    """Leave the page, on which all is stored, for another one of the lab; what is typed meanwhile goes there."""
+    ui.run_javascript(f"lab.leave({json.dumps(address)})")
 
 
 def form(classes: str = "fields", *, sends: Act | None = None) -> ui.element:

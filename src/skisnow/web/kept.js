@@ -11,6 +11,8 @@
   let here = ""; // the page that was kept last
   let isOver = false;
   let restored = false; // nothing is written over what was kept before it was put back
+  let first = null; // the form as the page was loaded
+  let onward = null; // what is kept for the page that is gone on to
 
   // A browser may forbid its storage: then nothing is kept, and all else goes on.
   const quietly = (act) => { try { return act(); } catch { return null; } };
@@ -69,7 +71,7 @@
   // Fields
 
   const nameOf = (field) => field?.getAttribute("aria-label") || field?.innerText?.trim() || "";
-  const thens = () => document.querySelectorAll("button.then");
+  const thens = () => document.querySelectorAll("button:is(.then, .adds)");
   const fields = () => [...document.querySelectorAll("fieldset.lab :is(input, textarea):not([type=file])")];
   const focusable = (element) => element?.closest("input, textarea, button");
   const isStored = (field, text) => field.closest(".reading")?.dataset.stored === text.trim().replace(",", ".");
@@ -81,8 +83,10 @@
     here = place();
     const written = fields().filter((each) => keeps && typed.has(each) && !each.readOnly && !isStored(each, each.value));
     const texts = Object.fromEntries(written.map((each) => [nameOf(each), each.value]));
+    const grew = JSON.stringify(form()) !== first;
     const kept = { once: read("sessionStorage", PAGE + here)?.once, texts, at: nameOf(focusable(focused)), ...state };
-    if (kept.once || kept.held?.length || written.length) keep("sessionStorage", PAGE + here, kept);
+    if (grew) kept.form = form();
+    if (kept.once || kept.held?.length || written.length || grew) keep("sessionStorage", PAGE + here, kept);
     else forget("sessionStorage", PAGE + here);
   }
 
@@ -90,6 +94,29 @@
   function saveHeld({ held, ahead }) {
     if (!held.length) return;
     keep("sessionStorage", PAGE + place(), { ahead, ...before, held: [...(before.held ?? []), ...held] });
+  }
+
+  // The rows of a form that grows, and what is chosen in them; the lab makes them anew before texts are put back.
+  function form() {
+    const rows = [...document.querySelectorAll("[data-rows]")];
+    const choices = [...document.querySelectorAll("[data-rows] [role=combobox]")];
+    return {
+      rows: Object.fromEntries(rows.map((each) => [each.dataset.rows, each.children.length])),
+      choices: Object.fromEntries(choices.map((each) => [nameOf(each), each.value])),
+    };
+  }
+
+  // The form as it was before the page was loaded anew, where it differs from what is shown.
+  function missing() {
+    const shown = JSON.stringify(form());
+    first ??= shown;
+    return before.form && JSON.stringify(before.form) !== shown ? before.form : null;
+  }
+
+  // The page goes on to an address of the lab: keys that were held go there.
+  function handOn(address, held) {
+    const there = (onward ??= read("sessionStorage", PAGE + address) ?? {});
+    if (held.length) keep("sessionStorage", PAGE + address, { ...there, ahead: true, held: [...(there.held ?? []), ...held] });
   }
 
   // What this page asked for is stored: what was typed for it is no longer kept.
@@ -140,5 +167,5 @@
   }
 
   window.addEventListener("input", (event) => typed.add(event.target), true);
-  window.kept = { keeps, once, reading, readings, settled, save, done, over, restore, tellAgain };
+  window.kept = { keeps, once, reading, readings, settled, save, done, over, restore, tellAgain, missing, handOn };
 })();

@@ -19,7 +19,8 @@
   let left = null; // the field in which the connection was lost
   let isLost = false;
   let again = null; // asks once more what was asked last
-  let resuming = false; // readings of before are being told to the lab
+  let resuming = false; // readings or rows of before are being told to the lab
+  let goingTo = ""; // the address that the page goes on to
   const telling = new Map(); // readings that the lab has not answered yet, by their numbers
 
   const fieldsets = () => document.querySelectorAll("fieldset.lab");
@@ -41,17 +42,24 @@
     watched = true;
     window.socket.on("disconnect", lost);
     window.socket.io.timeout(CONNECT_MS);
+    resuming = tellKept();
+    if (!resuming && !waiting) resume();
+  }
+
+  // What was kept goes to the lab first: it answers with `resent` or `grown`. Whether there was any.
+  function tellKept() {
+    const form = kept.missing();
     const unanswered = kept.readings();
-    resuming = unanswered.length > 0;
-    if (resuming) emitEvent("resent", unanswered);
-    else if (!waiting) resume();
+    if (form) emitEvent("grow", form);
+    else if (unanswered.length) emitEvent("resent", unanswered);
+    return Boolean(form || unanswered.length);
   }
 
   // What was on its way when the connection was lost may have been lost: the lab knows each thing by its number.
   async function goneOn() {
     await kept.tellAgain();
     telling.forEach((emit) => emit());
-    if (resuming) emitEvent("resent", kept.readings());
+    if (resuming && !tellKept()) grown();
     if (waiting) again?.();
   }
 
@@ -69,8 +77,17 @@
   function resent(answers) {
     if (!resuming) return; // asked twice
     answers.forEach(([number]) => kept.settled(number));
+    resumed(answers.map(([, why]) => why).filter(Boolean));
+  }
+
+  // The form has the rows again that it had before the page was loaded anew.
+  function grown() {
+    if (resuming) resumed([]);
+  }
+
+  function resumed(refusals) {
     resuming = false;
-    if (!waiting || asked === 0) resume(answers.map(([, why]) => why).filter(Boolean));
+    if (!waiting || asked === 0) resume(refusals);
   }
 
   // What was typed before the page was loaded anew goes where it was typed, or is said.
@@ -86,9 +103,11 @@
     if (!writing) writeHeld();
   }
 
-  // Enter in a form is not done before it is answered: after a reload it is pressed again, and stored once.
+  // Enter in a form is not done before it is answered: after a reload it is pressed again, and stored once. So it is on
+  // a button that adds a row.
   function save() {
-    const pressed = waiting && again?.isEnter ? ["Enter"] : [];
+    if (goingTo) return kept.handOn(goingTo, held);
+    const pressed = waiting && again?.kind ? ["Enter"] : [];
     kept.save({ held: [...pressed, ...held], ahead: !watched }, left ?? document.activeElement);
   }
 
@@ -100,7 +119,7 @@
   // What is typed on while an answer is on its way
 
   function isHeld(event) {
-    return (waiting || writing || isLost) && event.isTrusted && !event.target.closest?.("a, summary");
+    return (waiting || writing || isLost || goingTo) && event.isTrusted && !event.target.closest?.("a, summary");
   }
 
   function keyPressed(event) {
@@ -121,8 +140,9 @@
     save();
   }
 
-  function ask(emit, isEnter = false) {
-    if (waiting) return; // pressed twice
+  // `kind`: "enter" in a form, "row" where a row is added and nothing stored.
+  function ask(emit, kind = "") {
+    if (waiting || goingTo) return; // pressed twice
     waiting = true;
     tellHolding();
     asked += 1;
@@ -131,7 +151,7 @@
     timer = setTimeout(giveUp, PATIENCE_MS);
     const once = kept.once();
     again = () => emit({ number, once });
-    again.isEnter = isEnter;
+    again.kind = kind;
     again();
     save();
   }
@@ -147,9 +167,17 @@
     clearTimeout(timer);
     waiting = false;
     refused = !fine;
-    if (fine) kept.done();
+    if (fine && again.kind !== "row") kept.done();
     save();
     if (!writing) writeHeld();
+  }
+
+  // All is stored, and the page goes on to another one: what is typed meanwhile goes there.
+  function leave(address) {
+    kept.over();
+    goingTo = (window.path_prefix ?? "") + address;
+    save();
+    location.assign(goingTo);
   }
 
   function told(number) {
@@ -160,7 +188,7 @@
 
   async function writeHeld() {
     writing = true;
-    while (held.length && !waiting && !refused && !isLost) {
+    while (held.length && !waiting && !refused && !isLost && !goingTo) {
       refused = !write(held[0]);
       if (!refused) held.shift();
       await pause(0); // the field tells its text before the next key comes
@@ -171,7 +199,8 @@
     tellHolding();
   }
 
-  const tellHolding = () => document.documentElement.classList.toggle("holding", waiting || writing);
+  const tellHolding = () =>
+    document.documentElement.classList.toggle("holding", waiting || writing || Boolean(goingTo));
 
   // What was meant for after a thing that was refused must not go into the field that is to be put right.
   async function letRunOut() {
@@ -226,7 +255,7 @@
     const isMissing = (field) => !field.value && !("optional" in field.dataset);
     const next = behind(event.target, event.currentTarget).find(isMissing);
     if (next) next.focus();
-    else ask(emit, true);
+    else ask(emit, "enter");
   }
 
   // In a form that only the button sends: on to the next field.
@@ -272,7 +301,8 @@
   window.addEventListener("beforeinput", textComes, true);
   window.addEventListener("input", () => setTimeout(save), true);
   window.addEventListener("pagehide", save);
+  window.addEventListener("pageshow", () => goingTo && location.reload()); // come back to by the browser's button
   document.documentElement.classList.add("not-connected");
   tellHolding();
-  window.lab = { ask, answered, connected, enter, leaving, onward, reading, resent, told };
+  window.lab = { ask, answered, connected, enter, grown, leave, leaving, onward, reading, resent, told };
 })();

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from .synthetic import circular_sidecut, plain_ski, shovel, snow
 MESHES = (40, 80, 160, 320, 640)
 
 
+@cache  # both tests ask for 160 and 640 elements
 def results(hardness: float, ratio: float, elements: int) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     """Radius at the boot, over the chord, greatest depth, contact length."""
     found = carve(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import io
 import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -21,6 +22,7 @@ from skisnow.simulate.scenario import scenario_values
 from skisnow.simulate.scenario.values import in_sections
 from skisnow.web.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file
 from skisnow.web.replay.addresses import RunFolders, add_addresses, show_address
+from skisnow.web.replay.tracks import Placing, TrackFolders
 
 from ...report.runs import circle_run
 
@@ -106,6 +108,26 @@ def test_an_exaggeration_that_the_page_has_not_becomes_the_nearest(
     assert answer.content == moving_replay_model(replay, exaggeration=given)
     answer = client.get("/replay/model/older.glb", params={"time": "1.0", "exaggeration": asked})
     assert answer.content == replay_model(replay, 1.0, exaggeration=given)
+
+
+NESTED = b"<gpx>" + b"<extensions>" * 200_000
+
+
+def test_a_kept_track_is_read_in_a_process_of_its_own(
+    runs: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Whatever it does to that one, this one answers on."""
+    app, folder, tracks = FastAPI(), RunFolders(tmp_path), TrackFolders(tmp_path)
+    add_addresses(app, folder)
+    (tmp_path / "older").symlink_to(runs / "older")
+    name, _ = tracks.keep(io.BytesIO(b"time_s,x_m,y_m\n0,1,2\n1,3,4\n"), Placing("x.csv"))
+    monkeypatch.setattr("skisnow.web.replay.tracks.read_track", lambda _: pytest.fail("it is read here"))
+    beside = folder.replay("older", name).track
+    assert beside is not None and beside.place[:, :2].tolist() == [[1.0, 2.0], [3.0, 4.0]]
+    (tmp_path / "tracks" / name / "track.csv").rename(tmp_path / "tracks" / name / "track.gpx")
+    (tmp_path / "tracks" / name / "track.gpx").write_bytes(NESTED)
+    answer = Client(app).get("/replay/data/older", params={"track": name})
+    assert answer.status_code == 404 and "x.csv" in answer.text
 
 
 def test_an_odd_name_is_text_on_its_page_and_its_address_leads_there(client: Client) -> None:

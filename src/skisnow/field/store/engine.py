@@ -36,6 +36,7 @@ _SQLITE_TROUBLE: Final = {
     sqlite3.SQLITE_CORRUPT: "the file is damaged; put a backup in its place, or export what can still be exported",
     sqlite3.SQLITE_IOERR: "the disk could not be read or written; check it and the space left on it",
 }
+_NO_TEXT: Final = "Could not decode to UTF-8"
 _SYSTEM_TROUBLE: Final = {
     errno.ENOSPC: _NO_ROOM,
     errno.EDQUOT: _NO_ROOM,
@@ -51,7 +52,9 @@ def database_told(store: Path, doing: str) -> Iterator[None]:
     try:
         yield
     except (DBAPIError, sqlite3.Error) as error:
-        why = _SQLITE_TROUBLE.get(_primary_code(error), str(getattr(error, "orig", error)))
+        said = str(getattr(error, "orig", error))
+        code = sqlite3.SQLITE_CORRUPT if said.startswith(_NO_TEXT) else _primary_code(error)
+        why = _SQLITE_TROUBLE.get(code, said)
         raise StoreError(f"The store {store} {doing}: {why}.") from error
     except UnicodeDecodeError as error:  # what SQLite says names a part of the schema that is no text any more
         raise StoreError(f"The store {store} {doing}: {_SQLITE_TROUBLE[sqlite3.SQLITE_CORRUPT]}.") from error

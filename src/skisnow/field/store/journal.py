@@ -21,6 +21,7 @@ from sqlalchemy import ColumnElement, Connection, RowMapping, and_, func, insert
 from ...errors import StoreError
 from ...given import json_value
 from .engine import database_told, reading, writing
+from .entry_sums import entry_sha256, entry_sums
 from .rows import TIME, damaged, number_of, text_of
 from .schema import campaign, journal, journal_entry
 
@@ -292,13 +293,13 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
 
 
 def _write(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry:
-    values = {name: getattr(entry, name) for name in _PLAIN}
+    plain = {name: getattr(entry, name) for name in _PLAIN}
+    sequence = connection.execute(select(func.coalesce(func.max(journal_entry.c.sequence), 0) + 1)).scalar_one()
     at = _now()
     cells = json.dumps(dict(entry.cells), ensure_ascii=False)
-    written = connection.execute(insert(journal_entry).values(journal_id=id_, at=at, cells=cells, **values))
-    key = written.inserted_primary_key
-    assert key is not None
-    return JournalEntry(**values, cells=dict(entry.cells), at=at, sequence=int(key[0]))
+    row = {**plain, "sequence": sequence, "at": at, "journal_id": id_, "cells": cells}
+    connection.execute(insert(journal_entry).values(**row, sha256=entry_sha256(row), sums=entry_sums(row)))
+    return JournalEntry(**plain, cells=dict(entry.cells), at=at, sequence=sequence)
 
 
 def entry_of(row: RowMapping) -> JournalEntry:
@@ -309,7 +310,15 @@ def entry_of(row: RowMapping) -> JournalEntry:
     StoreError
         It holds what was never written there.
     """
-    values: dict[str, Any] = {str(name): value for name, value in row.items() if name not in ("journal_id", "cells")}
+    entry = readable_entry(row)
+    if row["sha256"] != entry_sha256({str(name): value for name, value in row.items()}):
+        raise _damaged(row)
+    return entry
+
+
+def readable_entry(row: RowMapping) -> JournalEntry:
+    """An entry from its row, whether or not that is what was written down; errors as in `entry_of`."""
+    values: dict[str, Any] = {name: row[name] for name in (*_PLAIN, "sequence", "at")}
     try:
         for name in ("action", "file", "test", "at", "who", "why"):
             text_of(values[name])
@@ -318,5 +327,9 @@ def entry_of(row: RowMapping) -> JournalEntry:
                 number_of(values[name])
         cells = {text_of(column): text_of(cell) for column, cell in json_value(text_of(row["cells"])).items()}
     except (TypeError, ValueError, AttributeError) as error:
-        raise damaged(f"The entry {values.get('sequence')} of the campaign in entry {row['journal_id']}") from error
+        raise _damaged(row) from error
     return JournalEntry(**values, cells=cells)
+
+
+def _damaged(row: RowMapping) -> StoreError:
+    return damaged(f"The entry {row['sequence']} of the campaign in entry {row['journal_id']}")

@@ -24,7 +24,7 @@ from sqlalchemy import (
     Text,
 )
 
-REVISION: Final = "0003"
+REVISION: Final = "0004"
 """Newest migration; tests hold it against the migrations themselves."""
 
 APPLICATION_ID: Final = 0x536B6953
@@ -106,10 +106,13 @@ journal_entry = Table(
     Column("cells", Text, nullable=False),
     Column("why", Text, nullable=False),
     Column("once", Text),
+    Column("sha256", String(64)),
+    Column("sums", Text),
     CheckConstraint("action IN ('describe', 'add', 'correct', 'cancel', 'undo')", name="known_action"),
     CheckConstraint("(about IS NULL) = (action IN ('describe', 'add', 'cancel'))", name="about_an_entry"),
     Index(None, "journal_id", "file", "test"),
     Index(None, "journal_id", "once", unique=True),
 )
 """Entries are only ever added. ``about``: the entry that is corrected or undone; ``cells``: a JSON object of texts;
-``once``: what tells an entry that is sent again from a new one."""
+``once``: what tells an entry that is sent again from a new one; ``sha256``: of all that the entry says; ``sums``: of
+each part of it (`entry_sums`)."""

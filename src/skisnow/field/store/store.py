@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 from ...errors import StoreError
 from .engine import database_told, files_told, open_engine, reading, writing
+from .finding import Finding
 from .folder import (
     FileState,
     Progress,
@@ -38,7 +39,7 @@ from .rows import (
     stored_chunks,
 )
 from .schema import CHUNK_BYTES
-from .verification import Finding, findings
+from .verification import findings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -2,40 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection, select
 from sqlalchemy.exc import DatabaseError
 
 from ...errors import StoreError
+from .entry_findings import findings_of_entries
+from .finding import Finding
 from .folder import Progress, manifest_sha256, unsafe_because
-from .journal import entry_of
 from .rows import StoredCampaign, is_sound, stored_campaign
-from .schema import campaign, campaign_file, content, journal_entry
+from .schema import campaign, campaign_file, content
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """Damage found in the store: in which campaign and file (None: in the database as a whole), and what it is."""
-
-    campaign: str | None
-    path: str | None
-    message: str
-
-    def __str__(self) -> str:
-        """Say it in one line."""
-        place = ", ".join(part for part in (self.campaign, self.path) if part is not None)
-        return f"{place or 'database'}: {self.message}"
-
-
 def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
     """Check database, contents, campaigns and entries, each whatever the others hold; an empty answer: all is sound."""
     found: list[Finding] = []
-    for of_part in (_of_database, lambda each: _of_contents(each, progress), _of_campaigns, _of_entries):
+    for of_part in (_of_database, lambda each: _of_contents(each, progress), _of_campaigns, findings_of_entries):
         try:
             for finding in of_part(connection):
                 found.append(finding)
@@ -85,14 +71,6 @@ def _of_campaigns(connection: Connection) -> Iterator[Finding]:
             yield from _of_campaign(stored_campaign(connection, row))
         except StoreError as error:
             yield Finding(_words(row.id), None, str(error))
-
-
-def _of_entries(connection: Connection) -> Iterator[Finding]:
-    for row in connection.execute(select(journal_entry).order_by(journal_entry.c.sequence)).mappings().all():
-        try:
-            entry_of(row)
-        except StoreError as error:
-            yield Finding(_words(row["journal_id"]), None, str(error))
 
 
 def _of_campaign(stored: StoredCampaign) -> Iterator[Finding]:

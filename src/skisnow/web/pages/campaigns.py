@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ...errors import StoreError
 from ...field.store import Journals
 from ...report.numerals import counted
 from ..desk import Desk
@@ -42,7 +43,11 @@ def _in_entry(lab: Lab) -> None:
     if not heads:
         sentence("None. Begin one with New campaign.", "quiet")
     for head in reversed(heads):
-        desk = Desk(lab, head.id)
+        try:
+            desk = Desk(lab, head.id)
+        except StoreError as error:
+            _damaged(head.id, error)
+            continue
         tests = [test for test in desk.campaign.tests.values() if test.rows]
         with ui.element("section").classes("card"):
             heading(desk.described.name or "(no name)", 3)
@@ -52,6 +57,12 @@ def _in_entry(lab: Lab) -> None:
                 link("Enter tests", entering(head.id), "main")
                 link("Analysis", analysis("entry", head.id))
                 link("Export", export("entry", head.id))
+
+
+def _damaged(id_: str, error: StoreError) -> None:
+    with ui.element("section").classes("card"):
+        heading(id_, 3)
+        sentence(str(error), "bad")
 
 
 def _kept(lab: Lab) -> None:

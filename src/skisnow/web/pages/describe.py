@@ -12,9 +12,9 @@ from ...field.store import Journals, NewEntry
 from ...field.store.description import Description, description_text
 from ...field.store.journal import DESCRIPTION
 from ...given import toml_values
-from ..answering import form
+from ..answering import asked, asking_button, form, go_on, row_button
 from ..desk import Desk
-from ..fields import button, choice, field
+from ..fields import choice, field
 from ..layout import framed, heading, sentence
 from ..names import entering, required_id
 from ..typed import typed_number
@@ -33,6 +33,9 @@ NUMBERS: Final = {
 }
 LENGTHS: Final = {"length_mm": "Length (mm)", "width_mm": "Width (mm)", "diameter_mm": "Diameter (mm)"}
 LENGTHS_OF_SHAPES: Final = LENGTHS | {"radius_mm": "Radius (mm)"}
+_SHAPE: Final = "Shape of tool {}"
+MOST_ROWS: Final = 200
+"""That come back when a page is loaded anew."""
 SHAPE_WORDS: Final = {"ski": "piece of ski", "disc": "disc", "cylinder": "cylinder on its side"}
 
 
@@ -47,20 +50,31 @@ def add_page(lab: Lab) -> None:
             with form(""):
                 described = DescriptionForm(toml_values(desk.campaign.description) if desk else {})
 
-            def done(pressed: GenericEventArguments) -> None:
-                once = pressed.args if isinstance(pressed.args, str) else None
+            def done() -> bool:
                 try:
-                    id_ = _stored(lab, desk, described.text(), once)
+                    id_ = _stored(lab, desk, described.text(), asked().once)
                 except SkisnowError as error:
                     status.set_text(f"Not stored: {error}")
                     status.classes(add="bad")
                     status.run_method("scrollIntoView")
-                else:
-                    ui.run_javascript("kept.over()")
-                    ui.navigate.to(entering(id_))
+                    return False
+                go_on(entering(id_))
+                return True
 
             with ui.element("div").classes("acts end"):
-                button("Store and enter tests", done, "main", once=True)
+                asking_button("Store and enter tests", done, "main")
+            _take_kept(described)
+
+
+def _take_kept(described: DescriptionForm) -> None:
+    """Let the form have the rows again that the browser kept when the page was loaded anew."""
+    client = ui.context.client
+
+    def grow(event: GenericEventArguments) -> None:
+        described.grow(event.args)
+        client.run_javascript("lab.grown()")
+
+    ui.on("grow", grow)
 
 
 def _stored(lab: Lab, desk: Desk | None, text: str, once: str | None) -> str:
@@ -106,6 +120,13 @@ class DescriptionForm:
         self._tools = _Entries("Tools", "tool", given.get("tool", ()))
         self._plates = _Entries("Plates of the shear test", "plate", given.get("plate", ()))
 
+    def grow(self, kept: Any) -> None:
+        """Have as many rows as the browser kept, with what was chosen in them; anything else counts as not said."""
+        said = kept if isinstance(kept, dict) else {}
+        rows, choices = (each if isinstance(each, dict) else {} for each in (said.get("rows"), said.get("choices")))
+        for entries in (self._tools, self._plates):
+            entries.grow(rows.get(entries.kind), choices)
+
     def text(self) -> str:
         """The text of campaign.toml; errors as `description_text` raises them."""
         observers = [name.strip() for name in (self._observers.value or "").split(",") if name.strip()]
@@ -125,24 +146,39 @@ class _Entries:
     """Tools or plates: a name and lengths each, as many as are needed."""
 
     def __init__(self, title: str, kind: str, given: Any) -> None:
-        self._kind = kind
+        self.kind = kind
         self._rows: list[tuple[ui.input, ui.select | None, dict[str, ui.input]]] = []
         heading(title)
-        self._place = ui.element("div")
+        self._place = ui.element("div").props(f"data-rows={kind}")
         for entry in list(given) or [dict[str, Any]()]:
             self._add(entry)
-        button(f"Another {kind}", lambda: self._add({}))
+        row_button(f"Another {kind}", self._another)
+
+    def grow(self, count: Any, choices: dict[Any, Any]) -> None:
+        """Have at least so many rows, and the shapes that are chosen by the names of their fields."""
+        while isinstance(count, int) and len(self._rows) < min(count, MOST_ROWS):
+            self._add({})
+        shapes = {words: shape for shape, words in SHAPE_WORDS.items()}
+        for number, (_, shape, _) in enumerate(self._rows, start=1):
+            word = choices.get(_SHAPE.format(number))
+            if shape is not None and isinstance(word, str) and word in shapes:
+                shape.set_value(shapes[word])
+
+    def _another(self) -> None:
+        self._add({})
+        name = self._rows[-1][0]
+        name.client.run_javascript(f"getHtmlElement({name.id}).focus()")  # its own focus() waits for a menu to close
 
     def _add(self, given: dict[str, Any]) -> None:
         number = len(self._rows) + 1
         with self._place, ui.element("div").classes("fields row"):
-            name = field(f"Name of {self._kind} {number}", given.get("name", ""))
+            name = field(f"Name of {self.kind} {number}", given.get("name", ""))
             shape = None
-            if self._kind == "tool":
-                shape = choice(f"Shape of tool {number}", SHAPE_WORDS, given.get("shape", "ski"))
+            if self.kind == "tool":
+                shape = choice(_SHAPE.format(number), SHAPE_WORDS, given.get("shape", "ski"))
             keys = LENGTHS_OF_SHAPES if shape is not None else {"length_mm": LENGTHS["length_mm"]}
             lengths = {
-                key: field(f"{words} of {self._kind} {number}", _shown(given.get(key)), numeric=True)
+                key: field(f"{words} of {self.kind} {number}", _shown(given.get(key)), numeric=True)
                 for key, words in keys.items()
             }
         self._rows.append((name, shape, lengths))
@@ -156,7 +192,7 @@ class _Entries:
         for number, (name, shape, lengths) in enumerate(self._rows, start=1):
             if not (name.value or "").strip():
                 if any((each.value or "").strip() for each in lengths.values()):
-                    raise ParameterError(f"{self._kind} {number} has lengths and no name; give it one, or empty them")
+                    raise ParameterError(f"{self.kind} {number} has lengths and no name; give it one, or empty them")
                 continue
             entry: dict[str, Any] = {"name": name.value.strip()}
             if shape is not None:

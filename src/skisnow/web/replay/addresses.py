@@ -13,13 +13,14 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from ...errors import ParameterError
 from ...given import read_json
 from ...ski import read_ski
+from ..confined import BOUNDS, confined
 from ..runs import JOB
 from .binary import replay_bytes
 from .model import replay_model
 from .moving_model import moving_replay_model
 from .of_file import RUN_FILE, replay_of_file
 from .page import MODULES, STYLE, static_text
-from .tracks import TrackFolders
+from .tracks import TrackFolders, track_on_slope
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -65,7 +66,8 @@ class RunFolders:
     def replay(self, name: str, track: str = "") -> Replay:
         """The replay of a run, with a measured track beside it where one is named.
 
-        The ski of a run of the lab is where its job says: the run itself knows the name alone.
+        The ski of a run of the lab is where its job says: the run itself knows the name alone. The track, which was
+        uploaded, is read in a process of its own.
 
         Raises
         ------
@@ -77,7 +79,10 @@ class RunFolders:
         alone = replay_of_file(place, title=name, ski=ski)
         if not track:
             return alone
-        return replay_of_file(place, title=name, ski=ski, track=TrackFolders(self.folder).beside(track, alone))
+        beside = TrackFolders(self.folder).beside(
+            track, alone, read=lambda *what: confined(BOUNDS, track_on_slope, *what)
+        )
+        return replay_of_file(place, title=name, ski=ski, track=beside)
 
 
 def _ski_of_job(job: Path) -> Ski | None:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .replay import Replay, ReplayTrack
 
     Count: TypeAlias = Callable[[Path, "Placing"], int]
+    Read: TypeAlias = Callable[[Path, "Placing", float | None], ReplayTrack]
 
 FOLDER: Final = "tracks"
 ABOUT: Final = "about.json"
@@ -111,8 +112,17 @@ class TrackFolders:
             shutil.rmtree(made, ignore_errors=True)
         return name, n_points
 
-    def beside(self, name: str, replay: Replay) -> ReplayTrack:
+    def beside(self, name: str, replay: Replay, *, read: Read | None = None) -> ReplayTrack:
         """A track in the axes of a run.
+
+        Parameters
+        ----------
+        name
+            One of `names`.
+        replay
+            The run.
+        read
+            How it is read; None: `track_on_slope`, here.
 
         Raises
         ------
@@ -124,8 +134,7 @@ class TrackFolders:
         placing = Placing(**read_json(self._folder / name / ABOUT))
         (place,) = (each for each in (self._folder / name).iterdir() if each.name != ABOUT)
         angle = replay.tilt if replay.profile is None else None
-        track = _placed(_read(place, placing), placing, slope_angle=angle)
-        return measured_track(track, starts_at=placing.starts_at_s)
+        return (read or track_on_slope)(place, placing, angle)
 
 
 def points_of_track(place: Path, placing: Placing) -> int:
@@ -134,6 +143,13 @@ def points_of_track(place: Path, placing: Placing) -> int:
     _require_few(track)
     measured_track(track)  # it has places enough
     return len(track.time)
+
+
+def track_on_slope(place: Path, placing: Placing, slope_angle: float | None) -> ReplayTrack:
+    """A track in the axes of a slope; its angle (rad), None on a profile. Errors as in `TrackFolders.keep`."""
+    track = _placed(_read(place, placing), placing, slope_angle=slope_angle)
+    _require_few(track)
+    return measured_track(track, starts_at=placing.starts_at_s)
 
 
 def _require(placing: Placing) -> None:
