@@ -22,6 +22,7 @@ from skisnow.inputs.json_schema import Schema, schema_text, told_schema
 from skisnow.inputs.page_table import page_table
 from skisnow.simulate.carve_keys import CARVE_KEYS
 from skisnow.simulate.scenario import schema as scenario
+from skisnow.simulate.scenario.free_keys import FREE_KEYS
 from skisnow.simulate.scenario.keys import SCENARIO_KEYS
 from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 
@@ -62,6 +63,9 @@ TABLES = {
     "campaign": page_table(CAMPAIGN_KEYS.values(), ("key", "unit", "range", "meaning")),
     "penetration": page_table(PENETRATION.numbers, _OF_CSV),
     "shear": page_table(SHEAR.numbers[:4], _OF_CSV),
+    "search": page_table(
+        (SCENARIO_KEYS[name] for name in FREE_KEYS if SCENARIO_KEYS[name].search), ("key", "usual size", "bounds")
+    ),
     "stations": page_table(COLUMNS.values(), ("column", "meaning", "unit", "range", "usual", "instead of")),
 }
 TABLE = re.compile(r"(?P<mark><!-- keys of (?P<name>[\w -]+) -->\n)(?P<rows>.*?)(?=<!-- end of keys -->)", re.DOTALL)
