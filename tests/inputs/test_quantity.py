@@ -59,7 +59,8 @@ def test_a_list_names_the_place_of_what_is_wrong() -> None:
         STEPS.in_range([50, 0])
     with pytest.raises(ParameterError, match=r"^load_steps_N\[1\] is 'a'; it must be a number$"):
         STEPS.in_range(["a"])
-    for none in ([], 50):
+    nothing: tuple[object, ...] = ([], 50)
+    for none in nothing:
         with pytest.raises(ParameterError, match="it must be a list of numbers in brackets"):
             STEPS.in_range(none)
 
