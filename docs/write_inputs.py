@@ -7,26 +7,53 @@ Without ``--check`` schemas and pages are written anew, and git shows what has c
 from __future__ import annotations
 
 import argparse
+import json
 import re
 import sys
+from collections.abc import Sequence
+from functools import reduce
 from pathlib import Path
 
 import skisnow
 from skisnow.field.reading import campaign_schema
 from skisnow.field.reading.campaign_file import CAMPAIGN_KEYS
 from skisnow.field.reading.table_forms import PENETRATION, SHEAR
-from skisnow.inputs.json_schema import schema_text
+from skisnow.inputs.json_schema import Schema, schema_text, told_schema
 from skisnow.inputs.page_table import page_table
 from skisnow.simulate.carve_keys import CARVE_KEYS
 from skisnow.simulate.scenario import schema as scenario
+from skisnow.simulate.scenario.free_keys import FREE_KEYS
 from skisnow.simulate.scenario.keys import SCENARIO_KEYS
 from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 
 DOCS = Path(__file__).resolve().parent
 PACKAGE = Path(skisnow.__file__).resolve().parent
+SUMMARY, CARVE = "simulate/schemas/summary.schema.json", "simulate/schemas/carve.schema.json"
+
+
+def with_inputs(file: str, place: Sequence[str], told: Schema) -> Schema:
+    """A schema of what the program writes, with what it says of its inputs as the code declares them."""
+    whole: Schema = json.loads((PACKAGE / file).read_text(encoding="utf-8"))
+    reduce(dict.__getitem__, place, whole)["properties"] |= told
+    return whole
+
+
+def summary_schema() -> Schema:
+    """Of summary.json."""
+    return with_inputs(SUMMARY, (), {"scenario": scenario.told_scenario_schema()})
+
+
+def carve_schema() -> Schema:
+    """Of the JSON of ``skisnow carve``."""
+    inputs = {"description": "Every input with the value in force; null where it plays no part."}
+    return with_inputs(CARVE, ("$defs", "answer"), {"inputs": {**inputs, **told_schema(CARVE_KEYS.values())}})
+
+
 SCHEMAS = {
     scenario.FILE: scenario.scenario_schema,
     campaign_schema.FILE: campaign_schema.campaign_schema,
+    SUMMARY: summary_schema,
+    CARVE: carve_schema,
 }
 _OF_CSV = ("column", "unit", "range", "meaning")
 TABLES = {
@@ -36,6 +63,9 @@ TABLES = {
     "campaign": page_table(CAMPAIGN_KEYS.values(), ("key", "unit", "range", "meaning")),
     "penetration": page_table(PENETRATION.numbers, _OF_CSV),
     "shear": page_table(SHEAR.numbers[:4], _OF_CSV),
+    "search": page_table(
+        (SCENARIO_KEYS[name] for name in FREE_KEYS if SCENARIO_KEYS[name].search), ("key", "usual size", "bounds")
+    ),
     "stations": page_table(COLUMNS.values(), ("column", "meaning", "unit", "range", "usual", "instead of")),
 }
 TABLE = re.compile(r"(?P<mark><!-- keys of (?P<name>[\w -]+) -->\n)(?P<rows>.*?)(?=<!-- end of keys -->)", re.DOTALL)

@@ -30,7 +30,7 @@ from skisnow.simulate.scenario import read_scenario, scenario_file, scenario_tex
 from skisnow.simulate.scenario.free_keys import free_key
 from skisnow.simulate.scenario.given import change_of
 from skisnow.simulate.scenario.keys import SCENARIO_KEYS
-from skisnow.simulate.scenario.schema import scenario_schema
+from skisnow.simulate.scenario.schema import scenario_schema, told_scenario_schema
 from skisnow.study.axes import Axis
 
 print(read_scenario("carved-46m", changes=dict([change_of("crust_mm=4")])).contact.crust)
@@ -42,6 +42,7 @@ for refused in (lambda: scenario_file("carved-46m", changes={"crust_mm": 40}), l
     except ParameterError as error:
         print(error)
 print(scenario_schema()["properties"]["snow"]["properties"]["crust_mm"])
+print(told_scenario_schema()["properties"]["snow"]["properties"]["crust_mm"]["type"])
 print([line for line in page_table(SCENARIO_KEYS.values()).splitlines() if "crust" in line])
 print([line for line in scenario_text("carved-46m").splitlines() if "crust" in line])
 print(free_key("crust"))
@@ -69,6 +70,7 @@ def test_a_new_key_is_one_declaration(tmp_path: Path) -> None:
         "snow.crust_mm is 40.0; allowed is from 0.5 to 20 mm",
         "{'type': 'number', 'description': 'a length that is new (mm)', 'minimum': 0.5, 'maximum': 20.0, "
         "'default': 2.0}",
+        "['number', 'null']",
         "['| `snow.crust_mm` | mm | from 0.5 to 20 | 2 | choice: to be tried | a length that is new |']",
         "['crust_mm = 2.0                          # default, choice: to be tried']",
         "snow.crust_mm",

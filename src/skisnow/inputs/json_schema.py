@@ -46,6 +46,21 @@ def table_schema(quantities: Iterable[Quantity]) -> Schema:
     }
 
 
+def told_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -> Schema:
+    """The schema of a table that says the value in force under every key; null where there is none.
+
+    With `every_null` also a key that has a default, or must be given, may have none in force.
+    """
+    found = {}
+    for each in quantities:
+        schema = schema_of(each)
+        if every_null or not (each.needed or each.default is not None):
+            words = {"enum": [*schema["enum"], None]} if "enum" in schema else {}
+            schema = {**schema, "type": [schema["type"], "null"], **words}
+        found[each.name.rpartition(".")[2]] = schema
+    return {"type": "object", "additionalProperties": False, "required": list(found), "properties": found}
+
+
 def schema_text(schema: Schema) -> str:
     """A schema as it stands in its file."""
     return json.dumps(schema, ensure_ascii=False, indent=1) + "\n"

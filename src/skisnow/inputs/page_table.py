@@ -27,6 +27,22 @@ def _default(quantity: Quantity) -> str:
     return f"`{default}`" if isinstance(default, str) else f"{default:g}"
 
 
+def _size(quantity: Quantity) -> str:
+    search = quantity.search
+    if search is None:
+        return ""
+    return f"factor e^{search.size:g}" if search.logarithmic else f"{search.size:g} {quantity.unit}".rstrip()
+
+
+def _bounds(quantity: Quantity) -> str:
+    search = quantity.search
+    if search is None:
+        return ""
+    if search.about and search.lower == -search.upper:
+        return f"the start ± {search.upper:g}"
+    return f"{'the start and ' * search.about}{search.lower:g} to {search.upper:g}"
+
+
 _CELLS: Final[dict[str, Callable[[Quantity], str]]] = {
     "key": lambda quantity: f"`{quantity.name}`",
     "column": lambda quantity: f"`{quantity.name}`",
@@ -34,6 +50,8 @@ _CELLS: Final[dict[str, Callable[[Quantity], str]]] = {
     "range": _allowed,
     "usual": _usual,
     "default": _default,
+    "usual size": _size,
+    "bounds": _bounds,
     "where default or range comes from": lambda quantity: quantity.origin,
     "left out": lambda quantity: quantity.origin,
     "instead of": lambda quantity: quantity.origin,

@@ -106,8 +106,9 @@ def _in_force(run: Run, key: str) -> float:
 
 
 def _chosen(solver: Solver, key: str) -> float:
-    value: float = getattr(solver, key.removeprefix("solver.").removesuffix("_ms").removesuffix("_mm"))
-    return value / SCENARIO_KEYS[key].factor
+    quantity = SCENARIO_KEYS[key]
+    value: float = quantity.in_unit(getattr(solver, quantity.field))
+    return value
 
 
 def _distance(run: Run, finer: Run) -> float | None:

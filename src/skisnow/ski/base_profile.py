@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..inputs import Quantity, require_declared
+from ..inputs import require_declared
+from .ski_quantity import ski_quantity
 
 if TYPE_CHECKING:
     from .layout import Layout
@@ -44,79 +45,48 @@ class BaseShape:
 
     camber: Annotated[
         float,
-        Quantity(
-            "camber_mm",
-            "height of the arch over the line through the contact points",
-            lowest=-50,
-            highest=50,
-            usual=(0.5, 25),
-            origin="0",
+        ski_quantity(
+            "camber_mm", "height of the arch over the line through the contact points", (-50, 50), (0.5, 25), "0"
         ),
     ] = 0.0
     shovel_height: Annotated[
         float | None,
-        Quantity(
-            "shovel_height_mm",
-            "height of the tip over that line",
-            lowest=0,
-            highest=300,
-            usual=(5, 150),
-            origin="50 (Choice)",
-        ),
+        ski_quantity("shovel_height_mm", "height of the tip over that line", (0, 300), (5, 150), "50 (Choice)"),
     ] = None
     tail_height: Annotated[
         float | None,
-        Quantity(
-            "tail_height_mm",
-            "height of the tail over that line",
-            lowest=0,
-            highest=300,
-            usual=(1, 150),
-            origin="8 (Choice)",
-        ),
+        ski_quantity("tail_height_mm", "height of the tail over that line", (0, 300), (1, 150), "8 (Choice)"),
     ] = None
     tip_rocker_length: Annotated[
         float,
-        Quantity(
-            "tip_rocker_length_mm",
-            "by how much the front contact point is drawn in",
-            lowest=0,
-            highest=1500,
-            usual=(20, 800),
-            origin="0",
+        ski_quantity(
+            "tip_rocker_length_mm", "by how much the front contact point is drawn in", (0, 1500), (20, 800), "0"
         ),
     ] = 0.0
     tip_rocker_height: Annotated[
         float,
-        Quantity(
+        ski_quantity(
             "tip_rocker_height_mm",
             "height of the base at the front end of the running length",
-            lowest=0,
-            highest=200,
-            usual=(0.5, 100),
-            origin="0",
+            (0, 200),
+            (0.5, 100),
+            "0",
         ),
     ] = 0.0
     tail_rocker_length: Annotated[
         float,
-        Quantity(
-            "tail_rocker_length_mm",
-            "by how much the rear contact point is drawn in",
-            lowest=0,
-            highest=1500,
-            usual=(20, 800),
-            origin="0",
+        ski_quantity(
+            "tail_rocker_length_mm", "by how much the rear contact point is drawn in", (0, 1500), (20, 800), "0"
         ),
     ] = 0.0
     tail_rocker_height: Annotated[
         float,
-        Quantity(
+        ski_quantity(
             "tail_rocker_height_mm",
             "height of the base at the rear end of the running length",
-            lowest=0,
-            highest=200,
-            usual=(0.5, 100),
-            origin="0",
+            (0, 200),
+            (0.5, 100),
+            "0",
         ),
     ] = 0.0
 

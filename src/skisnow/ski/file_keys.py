@@ -8,6 +8,7 @@ from typing import Annotated, Final
 from ..inputs import Quantity, quantities
 from .base_profile import BaseShape
 from .layout import TAIL_OVERHANG
+from .ski_quantity import ski_quantity
 
 RIGID: Final = 1e6
 """EI and GJ of a rigid ski (N m²). Choice: 200 mm of it, held in the middle, bend by 0.03 micrometre under 500 N."""
@@ -21,157 +22,109 @@ class SkiFile:
     source: Annotated[str | None, Quantity("source", "where the numbers come from", origin="the file's name")] = None
     length: Annotated[
         float | None,
-        Quantity(
+        ski_quantity(
             "length_mm",
             "from tip to tail along the base; at least 2.5 times the tip width",
-            lowest=20,
-            highest=3000,
-            usual=(180, 2300),
-            origin="needed; with a table: its reach",
+            (20, 3000),
+            (180, 2300),
+            "needed; with a table: its reach",
         ),
     ] = None
     running_length: Annotated[
         float | None,
-        Quantity(
-            "running_length_mm",
-            "between the contact points of the base",
-            lowest=20,
-            highest=3000,
-            usual=(180, 2300),
-            origin="needed",
-        ),
+        ski_quantity("running_length_mm", "between the contact points of the base", (20, 3000), (180, 2300), "needed"),
     ] = None
     sidecut_length: Annotated[
         float | None,
-        Quantity(
-            "sidecut_length_mm",
-            "between the widest points in front and behind",
-            lowest=20,
-            highest=3000,
-            usual=(180, 2300),
-            origin="needed",
+        ski_quantity(
+            "sidecut_length_mm", "between the widest points in front and behind", (20, 3000), (180, 2300), "needed"
         ),
     ] = None
     tip_width: Annotated[
         float | None,
-        Quantity(
-            "tip_width_mm",
-            "width at the front end of the sidecut length",
-            lowest=15,
-            highest=500,
-            usual=(40, 350),
-            origin="needed, or a column",
+        ski_quantity(
+            "tip_width_mm", "width at the front end of the sidecut length", (15, 500), (40, 350), "needed, or a column"
         ),
     ] = None
     waist_width: Annotated[
         float | None,
-        Quantity(
+        ski_quantity(
             "waist_width_mm",
             "width at its middle, not above the other two",
-            lowest=15,
-            highest=500,
-            usual=(40, 350),
-            origin="needed, or a column",
+            (15, 500),
+            (40, 350),
+            "needed, or a column",
         ),
     ] = None
     tail_width: Annotated[
         float | None,
-        Quantity(
-            "tail_width_mm",
-            "width at its rear end",
-            lowest=15,
-            highest=500,
-            usual=(40, 350),
-            origin="needed, or a column",
-        ),
+        ski_quantity("tail_width_mm", "width at its rear end", (15, 500), (40, 350), "needed, or a column"),
     ] = None
     tail_overhang: Annotated[
         float,
-        Quantity(
+        ski_quantity(
             "tail_overhang_mm",
             "length of ski behind the sidecut length; the rest is the tip",
-            lowest=0,
-            highest=500,
-            usual=(1, 250),
-            origin="20 (Choice)",
+            (0, 500),
+            (1, 250),
+            "20 (Choice)",
         ),
     ] = TAIL_OVERHANG
     boot_position: Annotated[
         float,
-        Quantity(
+        ski_quantity(
             "boot_position_mm",
             "boot in front of the middle of the running length, negative behind",
-            lowest=-500,
-            highest=500,
-            usual=(-200, 200),
-            origin="0 (Choice)",
+            (-500, 500),
+            (-200, 200),
+            "0 (Choice)",
         ),
     ] = 0.0
     mass: Annotated[
         float | None,
-        Quantity(
-            "mass_kg",
-            "mass of one ski without binding",
-            lowest=0.01,
-            highest=50,
-            usual=(0.1, 10),
-            origin="needed, or a column",
-        ),
+        ski_quantity("mass_kg", "mass of one ski without binding", (0.01, 50), (0.1, 10), "needed, or a column"),
     ] = None
     base: BaseShape = field(default_factory=BaseShape)
     base_bevel: Annotated[
         float,
-        Quantity(
-            "base_bevel_deg",
-            "angle by which the edge strip is ground up from the base",
-            lowest=0,
-            highest=5,
-            usual=(0.1, 3),
-            origin="0",
+        ski_quantity(
+            "base_bevel_deg", "angle by which the edge strip is ground up from the base", (0, 5), (0.1, 3), "0"
         ),
     ] = 0.0
     edge_width: Annotated[
         float,
-        Quantity(
+        ski_quantity(
             "edge_width_mm",
             "width of that strip, below half the waist",
-            lowest=0,
-            highest=20,
-            usual=(0.5, 5),
-            origin="2 (Choice: a usual steel edge)",
+            (0, 20),
+            (0.5, 5),
+            "2 (Choice: a usual steel edge)",
         ),
     ] = 2e-3
     bending_stiffness: Annotated[
         tuple[float, ...] | None,
-        Quantity(
+        ski_quantity(
             "EI_N_m2",
             "bending stiffnesses, a list; one value holds everywhere",
-            lowest=0.001,
-            highest=100000000.0,
-            usual=(5, 5000),
-            origin="needed, a column, or `rigid`",
+            (0.001, 100000000.0),
+            (5, 5000),
+            "needed, a column, or `rigid`",
         ),
     ] = None
     torsional_stiffness: Annotated[
         tuple[float, ...] | None,
-        Quantity(
-            "GJ_N_m2",
-            "torsional stiffnesses, a list",
-            lowest=0.001,
-            highest=100000000.0,
-            usual=(2, 5000),
-            origin="needed, a column, or `rigid`",
+        ski_quantity(
+            "GJ_N_m2", "torsional stiffnesses, a list", (0.001, 100000000.0), (2, 5000), "needed, a column, or `rigid`"
         ),
     ] = None
     stiffness_station: Annotated[
         tuple[float, ...] | None,
-        Quantity(
+        ski_quantity(
             "stiffness_station_mm",
             "stations of both lists",
-            lowest=-3000,
-            highest=3000,
-            usual=(-1500, 1500),
-            origin="evenly over the running length (Choice)",
+            (-3000, 3000),
+            (-1500, 1500),
+            "evenly over the running length (Choice)",
         ),
     ] = None
     rigid: Annotated[bool, Quantity("rigid", "`true`: EI and GJ are 10⁶ N m² everywhere", origin="`false`")] = False
@@ -189,69 +142,37 @@ class StationRow:
 
     station: Annotated[
         float,
-        Quantity(
+        ski_quantity(
             "station_m",
             "from the boot, positive forward, falling; needed",
-            lowest=-3,
-            highest=3,
-            usual=(-1.5, 2.0),
-            origin="`length_mm`, `tail_overhang_mm`",
+            (-3, 3),
+            (-1.5, 2.0),
+            "`length_mm`, `tail_overhang_mm`",
         ),
     ]
     width: Annotated[
-        float | None,
-        Quantity(
-            "width_mm",
-            "from edge to edge",
-            lowest=1,
-            highest=500,
-            usual=(5, 350),
-            origin="the three widths",
-        ),
+        float | None, ski_quantity("width_mm", "from edge to edge", (1, 500), (5, 350), "the three widths")
     ] = None
     base_height: Annotated[
         float | None,
-        Quantity(
+        ski_quantity(
             "base_height_mm",
             "of the unloaded base, away from the snow; from any level, the height at the boot is subtracted",
-            lowest=-300,
-            highest=300,
-            usual=(-150, 200),
-            origin="camber, shovel, tail and rocker",
+            (-300, 300),
+            (-150, 200),
+            "camber, shovel, tail and rocker",
         ),
     ] = None
     bending_stiffness: Annotated[
         float | None,
-        Quantity(
-            "EI_N_m2",
-            "bending stiffness",
-            lowest=0.001,
-            highest=100000000.0,
-            usual=(5, 5000),
-            origin="the list of that name",
-        ),
+        ski_quantity("EI_N_m2", "bending stiffness", (0.001, 100000000.0), (5, 5000), "the list of that name"),
     ] = None
     torsional_stiffness: Annotated[
         float | None,
-        Quantity(
-            "GJ_N_m2",
-            "torsional stiffness",
-            lowest=0.001,
-            highest=100000000.0,
-            usual=(2, 5000),
-            origin="the list of that name",
-        ),
+        ski_quantity("GJ_N_m2", "torsional stiffness", (0.001, 100000000.0), (2, 5000), "the list of that name"),
     ] = None
     mass_per_length: Annotated[
-        float | None,
-        Quantity(
-            "mass_per_length_kg_per_m",
-            "mass per length",
-            lowest=0.01,
-            highest=50,
-            usual=(0.1, 10),
-            origin="`mass_kg`",
-        ),
+        float | None, ski_quantity("mass_per_length_kg_per_m", "mass per length", (0.01, 50), (0.1, 10), "`mass_kg`")
     ] = None
 
 

@@ -99,11 +99,7 @@ class Start:
     speed: Annotated[
         float,
         Quantity(
-            "start.speed_m_per_s",
-            "speed along the skis",
-            lowest=0.0,
-            highest=100.0,
-            search=Search(10.0, 0.0, 60.0),
+            "start.speed_m_per_s", "speed along the skis", lowest=0.0, highest=100.0, search=Search(10.0, 0.0, 60.0)
         ),
     ]
     heading: Annotated[

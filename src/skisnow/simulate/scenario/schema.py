@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from ...inputs import quantities
-from ...inputs.json_schema import DRAFT, Schema, table_schema
+from ...inputs import Quantity, quantities
+from ...inputs.json_schema import DRAFT, Schema, table_schema, told_schema
 from .identify_section import CLOCKS, Site, Sought
 from .keys import SCENARIO_KEYS, SECTIONS
 
@@ -40,7 +40,7 @@ _TOGETHER: Final[dict[str, Schema]] = {
 
 def scenario_schema() -> Schema:
     """The schema that stands in the package as `FILE`."""
-    sections = {name: {**_section(name), **_TOGETHER.get(name, {})} for name in SECTIONS}
+    sections = {name: {**table_schema(_keys(name)), **_TOGETHER.get(name, {})} for name in SECTIONS}
     return {
         "$schema": DRAFT,
         "$id": "urn:skisnow:schema:scenario:1",
@@ -53,8 +53,14 @@ def scenario_schema() -> Schema:
     }
 
 
-def _section(name: str) -> Schema:
-    return table_schema(key for full, key in SCENARIO_KEYS.items() if full.startswith(f"{name}."))
+def told_scenario_schema() -> Schema:
+    """The schema of a scenario as summary.json says it: every key with the value in force."""
+    sections = {name: told_schema(_keys(name), every_null=True) for name in SECTIONS}
+    return {"type": "object", "additionalProperties": False, "required": list(sections), "properties": sections}
+
+
+def _keys(section: str) -> list[Quantity]:
+    return [key for full, key in SCENARIO_KEYS.items() if full.startswith(f"{section}.")]
 
 
 def _identify() -> Schema:

@@ -1,0 +1,12 @@
+"""A number of a ski file or its table, in few words."""
+
+from __future__ import annotations
+
+from ..inputs import Quantity
+
+
+def ski_quantity(
+    name: str, meaning: str, allowed: tuple[float, float], usual: tuple[float, float], left_out: str
+) -> Quantity:
+    """A quantity with the ends of what is allowed and of what is usual, and what holds where it is left out."""
+    return Quantity(name, meaning, lowest=allowed[0], highest=allowed[1], usual=usual, origin=left_out)
