@@ -26,8 +26,8 @@ def test_switches_and_words_have_pythons_defaults() -> None:
 
 def test_defaults_stand_in_the_unit_of_their_key() -> None:
     told = {key: SCENARIO_KEYS[key].default for key in ("solver.step_ms", "solver.tolerance_mm", "run.output_ms")}
-    assert told == pytest.approx({"solver.step_ms": 0.5, "solver.tolerance_mm": 0.001, "run.output_ms": 10.0})
-    assert (Solver().step, Solver().tolerance, Solver().output_interval) == (0.5e-3, 1e-6, 0.01)
+    assert told == pytest.approx({"solver.step_ms": 0.5, "solver.tolerance_mm": 0.0003, "run.output_ms": 10.0})
+    assert (Solver().step, Solver().tolerance, Solver().output_interval) == (0.5e-3, 3e-7, 0.01)
 
 
 def test_what_must_be_given() -> None:
@@ -61,7 +61,12 @@ def test_units_come_from_the_names() -> None:
     assert (found["gravity_m_per_s2"], found["air_density_kg_per_m3"]) == ("m/s²", "kg/m³")
     assert (found["step_ms"], found["cell_mm"], found["heading_deg"], found["x_m"]) == ("ms", "mm", "°", "m")
     numbers = {name.rpartition(".")[2] for name, key in SCENARIO_KEYS.items() if key.kind == "number"}
-    assert {name for name in numbers if not found[name]} == {"unloading_ratio", "mu_0", "damping_ratio"}
+    assert {name for name in numbers if not found[name]} == {
+        "unloading_ratio",
+        "mu_0",
+        "damping_ratio",
+        "groove_tolerance",
+    }
 
 
 def test_factors_lead_to_si() -> None:
