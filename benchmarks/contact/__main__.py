@@ -52,8 +52,8 @@ LITERALS = [
     Literal("EDGE_ASIDE", "lines.cpp", "0.04", ("0.02", "0.08")),
     Literal("MOST_UNEVEN", "lines.cpp", "0.25", ("0.12", "0.5")),
     Literal("MOST_TURN", "lines.cpp", "0.3", ("0.15", "0.6")),
-    Literal("REACH", "lines.cpp", "0.5", ("0.25", "1.0")),
-    Literal("MOST_ASIDE", "lines.cpp", "0.4", ("0.2", "0.8")),
+    Literal("REACH", "lines.cpp", "2.0", ("1.0", "4.0")),
+    Literal("MOST_ASIDE", "lines.cpp", "1.9", ("0.95", "3.8")),
     Literal("KNOTS", "groove.hpp", "16", ("12", "32")),
 ]
 

@@ -144,16 +144,18 @@ void Archive::enter_squares(int later) {
 
 void Archive::recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground) const {
   if (tracks_.empty()) return;
-  std::set<int> near;  // in the order in which they were left
+  std::vector<int> near;
   const int steps = int(std::ceil((to - from) / (0.5 * SQUARE)));
   for (int i = 0; i <= steps; i++) {
     const Vector3 point = along(origin, lateral, from + (to - from) * i / steps);
     for (double dx : {-0.25 * SQUARE, 0.25 * SQUARE})
       for (double dy : {-0.25 * SQUARE, 0.25 * SQUARE}) {
         const auto found = squares_.find(square_of(point[0] + dx, point[1] + dy, SQUARE));
-        if (found != squares_.end()) near.insert(found->second.begin(), found->second.end());
+        if (found != squares_.end()) near.insert(near.end(), found->second.begin(), found->second.end());
       }
   }
+  std::sort(near.begin(), near.end());  // in the order in which they were left
+  near.erase(std::unique(near.begin(), near.end()), near.end());
   for (int later : near) press_strip({*before(later), tracks_[std::size_t(later)]}, origin, lateral, from, to, ground);
 }
 
