@@ -9,8 +9,19 @@ import numpy as np
 import numpy.typing as npt
 
 from ..compiled import core
+from ..errors import ParameterError
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
+    """An array of finite numbers as compiled code takes it; it looks at no shape itself."""
+    array = np.asarray(given, float, order="C")
+    if array.shape != shape:
+        raise ParameterError(f"{name} has shape {array.shape}; it must be {shape}")
+    if not np.all(np.isfinite(array)):
+        raise ParameterError(f"{name} holds a number that is not finite")
+    return array
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -31,6 +42,11 @@ class FlexibleSki:
         Of the mass matrix between the beam's unknowns and the body's six, (n, 6).
     damping
         Times the stiffness (s): Kelvin–Voigt damping.
+
+    Raises
+    ------
+    ParameterError
+        Shapes do not fit, a number is not finite, or a node's unknowns lie outside the matrices.
     """
 
     boot: FloatArray
@@ -40,6 +56,20 @@ class FlexibleSki:
     stiffness: FloatArray
     coupling: FloatArray
     damping: float
+
+    def __post_init__(self) -> None:
+        n, nodes = len(self.mass), len(self.unknown)
+        shapes = {"boot": (3,), "axes": (3, 3), "unknown": (nodes,)}
+        shapes |= dict.fromkeys(("mass", "stiffness", "coupling"), (n, 6))
+        for name, shape in shapes.items():
+            shaped(f"FlexibleSki: {name}", getattr(self, name), shape)
+        shaped("FlexibleSki: damping", self.damping, ())
+        free = np.asarray(self.unknown)[np.asarray(self.unknown) >= 0]
+        if not np.array_equal(np.sort(free), np.arange(0, n, 3)) or n % 3:
+            raise ParameterError(
+                f"FlexibleSki: unknown gives {len(free)} free nodes their first unknowns, the matrices have {n} rows; "
+                "each node needs three of its own"
+            )
 
     def compiled(self) -> core.FlexibleSki:
         """What the core takes."""
@@ -66,6 +96,11 @@ class Body:
         In space (m/s²), (3,).
     drag, drag_height
         ½ ρ C_d A (kg/m); height of the air's centre of pressure above the body's origin (m).
+
+    Raises
+    ------
+    ParameterError
+        Shapes do not fit, a number is not finite, or there is no ski.
     """
 
     inertia: FloatArray
@@ -75,6 +110,13 @@ class Body:
     gravity: FloatArray
     drag: float = 0.0
     drag_height: float = 0.0
+
+    def __post_init__(self) -> None:
+        shapes = {"inertia": (6, 6), "first_moment": (3,), "gravity": (3,), "mass": (), "drag": (), "drag_height": ()}
+        for name, shape in shapes.items():
+            shaped(f"Body: {name}", getattr(self, name), shape)
+        if not self.skis:
+            raise ParameterError("Body: it needs one ski or more")
 
     def compiled(self) -> core.Body:
         """What the core takes."""

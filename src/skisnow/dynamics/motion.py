@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ..compiled import core
 from ..contact import SnowContact
 from ..errors import ParameterError
-from .body import Body
+from .body import Body, shaped
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class StepControl:
     Attributes
     ----------
     first
-        The first step, or with ``fixed`` every step (s).
+        The first step, ``longest`` at most, or with ``fixed`` every step (s).
     fixed
         Whether the step stays.
     tolerance
@@ -68,13 +68,18 @@ class StepControl:
         for name in ("first", "tolerance", "longest", "shortest", "closeness"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise ParameterError(f"StepControl: {name} is {getattr(self, name)!r}; it must be finite and above 0")
+        if self.shortest > self.longest:
+            raise ParameterError(
+                f"StepControl: shortest is {self.shortest!r}, above longest, {self.longest!r}; it must not be"
+            )
         if self.matrix_kept < 1:
             raise ParameterError(f"StepControl: matrix_kept is {self.matrix_kept!r}; it must be 1 or more")
 
     def compiled(self) -> core.StepRule:
         """What the core takes."""
         rule = core.StepRule()
-        rule.first, rule.fixed, rule.tolerance = self.first, self.fixed, self.tolerance
+        rule.first, rule.fixed = self.first if self.fixed else min(self.first, self.longest), self.fixed
+        rule.tolerance = self.tolerance
         rule.longest, rule.shortest = self.longest, self.shortest
         rule.closeness, rule.keep = self.closeness, self.matrix_kept
         return rule
@@ -98,7 +103,8 @@ class Dynamics:
     Raises
     ------
     ParameterError
-        The contact has another number of runners than the body has skis.
+        The contact has another number of runners than the body has skis, a runner not the nodes of its ski, or place
+        and rotation are none.
     """
 
     def __init__(
@@ -106,9 +112,13 @@ class Dynamics:
     ) -> None:
         if len(contact.runners) != len(body.skis):
             raise ParameterError(f"the body has {len(body.skis)} skis, the contact {len(contact.runners)} runners")
+        for k, (ski, runner) in enumerate(zip(body.skis, contact.runners, strict=True)):
+            nodes = 0 if runner.nodes is None else len(runner.nodes)
+            if nodes != len(ski.unknown):
+                raise ParameterError(f"ski {k} of the body has {len(ski.unknown)} nodes, its runner {nodes}")
         self.body, self.contact = body, contact
         self._core = core.Dynamics(body.compiled(), contact.compiled, control.compiled())
-        self._core.set_pose(np.ascontiguousarray(position, float), np.ascontiguousarray(rotation, float))
+        self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
 
     def settle(self) -> float:
         """Move to equilibrium in height, roll, pitch and bend, place and heading held; Newton's last step (m)."""
@@ -120,7 +130,7 @@ class Dynamics:
 
     def begin(self, velocity: FloatArray) -> None:
         """Let the motion begin where the body is: velocity and angular velocity in its own axes (6,)."""
-        self._core.set_velocity(np.ascontiguousarray(velocity, float))
+        self._core.set_velocity(shaped("velocity", velocity, (6,)))
         self._core.begin()
 
     def advance(self, until: float) -> Ended:

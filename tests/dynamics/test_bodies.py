@@ -1,0 +1,58 @@
+"""Bodies on one, two and three skis: they glide straight, and what carries them adds up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+import pytest
+
+from skisnow import Scenario
+from skisnow.dynamics import Body, Ended
+
+from .balance import left_over, snow_forces
+from .bodies import on_one_ski, on_three_skis
+from .sledges import ahead, body_of, given, sledge
+
+FLAT: Final = given(
+    sledge__edge_angle_deg=0.0, start__heading_deg=0.0, drag__drag_area_m2=0.0, snow__H_V_N_per_mm3=0.03,
+    sledge__centre_of_mass_height_m=0.01,
+)  # fmt: skip
+KINDS: Final = {1: on_one_ski, 2: body_of, 3: on_three_skis}
+
+
+@pytest.mark.parametrize(("skis", "body_on"), KINDS.items())
+def test_rests_on_all_its_skis(skis: int, body_on: Callable[[Scenario], Body]) -> None:
+    body = body_on(FLAT)
+    dynamics = sledge(FLAT, body=body)
+    assert dynamics.settle() < 1e-9
+    assert dynamics.bend.shape[0] == len(body.skis) == skis
+    normal = snow_forces(dynamics).wrench[:, 2]
+    weight = -body.mass * body.gravity[2]
+    assert normal.sum() == pytest.approx(weight, rel=1e-4)  # a pitch of 0.01 lets 5e-5 of it act along
+    assert normal[0] == pytest.approx(normal[-1], rel=1e-7)
+    assert normal.min() > 0.3 * weight / skis
+    on_body, on_skis = left_over(dynamics)
+    assert np.abs(on_body[2:5]).max() < 1e-5
+    assert max(np.abs(each).max() for each in on_skis) < 1e-5
+
+
+@pytest.mark.parametrize(("skis", "body_on"), KINDS.items())
+def test_glides_straight(skis: int, body_on: Callable[[Scenario], Body]) -> None:
+    """Down the fall line, slower than g (sin α - μ cos α) says by what pressing the track takes."""
+    body, speed, duration = body_on(FLAT), 3.0, 0.3
+    dynamics = sledge(FLAT, body=body)
+    dynamics.settle()
+    dynamics.begin(ahead(speed))
+    assert dynamics.advance(duration) is Ended.REACHED
+    assert abs(dynamics.position[1]) < 1e-9
+    assert np.abs(dynamics.rotation[:, 1] - [0.0, 1.0, 0.0]).max() < 1e-6  # one ski alone hardly holds it upright
+    mu = FLAT.contact.friction
+    free = speed * duration + 0.5 * (body.gravity[0] + mu * body.gravity[2]) * duration**2
+    assert 0.9 * free < dynamics.position[0] < free
+    friction, normal = dynamics.work[1], dynamics.work[2]
+    assert friction == pytest.approx(-mu * body.mass * body.gravity[2] * dynamics.position[0], rel=0.02)
+    assert normal < 0.0
+    sums = [-np.trapezoid(dynamics.along(k)[1], dynamics.contact.runners[k].nodes) for k in range(skis)]
+    assert sum(sums) == pytest.approx(-body.mass * body.gravity[2], rel=0.2)

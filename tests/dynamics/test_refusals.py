@@ -1,0 +1,116 @@
+"""What no run can be made of is refused by name."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.contact import Runner, SnowContact
+from skisnow.dynamics import Body, Dynamics, Ended, StepControl
+from skisnow.errors import ParameterError
+
+from .sledges import ahead, body_of, clamped_ski, given, placed, sledge, snow_of, started
+
+SCENARIO = given()
+BODY = body_of(SCENARIO)
+
+
+@pytest.mark.parametrize("name", ["first", "tolerance", "longest", "shortest", "closeness"])
+@pytest.mark.parametrize("value", [0.0, -1e-3, math.inf, math.nan])
+def test_lengths_and_tolerances(name: str, value: float) -> None:
+    given_so: dict[str, Any] = {name: value}
+    with pytest.raises(ParameterError, match=rf"StepControl: {name} is {value!r}"):
+        StepControl(**given_so)
+
+
+@pytest.mark.parametrize("kept", [0, -1])
+def test_matrix_kept(kept: int) -> None:
+    with pytest.raises(ParameterError, match=rf"matrix_kept is {kept}; it must be 1 or more"):
+        StepControl(matrix_kept=kept)
+
+
+def test_shortest_above_longest() -> None:
+    with pytest.raises(ParameterError, match=r"shortest is 0\.01, above longest, 0\.006"):
+        StepControl(shortest=0.01)
+
+
+def test_a_first_step_is_no_longer_than_the_longest() -> None:
+    """So a glide that accepts every step takes none longer."""
+    scenario = given(start__speed_m_per_s=1.0)
+    dynamics = started(scenario, StepControl(first=0.5, longest=1e-3, tolerance=1.0, closeness=1e-9))
+    assert dynamics.advance(0.02) is Ended.REACHED
+    assert dynamics.counts[:2] == (20, 0)
+
+
+def contact_of(*elements: int) -> SnowContact:
+    """A runner for each, rigid with none."""
+    nodes = [clamped_ski(SCENARIO, each).node if each else None for each in elements]
+    return SnowContact(snow_of(SCENARIO), [Runner.of(SCENARIO.ski, nodes=each) for each in nodes])
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_number_of_runners(count: int) -> None:
+    with pytest.raises(ParameterError, match=rf"the body has 2 skis, the contact {count} runners"):
+        Dynamics(BODY, contact_of(*[40] * count), *placed(SCENARIO, height=0.02), StepControl())
+
+
+@pytest.mark.parametrize("elements", [0, 12])
+def test_nodes_of_another_beam(elements: int) -> None:
+    nodes = len(clamped_ski(SCENARIO, elements).node) if elements else 0
+    has = len(BODY.skis[1].unknown)
+    with pytest.raises(ParameterError, match=rf"ski 1 of the body has {has} nodes, its runner {nodes}"):
+        Dynamics(BODY, contact_of(40, elements), *placed(SCENARIO, height=0.02), StepControl())
+
+
+@pytest.mark.parametrize(("name", "value"), [("position", np.zeros(2)), ("rotation", np.zeros(9))])
+def test_pose_of_another_shape(name: str, value: np.ndarray[Any, Any]) -> None:
+    position, rotation = placed(SCENARIO, height=0.02)
+    pose = {"position": position, "rotation": rotation, name: value}
+    with pytest.raises(ParameterError, match=rf"{name} has shape {re.escape(str(value.shape))}"):
+        Dynamics(BODY, contact_of(40, 40), pose["position"], pose["rotation"], StepControl())
+
+
+def test_velocity() -> None:
+    dynamics = sledge(SCENARIO)
+    with pytest.raises(ParameterError, match=r"velocity has shape \(1,\); it must be \(6,\)"):
+        dynamics.begin(np.array([7.0]))
+    with pytest.raises(ParameterError, match="velocity holds a number that is not finite"):
+        dynamics.begin(ahead(math.nan))
+
+
+WRONG_BODIES: dict[str, dict[str, Any]] = {
+    r"inertia has shape \(3, 3\)": {"inertia": np.eye(3)},
+    "gravity holds a number that is not finite": {"gravity": np.array([0.0, 0.0, math.nan])},
+    "mass holds a number that is not finite": {"mass": math.inf},
+    "one ski or more": {"skis": ()},
+}
+
+
+@pytest.mark.parametrize(("words", "wrong"), WRONG_BODIES.items())
+def test_bodies(words: str, wrong: dict[str, Any]) -> None:
+    with pytest.raises(ParameterError, match=f"Body: .*{words}"):
+        replace(BODY, **wrong)
+
+
+def cut(body: Body, name: str) -> dict[str, Any]:
+    return {name: getattr(body.skis[0], name)[:-3]}
+
+
+WRONG_SKIS: dict[str, dict[str, Any]] = {
+    r"stiffness has shape \(99, 6\); it must be \(102, 6\)": cut(BODY, "stiffness"),
+    r"coupling has shape \(99, 6\)": cut(BODY, "coupling"),
+    "unknown gives 31 free nodes": cut(BODY, "unknown"),
+    r"boot has shape \(2,\)": {"boot": np.zeros(2)},
+    "damping holds a number that is not finite": {"damping": math.nan},
+}
+
+
+@pytest.mark.parametrize(("words", "wrong"), WRONG_SKIS.items())
+def test_skis(words: str, wrong: dict[str, Any]) -> None:
+    with pytest.raises(ParameterError, match=f"FlexibleSki: {words}"):
+        replace(BODY.skis[0], **wrong)
