@@ -1,4 +1,4 @@
-"""Numbers of docs/validation/simulated-turn.md: python -m tests.simulate.runs.tables writes them there (15 minutes)."""
+"""Numbers of docs/validation/simulated-turn.md: python -m tests.simulate.runs.tables writes them there (7 minutes)."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def convergence() -> str:
     """How far the end moves with each choice made twice as fine."""
     head = (
         "H_V (N/mm³)", "S_f (N/mm²)", "outcome", "path (m)", "lost to shear (J)", "energy open (%)", "tolerance/2 (cm)",
-        "elements × 2 (cm)", "lines/2 (cm)", "cells/2 (cm)",
+        "elements × 2 (cm)", "lines/2 (cm)", "groove tolerance/2 (cm)",
     )  # fmt: skip
     with ProcessPoolExecutor(2) as pool:
         return table(head, pool.map(_refined, SNOWS), words=3)
@@ -98,7 +98,7 @@ def flying() -> Iterable[Row]:
             f"free flight, tumbling, the skis swinging: {name}",
             "kept, but for what bent skis weigh in it, which the model leaves out",
             found,
-            "motion/test_free_flight",
+            "motion/test_free_flight, the former solver",
         )
 
 

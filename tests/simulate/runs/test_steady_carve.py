@@ -39,8 +39,8 @@ def steady(hardness: float, strength: float) -> Run:
 def test_radius(hardness: float, strength: float, of_sidecut: float, of_chord: float) -> None:
     """The path is that of the whole contact: the circle through the boot and the contact's ends, not that at the boot.
 
-    Measured against R_sc cos ϑ: -3.1, -0.8, -0.0, -0.3 % at 0.2, 1, 5, 20 N/mm³; in soft snow the middle is deeper.
-    Against the mean of both skis' chord circles under the loads they have in the run: -0.5, -0.6, -1.3, -2.2 %.
+    Measured against R_sc cos ϑ: -3.0, -0.1, -0.1, +0.1 % at 0.2, 1, 5, 20 N/mm³; in soft snow the middle is deeper.
+    Against the mean of both skis' chord circles under the loads they have in the run: -0.3, -0.0, -1.4, -1.9 %.
     The circle at the boot ± 0.4 m is 10 to 16 % larger: the clamp of 0.3 m straightens the ski there.
     """
     run = steady(hardness, strength)
