@@ -95,6 +95,11 @@ def test_values_as_given_become_si() -> None:
     assert (found.law, found.parts, found.fixed, found.load_N) == ("a", None, True, 1.0)
 
 
+def test_what_a_dataclass_holds_is_made_with_it() -> None:
+    found = made(Bench, GIVEN | {"snow.S_f_N_per_mm2": 0.5})
+    assert found.snow == Snow(hardness=2e8, strength=5e5)
+
+
 def test_values_are_told_back_in_the_units_of_their_keys() -> None:
     told = values_of(bench(parts=8))
     assert told.pop("bench.inertia_kg_m2") == [1.0, 2.0, 3.0]
