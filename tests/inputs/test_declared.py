@@ -120,6 +120,8 @@ def test_values_are_told_back_in_the_units_of_their_keys() -> None:
         ({"parts": 4.5}, "bench.parts is 4.5; it must be a whole number"),
         ({"parts": 3}, "bench.parts is 3.0; allowed is whole numbers 4 or more"),
         ({"fixed": 1}, "bench.fixed is 1; it must be true or false without quotes"),
+        ({"inertia": 3.0}, "bench.inertia_kg_m2 is 3.0; it must be \\[a, b, c\\]"),
+        ({"load_N": [1.0]}, "bench.load_N is \\[1.0\\]; it must be a number"),
         ({"inertia": (1.0, 2.0)}, "it must be \\[a, b, c\\]"),
         ({"inertia": (1.0, 0.0, 2.0)}, "three numbers, each above 0"),
         ({"centre": (0.0, 0.2)}, "bench.height_mm is 200.0; allowed is from 0 to 100 mm"),
