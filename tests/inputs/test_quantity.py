@@ -124,3 +124,5 @@ def test_schema_of_what_is_written_allows_null_where_nothing_may_be_in_force() -
     assert (told["additionalProperties"], told["required"]) == (False, ["from", "n"])
     assert told["properties"]["from"]["type"] == ["number", "null"]
     assert schema_of(ANGLE)["exclusiveMaximum"] == 90.0
+    numbers = {"type": "number", "exclusiveMinimum": 0.0}
+    assert schema_of(STEPS) == {"type": "array", "description": "discs (N)", "minItems": 1, "items": numbers}
