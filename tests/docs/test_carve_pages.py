@@ -31,8 +31,10 @@ def test_every_key_of_the_json_and_every_column_is_told() -> None:
 
 def test_every_input_is_an_option_of_the_command() -> None:
     (commands,) = (action.choices for action in build_parser()._actions if isinstance(action.choices, dict))
-    options = {action.dest for action in commands["carve"]._actions}
-    assert set(CARVE_KEYS) <= options
+    options = {action.dest: action for action in commands["carve"]._actions}
+    assert set(CARVE_KEYS) <= set(options)
+    for name, key in CARVE_KEYS.items():
+        assert tuple(options[name].choices or ()) == key.choices, name
 
 
 def test_studies_of_the_how_to_can_be_read(tmp_path: Path) -> None:

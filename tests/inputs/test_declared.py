@@ -95,6 +95,11 @@ def test_values_as_given_become_si() -> None:
     assert (found.law, found.parts, found.fixed, found.load_N) == ("a", None, True, 1.0)
 
 
+def test_what_a_dataclass_holds_is_made_with_it() -> None:
+    found = made(Bench, GIVEN | {"snow.S_f_N_per_mm2": 0.5})
+    assert found.snow == Snow(hardness=2e8, strength=5e5)
+
+
 def test_values_are_told_back_in_the_units_of_their_keys() -> None:
     told = values_of(bench(parts=8))
     assert told.pop("bench.inertia_kg_m2") == [1.0, 2.0, 3.0]
@@ -115,6 +120,8 @@ def test_values_are_told_back_in_the_units_of_their_keys() -> None:
         ({"parts": 4.5}, "bench.parts is 4.5; it must be a whole number"),
         ({"parts": 3}, "bench.parts is 3.0; allowed is whole numbers 4 or more"),
         ({"fixed": 1}, "bench.fixed is 1; it must be true or false without quotes"),
+        ({"inertia": 3.0}, "bench.inertia_kg_m2 is 3.0; it must be \\[a, b, c\\]"),
+        ({"load_N": [1.0]}, "bench.load_N is \\[1.0\\]; it must be a number"),
         ({"inertia": (1.0, 2.0)}, "it must be \\[a, b, c\\]"),
         ({"inertia": (1.0, 0.0, 2.0)}, "three numbers, each above 0"),
         ({"centre": (0.0, 0.2)}, "bench.height_mm is 200.0; allowed is from 0 to 100 mm"),

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from skisnow.errors import ParameterError
-from skisnow.inputs import Quantity, checked_table, made, own_quantities
+from skisnow.inputs import Quantity, Search, checked_table, made, own_quantities
 from skisnow.inputs.json_schema import schema_of, told_schema
+from skisnow.inputs.page_table import page_table
 from skisnow.units import unit_of_name, without_unit
 
 ANGLE = Quantity("edge_angle_deg", "edge angle", lowest=0.0, highest=90.0, below=True)
@@ -98,9 +99,30 @@ def test_a_table_is_checked_and_made() -> None:
             checked_table(Range, table, "[grid]")
 
 
+def test_search_in_a_table_of_a_page() -> None:
+    searches = (
+        Search(3.0, 0.002, 1000.0, logarithmic=True),
+        Search(10.0, -15.0, 15.0, about=True),
+        Search(10.0, -5.0, 15.0, about=True),
+        Search(0.5, -1.0, 1.0),
+        None,
+    )
+    rows = page_table([Quantity("x_m", "", search=each) for each in searches], ("key", "usual size", "bounds"))
+    assert rows.splitlines()[2:] == [
+        "| `x_m` | factor e^3 | 0.002 to 1000 |",
+        "| `x_m` | 10 m | the start ± 15 |",
+        "| `x_m` | 10 m | the start and -5 to 15 |",
+        "| `x_m` | 0.5 m | -1 to 1 |",
+        "| `x_m` | | |",
+    ]
+
+
 def test_schema_of_what_is_written_allows_null_where_nothing_may_be_in_force() -> None:
     first, n = (schema_of(each) for each in own_quantities(Range))
     assert told_schema(own_quantities(Range))["properties"] == {"from": first, "n": {**n, "type": ["integer", "null"]}}
     told = told_schema(own_quantities(Range), every_null=True)
+    assert (told["additionalProperties"], told["required"]) == (False, ["from", "n"])
     assert told["properties"]["from"]["type"] == ["number", "null"]
     assert schema_of(ANGLE)["exclusiveMaximum"] == 90.0
+    numbers = {"type": "number", "exclusiveMinimum": 0.0}
+    assert schema_of(STEPS) == {"type": "array", "description": "discs (N)", "minItems": 1, "items": numbers}

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 from skisnow.report.numerals import significant
 from skisnow.simulate.carve_answer import answered
 from skisnow.simulate.carve_dict import answer_dict
+from skisnow.simulate.carve_keys import CARVE_KEYS
 from skisnow.simulate.carve_question import carve_question
+from skisnow.web.pages.carve import RATIOS, SLIDERS
 
 from .conftest import Served
 
@@ -21,6 +23,14 @@ def radius(edge_angle_deg: float) -> str:
     asked = {"ski": "carver", "edge_angle_deg": edge_angle_deg, "load_N": 800.0, "H_V_N_per_mm3": 0.2}
     answer = answer_dict(answered(carve_question({**asked, "S_f_N_per_mm2": 0.5, "unloading_ratio": 10.0})))
     return f"{significant(answer['turn_radius_boot_m'])} m"
+
+
+def test_the_sliders_are_inputs_of_a_carved_turn() -> None:
+    for name, (label, stops, start) in SLIDERS.items():
+        assert label.endswith(f"({CARVE_KEYS[name].unit})")
+        assert start in stops
+        assert all(CARVE_KEYS[name].in_range(float(stop)) == float(stop) for stop in stops)
+    assert all(CARVE_KEYS["unloading_ratio"].in_range(float(ratio)) for ratio in RATIOS)
 
 
 def test_the_radius_follows_the_slider(page: Page, served: Served) -> None:

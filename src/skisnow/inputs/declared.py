@@ -99,7 +99,7 @@ def require_declared(thing: Any) -> None:
 
 
 def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
-    """A dataclass of values as given, by name, in the units that the names say.
+    """A dataclass of values as given, by name, in the units that the names say, with the dataclasses that it holds.
 
     Parameters
     ----------
@@ -123,6 +123,9 @@ def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **part
             )
         elif value is not None:
             parts.setdefault(each.field, each.in_si(value))
+    for slot in _slots(owner):
+        if len(slot.parts) == 1 and slot.field.name not in parts:
+            parts[slot.field.name] = made(slot.parts[0], values, section=slot.section.name)
     for name, entries in several.items():
         parts.setdefault(name, tuple(value for _, value in sorted(entries)))
     return owner(**parts)

@@ -14,7 +14,6 @@ from ..errors import ParameterError, RangeWarning
 from ..given import read_toml
 from ..inputs import InputValue, Quantity, made, nearest
 from ..units import DEGREE
-from .base_profile import BaseShape
 from .file_keys import SKI_KEYS, SkiFile
 
 if TYPE_CHECKING:
@@ -157,7 +156,7 @@ def file_values(path: Path) -> FileValues:
             warn_of_unusual(path, {f"{key}[{n}]": each for n, each in enumerate(value, start=1)}, SKI_KEYS[key])
         elif isinstance(value, float):
             warn_of_unusual(path, {key: value}, SKI_KEYS[key])
-    return FileValues(path, values, made(SkiFile, given, base=made(BaseShape, given)))
+    return FileValues(path, values, made(SkiFile, given))
 
 
 def shown(value: object, limit: int = 80) -> str:

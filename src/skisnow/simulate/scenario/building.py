@@ -11,14 +11,12 @@ from ...ski import Ski, ski_names
 from ...snow import SnowProperties
 from ..carve_answer import Sources
 from ..carve_limits import require_stress, with_stress
-from ..sledge import RigidSledge
 from .contact import ELASTIC, Contact
 from .given import GivenScenario
 from .keys import SCENARIO_KEYS
 from .profile_file import read_profile
-from .scenario import Air, Scenario, Start, Stop
+from .scenario import Scenario
 from .slope import Plane, Profile
-from .solver import Solver
 
 
 def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, ...]]:
@@ -36,19 +34,11 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
         if key.needed and name not in values:
             raise ParameterError(_missing(name))
     ski, told = _ski(given, sources)
-    scenario = made(
-        Scenario,
-        values,
-        slope=_slope(given, values),
-        contact=_contact(values, _snow(given, sources)),
-        air=_air(values),
-        sledge=made(RigidSledge, values),
-        ski=ski,
-        start=made(Start, values),
-        stop=_stop(values),
-        solver=made(Solver, values),
-    )
-    return scenario, told
+    slope, contact = _slope(given, values), _contact(values, _snow(given, sources))
+    if "run.duration_s" not in values and "run.length_m" not in values:
+        raise ParameterError("the run has no end: give run.duration_s or run.length_m")
+    values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
+    return made(Scenario, values, slope=slope, contact=contact, ski=ski), told
 
 
 def _missing(name: str) -> str:
@@ -64,9 +54,7 @@ def _slope(given: GivenScenario, values: Mapping[str, Any]) -> Plane | Profile:
         _require(values, "slope.angle_deg", 'or a measured profile: slope.kind = "profile" and slope.profile')
         return made(Plane, values)
     _require(values, "slope.profile", 'or a plane: slope.kind = "plane" and slope.angle_deg')
-    return read_profile(
-        given.path("slope.profile"), gap=values.get("slope.profile_gap", SCENARIO_KEYS["slope.profile_gap"].default)
-    )
+    return read_profile(given.path("slope.profile"), gap=values.get("slope.profile_gap", _default("slope.profile_gap")))
 
 
 def _default(name: str) -> Any:
@@ -120,11 +108,6 @@ def _contact(values: Mapping[str, Any], snow: SnowProperties) -> Contact:
     return made(Contact, values, snow=snow, unloading_ratio=ratio)
 
 
-def _air(values: Mapping[str, Any]) -> Air:
-    height = {"drag.centre_of_pressure_height_m": values["sledge.centre_of_mass_height_m"]}
-    return made(Air, {**height, **values})
-
-
 def _ski(given: GivenScenario, sources: Sources) -> tuple[Ski, tuple[str, ...]]:
     name, file = given.values.get("ski.name"), given.values.get("ski.file")
     if (name is None) == (file is None):
@@ -136,10 +119,3 @@ def _ski(given: GivenScenario, sources: Sources) -> tuple[Ski, tuple[str, ...]]:
         known = f"{meant(str(name), ski_names())}There are {', '.join(ski_names())}"
         raise ParameterError(f"ski.name is {name!r}, no ski of the catalogue. {known}. A path stands under ski.file")
     return sources.ski(str(name))
-
-
-def _stop(values: Mapping[str, Any]) -> Stop:
-    stop = made(Stop, values)
-    if stop.duration is stop.length is None:
-        raise ParameterError("the run has no end: give run.duration_s or run.length_m")
-    return stop

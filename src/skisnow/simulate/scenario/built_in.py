@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Final
@@ -34,6 +35,7 @@ def scenario_place(name: str) -> Path:
     return Path(str(_FOLDER / f"{name}.toml"))
 
 
+@cache
 def scenario_text(name: str) -> str:
     """The text of a built-in scenario, every key with where its value comes from, defaults behind what the file names.
 
