@@ -53,6 +53,7 @@ def told(cases: list[dict[str, object]], **environment: str) -> tuple[list[str],
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no module resource")
+@pytest.mark.slow
 def test_a_run_compiles_nothing() -> None:
     """What is made beforehand is what every kind of run calls."""
     _, missed, own, _ = told([{}, FIXED, FAST])
