@@ -82,7 +82,7 @@ def test_summary_says_in_words_what_came_out(capsys: Printed) -> None:
     assert told["turn radius"].startswith("none, the run is straight")
     assert told["energy balance"].startswith("closes within ")
     assert told["steps"] == "1000, 7 rejected"
-    assert told["computed in"] == "0.500 s without compiling, 4.00 times real time"
+    assert told["computed in"] == "0.500 s, 4.00 times real time"
     assert "warning" not in err  # on a busy machine a line says that it is loading
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..simulate.scenario import Scenario, ScenarioFile
 
 SUMMARY, REPLAY = "summary.json", "replay.html"
-LOADING = "loading and, on a machine's first run, compiling the simulator, once"
+LOADING = "loading"
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -39,9 +39,8 @@ class Simulations:
 
     Notes
     -----
-    A process is started afresh ("spawn") at the first task and stays until the end: it would take seconds to load
-    compiled code for every Jacobian. It ends with its parent, however that ends. The compiled loops hold Python's lock,
-    so threads would not help.
+    A process is started afresh ("spawn") at the first task and stays until the end: it would take long to load the
+    libraries for every Jacobian. It ends with its parent, however that ends.
     """
 
     simulate: RunSimulation

@@ -157,7 +157,7 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
     return [
         prose("Programs: {versions}.", versions=versions or f"skisnow {version('skisnow')}"),
         prose(
-            "{steps} ({rejected} rejected) in {wall} s without compiling: {rate} times real time. {numbers}.",
+            "{steps} ({rejected} rejected) in {wall} s: {rate} times real time. {numbers}.",
             steps=counted(run.steps, "step"), rejected=whole(run.rejected_steps), wall=_number(run.wall_s),
             rate=_number(rate), numbers=numbers,
         ),

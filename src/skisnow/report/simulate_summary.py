@@ -68,7 +68,7 @@ def _balance(error: float | None) -> str:
 def _computed(summary: Mapping[str, Any]) -> str:
     wall, simulated = summary["wall_s"], summary["simulated_s"]
     rate = f", {_plain(simulated / wall)} times real time" if wall and simulated else ""
-    return f"{_plain(wall)} s without compiling{rate}"
+    return f"{_plain(wall)} s{rate}"
 
 
 def _verification(verification: Mapping[str, Json]) -> Iterator[str]:

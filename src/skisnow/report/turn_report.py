@@ -226,8 +226,7 @@ def _snow() -> Markup:
 
 def _provenance(chain: TurnChain) -> Markup:
     return prose(
-        "Snow from {source}. Computed with skisnow {version}; {runs} in {seconds} s without compiling, beside the "
-        "ensemble.",
+        "Snow from {source}. Computed with skisnow {version}; {runs} in {seconds} s, beside the ensemble.",
         source=chain.snow.source,
         version=version("skisnow"),
         runs=f"{len(chain.runs)} runs",

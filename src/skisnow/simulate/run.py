@@ -121,7 +121,7 @@ class Run:
     steps, rejected_steps
         Of the integrator.
     wall_s
-        Time it took, without compiling (s).
+        Time it took, without the start (s).
     numbers
         What the solver chose: elements, line_spacing_m.
     """
