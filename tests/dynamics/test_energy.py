@@ -15,7 +15,7 @@ from .sledges import ahead, given, sledge, started
 
 FloatArray = npt.NDArray[np.float64]
 DURATION: Final = 0.5
-SHARE: Final = 1e-3
+SHARE: Final = 2e-4
 CASES: Final = {
     "carves": {},
     "skids": {"snow__S_f_N_per_mm2": 0.1},
