@@ -10,10 +10,11 @@ namespace skisnow {
 namespace {
 
 constexpr int MOST_ITERATIONS = 12;
-constexpr double SLOW = 0.15;                            // contraction from which on the matrix is made anew
-constexpr double UNSEEN = 0.3;                           // contraction to reckon with before it was seen
-constexpr double SAME_REACH = 0.1;                       // by which β may differ from that of a matrix that is kept
-constexpr double FARTHEST = 1.0;                         // way (m), turn (rad), bend beyond which a step has diverged
+constexpr double SLOW = 0.15;             // contraction from which on the matrix is made anew
+constexpr double UNSEEN = 0.3;            // contraction to reckon with before it was seen
+constexpr double SAME_REACH = 0.1;        // by which β may differ from that of a matrix that is kept
+constexpr double LEAST_SHARE = 1.0 / 64;  // of a fixed step, into which it is divided where it is not solved
+constexpr double FARTHEST = 1.0;          // way (m), turn (rad), bend beyond which a step has diverged
 constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // of the step's choice
 constexpr double ROUNDING = 1e-9;                        // of a step's length
 constexpr double MILNE = 0.35;  // error of BDF2 over its distance from the predictor, at equal steps 8/23
@@ -289,6 +290,8 @@ void Dynamics::begin() {
   work_ = Work();
   counts_ = Counts();
   last_step_ = 0.0;
+  time = 0.0;
+  share_ = 1.0;
   kept_ = 0;
   step_ = rule_.fixed ? rule_.first : on_ladder(rule_.first);
 }
@@ -301,6 +304,7 @@ Advance Dynamics::advance(double until, long most) {
     if (rule_.fixed) {
       h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));
       if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
+      h *= share_;
     } else if (h < left * (1.0 - ROUNDING) && h > 0.5 * left) {
       h = 0.5 * left;  // no crumbs at the end
     }
@@ -311,7 +315,14 @@ Advance Dynamics::advance(double until, long most) {
     contact_->begin(end_);
     const bool solved = solve_step(f) && is_sound(h);
     if (rule_.fixed) {
-      if (!solved) return Advance::NOT_FINITE;
+      if (!solved) {  // in two halves, and so on
+        counts_.rejected++;
+        kept_ = 0;
+        share_ *= 0.5;
+        if (share_ < LEAST_SHARE) return Advance::NOT_FINITE;
+        continue;
+      }
+      share_ = std::min(1.0, 2.0 * share_);
     } else {
       const double wanted = solved ? SAFETY * std::cbrt(rule_.tolerance / std::max(error(f), 1e-30)) : 0.5;
       if (!solved || wanted < SAFETY) {

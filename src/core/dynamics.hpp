@@ -66,6 +66,7 @@ class Dynamics {
   // the last accepted step: rates before it, its increments in the frame of its end, its length (s)
   Numbers rate_before_, moved_;
   double last_step_ = 0.0;
+  double share_ = 1.0;  // of a fixed step, less than 1 where Newton's method has failed
   // what was observed at the last moment reached
   std::vector<Along> along_;
   double snow_energy_ = 0.0, held_energy_ = 0.0;

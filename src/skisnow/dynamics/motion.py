@@ -45,7 +45,7 @@ class StepControl:
     Attributes
     ----------
     first
-        The first step, ``longest`` at most, or with ``fixed`` every step (s).
+        The first step, ``longest`` at most, or with ``fixed`` every step (s), halved where it is not solved.
     fixed
         Whether the step stays.
     tolerance
@@ -126,7 +126,7 @@ class Dynamics:
 
     def move_to(self, position: FloatArray, rotation: FloatArray) -> None:
         """Put the body elsewhere before it begins, its skis bent as they are."""
-        self._core.set_pose(np.ascontiguousarray(position, float), np.ascontiguousarray(rotation, float))
+        self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
 
     def begin(self, velocity: FloatArray) -> None:
         """Let the motion begin where the body is: velocity and angular velocity in its own axes (6,)."""

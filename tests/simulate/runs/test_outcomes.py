@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from skisnow import Run, read_scenario, simulated_run
-from skisnow.dynamics import StepControl
+from skisnow.dynamics import Dynamics, Ended, StepControl
 from skisnow.errors import ParameterError
 from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import set_up
@@ -128,28 +128,44 @@ def test_step_too_small(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    "changes",
+    ("changes", "solver", "apart"),
     [
-        {"solver.fixed": True, "solver.step_ms": 5.0},
-        {"solver.fixed": True, "solver.step_ms": 5.0, "snow.H_V_N_per_mm3": 20.0, "snow.S_f_N_per_mm2": 3.0},
-        {"solver.method": "fast", "solver.step_ms": 5.0, "start.speed_m_per_s": 50.0},
+        ({}, {"solver.fixed": True, "solver.step_ms": 5.0}, 0.01),
+        ({"snow.H_V_N_per_mm3": 20.0, "snow.S_f_N_per_mm2": 3.0}, {"solver.fixed": True, "solver.step_ms": 5.0}, 0.01),
+        (
+            {"snow.H_V_N_per_mm3": 90.0, "snow.S_f_N_per_mm2": 10.0},
+            {"solver.method": "fast", "solver.step_ms": 2.0},
+            0.01,
+        ),
+        ({"start.speed_m_per_s": 50.0}, {"solver.method": "fast", "solver.step_ms": 5.0}, 1.0),
     ],
-    ids=["fixed", "fixed-ice", "fast"],
+    ids=["soft", "ice", "hard-ice", "at-50-m-per-s"],
 )
-def test_too_large_a_step_ends_as_not_finite(changes: dict[str, object]) -> None:
-    run = simulated_run(read_scenario("carved-46m", changes=changes))
+def test_long_fixed_steps_do_not_diverge(changes: dict[str, object], solver: dict[str, object], apart: float) -> None:
+    """Newton's method at the step's end has no edge of stability; a step that it does not solve is halved.
+
+    How far they end from the controlled ones after 7 and 46 m: a half to one in a thousand, two in a hundred at 50 m/s.
+    """
+    shorter = {"run.duration_s": 1.0}
+    run = simulated_run(read_scenario("carved-46m", changes={**changes, **solver, **shorter}))
+    controlled = simulated_run(read_scenario("carved-46m", changes={**changes, **shorter}))
+    assert run.outcome == controlled.outcome == "finished"
+    assert run.steps < 510
+    assert np.linalg.norm(run.place[-1] - controlled.place[-1]) < apart
+
+
+def test_diverged_numbers_end_as_not_finite(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was computed before is kept."""
+    advance = Dynamics.advance
+
+    def diverging(self: Dynamics, until: float) -> Ended:
+        return advance(self, until) if until < 0.035 else Ended.NOT_FINITE
+
+    monkeypatch.setattr(Dynamics, "advance", diverging)
+    run = simulated_run(read_scenario("carved-46m"))
     assert run.outcome == "not_finite"
-    assert np.all(np.diff(run.time) > 0.0)
-    assert np.isfinite(run.place).all()
-    assert run.speed.max() < 2.0 * run.speed[0]  # what was computed before it ran away is kept, not the nonsense
-
-
-def test_a_diverged_step_is_not_laid_into_the_snow() -> None:
-    """The second step bends a ski by kilometres: its groove had no end."""
-    changes = {
-        "solver.method": "fast", "solver.step_ms": 2.0, "snow.H_V_N_per_mm3": 90.0, "snow.S_f_N_per_mm2": 10.0,
-    }  # fmt: skip
-    assert simulated_run(read_scenario("carved-46m", changes=changes)).outcome == "not_finite"
+    assert run.time == pytest.approx([0.0, 0.01, 0.02, 0.03])
+    assert is_sound(run)
 
 
 def test_open_energy_is_no_finish(monkeypatch: pytest.MonkeyPatch) -> None:
