@@ -201,7 +201,7 @@ bool Dynamics::solve_step(const Formula& f) {
     place(f);
     const double contraction = iteration > 0 ? contraction_ : std::max(contraction_, UNSEEN);
     if (contraction / (1.0 - contraction) * size < close) {
-      kept_ -= iteration > 1 ? rule_.keep : 1;
+      kept_--;
       return true;
     }
   }
