@@ -154,27 +154,14 @@ const Wrench& SnowContact::look(int k, const Pose& pose, const Motion& motion) {
   return wrench;
 }
 
-void SnowContact::find_tangent(int k, const Pose& pose, const Motion& motion, double stiffness, double damping,
-                               RunnerTangent& out) {
-  const GrooveLines& lines = trial_[std::size_t(k)];
-  Sections& s = sections_[std::size_t(k)];
+void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double damping, RunnerTangent& out) {
+  const Sections& s = sections(k);
   out.clear(runner(k).nodes());
-  evaluate(k, lines, pose, motion, s);
   differences_.resize(s.count());
-  const int changes = pose.beam.empty() ? 6 : SectionDifferences::CHANGES;
-  const bool mirrored = pose.rotation[2][1] < 0.0;  // what changes sign in the mirror steps the other way there
-  for (int change = 0; change < changes; change++) {
-    const double step = mirrored && turns_in_mirror(change) ? -TANGENT_STEP : TANGENT_STEP;
-    evaluate(k, lines, changed(pose, change, step), motion, moved_);
-    for (int answer = 0; answer < SectionDifferences::ANSWERS; answer++) {
-      const double* before = s[SectionField(FORCE_0 + answer)];
-      const double* after = moved_[SectionField(FORCE_0 + answer)];
-      double* to = differences_.column(change, answer);
-      for (int i = 0; i < s.count(); i++) to[i] = (before[i] - after[i]) / step;
-    }
-  }
-  add_stiffness(runner(k), s, differences_, stiffness, out);
-  add_friction_damping(runner(k), s, damping, out);
+  const double sense = pose.rotation[2][1] < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
+  kernels_->differ(*snow_, trial_[std::size_t(k)], s, TANGENT_STEP, sense, differences_);
+  add_stiffness(runner(k), s, differences_, wrenches_[std::size_t(k)], stiffness, out);
+  if (damping > 0.0) add_friction_damping(runner(k), s, damping, out);
 }
 
 void SnowContact::remember(int k, GrooveLines& lines, const Pose& pose) {

@@ -55,9 +55,8 @@ class SnowContact {
   void begin(const Situation& foreseen);
   const Wrench& look(int k, const Pose& pose, const Motion& motion);
   void accept(const Situation& at);
-  // Weighted sum of minus the derivatives by pose and by motion at a pose, by differences section by section.
-  void find_tangent(int k, const Pose& pose, const Motion& motion, double stiffness, double damping,
-                    RunnerTangent& out);
+  // Weighted sum of minus the derivatives by pose and by motion at the pose looked at last: what Newton's method needs.
+  void find_tangent(int k, const Pose& pose, double stiffness, double damping, RunnerTangent& out);
 
   // Minus the derivatives of each runner's force and moment by its own pose (rotation about the slope's axes at the
   // boot) and velocity: (6, 6) each, row by row, by central differences.
@@ -90,7 +89,6 @@ class SnowContact {
   std::vector<GrooveLines> trial_;
   std::vector<Sections> sections_;
   std::vector<Wrench> wrenches_;
-  Sections moved_;
   SectionDifferences differences_;
 
   GrooveLines& history(int k, const Situation& at);

@@ -110,7 +110,7 @@ struct Carried {
 void Dynamics::add_contact_tangent(double stiffness, double damping) {
   for (std::size_t k = 0; k < body_.skis.size(); k++) {
     const FlexibleSki& ski = body_.skis[k];
-    contact_->find_tangent(int(k), end_.poses[k], end_.motions[k], stiffness, damping, tangent_);
+    contact_->find_tangent(int(k), end_.poses[k], stiffness, damping, tangent_);
     const Carried carried(ski);
     double half[BODY][BODY] = {};
     for (int r = 0; r < BODY; r++)

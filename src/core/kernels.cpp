@@ -8,7 +8,12 @@ namespace skisnow::SKISNOW_LANES {
 
 using Width = Lanes<SKISNOW_WIDTH>;
 
-extern const Kernels SET{
-    SKISNOW_NAME(SKISNOW_LANES), SKISNOW_WIDTH, find_sections<Width>, press<Width>, slide<Width>, push<Width>};
+extern const Kernels SET{SKISNOW_NAME(SKISNOW_LANES),
+                         SKISNOW_WIDTH,
+                         find_sections<Width>,
+                         press<Width>,
+                         slide<Width>,
+                         push<Width>,
+                         differ<Width>};
 
 }  // namespace skisnow::SKISNOW_LANES

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "lane_loops.hpp"
+#include "section_kernels.hpp"
 
 namespace skisnow::SKISNOW_LANES {
 
@@ -113,32 +113,48 @@ void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, P
   if (cuts) cut_piece(a, cut.to);
 }
 
+// What the snow answers to the base on a line: force and its moment about the edge for each metre of ski, elastic
+// energy.
+template <class V>
+struct Pressed {
+  V force, moment, energy;
+
+  Pressed(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
+    const V wet_to = maximum(c.wet_to, c.wet_from);
+    Pressure<V> sums;
+    sums.hardness = load<V>(lines.values[HARDNESS] + j), sums.excess = load<V>(lines.values[EXCESS] + j);
+    sums.depth = c.edge_depth, sums.fall = c.fall;
+    if (snow.unloading_ratio > 1.0) add_ground(lines, j, c.place, c.wet_from, wet_to, sums);
+    sums.resultants(c.wet_from, wet_to, force, moment, energy);
+  }
+};
+
+// [shear_used] The share of the way to full strength by which the edge is displaced. It holds where it did before, else
+// where it came through the surface since it was last looked at.
+template <class V>
+V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
+  const V above = load<V>(lines.values[DEPTH_ABOVE] + j), edge_above = load<V>(lines.values[EDGE_ABOVE] + j);
+  const V through = c.place - c.deepest / (c.deepest - above) * (c.place - edge_above);
+  const V anchor = select(load<V>(lines.values[ANCHORED] + j) > 0.5, load<V>(lines.values[ANCHOR] + j),
+                          select(load<V>(lines.values[ABOVE] + j) > 0.5, through, c.place));
+  return (anchor - c.place) / snow.shear_displacement;
+}
+
 // [press] What the snow answers to each section, and how far the shear at its edge is displaced.
 template <class V>
 void press(const Snow& snow, const GrooveLines& lines, Sections& s) {
   for_lanes<V>(s, lines, [&](int i, int j) {
-    const V share = load<V>(s[SHARE] + i), deepest = load<V>(s[DEEPEST] + i), none{};
-    const MaskOf<V> wet = (share > 0.0) & (deepest > 0.0);
+    const V share = load<V>(s[SHARE] + i), none{};
+    const Cut<V> c = Cut<V>::stored(s, i);
+    const MaskOf<V> wet = (share > 0.0) & (c.deepest > 0.0);
     for (SectionField field : {FORCE, MOMENT, SNOW_ENERGY, SHEAR_USED, EDGE_STRENGTH, EDGE_THRUST})
       store(s[field] + i, none);
     if (!any(wet)) return;
-    const V edge = load<V>(s[EDGE_PLACE] + i), wet_from = load<V>(s[WET_FROM] + i);
-    const V wet_to = maximum(load<V>(s[WET_TO] + i), wet_from);
-    Pressure<V> sums;
-    sums.hardness = load<V>(lines.values[HARDNESS] + j), sums.excess = load<V>(lines.values[EXCESS] + j);
-    sums.depth = load<V>(s[EDGE_DEPTH] + i), sums.fall = load<V>(s[DEPTH_FALL] + i);
-    if (snow.unloading_ratio > 1.0) add_ground(lines, j, edge, wet_from, wet_to, sums);
-    V force, moment, energy;
-    sums.resultants(wet_from, wet_to, force, moment, energy);
-    store(s[FORCE] + i, select(wet, share * force, none));
-    store(s[MOMENT] + i, select(wet, share * moment, none));
-    store(s[SNOW_ENERGY] + i, select(wet, share * energy, none));
-    // the edge holds where it did before, else where it came through the surface since it was last looked at
-    const V above = load<V>(lines.values[DEPTH_ABOVE] + j), edge_above = load<V>(lines.values[EDGE_ABOVE] + j);
-    const V through = edge - deepest / (deepest - above) * (edge - edge_above);
-    const V anchor = select(load<V>(lines.values[ANCHORED] + j) > 0.5, load<V>(lines.values[ANCHOR] + j),
-                            select(load<V>(lines.values[ABOVE] + j) > 0.5, through, edge));
-    store(s[SHEAR_USED] + i, select(wet, (anchor - edge) / snow.shear_displacement, none));
+    const Pressed<V> answer(snow, lines, j, c);
+    store(s[FORCE] + i, select(wet, share * answer.force, none));
+    store(s[MOMENT] + i, select(wet, share * answer.moment, none));
+    store(s[SNOW_ENERGY] + i, select(wet, share * answer.energy, none));
+    store(s[SHEAR_USED] + i, select(wet, shear_used(snow, lines, j, c), none));
     store(s[EDGE_STRENGTH] + i, select(wet, snow.strength_share * load<V>(lines.values[STRENGTH] + j), none));
   });
 }

@@ -65,7 +65,27 @@ struct Wrench {
   std::vector<double> beam;              // (nodes, 3): force, moment of the slope, moment of the twist
 };
 
-// The three parts of an evaluation, each over all lines of a runner.
+// How the eight answers of a section (force, moment about the boot, force and moment on the beam) change with three
+// local movements of the base: to the left across it, off it, and its twist. Minus the derivatives.
+struct SectionDifferences {
+  static constexpr int ANSWERS = 8;
+  enum Change { LEFT, OFF, TWIST, CHANGES };
+  std::vector<double> values;  // [change][answer][section]
+  int count = 0;
+
+  void resize(int sections) {
+    count = sections;
+    values.resize(std::size_t(ANSWERS * CHANGES) * std::size_t(sections));
+  }
+  double* column(int change, int answer) {
+    return values.data() + (std::size_t(change) * ANSWERS + std::size_t(answer)) * std::size_t(count);
+  }
+  const double* column(int change, int answer) const {
+    return const_cast<SectionDifferences*>(this)->column(change, answer);
+  }
+};
+
+// The parts of an evaluation, each over all lines of a runner.
 struct Kernels {
   const char* name;  // of the instruction set
   int lanes;
@@ -73,6 +93,8 @@ struct Kernels {
   void (*press)(const Snow&, const GrooveLines&, Sections&);  // pressure, strength, share of the displacement in use
   void (*slide)(const Motion&, const Pose&, const Snow&, Sections&);  // sliding speed along the edge and μ
   void (*push)(const Motion&, const Pose&, const Snow&, Sections&, Wrench&);
+  // of sections that were looked at; a step (m, rad), and its sense to the left and of the twist
+  void (*differ)(const Snow&, const GrooveLines&, const Sections&, double step, double sense, SectionDifferences&);
 };
 
 const Kernels& kernels();                        // the widest that this processor has

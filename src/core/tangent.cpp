@@ -11,14 +11,13 @@ constexpr int BAND_ROW = 11, MIDDLE = 5;
 
 // Of one section: how the six unknowns of its element move the beam there, and what loads there do to them.
 struct ElementShapes {
-  double deflection[6], rise[6], twist[6], twist_slope[6];
+  double deflection[6], twist[6];
 
   ElementShapes(double z, double h) {
     const double y = 1.0 - z;
     const double w[6] = {y * y * (1.0 + 2.0 * z), h * z * y * y, 0.0, z * z * (3.0 - 2.0 * z), -h * z * z * y, 0.0};
-    const double r[6] = {6.0 * z * y / h, -y * (1.0 - 3.0 * z), 0.0, -6.0 * z * y / h, -z * (3.0 * z - 2.0), 0.0};
-    const double t[6] = {0.0, 0.0, y, 0.0, 0.0, z}, s[6] = {0.0, 0.0, 1.0 / h, 0.0, 0.0, -1.0 / h};
-    std::copy_n(w, 6, deflection), std::copy_n(r, 6, rise), std::copy_n(t, 6, twist), std::copy_n(s, 6, twist_slope);
+    const double t[6] = {0.0, 0.0, y, 0.0, 0.0, z};
+    std::copy_n(w, 6, deflection), std::copy_n(t, 6, twist);
   }
 };
 
@@ -30,6 +29,34 @@ void add_to_band(int element, int column, const ElementShapes& shapes, double fo
         shapes.deflection[row] * force + shapes.twist[row] * moment;
 }
 
+// [local_movement] How the boot's six freedoms move the base at a section: to the left, off the snow, and in twist.
+struct LocalMovement {
+  double by[SectionDifferences::CHANGES][6];
+
+  LocalMovement(const Sections& s, int i) {
+    const double station = s[STATION][i], left = s[EDGE_LEFT][i], up = s[EDGE_UP][i], reach = s[EDGE_REACH][i];
+    const double sp = s[TWIST_SINE][i], cp = s[TWIST_COSINE][i], twisting = reach * s[TWIST_SLOPE][i];
+    const double outwards = s[FLARE][i] * reach / s[HALF_WIDTH][i];
+    // the edge runs outwards and up; a way ahead meets the line with another place of it
+    const double out = outwards * cp - twisting * sp, rise = s[BASE_RISE][i] - outwards * sp - twisting * cp;
+    const double moves[SectionDifferences::CHANGES][6] = {
+        {-out, 1.0, 0.0, -s[BASE_HEIGHT][i], -out * up, station + out * left},
+        {-rise, 0.0, 1.0, 0.0, -station - rise * up, rise * left},
+        {0.0, 0.0, 0.0, -1.0, 0.0, 0.0}};
+    std::copy_n(&moves[0][0], 6 * SectionDifferences::CHANGES, &by[0][0]);
+  }
+};
+
+// Forces stay where they are in space as the ski's axes turn, and as the boot goes away from them.
+void add_turning(const Wrench& wrench, double weight, RunnerTangent& out) {
+  for (int c = 0; c < 3; c++) {
+    const int p = (c + 1) % 3, q = (c + 2) % 3;  // axis c × (axis p, axis q) = (axis q, - axis p)
+    out.body[q][3 + c] += weight * wrench.force[p], out.body[p][3 + c] -= weight * wrench.force[q];
+    out.body[3 + q][3 + c] += weight * wrench.moment[p], out.body[3 + p][3 + c] -= weight * wrench.moment[q];
+    out.body[3 + q][c] += weight * wrench.force[p], out.body[3 + p][c] -= weight * wrench.force[q];
+  }
+}
+
 }  // namespace
 
 void RunnerTangent::clear(int nodes) {
@@ -39,52 +66,35 @@ void RunnerTangent::clear(int nodes) {
   beam.assign(std::size_t(3 * BAND_ROW * nodes), 0.0);
 }
 
-void SectionDifferences::resize(int sections) {
-  count = sections;
-  values.resize(std::size_t(ANSWERS * CHANGES) * std::size_t(sections));
-}
-
-Pose changed(const Pose& pose, int change, double step) {
-  Pose out = pose;
-  if (change >= 6) {
-    out.extra[change - 6] += step;
-    return out;
-  }
-  if (change < 3) {
-    for (std::size_t a = 0; a < 3; a++) out.position[a] += step * pose.rotation[a][change];
-    return out;
-  }
-  const int b = (change - 3 + 1) % 3, c = (change - 3 + 2) % 3;
-  for (int a = 0; a < 3; a++) {
-    out.rotation[a][b] = std::cos(step) * pose.rotation[a][b] + std::sin(step) * pose.rotation[a][c];
-    out.rotation[a][c] = std::cos(step) * pose.rotation[a][c] - std::sin(step) * pose.rotation[a][b];
-  }
-  return out;
-}
-
-void add_stiffness(const Runner& runner, const Sections& s, SectionDifferences& minus, double weight,
-                   RunnerTangent& out) {
+void add_stiffness(const Runner& runner, const Sections& s, const SectionDifferences& minus, const Wrench& wrench,
+                   double weight, RunnerTangent& out) {
+  constexpr int CHANGES = SectionDifferences::CHANGES, ANSWERS = SectionDifferences::ANSWERS;
   const bool bends = runner.nodes() > 2;
+  add_turning(wrench, weight, out);
   for (int i = 0; i < s.count(); i++) {
     if (!s.touches(i)) continue;
+    const LocalMovement local(s, i);
+    double answer[ANSWERS][CHANGES], by_boot[ANSWERS][6] = {};
+    for (int r = 0; r < ANSWERS; r++)
+      for (int m = 0; m < CHANGES; m++) answer[r][m] = weight * minus.column(m, r)[i];
+    for (int r = 0; r < ANSWERS; r++)
+      for (int m = 0; m < CHANGES; m++)
+        for (int c = 0; c < 6; c++) by_boot[r][c] += answer[r][m] * local.by[m][c];
     for (int r = 0; r < 6; r++)
-      for (int c = 0; c < 6; c++) out.body[r][c] += weight * minus.column(c, r)[i];
+      for (int c = 0; c < 6; c++) out.body[r][c] += by_boot[r][c];
     if (!bends) continue;
     const int e = int(s[ELEMENT][i]);
     const ElementShapes shapes(s[IN_ELEMENT][i], s[ELEMENT_LENGTH][i]);
-    for (int c = 0; c < 6; c++) {
-      const double force = weight * minus.column(c, 6)[i], moment = weight * minus.column(c, 7)[i];
-      for (int row = 0; row < 6; row++)
-        out.beam_by_body[std::size_t(6 * (3 * e + row) + c)] +=
-            shapes.deflection[row] * force + shapes.twist[row] * moment;
-    }
     for (int q = 0; q < 6; q++) {
-      const double move[4] = {shapes.deflection[q], shapes.rise[q], shapes.twist[q], shapes.twist_slope[q]};
-      double answer[SectionDifferences::ANSWERS] = {};
-      for (int c = 0; c < 4; c++)
-        for (int r = 0; r < SectionDifferences::ANSWERS; r++) answer[r] += weight * move[c] * minus.column(6 + c, r)[i];
-      for (int r = 0; r < 6; r++) out.body_by_beam[std::size_t(6 * (3 * e + q) + r)] += answer[r];
-      add_to_band(e, q, shapes, answer[6], answer[7], out);
+      double* by_body = out.beam_by_body.data() + 6 * (3 * e + q);
+      double* by_beam = out.body_by_beam.data() + 6 * (3 * e + q);
+      for (int c = 0; c < 6; c++) by_body[c] += shapes.deflection[q] * by_boot[6][c] + shapes.twist[q] * by_boot[7][c];
+      double moved[ANSWERS];
+      for (int r = 0; r < ANSWERS; r++)
+        moved[r] = shapes.deflection[q] * answer[r][SectionDifferences::OFF] +
+                   shapes.twist[q] * answer[r][SectionDifferences::TWIST];
+      for (int r = 0; r < 6; r++) by_beam[r] += moved[r];
+      add_to_band(e, q, shapes, moved[6], moved[7], out);
     }
   }
 }

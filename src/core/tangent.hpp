@@ -18,27 +18,9 @@ struct RunnerTangent {
   void clear(int nodes);
 };
 
-// Derivatives of a section's eight answers (force, moment about the boot, force and moment on the beam) by ten changes:
-// way of the boot, rotation, and what the beam does there (deflection, rise, twist, its slope).
-struct SectionDifferences {
-  static constexpr int ANSWERS = 8, CHANGES = 10;
-  std::vector<double> values;  // [change][answer][section]
-  int count = 0;
-
-  void resize(int sections);
-  double* column(int change, int answer) {
-    return values.data() + (std::size_t(change) * ANSWERS + std::size_t(answer)) * std::size_t(count);
-  }
-};
-
-// The pose after one of the ten changes.
-Pose changed(const Pose& pose, int change, double step);
-// Way to the left, roll, yaw, twist and its slope.
-inline bool turns_in_mirror(int change) { return change == 1 || change == 3 || change == 5 || change >= 8; }
-
-// Add to a tangent what the sections' derivatives give.
-void add_stiffness(const Runner& runner, const Sections& sections, SectionDifferences& minus, double weight,
-                   RunnerTangent& out);
+// Add to a tangent what the sections' derivatives give, and the turning of the forces with the ski's axes.
+void add_stiffness(const Runner& runner, const Sections& sections, const SectionDifferences& minus,
+                   const Wrench& wrench, double weight, RunnerTangent& out);
 // Add what friction gives: it grows with the sliding speed.
 void add_friction_damping(const Runner& runner, const Sections& sections, double weight, RunnerTangent& out);
 
