@@ -105,6 +105,7 @@ double interpolated(const std::vector<std::pair<double, double>>& table, double 
   return before->second + (at - before->first) / (after->first - before->first) * (after->second - before->second);
 }
 
+constexpr double SLIPPING = 0.999;     // share of the displacement from which on an edge slips
 constexpr double TANGENT_STEP = 1e-8;  // m, rad
 constexpr double POSE_STEP = 1e-7;     // m, rad
 constexpr double MOTION_STEP = 1e-4;   // m/s, rad/s
@@ -125,7 +126,7 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
 
 const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion,
                                     Sections& s) {
-  kernels_->find_sections(runner(k), pose, *snow_, lines, s);
+  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
   kernels_->press(*snow_, lines, s);
   kernels_->slide(motion, pose, *snow_, s);
   if (laws) laws(k, s);
@@ -164,19 +165,42 @@ void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double
   if (damping > 0.0) add_friction_damping(runner(k), s, damping, out);
 }
 
-void SnowContact::remember(int k, GrooveLines& lines, const Pose& pose) {
-  Sections& s = sections_[std::size_t(k)];
-  kernels_->find_sections(runner(k), pose, *snow_, lines, s);
-  for (int i = 0; i < s.count(); i++)
-    if (s.line(i) >= lines.first && s.line(i) < lines.end) remember_section(s, i, *snow_, lines, lines.slot(s.line(i)));
+void SnowContact::remember(int k, GrooveLines& lines) const {
+  const Sections& s = sections(k);
+  for (std::int64_t n = lines.first; n < lines.end; n++) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
 }
 
-// The history along the way, up to but without its end.
+// The history of all lines along the way, up to but without its end.
 void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   const int parts = int(std::ceil(to.dt / snow_->look_back - 1e-9));
   if (state_.accepted.empty()) return;
-  for (int part = 1; part < parts; part++)
-    remember(k, lines, between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts));
+  for (int part = 1; part < parts; part++) {
+    const Pose pose = between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts);
+    kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
+    remember(k, lines);
+  }
+}
+
+// The same for those lines only whose history depends on the way in between: where the edge slips, and ahead, where the
+// snow was not touched yet. Of all others the ends of the way are enough.
+void SnowContact::march_where_needed(int k, GrooveLines& lines, const Situation& to) {
+  const int parts = int(std::ceil(to.dt / snow_->look_back - 1e-9));
+  if (state_.accepted.empty() || parts < 2) return;
+  needed_.clear();
+  bool ahead = true;
+  for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
+    const int slot = lines.slot(n);
+    ahead = ahead && !(lines.values[MARKED][slot] > 0.5);
+    const double held = std::fabs(lines.values[ANCHOR][slot] - lines.values[EDGE_MARKED][slot]);
+    const bool slips = lines.values[ANCHORED][slot] > 0.5 && held > SLIPPING * snow_->shear_displacement;
+    if (ahead || slips) needed_.push_back(n);
+  }
+  Sections& s = sections_[std::size_t(k)];
+  for (int part = 1; part < parts && !needed_.empty(); part++) {
+    const Pose pose = between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts);
+    kernels_->find_sections(runner(k), pose, *snow_, lines, needed_.back(), s);
+    for (const std::int64_t n : needed_) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
+  }
 }
 
 // The lines at the end of a step, before its end is remembered: those that stand, or where that changes them a copy.
@@ -207,7 +231,7 @@ void SnowContact::begin(const Situation& foreseen) {
   for (int k = 0; k < runners(); k++) {
     GrooveLines& trial = trial_[std::size_t(k)];
     trial.lay_ahead(runner(k), foreseen.poses[std::size_t(k)], *snow_);
-    march(k, trial, foreseen);
+    march_where_needed(k, trial, foreseen);
   }
 }
 
@@ -224,15 +248,17 @@ void SnowContact::update(const Situation& to) {
     lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
     lines.lay_ahead(runner(k), pose, *snow_);
     march(k, lines, to);
+    kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
     settle_history(k, pose);
   }
   state_.accepted = to.poses;
 }
 
-// The end of a step enters the history; lines that the ski has left are dropped, new ones laid.
+// The end of a step, for which the sections stand, enters the history; lines that the ski has left are dropped, new
+// ones laid.
 void SnowContact::settle_history(int k, const Pose& pose) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
-  remember(k, lines, pose);
+  remember(k, lines);
   if (lines.is_uneven(pose)) lay_anew(k, pose);
   lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
   lines.lay_ahead(runner(k), pose, *snow_);
@@ -251,7 +277,8 @@ void SnowContact::lay_anew(int k, const Pose& pose) {
   lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
   state_.strips[std::size_t(k)] = snow_->archive.new_strip();
   lines.lay_ahead(runner(k), pose, *snow_);
-  remember(k, lines, pose);
+  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
+  remember(k, lines);
   for (std::int64_t n = lines.first; n < lines.end && !displaced.empty(); n++) {
     const int i = s.index(n);
     if (s.touches(i)) lines.values[ANCHOR][lines.slot(n)] = s[EDGE_PLACE][i] + interpolated(displaced, s[STATION][i]);

@@ -51,7 +51,7 @@ class SnowContact {
 
   // The same for one who tries many poses for the end of a step: `begin` lets the history advance on copies towards an
   // end foreseen, up to but without it; `look` gives the forces of one runner (in the ski's axes) at a pose there;
-  // `accept` makes the copies the snow, at a pose looked at or another.
+  // `accept` makes the copies the snow, at the pose looked at last or one next to it.
   void begin(const Situation& foreseen);
   const Wrench& look(int k, const Pose& pose, const Motion& motion);
   void accept(const Situation& at);
@@ -90,6 +90,7 @@ class SnowContact {
   std::vector<Sections> sections_;
   std::vector<Wrench> wrenches_;
   SectionDifferences differences_;
+  std::vector<std::int64_t> needed_;  // lines, the foremost first
 
   GrooveLines& history(int k, const Situation& at);
   const Wrench& evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, Sections& s);
@@ -97,7 +98,8 @@ class SnowContact {
   void settle_history(int k, const Pose& pose);
   void lay_anew(int k, const Pose& pose);
   void march(int k, GrooveLines& lines, const Situation& to);
-  void remember(int k, GrooveLines& lines, const Pose& pose);
+  void march_where_needed(int k, GrooveLines& lines, const Situation& to);
+  void remember(int k, GrooveLines& lines) const;
 };
 
 }  // namespace skisnow

@@ -55,6 +55,13 @@ constexpr double ALIKE = 1.0 + 1e-4, TINY_AREA = 1e-24;  // (m²): of areas that
 
 }  // namespace
 
+Ground& Ground::operator=(const Ground& other) {
+  count = other.count;
+  std::copy_n(other.place, count, place);
+  std::copy_n(other.depth, count, depth);
+  return *this;
+}
+
 void Ground::append(double at, double deep) {
   if (count > 0 && std::fabs(place[count - 1] - at) < THIN && std::fabs(depth[count - 1] - deep) < THIN) return;
   if (count == ROOM) simplify(0.0, ROOM - 1);

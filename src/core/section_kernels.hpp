@@ -255,8 +255,9 @@ void cut_base(const Snow& snow, const GrooveLines& lines, Sections& s) {
 }
 
 template <class V>
-void find_sections(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Sections& s) {
-  s.prepare(lines);
+void find_sections(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines,
+                   std::int64_t first, Sections& s) {
+  s.prepare(lines, first);
   take_lines<V>(pose, lines, s);
   cross_axis<V>(runner, snow, lines, s);
   cross_edge<V>(runner, lines, s);

@@ -57,7 +57,7 @@ struct Sections {
   std::int64_t line(int i) const { return first_block * BLOCK + i; }
   int index(std::int64_t line) const { return int(line - first_block * BLOCK); }
   bool touches(int i) const { return (*this)[SHARE][i] > 0.0 && (*this)[DEEPEST][i] > 0.0; }
-  void prepare(const GrooveLines& lines);
+  void prepare(const GrooveLines& lines, std::int64_t first);  // for the lines from the first one
 };
 
 struct Wrench {
@@ -89,7 +89,7 @@ struct SectionDifferences {
 struct Kernels {
   const char* name;  // of the instruction set
   int lanes;
-  void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, Sections&);
+  void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, std::int64_t first, Sections&);
   void (*press)(const Snow&, const GrooveLines&, Sections&);  // pressure, strength, share of the displacement in use
   void (*slide)(const Motion&, const Pose&, const Snow&, Sections&);  // sliding speed along the edge and μ
   void (*push)(const Motion&, const Pose&, const Snow&, Sections&, Wrench&);
