@@ -17,6 +17,7 @@ struct Pressure {
 
   // [press_piece] A straight piece of ground from a to b (within the wet base), its lift there `lift + slope x`.
   void add(V a, V b, V lift, V slope) {
+    if (!any(a < b)) return;
     const V zero = -lift / select(absolute(slope) > 1e-30, slope, all<V>(1e-30));
     const MaskOf<V> at_a = lift + slope * a > THIN, at_b = lift + slope * b > THIN;
     const V middle = minimum(maximum(zero, a), b);
@@ -93,7 +94,9 @@ void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, P
     const V b = load<V>(place + BLOCK * (k + 1)) - edge, ground = load<V>(slope + BLOCK * k);
     const V lift = load<V>(depth + BLOCK * k) - ground * a - out.depth, rise = ground - out.fall;
     const V low = inside(a, wet_from, wet_to), high = inside(b, wet_from, wet_to);
-    if (!cuts) {
+    a = b;
+    if (!any(low < high)) continue;
+    if (!any((cut.from < high) & (cut.to > low) & (cut.from < cut.to))) {
       out.add(low, high, lift, rise);
     } else {
       // beside the cut the ground as it was, over it the deeper of both
@@ -108,7 +111,6 @@ void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, P
       out.add(meet, last, select(old_last, lift, V{}), select(old_last, rise, cut_rise));
       out.add(last, high, lift, rise);
     }
-    a = b;
   }
   if (cuts) cut_piece(a, cut.to);
 }
