@@ -106,6 +106,7 @@ double interpolated(const std::vector<std::pair<double, double>>& table, double 
 }
 
 constexpr double SLIPPING = 0.999;     // share of the displacement from which on an edge slips
+constexpr double LEVEL = 1e-6;         // sine of the roll of a base that is level
 constexpr double TANGENT_STEP = 1e-8;  // m, rad
 constexpr double POSE_STEP = 1e-7;     // m, rad
 constexpr double MOTION_STEP = 1e-4;   // m/s, rad/s
@@ -159,8 +160,14 @@ void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double
   const Sections& s = sections(k);
   out.clear(runner(k).nodes());
   differences_.resize(s.count());
-  const double sense = pose.rotation[2][1] < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
-  kernels_->differ(*snow_, trial_[std::size_t(k)], s, TANGENT_STEP, sense, differences_);
+  const double lean = pose.rotation[2][1], sense = lean < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
+  const GrooveLines& lines = trial_[std::size_t(k)];
+  kernels_->differ(*snow_, lines, s, TANGENT_STEP, sense, differences_);
+  if (std::fabs(lean) < LEVEL) {  // a level base has two tangents: between them
+    const std::vector<double> one = differences_.values;
+    kernels_->differ(*snow_, lines, s, TANGENT_STEP, -sense, differences_);
+    for (std::size_t i = 0; i < one.size(); i++) differences_.values[i] = 0.5 * (one[i] + differences_.values[i]);
+  }
   add_stiffness(runner(k), s, differences_, wrenches_[std::size_t(k)], stiffness, out);
   if (damping > 0.0) add_friction_damping(runner(k), s, damping, out);
 }
@@ -181,24 +188,43 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   }
 }
 
-// The same for those lines only whose history depends on the way in between: where the edge slips, and ahead, where the
-// snow was not touched yet. Of all others the ends of the way are enough.
+// The lines whose history hangs on the way between two poses and not on its ends alone: ahead, where the snow was not
+// touched yet, where the edge slips, and where the base passes its deepest place.
+void SnowContact::find_needed(const GrooveLines& lines, double way) {
+  const auto& v = lines.values;
+  const auto marked = [&](std::int64_t n) {
+    return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5;
+  };
+  const auto depth = [&](std::int64_t n) { return v[DEPTH_MARKED][lines.slot(n)]; };
+  const auto over = std::int64_t(std::ceil(way / lines.spacing()));
+  needed_.clear();
+  bool ahead = true;
+  std::int64_t deepest = lines.end + over + 1;
+  for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
+    const int slot = lines.slot(n);
+    if (marked(n - over) && marked(n - over - 1) && marked(n - over + 1) && depth(n - over) >= depth(n - over - 1) &&
+        depth(n - over) >= depth(n - over + 1))
+      deepest = n - over;
+    ahead = ahead && !marked(n);
+    const double held = std::fabs(v[ANCHOR][slot] - v[EDGE_MARKED][slot]);
+    const bool slips = v[ANCHORED][slot] > 0.5 && held > SLIPPING * snow_->shear_displacement;
+    if (ahead || slips || std::llabs(n - deepest) <= over) needed_.push_back(n);
+  }
+}
+
+// [march] As `march`, for the lines that need it.
 void SnowContact::march_where_needed(int k, GrooveLines& lines, const Situation& to) {
   const int parts = int(std::ceil(to.dt / snow_->look_back - 1e-9));
   if (state_.accepted.empty() || parts < 2) return;
-  needed_.clear();
-  bool ahead = true;
-  for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
-    const int slot = lines.slot(n);
-    ahead = ahead && !(lines.values[MARKED][slot] > 0.5);
-    const double held = std::fabs(lines.values[ANCHOR][slot] - lines.values[EDGE_MARKED][slot]);
-    const bool slips = lines.values[ANCHORED][slot] > 0.5 && held > SLIPPING * snow_->shear_displacement;
-    if (ahead || slips) needed_.push_back(n);
-  }
+  const Pose &from = state_.accepted[std::size_t(k)], &end = to.poses[std::size_t(k)];
+  double square = 0.0;
+  for (std::size_t a = 0; a < 3; a++)
+    square += (end.position[a] - from.position[a]) * (end.position[a] - from.position[a]);
+  find_needed(lines, std::sqrt(square));
+  if (needed_.empty()) return;
   Sections& s = sections_[std::size_t(k)];
-  for (int part = 1; part < parts && !needed_.empty(); part++) {
-    const Pose pose = between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts);
-    kernels_->find_sections(runner(k), pose, *snow_, lines, needed_.back(), s);
+  for (int part = 1; part < parts; part++) {
+    kernels_->find_sections(runner(k), between(from, end, double(part) / parts), *snow_, lines, needed_.back(), s);
     for (const std::int64_t n : needed_) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
   }
 }

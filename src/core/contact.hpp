@@ -98,6 +98,7 @@ class SnowContact {
   void settle_history(int k, const Pose& pose);
   void lay_anew(int k, const Pose& pose);
   void march(int k, GrooveLines& lines, const Situation& to);
+  void find_needed(const GrooveLines& lines, double way);
   void march_where_needed(int k, GrooveLines& lines, const Situation& to);
   void remember(int k, GrooveLines& lines) const;
 };

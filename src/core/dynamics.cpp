@@ -12,6 +12,7 @@ namespace {
 constexpr int MOST_ITERATIONS = 12;
 constexpr double SLOW = 0.15;             // contraction from which on the matrix is made anew
 constexpr double UNSEEN = 0.3;            // contraction to reckon with before it was seen
+constexpr double LEAST_ERROR = 0.1;       // of the tolerance: what a step's own error is taken for at least
 constexpr double SAME_REACH = 0.1;        // by which β may differ from that of a matrix that is kept
 constexpr double LEAST_SHARE = 1.0 / 64;  // of a fixed step, into which it is divided where it is not solved
 constexpr double FARTHEST = 1.0;          // way (m), turn (rad), bend beyond which a step has diverged
@@ -176,7 +177,7 @@ double Dynamics::size_of(const Numbers& rates, double reach) const {
 
 // [newton] The rates at the step's end; whether they were found.
 bool Dynamics::solve_step(const Formula& f) {
-  const double close = std::min(rule_.closeness * rule_.tolerance, 0.1 * contact_->shear_displacement());
+  const double displacement = 0.1 * contact_->shear_displacement();
   double last = std::numeric_limits<double>::infinity();
   bool renew = kept_ <= 0 || std::fabs(f.reach - reach_) > SAME_REACH * reach_;
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
@@ -200,7 +201,9 @@ bool Dynamics::solve_step(const Formula& f) {
     for (std::size_t i = 0; i < residual_.size(); i++) next_.rate[i] += damping * residual_[i];
     place(f);
     const double contraction = iteration > 0 ? contraction_ : std::max(contraction_, UNSEEN);
-    if (contraction / (1.0 - contraction) * size < close) {
+    // close to what the step's own error is, where that is below the tolerance
+    const double own = std::clamp(error(f), LEAST_ERROR * rule_.tolerance, rule_.tolerance);
+    if (contraction / (1.0 - contraction) * size < std::min(rule_.closeness * own, displacement)) {
       kept_--;
       return true;
     }
