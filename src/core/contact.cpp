@@ -168,8 +168,10 @@ void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double
     kernels_->differ(*snow_, lines, s, TANGENT_STEP, -sense, differences_);
     for (std::size_t i = 0; i < one.size(); i++) differences_.values[i] = 0.5 * (one[i] + differences_.values[i]);
   }
-  add_stiffness(runner(k), s, differences_, wrenches_[std::size_t(k)], stiffness, out);
-  if (damping > 0.0) add_friction_damping(runner(k), s, damping, out);
+  const bool bends = runner(k).nodes() > 2;
+  kernels_->add_stiffness(s, differences_, stiffness, bends, out);
+  out.add_turning(wrenches_[std::size_t(k)], stiffness);
+  if (damping > 0.0) kernels_->add_friction_damping(s, damping, bends, out);
 }
 
 void SnowContact::remember(int k, GrooveLines& lines) const {

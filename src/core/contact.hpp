@@ -40,7 +40,7 @@ class SnowContact {
   const Sections& sections(int k) const { return sections_[std::size_t(k)]; }
   const GrooveLines& lines(int k) const { return state_.lines[std::size_t(k)]; }
   int strip(int k) const { return state_.strips[std::size_t(k)]; }
-  const char* instruction_set() const { return kernels_->name; }
+  const Kernels& kernels() const { return *kernels_; }
   Laws laws;
 
   // Forces at a situation: the history advances from the last accepted pose on copies; the snow stays as it is.

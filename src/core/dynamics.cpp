@@ -26,7 +26,7 @@ Dynamics::Dynamics(Body body, SnowContact& contact, const StepRule& rule)
     : body_(std::move(body)), contact_(&contact), rule_(rule), layout_(body_.layout()), step_(rule.first) {
   state = next_ = BodyState(layout_);
   rate_before_ = moved_ = increment_ = residual_ = difference_ = state.rate;
-  system_ = BorderedSystem(layout_);
+  system_ = BorderedSystem(layout_, contact.kernels().band);
   end_.poses.resize(body_.skis.size());
   end_.motions.resize(body_.skis.size());
 }
@@ -96,7 +96,7 @@ void Dynamics::find_residual(const Formula& f) {
 
 // What the body does to a ski: the ski's way and rotation in its own axes by the body's.
 struct Carried {
-  double by[BODY][BODY] = {};
+  double by[BODY][BORDER_ROW] = {};
 
   explicit Carried(const FlexibleSki& ski) {
     const Vector3& r = ski.boot;
@@ -106,6 +106,12 @@ struct Carried {
       for (std::size_t a = 0; a < 3; a++) by[c][a] = by[c + 3][a + 3] = e[a], by[c][a + 3] = turning[a];
     }
   }
+
+  // out += row × by
+  void add(const double* row, double* out) const {
+    for (int m = 0; m < BODY; m++)
+      for (int a = 0; a < BORDER_ROW; a++) out[a] += row[m] * by[m][a];
+  }
 };
 
 void Dynamics::add_contact_tangent(double stiffness, double damping) {
@@ -113,28 +119,22 @@ void Dynamics::add_contact_tangent(double stiffness, double damping) {
     const FlexibleSki& ski = body_.skis[k];
     contact_->find_tangent(int(k), end_.poses[k], stiffness, damping, tangent_);
     const Carried carried(ski);
-    double half[BODY][BODY] = {};
-    for (int r = 0; r < BODY; r++)
-      for (int c = 0; c < BODY; c++)
-        for (int m = 0; m < BODY; m++) half[r][c] += tangent_.body[r][m] * carried.by[m][c];
-    for (int r = 0; r < BODY; r++)
-      for (int c = 0; c < BODY; c++)
-        for (int m = 0; m < BODY; m++) system_.corner[r][c] += carried.by[m][r] * half[m][c];
+    for (int m = 0; m < BODY; m++) {
+      double half[BORDER_ROW] = {};
+      carried.add(tangent_.body[m], half);
+      for (int r = 0; r < BODY; r++)
+        for (int c = 0; c < BODY; c++) system_.corner[r][c] += carried.by[m][r] * half[c];
+    }
     for (std::size_t j = 0; j < ski.unknown.size(); j++)
       for (int c = 0; c < 3 && ski.unknown[j] >= 0; c++) {
         const int row = ski.unknown[j] + c;
         const auto node = 3 * j + std::size_t(c);
-        double* border = system_.border(int(k), row);
-        double* column = system_.border_column(int(k), row);
-        for (int a = 0; a < BODY; a++)
-          for (int m = 0; m < BODY; m++) {
-            border[a] += tangent_.beam_by_body[6 * node + std::size_t(m)] * carried.by[m][a];
-            column[a] += tangent_.body_by_beam[6 * node + std::size_t(m)] * carried.by[m][a];
-          }
+        carried.add(tangent_.beam_by_body.data() + BORDER_ROW * node, system_.border(int(k), row));
+        carried.add(tangent_.body_by_beam.data() + BORDER_ROW * node, system_.border_column(int(k), row));
         double* band = system_.band(int(k), row);
         for (int m = 0; m < 2 * HALF_BAND + 1; m++) {
           const int other = row + m - HALF_BAND;
-          if (other >= 0 && other < ski.size()) band[m] += tangent_.beam[(2 * HALF_BAND + 1) * node + std::size_t(m)];
+          if (other >= 0 && other < ski.size()) band[m] += tangent_.beam[BAND_ROW * node + std::size_t(m)];
         }
       }
   }

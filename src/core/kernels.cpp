@@ -14,6 +14,9 @@ extern const Kernels SET{SKISNOW_NAME(SKISNOW_LANES),
                          press<Width>,
                          slide<Width>,
                          push<Width>,
-                         differ<Width>};
+                         differ<Width>,
+                         add_stiffness,
+                         add_friction_damping,
+                         {eliminate, substitute_forwards, substitute_backwards}};
 
 }  // namespace skisnow::SKISNOW_LANES

@@ -2,6 +2,7 @@
 // answers.
 #pragma once
 
+#include "bordered.hpp"
 #include "columns.hpp"
 #include "lines.hpp"
 #include "runner.hpp"
@@ -85,6 +86,8 @@ struct SectionDifferences {
   }
 };
 
+struct RunnerTangent;
+
 // The parts of an evaluation, each over all lines of a runner.
 struct Kernels {
   const char* name;  // of the instruction set
@@ -95,6 +98,10 @@ struct Kernels {
   void (*push)(const Motion&, const Pose&, const Snow&, Sections&, Wrench&);
   // of sections that were looked at; a step (m, rad), and its sense to the left and of the twist
   void (*differ)(const Snow&, const GrooveLines&, const Sections&, double step, double sense, SectionDifferences&);
+  // add to a tangent what the sections' derivatives give, and friction by its growth with the sliding speed
+  void (*add_stiffness)(const Sections&, const SectionDifferences&, double weight, bool bends, RunnerTangent&);
+  void (*add_friction_damping)(const Sections&, double weight, bool bends, RunnerTangent&);
+  BandKernels band;
 };
 
 const Kernels& kernels();                        // the widest that this processor has
