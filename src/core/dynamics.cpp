@@ -303,14 +303,10 @@ Advance Dynamics::advance(double until, long most) {
   for (long tries = 0; time < until; tries++) {
     if (tries == most) return Advance::PAUSED;
     const double left = until - time;
-    double h = std::min(step_, left);
-    if (rule_.fixed) {
-      h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));
-      if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
-      h *= share_;
-    } else if (h < left * (1.0 - ROUNDING) && h > 0.5 * left) {
-      h = 0.5 * left;  // no crumbs at the end
-    }
+    // equal steps on the way that is left: the matrix serves them all
+    double h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));
+    if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
+    h *= share_;
     const Formula f = formula(h);
     predict(f);
     fill_end();
@@ -335,9 +331,9 @@ Advance Dynamics::advance(double until, long most) {
         if (step_ < rule_.shortest) return Advance::STEP_TOO_SMALL;
         continue;
       }
-      if (h >= step_ && wanted > UP)
+      if (h * wanted > UP * step_)
         step_ = std::min(rule_.longest, on_ladder(step_ * 1.19));
-      else if (wanted < DOWN)
+      else if (h * wanted < DOWN * step_)
         step_ = on_ladder(h * wanted);
     }
     const bool reached = h >= left * (1.0 - ROUNDING);
