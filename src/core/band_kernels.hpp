@@ -59,4 +59,38 @@ inline void substitute_backwards(const BeamRows& rows, const double* body, doubl
   }
 }
 
+inline void add_band(const BeamColumns& a, const double* x, const double* y, double share, double scale, double* out) {
+  const auto both = [&](int i) { return load<Eight>(x + i) + share * load<Eight>(y + i); };
+  for (int i = 0; i < a.size(); i += BORDER_ROW) {
+    Eight total = load<Eight>(a[0] + i) * both(i);
+    for (int m = 1; m <= HALF_BAND; m++)
+      total += load<Eight>(a[m] + i) * both(i - m) + load<Eight>(a[m] + i + m) * both(i + m);
+    store(out + i, load<Eight>(out + i) + scale * total);
+  }
+}
+
+inline void add_coupling(const BeamColumns& columns, const double* body, double scale, double* out) {
+  for (int i = 0; i < columns.size(); i += BORDER_ROW) {
+    Eight total = load<Eight>(columns[0] + i) * body[0];
+    for (int c = 1; c < BODY; c++) total += load<Eight>(columns[c] + i) * body[c];
+    store(out + i, load<Eight>(out + i) + scale * total);
+  }
+}
+
+inline void add_coupled(const BeamColumns& columns, const double* x, double* sums) {
+  Eight total[BODY] = {};
+  for (int i = 0; i < columns.size(); i += BORDER_ROW)
+    for (int c = 0; c < BODY; c++) total[c] += load<Eight>(columns[c] + i) * load<Eight>(x + i);
+  for (int c = 0; c < BODY; c++) {
+    const Eight& p = total[c];
+    sums[c] += ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]));
+  }
+}
+
+inline void carry(const double* row, const double* by, double* out) {
+  Eight total = load<Eight>(out);
+  for (int m = 0; m < BODY; m++) total += row[m] * load<Eight>(by + BORDER_ROW * m);
+  store(out, total);
+}
+
 }  // namespace skisnow::SKISNOW_LANES

@@ -13,6 +13,13 @@ Layout::Layout(const std::vector<int>& sizes) : size_(sizes) {
   }
 }
 
+BeamColumns::BeamColumns(const std::vector<double>& rows)
+    : size_(int(rows.size()) / BODY), stride_((size_ + BORDER_ROW - 1) / BORDER_ROW * BORDER_ROW + BORDER_ROW) {
+  numbers_.assign(std::size_t(BODY * stride_), 0.0);
+  for (int i = 0; i < size_; i++)
+    for (int c = 0; c < BODY; c++) numbers_[std::size_t(c * stride_ + i)] = rows[std::size_t(BODY * i + c)];
+}
+
 BorderedSystem::BorderedSystem(const Layout& layout, const BandKernels& kernels) : layout_(layout), kernels_(&kernels) {
   const auto rows = std::size_t(layout.length() + BORDER_ROW);
   band_.resize(BAND_ROW * rows);

@@ -38,12 +38,32 @@ struct BeamRows {
   double *band, *border, *column;
 };
 
+// Columns over the unknowns of a beam: the lower diagonals of a symmetric band, [i] is A[i, i - m], or what couples
+// each unknown with the body. Zeros follow them.
+class BeamColumns {
+ public:
+  BeamColumns() = default;
+  explicit BeamColumns(const std::vector<double>& rows);  // (n, 6)
+  const double* operator[](int which) const { return numbers_.data() + std::size_t(which * stride_); }
+  int size() const { return size_; }
+
+ private:
+  int size_ = 0, stride_ = 0;
+  Column numbers_;
+};
+
 // Their loops, one set for each instruction set. `corner` has six rows of eight; False where a pivot is zero or no
 // number.
 struct BandKernels {
   bool (*eliminate)(const BeamRows&, double* corner);
   void (*substitute_forwards)(const BeamRows&, double* x, double* right);
   void (*substitute_backwards)(const BeamRows&, const double* body, double* x);
+  // out += scale A (x + share y) for a band; out += scale (columns × body); sums += what the columns give with x
+  void (*add_band)(const BeamColumns&, const double* x, const double* y, double share, double scale, double* out);
+  void (*add_coupling)(const BeamColumns&, const double* body, double scale, double* out);
+  void (*add_coupled)(const BeamColumns&, const double* x, double* sums);
+  // out += row × by: a row of six by a matrix with rows of eight
+  void (*carry)(const double* row, const double* by, double* out);
 };
 
 class BorderedSystem {

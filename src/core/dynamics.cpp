@@ -24,6 +24,7 @@ constexpr double MILNE = 0.35;  // error of BDF2 over its distance from the pred
 
 Dynamics::Dynamics(Body body, SnowContact& contact, const StepRule& rule)
     : body_(std::move(body)), contact_(&contact), rule_(rule), layout_(body_.layout()), step_(rule.first) {
+  body_.kernels = &contact.kernels().band;
   state = next_ = BodyState(layout_);
   rate_before_ = moved_ = increment_ = residual_ = difference_ = state.rate;
   system_ = BorderedSystem(layout_, contact.kernels().band);
@@ -106,22 +107,17 @@ struct Carried {
       for (std::size_t a = 0; a < 3; a++) by[c][a] = by[c + 3][a + 3] = e[a], by[c][a + 3] = turning[a];
     }
   }
-
-  // out += row × by
-  void add(const double* row, double* out) const {
-    for (int m = 0; m < BODY; m++)
-      for (int a = 0; a < BORDER_ROW; a++) out[a] += row[m] * by[m][a];
-  }
 };
 
 void Dynamics::add_contact_tangent(double stiffness, double damping) {
+  const auto carry = body_.kernels->carry;
   for (std::size_t k = 0; k < body_.skis.size(); k++) {
     const FlexibleSki& ski = body_.skis[k];
     contact_->find_tangent(int(k), end_.poses[k], stiffness, damping, tangent_);
     const Carried carried(ski);
     for (int m = 0; m < BODY; m++) {
       double half[BORDER_ROW] = {};
-      carried.add(tangent_.body[m], half);
+      carry(tangent_.body[m], &carried.by[0][0], half);
       for (int r = 0; r < BODY; r++)
         for (int c = 0; c < BODY; c++) system_.corner[r][c] += carried.by[m][r] * half[c];
     }
@@ -129,8 +125,8 @@ void Dynamics::add_contact_tangent(double stiffness, double damping) {
       for (int c = 0; c < 3 && ski.unknown[j] >= 0; c++) {
         const int row = ski.unknown[j] + c;
         const auto node = 3 * j + std::size_t(c);
-        carried.add(tangent_.beam_by_body.data() + BORDER_ROW * node, system_.border(int(k), row));
-        carried.add(tangent_.body_by_beam.data() + BORDER_ROW * node, system_.border_column(int(k), row));
+        carry(tangent_.beam_by_body.data() + BORDER_ROW * node, &carried.by[0][0], system_.border(int(k), row));
+        carry(tangent_.body_by_beam.data() + BORDER_ROW * node, &carried.by[0][0], system_.border_column(int(k), row));
         double* band = system_.band(int(k), row);
         for (int m = 0; m < 2 * HALF_BAND + 1; m++) {
           const int other = row + m - HALF_BAND;
