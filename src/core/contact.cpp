@@ -121,6 +121,7 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
     state_.strips.push_back(snow_->archive.new_strip());
   }
   trial_ = state_.lines;
+  before_.resize(runners_.size());
   sections_.resize(runners_.size());
   wrenches_.resize(runners_.size());
 }
@@ -151,7 +152,7 @@ Reaction SnowContact::reaction(int k, const GrooveLines& lines, const Pose& pose
 
 const Wrench& SnowContact::look(int k, const Pose& pose, const Motion& motion) {
   Sections& s = sections_[std::size_t(k)];
-  const Wrench& wrench = evaluate(k, trial_[std::size_t(k)], pose, motion, s);
+  const Wrench& wrench = evaluate(k, lines(k), pose, motion, s);
   load_beam(runner(k), s, wrenches_[std::size_t(k)].beam);
   return wrench;
 }
@@ -161,11 +162,10 @@ void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double
   out.clear(runner(k).nodes());
   differences_.resize(s.count());
   const double lean = pose.rotation[2][1], sense = lean < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
-  const GrooveLines& lines = trial_[std::size_t(k)];
-  kernels_->differ(*snow_, lines, s, TANGENT_STEP, sense, differences_);
+  kernels_->differ(*snow_, lines(k), s, TANGENT_STEP, sense, differences_);
   if (std::fabs(lean) < LEVEL) {  // a level base has two tangents: between them
     const std::vector<double> one = differences_.values;
-    kernels_->differ(*snow_, lines, s, TANGENT_STEP, -sense, differences_);
+    kernels_->differ(*snow_, lines(k), s, TANGENT_STEP, -sense, differences_);
     for (std::size_t i = 0; i < one.size(); i++) differences_.values[i] = 0.5 * (one[i] + differences_.values[i]);
   }
   const bool bends = runner(k).nodes() > 2;
@@ -215,7 +215,8 @@ void SnowContact::find_needed(const GrooveLines& lines, double way) {
 }
 
 // [march] As `march`, for the lines that need it.
-void SnowContact::march_where_needed(int k, GrooveLines& lines, const Situation& to) {
+void SnowContact::march_where_needed(int k, const Situation& to) {
+  GrooveLines& lines = state_.lines[std::size_t(k)];
   const int parts = int(std::ceil(to.dt / snow_->look_back - 1e-9));
   if (state_.accepted.empty() || parts < 2) return;
   const Pose &from = state_.accepted[std::size_t(k)], &end = to.poses[std::size_t(k)];
@@ -224,6 +225,7 @@ void SnowContact::march_where_needed(int k, GrooveLines& lines, const Situation&
     square += (end.position[a] - from.position[a]) * (end.position[a] - from.position[a]);
   find_needed(lines, std::sqrt(square));
   if (needed_.empty()) return;
+  for (const std::int64_t n : needed_) before_[std::size_t(k)].lines.push_back(lines.line(lines.slot(n)));
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
     kernels_->find_sections(runner(k), between(from, end, double(part) / parts), *snow_, lines, needed_.back(), s);
@@ -255,16 +257,29 @@ std::vector<Reaction> SnowContact::force(const Situation& at) {
 }
 
 void SnowContact::begin(const Situation& foreseen) {
-  trial_ = state_.lines;
+  take_back();
   for (int k = 0; k < runners(); k++) {
-    GrooveLines& trial = trial_[std::size_t(k)];
-    trial.lay_ahead(runner(k), foreseen.poses[std::size_t(k)], *snow_);
-    march_where_needed(k, trial, foreseen);
+    GrooveLines& lines = state_.lines[std::size_t(k)];
+    Before& before = before_[std::size_t(k)];
+    before.first = lines.first, before.end = lines.end;
+    before.lines.clear();
+    lines.lay_ahead(runner(k), foreseen.poses[std::size_t(k)], *snow_);
+    march_where_needed(k, foreseen);
   }
+  begun_ = true;
+}
+
+void SnowContact::take_back() {
+  for (std::size_t k = 0; begun_ && k < before_.size(); k++) {
+    GrooveLines& lines = state_.lines[k];
+    lines.first = before_[k].first, lines.end = before_[k].end;
+    for (const GrooveLines::Line& line : before_[k].lines) lines.put_back(line);
+  }
+  begun_ = false;
 }
 
 void SnowContact::accept(const Situation& at) {
-  std::swap(state_.lines, trial_);
+  begun_ = false;
   for (int k = 0; k < runners(); k++) settle_history(k, at.poses[std::size_t(k)]);
   state_.accepted = at.poses;
 }

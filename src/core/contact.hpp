@@ -49,11 +49,13 @@ class SnowContact {
   // The step to a situation is accepted: the snow remembers it.
   void update(const Situation& to);
 
-  // The same for one who tries many poses for the end of a step: `begin` lets the history advance on copies towards an
-  // end foreseen, up to but without it; `look` gives the forces of one runner (in the ski's axes) at a pose there;
-  // `accept` makes the copies the snow, at the pose looked at last or one next to it.
+  // The same for one who tries many poses for the end of a step: `begin` lets the history advance towards an end
+  // foreseen, up to but without it; `look` gives the forces of one runner (in the ski's axes) at a pose there;
+  // `take_back` lets the snow be as before `begin`; `accept` makes it remember the end, at the pose looked at last or
+  // one next to it.
   void begin(const Situation& foreseen);
   const Wrench& look(int k, const Pose& pose, const Motion& motion);
+  void take_back();
   void accept(const Situation& at);
   // Weighted sum of minus the derivatives by pose and by motion at the pose looked at last: what Newton's method needs.
   void find_tangent(int k, const Pose& pose, double stiffness, double damping, RunnerTangent& out);
@@ -91,6 +93,12 @@ class SnowContact {
   std::vector<Wrench> wrenches_;
   SectionDifferences differences_;
   std::vector<std::int64_t> needed_;  // lines, the foremost first
+  struct Before {                     // of one runner, what `begin` has changed
+    std::int64_t first, end;
+    std::vector<GrooveLines::Line> lines;
+  };
+  std::vector<Before> before_;
+  bool begun_ = false;
 
   GrooveLines& history(int k, const Situation& at);
   const Wrench& evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, Sections& s);
@@ -99,7 +107,7 @@ class SnowContact {
   void lay_anew(int k, const Pose& pose);
   void march(int k, GrooveLines& lines, const Situation& to);
   void find_needed(const GrooveLines& lines, double way);
-  void march_where_needed(int k, GrooveLines& lines, const Situation& to);
+  void march_where_needed(int k, const Situation& to);
   void remember(int k, GrooveLines& lines) const;
 };
 

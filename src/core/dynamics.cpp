@@ -311,6 +311,7 @@ Advance Dynamics::advance(double until, long most) {
     const bool solved = solve_step(f) && is_sound(h);
     if (rule_.fixed) {
       if (!solved) {  // in two halves, and so on
+        contact_->take_back();
         counts_.rejected++;
         kept_ = 0;
         share_ *= 0.5;
@@ -321,6 +322,7 @@ Advance Dynamics::advance(double until, long most) {
     } else {
       const double wanted = solved ? SAFETY * std::cbrt(rule_.tolerance / std::max(error(f), 1e-30)) : 0.5;
       if (!solved || wanted < SAFETY) {
+        contact_->take_back();
         counts_.rejected++;
         kept_ = 0;
         step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
