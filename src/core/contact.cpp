@@ -180,8 +180,10 @@ void SnowContact::remember(int k, GrooveLines& lines) const {
   for (std::int64_t n = lines.first; n < lines.end; n++) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
 }
 
-// Into how many parts the way from the accepted pose is divided.
-int SnowContact::parts(int k, const Pose& to) const {
+// Into how many parts the way from the accepted pose is divided; one where the runner was put there in no time.
+int SnowContact::parts(int k, const Situation& at) const {
+  if (!(at.dt > 0.0)) return 1;
+  const Pose& to = at.poses[std::size_t(k)];
   const Pose& from = state_.accepted[std::size_t(k)];
   double most = 1.0;
   for (const double station : {runner(k).tip, runner(k).tail}) {
@@ -199,7 +201,7 @@ int SnowContact::parts(int k, const Pose& to) const {
 // The history of all lines along the way, up to but without its end.
 void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   if (state_.accepted.empty()) return;
-  const int parts = this->parts(k, to.poses[std::size_t(k)]);
+  const int parts = this->parts(k, to);
   for (int part = 1; part < parts; part++) {
     const Pose pose = between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts);
     kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
@@ -236,7 +238,7 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   if (state_.accepted.empty()) return;
   const Pose &from = state_.accepted[std::size_t(k)], &end = to.poses[std::size_t(k)];
-  const int parts = this->parts(k, end);
+  const int parts = this->parts(k, to);
   if (parts < 2) return;
   double square = 0.0;
   for (std::size_t a = 0; a < 3; a++)
@@ -255,7 +257,7 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
 GrooveLines& SnowContact::history(int k, const Situation& at) {
   GrooveLines& standing = state_.lines[std::size_t(k)];
   const Pose& pose = at.poses[std::size_t(k)];
-  const bool marches = !state_.accepted.empty() && parts(k, pose) > 1;
+  const bool marches = !state_.accepted.empty() && parts(k, at) > 1;
   const bool reaches = standing.count() > 0 && standing.station(standing.end - 1, pose) > runner(k).tip &&
                        standing.station(standing.first, pose) < runner(k).tail;
   if (!marches && reaches) return standing;
