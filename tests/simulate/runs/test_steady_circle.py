@@ -106,14 +106,15 @@ def path_radius(run: Run) -> float:
     return float(np.sqrt(c + a**2 + b**2))
 
 
-@pytest.mark.parametrize(("share", "least", "most"), [(1.1, 1.0, 1.15), (1.25, 1.0, 1.15), (2.0, 0.95, 1.05)])
-def test_slips_above_the_limit(share: float, least: float, most: float) -> None:
+@pytest.mark.parametrize("share", [1.1, 1.25, 2.0])
+def test_slips_above_the_limit(share: float) -> None:
     """The snow cannot turn it tighter than m v²/R = S_f ∫ e ds; keeping it turning takes some, so R is larger.
 
-    At twice the limit the heading drifts away from the path, and the edges go down by some per cent.
+    v falls, by 5 % at twice the limit. The heading drifts away from the path there.
     """
     run = circle(strength=sufficient_strength() / share)
-    assert least < path_radius(run) / (share * RADIUS) < most
+    square = float(np.mean(run.speed[run.time > 0.5 * run.time[-1]] ** 2))
+    assert 1.0 < path_radius(run) / (share * RADIUS * square / SPEED**2) < 1.12
     shear = run.energies["shear"]
     half = len(run.time) // 2
     assert shear[-1] - shear[half] > 5.0
