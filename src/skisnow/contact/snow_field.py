@@ -13,12 +13,11 @@ from ..compiled import core
 from ..errors import ParameterError
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from ..forces.shear import ShearLaw
+from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..geometry.surfaces import Grid, Plane
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-SHEAR_DISPLACEMENT: Final = 0.5e-3
-"""Displacement of an edge across to its full strength (m) (Choice: that of the simulated turns)."""
 EDGE_BLEND: Final = math.radians(2.0)
 """Edge angle (rad) above which the shear acts at the edge alone; below it moves to the middle (Choice)."""
 FADE_SPEED: Final = 0.01
