@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .hardness import DEFINITIONS, ReadingUncertainty, hardness
+import numpy as np
+import numpy.typing as npt
+
+from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_largest_load
 from .readings import readings_of
 from .results import penetration_experiments, shear_experiments, without_nan
 from .screening import screened_penetration, screened_shear
@@ -14,6 +17,8 @@ if TYPE_CHECKING:
     from ..field.records import Campaign
     from ..geometry import GeometryForm
     from .results import Json
+
+FloatArray = npt.NDArray[np.float64]
 
 
 def experiments_at_once(campaign: Campaign, *, geometry: GeometryForm = "extended") -> Json:
@@ -40,3 +45,11 @@ def experiments_at_once(campaign: Campaign, *, geometry: GeometryForm = "extende
         shear = shear_experiments(sheared, screened_shear(campaign), shear_stress(campaign, sheared))
     answer: Json = without_nan({"penetration": {"experiments": penetration}, "shear": {"experiments": shear}})
     return answer
+
+
+def hardness_at_once(campaign: Campaign, *, geometry: GeometryForm = "extended") -> FloatArray:
+    """H_V of each penetration experiment (N/m³), NaN where there is none; (m,)."""
+    if campaign.penetration is None:
+        return np.zeros(0)
+    readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
+    return hardness_at_largest_load(readings, DEFINITIONS["H_V"])

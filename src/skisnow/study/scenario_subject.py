@@ -125,11 +125,11 @@ class ScenarioSubject:
 
     def __call__(self, point: Point) -> Row:
         """One row; whatever is wrong with a point stands in it."""
-        from ..simulate.simulated_run import simulated_run
+        from ..simulate.simulated_run import simulate
 
         try:
             asked = self._asked(point)
-            run = simulated_run(asked.scenario)
+            run = simulate(asked.scenario)
         except SkisnowError as error:
             return self._failure(point, str(error))
         except Exception as error:  # a study never stops for one point

@@ -9,6 +9,7 @@ from typing import Final, get_args
 import numpy as np
 
 from ..errors import ParameterError
+from ..former_names import formerly
 from .alignment import OFFSETS, fitted_motion, fitted_time, require_offsets
 from .apart import Apart, Numbers, numbers_of
 from .common_clock import FIRST_POINTS, Clock, TimeFrom, common_clock, lacking_time
@@ -129,7 +130,7 @@ class Comparison:
         return self.measured.place.shape[1]
 
 
-def compared(
+def compare_tracks(
     simulated: Track,
     measured: Track,
     *,
@@ -176,6 +177,9 @@ def compared(
         plain = _with_fit(plain, set(fit), clock)
     _require_near(plain.simulated, plain.measured, names)
     return replace(plain, axes=measured.axes, warnings=(*told, *_short(plain)))
+
+
+compared = formerly("compared", compare_tracks)
 
 
 def _dimensions(simulated: Track, measured: Track, *, from_above: bool) -> tuple[int, str]:

@@ -129,7 +129,7 @@ class Analyses:
         for number in range(N_FIGURES):
             async with analysed.drawing:
                 if number == len(analysed.figures):
-                    analysed.figures.append(await self._worker.do(figure, numbers.campaign, numbers.results, number))
+                    analysed.figures.append(await self._worker.do(figure, numbers.analysis, number))
             shown = analysed.figures[number]
             if shown is not None:
                 yield shown

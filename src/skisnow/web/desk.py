@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from ..estimate import marks_of
-from ..estimate.at_once import experiments_at_once
+from ..estimate.at_once import experiments_at_once, hardness_at_once
 from ..field import MARKS, read_campaign
 from ..field.reading.campaign_file import read_campaign_file
 from ..field.store import Journals, grown, write_campaign
@@ -94,7 +94,7 @@ def said_at_once(campaign: Campaign, site: str) -> AtOnce:
         kind: {row["experiment"]: row for row in found[kind]["experiments"] if row["site"] == site}
         for kind in ("penetration", "shear")
     }
-    curves = series_curves(campaign, found["penetration"]["experiments"])
+    curves = series_curves(campaign, hardness_at_once(campaign))
     return AtOnce(
         penetration=here["penetration"],
         shear=here["shear"],

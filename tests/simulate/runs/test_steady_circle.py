@@ -11,9 +11,10 @@ import math
 import numpy as np
 import pytest
 
-from skisnow import Run, simulated_run
+from skisnow import Run
 from skisnow.contact.snow_field import SHEAR_DISPLACEMENT as HOLDING
 from skisnow.simulate.scenario import Solver
+from skisnow.simulate.simulated_run import simulate
 
 from ..equilibrium.synthetic import circular_sidecut
 from .sledges import GRAVITY, arc_base, rigid_ski, scenario, total_mass
@@ -34,7 +35,7 @@ def circle(
 ) -> Run:
     """A circle to the left for side = 1, to the right for -1."""
     ski = rigid_ski(length=LENGTH, width=circular_sidecut(SIDECUT), base_height=arc_base(SIDECUT, EDGE_DEG))
-    return simulated_run(
+    return simulate(
         scenario(
             ski=ski,
             hardness=HARDNESS,

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
-from ...inputs import Quantity, require_declared
+from ...inputs import Quantity, declared_text, require_declared
 from ..carve_keys import MOST_ELEMENTS
 
 Method: TypeAlias = Literal["ros2", "fast"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Solver:
     """How it is computed; lengths in m, times in s. What is None follows from ski and snow."""
 
@@ -98,6 +98,8 @@ class Solver:
             origin="choice: a tenth of a metre at 10 m/s",
         ),
     ] = 0.01
+
+    __repr__ = declared_text
 
     def __post_init__(self) -> None:
         require_declared(self)

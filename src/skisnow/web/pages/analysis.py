@@ -85,7 +85,7 @@ async def _report(page: OpenAnalysis | None, worker: Worker) -> Path | None:
         return None
     out, numbers = page.subject.place / f"report-{page.analysed.key}", page.analysed.numbers
     if not (out / "results.json").is_file():  # written last
-        await worker.do(write_whole_report, numbers.campaign, numbers.results, str(out))
+        await worker.do(write_whole_report, numbers.analysis, str(out))
     return out
 
 
