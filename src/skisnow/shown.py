@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any, Final, NamedTuple
 
@@ -52,6 +53,15 @@ class Shown:
         return f'<table><caption style="text-align:left">{caption}</caption>{cells}</table>'
 
 
+class ShownFields(Shown):
+    """A dataclass that shows one row for each of its fields; units stand in its docstring."""
+
+    __slots__ = ()
+
+    def _facts(self) -> Facts:
+        return field_facts(self, {})
+
+
 def amount(value: float | None, unit: str = "", *, digits: int = 4) -> str:
     """A number with its unit.
 
@@ -97,7 +107,7 @@ def _short(value: Any, unit: str) -> str:
         return type(value).__name__
     if isinstance(value, float):
         return amount(value, unit)
-    if isinstance(value, tuple | list | dict) and len(value) > 3:
+    if isinstance(value, Mapping) or (isinstance(value, tuple | list) and len(value) > 3):
         return f"{len(value)} entries"
     text = str(value)
     return text if len(text) <= 60 else f"{text[:59]}…"

@@ -14,6 +14,8 @@ from ..errors import ParameterError
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from ..forces.shear import ShearLaw
 from ..geometry.surfaces import Grid, Plane
+from ..shown import Facts, Shown, amount
+from ..units import N_PER_MM2, N_PER_MM3
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -29,8 +31,8 @@ LOOK_BACK: Final = 1.25e-3
 """Longest part of a step (s) over which the history advances at once (Choice)."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SnowField:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SnowField(Shown):
     """One snow, which any number of contacts share; what one leaves behind, the others meet.
 
     Attributes
@@ -73,6 +75,16 @@ class SnowField:
     knot_area: float = KNOT_AREA
     look_back: float = LOOK_BACK
     compiled: core.Snow = field(init=False, repr=False)
+
+    def _facts(self) -> Facts:
+        def told(value: float | Grid, size: float, unit: str) -> str:
+            return "over the place" if isinstance(value, Grid) else amount(value / size, unit)
+
+        hardness = told(self.snow_hardness, N_PER_MM3, "N/mm³")
+        stress = told(self.failure_shear_stress, N_PER_MM2, "N/mm²")
+        friction = self.friction if isinstance(self.friction, int | float) else type(self.friction).__name__
+        laws = f"friction {friction}, shear {'S_f' if self.shear is None else type(self.shear).__name__}"
+        return Facts(f"H_V {hardness}, S_f {stress}, k_u/H_V {amount(self.unloading_ratio)}, {laws}")
 
     def __post_init__(self) -> None:
         _require("snow_hardness", _least(self.snow_hardness), above=0.0)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..field.screening import mark_problems, screen_penetration, screen_shear
 from ..names import numbered
+from ..shown import ShownFields
 from ..units import N_PER_MM3
 from .hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
 from .layering import layered
@@ -34,8 +35,8 @@ NORMAL_MAD: Final = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
 
 
-@dataclass(frozen=True, slots=True)
-class Screened:
+@dataclass(frozen=True, slots=True, repr=False)
+class Screened(ShownFields):
     """Marks of each experiment by code, and which experiments are used (masks over the experiments)."""
 
     marks: Mapping[str, BoolArray]

@@ -9,6 +9,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from ..former_names import formerly
+from ..shown import Facts, Shown, amount
 from ..units import CM
 from .carve_dict import finite
 from .run import Outcome, Run
@@ -20,8 +21,8 @@ FINER: Final = 2.0
 """By how much each choice is refined."""
 
 
-@dataclass(frozen=True, slots=True)
-class Refinement:
+@dataclass(frozen=True, slots=True, repr=False)
+class Refinement(Shown):
     """What one finer choice changed.
 
     Attributes
@@ -41,6 +42,10 @@ class Refinement:
     now: float
     end_moves: float | None
     outcome: Outcome
+
+    def _facts(self) -> Facts:
+        moves = amount(None if self.end_moves is None else self.end_moves / CM, "cm")
+        return Facts(f"{self.key} {amount(self.was)} to {amount(self.now)}: the end moves by {moves}, {self.outcome}")
 
 
 def refined_solvers(run: Run) -> dict[str, Solver]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import ParameterError, SkisnowError
 from ..inputs import Quantity
+from ..shown import ShownFields
 from ..simulate.batch_file import Row
 from ..simulate.carve_answer import Sources
 from ..simulate.carve_dict import finite
@@ -60,8 +61,8 @@ MOST_TRIED: Final = 100
 """Points that are tried, before anything is computed, for one that can be asked (Choice: milliseconds each)."""
 
 
-@dataclass(slots=True)
-class ScenarioSubject:
+@dataclass(slots=True, repr=False)
+class ScenarioSubject(ShownFields):
     """Runs a scenario with the values of each point. Relative paths start at `folder`.
 
     Attributes

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from ...errors import StoreError
+from ...shown import Facts, Shown
 from .engine import database_told, files_told, open_engine, reading, writing
 from .finding import Finding
 from .folder import (
@@ -89,7 +90,7 @@ class _Check:
     failure: str | None
 
 
-class Store:
+class Store(Shown):
     """An open store; made by `Store.open`, closed by leaving its ``with`` block.
 
     Every method raises `StoreError`, with what to do, where the disk is full, the store is read-only or locked for
@@ -127,6 +128,9 @@ class Store:
                     raise StoreError(f"There is no store at {place}; add a campaign first, or name another file.")
                 place.parent.mkdir(parents=True, exist_ok=True)
         return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
+
+    def _facts(self) -> Facts:
+        return Facts(f"at {self.path}")
 
     def close(self) -> None:
         """Let go of the file."""
