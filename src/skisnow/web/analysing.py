@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import SkisnowError
 from ..estimate import analyse
-from ..field import MARKS, read_campaign
+from ..field import MARKS, campaign_of_files
 from ..field.marks import ALWAYS_EXCLUDE
 from ..report import write_report
 from ..report.figures import DRAWERS
@@ -22,6 +22,7 @@ from ..report.tables import tables_of
 
 if TYPE_CHECKING:
     from ..estimate import Analysis
+    from ..field.reading import FilesInMemory
     from ..field.records import Campaign, PenetrationTests, ShearTests
 
 LEFT_OUT: Final = "left out by choice in the lab"
@@ -80,10 +81,10 @@ class Refusal:
     said: str
 
 
-def numbers_of(folder: str, choice: Choice) -> Numbers | Refusal:
-    """Analyse a campaign's folder."""
+def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
+    """Analyse a campaign whose files are at hand."""
     try:
-        analysis = analyse(_chosen(read_campaign(folder), choice))
+        analysis = analyse(_chosen(campaign_of_files(files.contents, others=files.others), choice))
     except SkisnowError as error:
         return Refusal(str(error))
     tables = tables_of(Material(analysis))

@@ -10,7 +10,7 @@ from ..errors import ParameterError
 from ..estimate.results_text import results_json
 from ..files import write_file
 from .analysing import Choice, Refusal, numbers_of
-from .transfer import write_entry, write_kept
+from .transfer import entry_files, kept_files
 from .words import hardness_words, stress_words
 
 if TYPE_CHECKING:
@@ -56,9 +56,8 @@ def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, st
 
     kind, id_ = key.split("-", 1)
     with TemporaryDirectory(prefix="skisnow-snow-") as name:
-        folder, place = Path(name) / "campaign", Path(name) / "results.json"
-        (write_kept if kind == "kept" else write_entry)(lab, id_, folder)
-        found = numbers_of(str(folder), Choice())
+        place = Path(name) / "results.json"
+        found = numbers_of((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
         if isinstance(found, Refusal):
             raise ParameterError(f"this campaign gives no snow yet. {found.said}")
         results = results_json(found.results)

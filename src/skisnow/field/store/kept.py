@@ -17,7 +17,7 @@ from .journal import Journals
 from .kept_tables import cell_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
     from .folder import Progress
@@ -53,7 +53,7 @@ def export_corrected(store: Store, id_: str, folder: Path, *, progress: Progress
     return ExportedCampaign(stored, sum(written))
 
 
-def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: bytes | None = None) -> int:
+def add_corrections(folder: Path, entries: Iterable[JournalEntry]) -> int:
     """Write corrections.csv into a campaign's folder, where there is something to correct; says how many cells are.
 
     Parameters
@@ -62,25 +62,30 @@ def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: by
         The campaign's files.
     entries
         Those about the campaign, oldest first.
-    before
-        corrections.csv as it came with the campaign; None: as it stands in the folder.
 
     Raises
     ------
     StoreError
-        That file cannot be read.
+        The corrections.csv that came with the campaign cannot be read.
     """
-    place = folder / CORRECTIONS.file
-    rows = list(_rows(entries))
-    if before is None:
-        before = place.read_bytes() if place.is_file() else b""
+    place, rows = folder / CORRECTIONS.file, list(_rows(entries))
     if rows:
-        write_file(place, _together(before, rows))
-    elif before:
-        write_file(place, before)
-    else:
-        place.unlink(missing_ok=True)
+        write_file(place, _together(place.read_bytes() if place.is_file() else b"", rows))
     return len(rows)
+
+
+def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry]) -> dict[str, bytes]:
+    """The files of a campaign with the corrections.csv that `add_corrections` would write beside them.
+
+    Raises
+    ------
+    StoreError
+        The corrections.csv that came with the campaign cannot be read.
+    """
+    rows = list(_rows(entries))
+    if not rows:
+        return dict(files)
+    return {**files, CORRECTIONS.file: _together(files.get(CORRECTIONS.file, b""), rows).encode("utf-8")}
 
 
 def _together(before: bytes, rows: list[dict[str, str]]) -> str:

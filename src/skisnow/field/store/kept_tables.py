@@ -14,8 +14,8 @@ from ..reading.text import UnreadableTextError, look_at_csv
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
+    from ..reading.campaign_files import CampaignFiles
     from ..reading.corrections import RowCorrections
     from ..reading.table_forms import TableForm
     from ..reading.text import CsvText
@@ -40,9 +40,9 @@ class KeptTable:
     tests: Mapping[str, Mapping[int, Mapping[str, str]]]
 
 
-def kept_tables(folder: Path) -> dict[str, KeptTable]:
-    """Every table in a campaign's folder that can be read, by its file."""
-    files = RawFiles(folder)
+def kept_tables(campaign: CampaignFiles) -> dict[str, KeptTable]:
+    """Every table of a campaign that can be read, by its file."""
+    files = RawFiles(campaign)
     corrections = _corrections(files)
     found = {form.file: _kept_table(files, form, corrections.get(form.file, {})) for form in TABLES}
     return {file: table for file, table in found.items() if table is not None}

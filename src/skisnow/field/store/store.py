@@ -26,6 +26,7 @@ from .folder import (
     new_folder,
     no_progress,
     read_chunks,
+    whole,
     write_file,
 )
 from .rows import (
@@ -43,7 +44,7 @@ from .schema import CHUNK_BYTES
 from .verification import findings
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Mapping
     from types import TracebackType
 
     from sqlalchemy import Engine
@@ -241,6 +242,24 @@ class Store(Shown):
                 if complete is not None:
                     complete(filling)
         return stored
+
+    def contents(
+        self,
+        id: str,  # noqa: A002
+        names: Collection[str],
+    ) -> tuple[StoredCampaign, dict[str, bytes]]:
+        """Give some of a campaign's files as they came in, by their paths; those that it does not have are left out.
+
+        Raises
+        ------
+        StoreError
+            As in `show`; a file is damaged.
+        """
+        with database_told(self.path, "could not be read"), reading(self.engine) as connection:
+            stored = one_campaign(connection, id)
+            require_whole(stored)
+            chosen = [file for file in stored.files if file.path in names]
+            return stored, {file.path: whole(file, stored_chunks(connection, file.sha256)) for file in chosen}
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:
         """Look for damage: the database's own checks, the hash of every file, the id of every campaign; () if sound."""
