@@ -10,18 +10,21 @@ import numpy.typing as npt
 from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_largest_load
 from .readings import readings_of
 from .results import penetration_experiments, shear_experiments, without_nan
-from .screening import screened_penetration, screened_shear
+from .screening import screened_both
 from .shear_stress import shear_stress
 
 if TYPE_CHECKING:
     from ..field.records import Campaign
     from ..geometry import GeometryForm
     from .results import Json
+    from .screening import Screened
 
 FloatArray = npt.NDArray[np.float64]
 
 
-def experiments_at_once(campaign: Campaign, *, geometry: GeometryForm = "extended") -> Json:
+def experiments_at_once(
+    campaign: Campaign, *, geometry: GeometryForm = "extended", screened: tuple[Screened, Screened] | None = None
+) -> Json:
     """The experiments of a campaign as results.json has them, without its model table and regressions.
 
     Parameters
@@ -30,19 +33,22 @@ def experiments_at_once(campaign: Campaign, *, geometry: GeometryForm = "extende
         As it is now; it may be unfinished.
     geometry
         As in `skisnow.estimate.analyse`.
+    screened
+        What `screened_both` gives, where that is at hand.
 
     Returns
     -------
     ``{"penetration": {"experiments": [...]}, "shear": {"experiments": [...]}}``, number for number as in results.json.
     """
     penetration, shear = [], []
+    pressed, cut = screened or screened_both(campaign, geometry=geometry)
     if (tests := campaign.penetration) is not None:
         readings = readings_of(tests, campaign.tools, geometry=geometry)
         uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
         found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
-        penetration = penetration_experiments(tests, screened_penetration(campaign, geometry=geometry), found)
+        penetration = penetration_experiments(tests, pressed, found)
     if (sheared := campaign.shear) is not None:
-        shear = shear_experiments(sheared, screened_shear(campaign), shear_stress(campaign, sheared))
+        shear = shear_experiments(sheared, cut, shear_stress(campaign, sheared))
     answer: Json = without_nan({"penetration": {"experiments": penetration}, "shear": {"experiments": shear}})
     return answer
 

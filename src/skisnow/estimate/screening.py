@@ -95,9 +95,19 @@ def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]
     return outlier
 
 
-def marks_of(campaign: Campaign, *, geometry: GeometryForm = "extended") -> list[Problem]:
-    """Every mark of a campaign as a problem of severity ``mark``, the one that needs the hardness included."""
-    penetration, shear = screened_penetration(campaign, geometry=geometry), screened_shear(campaign)
+def screened_both(campaign: Campaign, *, geometry: GeometryForm) -> tuple[Screened, Screened]:
+    """The penetration and the shear experiments, screened."""
+    return screened_penetration(campaign, geometry=geometry), screened_shear(campaign)
+
+
+def marks_of(
+    campaign: Campaign, *, geometry: GeometryForm = "extended", screened: tuple[Screened, Screened] | None = None
+) -> list[Problem]:
+    """Every mark of a campaign as a problem of severity ``mark``, the one that needs the hardness included.
+
+    ``screened`` is what `screened_both` gives, where that is at hand.
+    """
+    penetration, shear = screened or screened_both(campaign, geometry=geometry)
     problems = mark_problems(campaign, penetration.marks, shear.marks, geometry=geometry)
     tests = campaign.penetration
     if tests is None:

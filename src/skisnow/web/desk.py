@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..estimate import marks_of
 from ..estimate.at_once import experiments_at_once, hardness_at_once
+from ..estimate.screening import screened_both
 from ..field import MARKS, campaign_of_files
 from ..field.reading.campaign_file import read_campaign_file
 from ..field.store import Journals, grown
@@ -87,7 +88,8 @@ class Desk:
 
 def said_at_once(campaign: Campaign, site: str) -> AtOnce:
     """What the tests of a site say, of a campaign that may have other sites too."""
-    found = experiments_at_once(campaign)
+    screened = screened_both(campaign, geometry="extended")
+    found = experiments_at_once(campaign, screened=screened)
     here = {
         kind: {row["experiment"]: row for row in found[kind]["experiments"] if row["site"] == site}
         for kind in ("penetration", "shear")
@@ -97,7 +99,7 @@ def said_at_once(campaign: Campaign, site: str) -> AtOnce:
         penetration=here["penetration"],
         shear=here["shear"],
         curves={curve.experiment: curve for curve in curves if curve.experiment in here["penetration"]},
-        marks=_in_words(marks_of(campaign)),
+        marks=_in_words(marks_of(campaign, screened=screened)),
     )
 
 
