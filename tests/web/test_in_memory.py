@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from skisnow.errors import StoreError
+from skisnow.errors import ParameterError, StoreError
 from skisnow.estimate import analyse
 from skisnow.field import read_campaign
 from skisnow.field.store import Journals, NewEntry, Store, export_corrected
+from skisnow.report.numerals import significant
+from skisnow.snow import snow_from_results
 from skisnow.web.analyses import Subject
 from skisnow.web.analysing import Choice, Numbers, numbers_of
 from skisnow.web.desk import Desk
 from skisnow.web.kept_desk import KeptDesk
 from skisnow.web.settings import Lab
+from skisnow.web.snow_of_campaign import snow_of_campaign
 from skisnow.web.transfer import entry_files, kept_files, write_entry
 
 TOML = """name = "Desk"
@@ -112,6 +116,23 @@ def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: 
     unchanged = numbers_of(before, Choice())
     assert isinstance(unchanged, Numbers)
     assert experiments(unchanged.results)[1] != experiments(results)[1]
+
+
+@pytest.mark.usefixtures("no_folder")
+def test_the_snow_of_a_campaign_is_that_of_its_results(lab: Lab, tmp_path: Path) -> None:
+    """Two series by hand, the wedge at 30°: H_V = F/V with V = L e²/(2 tan ϑ), the geometric mean of equal ones."""
+    id_ = kept_id(lab, tmp_path / "kept")
+    changes = {"snow.site": "A", "snow.S_f_N_per_mm2": "0.3"}  # the campaign has no shear test
+    results, words = snow_of_campaign(lab, f"kept-{id_}", "carved-46m", changes)
+    by_hand = 60.0 / (200.0 * 2.6**2 / (2.0 * math.tan(math.radians(30.0))))
+    assert words.startswith(f"H_V = {significant(by_hand)} N/mm³, [")
+    assert words.endswith("; S_f = 0.300 N/mm², interval not known")
+    (tmp_path / "results.json").write_bytes(results)
+    assert snow_from_results(tmp_path / "results.json", site="A").snow_hardness == pytest.approx(
+        by_hand * 1e9, rel=1e-9
+    )
+    with pytest.raises(ParameterError, match="of site 'Z'; it has some of 'A'"):
+        snow_of_campaign(lab, f"kept-{id_}", "carved-46m", {"snow.site": "Z"})
 
 
 def test_what_is_downloaded_is_the_campaign_that_was_analysed(lab: Lab, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..estimate import Analysis, analyse
-from ..estimate.site_snow import site_named
+from ..estimate.site_snow import site_of_campaign
 from ..field import Campaign
 from ..report.figures.track_band import FEWEST
 from ..report.material import is_synthetic
@@ -101,7 +101,7 @@ def chain(
     ensemble, moved = ensemble_of(next(iter(simulated.values())), snows, workers=workers, progress=say)
     return TurnChain(
         campaign=found.campaign.name,
-        site=site_in_words(site_named(found.campaign, site)),
+        site=site_in_words(site_of_campaign(found.campaign, site)),
         synthetic=is_synthetic(found.campaign.name),
         snow=snow,
         runs=simulated,

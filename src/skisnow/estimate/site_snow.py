@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..snow import SnowProperties
-from ..snow.mean_snow import known_sites, mean_snow, site_in_words
+from ..snow.mean_snow import known_sites, mean_snow, site_in_words, site_named
 from ..units import N_PER_MM2, N_PER_MM3
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ TextArray = npt.NDArray[np.object_]
 def site_snow(analysis: Analysis, site: str | None, unloading_ratio: float | None) -> SnowProperties:
     """The means over the used experiments of a site, as `skisnow.snow_from_results` reads them from results.json."""
     pressed, sheared = _pressed(analysis), _sheared(analysis)
-    site = site_named(analysis.campaign, site)
+    site = site_of_campaign(analysis.campaign, site)
     hardness, stress = (_of(site, *known) for known in (pressed, sheared))
     name = analysis.campaign.name
     if not hardness.size:
@@ -61,10 +61,7 @@ def _of(site: str | None, value: FloatArray, sites: TextArray) -> FloatArray:
     return value if site is None else value[sites == site]
 
 
-def site_named(campaign: Campaign, site: str | None) -> str | None:
-    """The campaign's own name of a site: "C" is its "site C" where it has no "C"."""
-    sites = {name for tests in (campaign.penetration, campaign.shear) if tests is not None for name in tests.site}
-    if site is None or site in sites:
-        return site
-    alike = [each for each in sites if each.casefold() == f"site {site}".casefold()]
-    return alike[0] if len(alike) == 1 else site
+def site_of_campaign(campaign: Campaign, site: str | None) -> str | None:
+    """The campaign's own name of a site, see `skisnow.snow.mean_snow.site_named`."""
+    tables = (tests for tests in (campaign.penetration, campaign.shear) if tests is not None)
+    return site_named(site, (name for tests in tables for name in tests.site))

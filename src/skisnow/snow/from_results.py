@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..given import GivenError, read_json
-from .mean_snow import known_sites, mean_snow, site_in_words
+from .mean_snow import known_sites, mean_snow, site_in_words, site_named
 from .properties import SnowProperties
 
 
@@ -26,7 +26,7 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     path
         results.json as `skisnow analyse` writes it.
     site
-        One site of the file; left out: all sites together.
+        One site of the file, "C" is also its "site C"; left out: all sites together.
 
     Raises
     ------
@@ -40,6 +40,7 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     experiments of one site resemble each other.
     """
     results = _results(Path(path))
+    site = site_named(site, _sites(results))
     hardness = _used(results, "penetration", "H_V_N_per_mm3", site, path)
     stress = _used(results, "shear", "S_f_N_per_mm2", site, path)
     if not hardness.size:
@@ -58,6 +59,15 @@ def _results(path: Path) -> dict[str, Any]:
     if not isinstance(results, dict) or not {"penetration", "shear"} <= results.keys():
         raise ParameterError(f"{path} has no entries 'penetration' and 'shear'; {advice}")
     return results
+
+
+def _sites(results: dict[str, Any]) -> set[str]:
+    """Sites with a used experiment; none of what is no list of experiments, which `_used` refuses."""
+    try:
+        rows = [row for part in ("penetration", "shear") for row in results[part]["experiments"]]
+        return {str(row["site"]) for row in rows if row["used"]}
+    except (KeyError, TypeError):
+        return set()
 
 
 def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: str | Path) -> npt.NDArray[np.float64]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -63,6 +63,19 @@ def mean_snow(
         failure_shear_stress_interval=_scaled(S_f_interval, N_PER_MM2),
         unloading_ratio=unloading_ratio,
     )
+
+
+def site_named(site: str | None, sites: Iterable[str]) -> str | None:
+    """A campaign's own name of a site: "C" is its "site C" where it has no "C".
+
+    >>> site_named("C", ["site A", "site C"]), site_named("site C", ["site C"]), site_named("Z", ["site C"])
+    ('site C', 'site C', 'Z')
+    """
+    known = set(sites)
+    if site is None or site in known:
+        return site
+    alike = [each for each in known if each.casefold() == f"site {site}".casefold()]
+    return alike[0] if len(alike) == 1 else site
 
 
 def site_in_words(site: str | None) -> str:
