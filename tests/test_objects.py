@@ -147,6 +147,10 @@ def test_a_snow_takes_its_unloading_ratio_along_only_where_it_has_one() -> None:
     [
         ({"edge_angel_deg": 3}, r"sledge\.edge_angle_deg"),
         ({"edge_angle_deg": 91}, r"sledge\.edge_angle_deg is 91; allowed is"),
+        (
+            {"slope": skisnow.Profile(np.arange(60.0), -0.2 * np.arange(60.0)), "angle_deg": 5},
+            r"slope\.angle_deg plays no part in this scenario, whose slope is of another kind",
+        ),
         ({"penetration": "elastic"}, r"snow\.penetration is a word of a scenario's file"),
         ({"snow": 0.2}, "snow is a float; it must be SnowProperties"),
         ({"snow": SnowProperties(1e8, None, source="mine")}, "no failure shear stress"),

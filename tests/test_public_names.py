@@ -52,6 +52,14 @@ def test_every_public_name_is_there() -> None:
     assert skisnow.__all__ == sorted(set(skisnow.__all__))
 
 
+def test_type_checkers_see_the_same_names() -> None:
+    tree = ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8"))
+    (block,) = (node for node in tree.body if isinstance(node, ast.If))
+    imports = [name for node in block.body if isinstance(node, ast.ImportFrom) for name in node.names]
+    assert sorted(each.asname or each.name for each in imports) == skisnow.__all__
+    assert [name for name in skisnow.__all__ if f"``{name}``" not in (skisnow.__doc__ or "")] == []
+
+
 def test_a_room_that_is_a_verb_is_its_function() -> None:
     for room, function in ((skisnow.simulate, simulate), (skisnow.identify, identify), (skisnow.study, run_study)):
         assert inspect.signature(room) == inspect.signature(function)

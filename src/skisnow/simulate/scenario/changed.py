@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...errors import ParameterError
-from ...inputs import Word, changed
+from ...inputs import Word, changed, values_of
 from ...ski import read_ski
 from ...snow import SnowProperties, published_snow
 from .contact import Contact
@@ -30,7 +30,9 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
         parts["ski"] = read_ski(parts["ski"])
     if "snow" in parts:
         parts["contact"] = _on_snow(parts.get("contact", scenario.contact), parts.pop("snow"))
-    return changed(_with_numbers(replace(scenario, **parts), values), values)
+    made = replace(scenario, **parts)
+    _require_part_of(made, values)
+    return changed(_with_numbers(made, values), values)
 
 
 def _with_numbers(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
@@ -54,6 +56,15 @@ def _on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
         )
     ratio = contact.unloading_ratio if found.unloading_ratio is None else found.unloading_ratio
     return replace(contact, snow=found, unloading_ratio=ratio)
+
+
+def _require_part_of(scenario: Scenario, values: Mapping[str, object]) -> None:
+    """A profile has no angle."""
+    for name in values.keys() - values_of(scenario).keys():
+        raise ParameterError(
+            f"{name} plays no part in this scenario, whose {name.partition('.')[0]} is of another kind. Leave it out, or "
+            f"give the part itself, such as {name.partition('.')[0]}="
+        )
 
 
 def _require_number(name: str) -> None:
