@@ -61,9 +61,10 @@ def _on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
 def _require_part_of(scenario: Scenario, values: Mapping[str, object]) -> None:
     """A profile has no angle."""
     for name in values.keys() - values_of(scenario).keys():
+        part = name.partition(".")[0]
         raise ParameterError(
-            f"{name} plays no part in this scenario, whose {name.partition('.')[0]} is of another kind. Leave it out, or "
-            f"give the part itself, such as {name.partition('.')[0]}="
+            f"{name} plays no part in this scenario, whose {part} is of another kind. Leave it out, or give the part "
+            f"itself: {part}="
         )
 
 
