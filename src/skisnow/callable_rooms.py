@@ -39,4 +39,5 @@ def make_callable(room: str, module: str, verb: str) -> None:
         def __signature__(self) -> inspect.Signature:
             return inspect.signature(loaded())
 
+    CallableRoom.__call__.__doc__ = f"Call `{room}{module}.{verb}`."
     sys.modules[room].__class__ = CallableRoom

@@ -8,7 +8,6 @@ import pytest
 
 from skisnow.errors import StoreError
 from skisnow.field import read_campaign
-from skisnow.field.reading.campaign_files import FilesOfFolder
 from skisnow.field.store import Journals, NewEntry, OvertakenError, Store, export_corrected, grown, kept_tables
 
 TOML = """name = "Kept"
@@ -50,7 +49,7 @@ def kept(store: Store, place: Path, penetration: bytes, corrections: str = "") -
 
 
 def standing(place: Path, name: str) -> dict[str, str]:
-    rows = kept_tables(FilesOfFolder(place))["penetration.csv"].tests[name]
+    rows = kept_tables(place)["penetration.csv"].tests[name]
     return {f"{line}/{column}": text for line, cells in rows.items() for column, text in cells.items()}
 
 

@@ -53,7 +53,7 @@ def export_corrected(store: Store, id_: str, folder: Path, *, progress: Progress
     return ExportedCampaign(stored, sum(written))
 
 
-def add_corrections(folder: Path, entries: Iterable[JournalEntry]) -> int:
+def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: bytes | None = None) -> int:
     """Write corrections.csv into a campaign's folder, where there is something to correct; says how many cells are.
 
     Parameters
@@ -62,15 +62,24 @@ def add_corrections(folder: Path, entries: Iterable[JournalEntry]) -> int:
         The campaign's files.
     entries
         Those about the campaign, oldest first.
+    before
+        corrections.csv as it came with the campaign; None: as it stands in the folder.
 
     Raises
     ------
     StoreError
-        The corrections.csv that came with the campaign cannot be read.
+        That file cannot be read.
     """
-    place, rows = folder / CORRECTIONS.file, list(_rows(entries))
+    place = folder / CORRECTIONS.file
+    rows = list(_rows(entries))
+    if before is None:
+        before = place.read_bytes() if place.is_file() else b""
     if rows:
-        write_file(place, _together(place.read_bytes() if place.is_file() else b"", rows))
+        write_file(place, _together(before, rows))
+    elif before:
+        write_file(place, before)
+    else:
+        place.unlink(missing_ok=True)
     return len(rows)
 
 
