@@ -12,9 +12,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skisnow import Run, simulated_run
+from skisnow import Run
 from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT as HOLDING
 from skisnow.simulate.scenario import Solver
+from skisnow.simulate.simulated_run import simulate
 
 from ..equilibrium.synthetic import circular_sidecut
 from .sledges import GRAVITY, arc_base, rigid_ski, scenario, total_mass
@@ -49,7 +50,7 @@ def circle(
         duration=duration,
         solver=solver,
     )
-    return simulated_run(replace(given, contact=replace(given.contact, shear_displacement=displacement)))
+    return simulate(replace(given, contact=replace(given.contact, shear_displacement=displacement)))
 
 
 def radius(run: Run) -> float:
