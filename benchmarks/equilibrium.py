@@ -64,7 +64,7 @@ def study_points() -> list[Point]:
 def measure() -> Iterator[Measurement]:
     points = study_points()
     answers = Answers()
-    for name in SKIS:  # compile, and divide each ski into elements
+    for name in SKIS:  # divide each ski into elements
         answers(next(point for point in points if point.ski == name))
     seconds = [timed(partial(answers, point)) for point in points]
     one = f"one equilibrium, median of {len(points):,} points of a study"
