@@ -138,18 +138,30 @@ void Archive::enter_squares(int later) {
       }
     }
   for (double x = std::floor(low[0] / SQUARE) * SQUARE + 0.5 * SQUARE; x < high[0] + SQUARE; x += SQUARE)
-    for (double y = std::floor(low[1] / SQUARE) * SQUARE + 0.5 * SQUARE; y < high[1] + SQUARE; y += SQUARE)
+    for (double y = std::floor(low[1] / SQUARE) * SQUARE + 0.5 * SQUARE; y < high[1] + SQUARE; y += SQUARE) {
       squares_[square_of(x, y, SQUARE)].push_back(later);
+      regions_.insert(square_of(x, y, REGION));
+    }
 }
 
 void Archive::recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground) const {
   if (tracks_.empty()) return;
   std::vector<int> near;
+  std::uint64_t empty = 0;  // the region met last without any track, if any
+  bool met_empty = false;
+  const auto nothing_in = [&](double x, double y) {
+    const std::uint64_t region = square_of(x, y, REGION);
+    if (met_empty && region == empty) return true;
+    if (regions_.count(region) > 0) return false;
+    empty = region, met_empty = true;
+    return true;
+  };
   const int steps = int(std::ceil((to - from) / (0.5 * SQUARE)));
   for (int i = 0; i <= steps; i++) {
     const Vector3 point = along(origin, lateral, from + (to - from) * i / steps);
     for (double dx : {-0.25 * SQUARE, 0.25 * SQUARE})
       for (double dy : {-0.25 * SQUARE, 0.25 * SQUARE}) {
+        if (nothing_in(point[0] + dx, point[1] + dy)) continue;
         const auto found = squares_.find(square_of(point[0] + dx, point[1] + dy, SQUARE));
         if (found != squares_.end()) near.insert(near.end(), found->second.begin(), found->second.end());
       }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "groove.hpp"
@@ -46,9 +47,11 @@ class Archive {
 
  private:
   static constexpr double SQUARE = 0.0625;  // side (m) of the squares in which tracks are looked up
+  static constexpr double REGION = 0.5;     // of those of which it is known whether there is any
 
   std::vector<Track> tracks_;
   std::unordered_map<std::uint64_t, std::vector<int>> squares_;  // later track of each pair, by square
+  std::unordered_set<std::uint64_t> regions_;
   int strips_ = 0;
   double energy_ = 0.0;
 

@@ -240,7 +240,7 @@ NB_MODULE(_core, m) {
             new (at) SnowContact(std::move(snow), std::move(runners), spacing, *chosen);
           },
           nb::arg("snow"), nb::arg("runners"), nb::arg("spacing"), nb::arg("instruction_set").none() = nb::none())
-      .def_prop_ro("instruction_set", &SnowContact::instruction_set)
+      .def_prop_ro("instruction_set", [](const SnowContact& self) { return self.kernels().name; })
       .def("force", &force, nb::arg("position"), nb::arg("rotation"), nb::arg("velocity"), nb::arg("dt"),
            nb::arg("beams").none(), nb::arg("rates").none())
       .def(

@@ -18,21 +18,6 @@ Vector3 part(const Numbers& numbers, int first) {
   return {numbers[i], numbers[i + 1], numbers[i + 2]};
 }
 
-// out += scale × A x for a symmetric band, lower half given; x and out begin at the beam's first number.
-void add_band(const std::vector<double>& lower, const double* x, double scale, double* out) {
-  const int n = int(lower.size()) / LOWER;
-  for (int i = 0; i < n; i++) {
-    const double* a = lower.data() + LOWER * i;
-    const int reach = std::min(i, HALF_BAND);
-    double total = a[0] * x[i];
-    for (int j = 1; j <= reach; j++) {
-      total += a[j] * x[i - j];
-      out[i - j] += scale * a[j] * x[i];
-    }
-    out[i] += scale * total;
-  }
-}
-
 double quadratic(const std::vector<double>& lower, const double* x) {
   const int n = int(lower.size()) / LOWER;
   double total = 0.0;
@@ -45,12 +30,6 @@ double quadratic(const std::vector<double>& lower, const double* x) {
   return total;
 }
 
-// Sum over the unknowns of a beam of its coupling times its numbers: momentum, or moved mass.
-void add_coupled(const FlexibleSki& ski, const double* x, double* out) {
-  for (int i = 0; i < ski.size(); i++)
-    for (int a = 0; a < BODY; a++) out[a] += ski.coupling[std::size_t(BODY * i + a)] * x[i];
-}
-
 // Of the centre of pressure of the air.
 Vector3 air_velocity(const Body& body, const BodyState& state) {
   const double high = body.drag_height;
@@ -59,6 +38,12 @@ Vector3 air_velocity(const Body& body, const BodyState& state) {
 }
 
 }  // namespace
+
+void FlexibleSki::prepare() {
+  mass_columns = BeamColumns(mass);
+  stiffness_columns = BeamColumns(stiffness);
+  coupling_columns = BeamColumns(coupling);
+}
 
 Layout Body::layout() const {
   std::vector<int> sizes;
@@ -112,22 +97,20 @@ void add_mass(const Body& body, const Layout& layout, const Numbers& x, double s
     const FlexibleSki& ski = body.skis[std::size_t(k)];
     const double* beam = x.data() + layout.first(k);
     double* to = out.data() + layout.first(k);
-    add_band(ski.mass, beam, scale, to);
-    add_coupled(ski, beam, total);
-    for (int i = 0; i < ski.size(); i++)
-      for (int a = 0; a < BODY; a++) to[i] += scale * ski.coupling[std::size_t(BODY * i + a)] * x[std::size_t(a)];
+    body.kernels->add_band(ski.mass_columns, beam, beam, 0.0, scale, to);
+    body.kernels->add_coupled(ski.coupling_columns, beam, total);
+    body.kernels->add_coupling(ski.coupling_columns, x.data(), scale, to);
   }
   for (int a = 0; a < BODY; a++) out[std::size_t(a)] += scale * total[a];
 }
 
 void add_stiffness(const Body& body, const Layout& layout, const Numbers& x, const Numbers& y, double scale,
                    Numbers& out) {
-  Numbers both(x.size(), 0.0);
   for (int k = 0; k < layout.beams(); k++) {
     const FlexibleSki& ski = body.skis[std::size_t(k)];
-    const auto first = std::size_t(layout.first(k)), end = first + std::size_t(ski.size());
-    for (std::size_t i = first; i < end; i++) both[i] = x[i] + ski.damping * y[i];
-    add_band(ski.stiffness, both.data() + first, scale, out.data() + first);
+    const int first = layout.first(k);
+    body.kernels->add_band(ski.stiffness_columns, x.data() + first, y.data() + first, ski.damping, scale,
+                           out.data() + first);
   }
 }
 
@@ -139,10 +122,10 @@ void add_forces(const Body& body, const Layout& layout, const BodyState& state, 
     for (int b = 0; b < BODY; b++) momentum[a] += body.inertia[a][b] * state.rate[std::size_t(b)];
   for (int k = 0; k < layout.beams(); k++) {
     const FlexibleSki& ski = body.skis[std::size_t(k)];
-    add_coupled(ski, state.rate.data() + layout.first(k), bending);
-    double* to = out.data() + layout.first(k);
-    for (int i = 0; i < ski.size(); i++)  // gravity, and what a beam feels of the turning of the velocity
-      for (std::size_t a = 0; a < 3; a++) to[i] += ski.coupling[std::size_t(BODY * i) + a] * (g[a] + turning[a]);
+    body.kernels->add_coupled(ski.coupling_columns, state.rate.data() + layout.first(k), bending);
+    // gravity, and what a beam feels of the turning of the velocity
+    const double pulled[BODY] = {g[0] + turning[0], g[1] + turning[1], g[2] + turning[2], 0.0, 0.0, 0.0};
+    body.kernels->add_coupling(ski.coupling_columns, pulled, 1.0, out.data() + layout.first(k));
   }
   for (int a = 0; a < BODY; a++) momentum[a] += bending[a];
   const Vector3 p{momentum[0], momentum[1], momentum[2]}, l{momentum[3], momentum[4], momentum[5]};
@@ -192,8 +175,8 @@ Energies energies(const Body& body, const Layout& layout, const BodyState& state
     const FlexibleSki& ski = body.skis[std::size_t(k)];
     const double *rate = state.rate.data() + layout.first(k), *bend = state.bend.data() + layout.first(k);
     double momentum[BODY] = {}, lifted[BODY] = {};
-    add_coupled(ski, rate, momentum);
-    add_coupled(ski, bend, lifted);
+    body.kernels->add_coupled(ski.coupling_columns, rate, momentum);
+    body.kernels->add_coupled(ski.coupling_columns, bend, lifted);
     out.kinetic += 0.5 * quadratic(ski.mass, rate);
     out.elastic += 0.5 * quadratic(ski.stiffness, bend);
     for (std::size_t a = 0; a < BODY; a++) out.kinetic += momentum[a] * state.rate[a];

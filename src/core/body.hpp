@@ -20,6 +20,9 @@ struct FlexibleSki {
   std::vector<double> mass, stiffness;  // (n, 6): [i, j] is A[i, i - j]
   std::vector<double> coupling;         // (n, 6) of the mass matrix, with the body
   double damping = 0.0;                 // times the stiffness (s)
+  BeamColumns mass_columns, stiffness_columns, coupling_columns;  // the same, for products
+
+  void prepare();
   int size() const { return int(mass.size()) / (HALF_BAND + 1); }
 };
 
@@ -28,6 +31,7 @@ struct Body {
   double mass = 0.0;                // of both (kg)
   Vector3 first_moment{};           // (kg m)
   std::vector<FlexibleSki> skis;
+  const BandKernels* kernels = nullptr;
   Vector3 gravity{};                     // in space (m/s²)
   double drag = 0.0, drag_height = 0.0;  // ½ ρ C_d A (kg/m); of the centre of pressure (m)
   Layout layout() const;

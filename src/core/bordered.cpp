@@ -13,7 +13,14 @@ Layout::Layout(const std::vector<int>& sizes) : size_(sizes) {
   }
 }
 
-BorderedSystem::BorderedSystem(const Layout& layout) : layout_(layout) {
+BeamColumns::BeamColumns(const std::vector<double>& rows)
+    : size_(int(rows.size()) / BODY), stride_((size_ + BORDER_ROW - 1) / BORDER_ROW * BORDER_ROW + BORDER_ROW) {
+  numbers_.assign(std::size_t(BODY * stride_), 0.0);
+  for (int i = 0; i < size_; i++)
+    for (int c = 0; c < BODY; c++) numbers_[std::size_t(c * stride_ + i)] = rows[std::size_t(BODY * i + c)];
+}
+
+BorderedSystem::BorderedSystem(const Layout& layout, const BandKernels& kernels) : layout_(layout), kernels_(&kernels) {
   const auto rows = std::size_t(layout.length() + BORDER_ROW);
   band_.resize(BAND_ROW * rows);
   border_.resize(BORDER_ROW * rows);
@@ -26,29 +33,9 @@ void BorderedSystem::clear() {
   for (Column* each : {&band_, &border_, &column_}) std::fill(each->begin(), each->end(), 0.0);
 }
 
-bool BorderedSystem::eliminate(int beam) {
-  for (int i = 0; i < layout_.size(beam); i++) {
-    double* a = band(beam, i) + HALF_BAND;
-    double* b = border(beam, i);
-    double* c = border_column(beam, i);
-    if (!(std::fabs(*a) > 0.0)) return false;
-    const double inverse = 1.0 / *a;
-    for (int r = 0; r < BORDER_ROW; r++) c[r] *= inverse;
-    for (int j = 1; j <= HALF_BAND; j++) {
-      double* below = band(beam, i + j) + HALF_BAND - j;
-      const double share = *below * inverse, right = a[j];
-      *below = share;
-      for (int m = 1; m <= HALF_BAND; m++) below[m] -= share * a[m];
-      double* border_below = border(beam, i + j);
-      double* column_right = border_column(beam, i + j);
-      for (int r = 0; r < BORDER_ROW; r++) border_below[r] -= share * b[r];
-      for (int r = 0; r < BORDER_ROW; r++) column_right[r] -= c[r] * right;
-    }
-    for (int r = 0; r < BODY; r++)
-      for (int s = 0; s < BODY; s++) corner[r][s] -= c[r] * b[s];
-    *a = inverse;
-  }
-  return true;
+BeamRows BorderedSystem::rows(int beam) const {
+  auto* self = const_cast<BorderedSystem*>(this);
+  return {layout_.size(beam), self->band(beam, 0), self->border(beam, 0), self->border_column(beam, 0)};
 }
 
 bool BorderedSystem::factor_corner() {
@@ -70,7 +57,7 @@ bool BorderedSystem::factor_corner() {
 
 bool BorderedSystem::factor() {
   for (int beam = 0; beam < layout_.beams(); beam++)
-    if (!eliminate(beam)) return false;
+    if (!kernels_->eliminate(rows(beam), &corner[0][0])) return false;
   return factor_corner();
 }
 
@@ -91,24 +78,11 @@ void BorderedSystem::solve(Numbers& vector) const {
   double right[BORDER_ROW] = {};
   std::copy_n(vector.data(), BODY, right);
   for (int beam = 0; beam < layout_.beams(); beam++)
-    for (int i = 0; i < layout_.size(beam); i++) {
-      const auto row = at(beam, i);
-      double* x = vector.data() + row;
-      for (int j = 1; j <= HALF_BAND; j++) x[j] -= band_[BAND_ROW * (row + std::size_t(j)) + HALF_BAND - j] * *x;
-      for (int r = 0; r < BORDER_ROW; r++) right[r] -= column_[BORDER_ROW * row + std::size_t(r)] * *x;
-    }
+    kernels_->substitute_forwards(rows(beam), vector.data() + layout_.first(beam), right);
   solve_corner(right);
   std::copy_n(right, BODY, vector.data());
   for (int beam = 0; beam < layout_.beams(); beam++)
-    for (int i = layout_.size(beam) - 1; i >= 0; i--) {
-      const auto row = at(beam, i);
-      double* x = vector.data() + row;
-      const double* a = band_.data() + BAND_ROW * row + HALF_BAND;
-      double total = *x;
-      for (int r = 0; r < BODY; r++) total -= border_[BORDER_ROW * row + std::size_t(r)] * right[r];
-      for (int j = 1; j <= HALF_BAND; j++) total -= a[j] * x[j];
-      *x = total * a[0];
-    }
+    kernels_->substitute_backwards(rows(beam), right, vector.data() + layout_.first(beam));
 }
 
 }  // namespace skisnow

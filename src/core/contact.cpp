@@ -105,6 +105,8 @@ double interpolated(const std::vector<std::pair<double, double>>& table, double 
   return before->second + (at - before->first) / (after->first - before->first) * (after->second - before->second);
 }
 
+constexpr double SLIPPING = 0.999;     // share of the displacement from which on an edge slips
+constexpr double LEVEL = 1e-6;         // sine of the roll of a base that is level
 constexpr double TANGENT_STEP = 1e-8;  // m, rad
 constexpr double POSE_STEP = 1e-7;     // m, rad
 constexpr double MOTION_STEP = 1e-4;   // m/s, rad/s
@@ -119,13 +121,14 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
     state_.strips.push_back(snow_->archive.new_strip());
   }
   trial_ = state_.lines;
+  before_.resize(runners_.size());
   sections_.resize(runners_.size());
   wrenches_.resize(runners_.size());
 }
 
 const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion,
                                     Sections& s) {
-  kernels_->find_sections(runner(k), pose, *snow_, lines, s);
+  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
   kernels_->press(*snow_, lines, s);
   kernels_->slide(motion, pose, *snow_, s);
   if (laws) laws(k, s);
@@ -149,47 +152,85 @@ Reaction SnowContact::reaction(int k, const GrooveLines& lines, const Pose& pose
 
 const Wrench& SnowContact::look(int k, const Pose& pose, const Motion& motion) {
   Sections& s = sections_[std::size_t(k)];
-  const Wrench& wrench = evaluate(k, trial_[std::size_t(k)], pose, motion, s);
+  const Wrench& wrench = evaluate(k, lines(k), pose, motion, s);
   load_beam(runner(k), s, wrenches_[std::size_t(k)].beam);
   return wrench;
 }
 
-void SnowContact::find_tangent(int k, const Pose& pose, const Motion& motion, double stiffness, double damping,
-                               RunnerTangent& out) {
-  const GrooveLines& lines = trial_[std::size_t(k)];
-  Sections& s = sections_[std::size_t(k)];
+void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double damping, RunnerTangent& out) {
+  const Sections& s = sections(k);
   out.clear(runner(k).nodes());
-  evaluate(k, lines, pose, motion, s);
   differences_.resize(s.count());
-  const int changes = pose.beam.empty() ? 6 : SectionDifferences::CHANGES;
-  const bool mirrored = pose.rotation[2][1] < 0.0;  // what changes sign in the mirror steps the other way there
-  for (int change = 0; change < changes; change++) {
-    const double step = mirrored && turns_in_mirror(change) ? -TANGENT_STEP : TANGENT_STEP;
-    evaluate(k, lines, changed(pose, change, step), motion, moved_);
-    for (int answer = 0; answer < SectionDifferences::ANSWERS; answer++) {
-      const double* before = s[SectionField(FORCE_0 + answer)];
-      const double* after = moved_[SectionField(FORCE_0 + answer)];
-      double* to = differences_.column(change, answer);
-      for (int i = 0; i < s.count(); i++) to[i] = (before[i] - after[i]) / step;
-    }
+  const double lean = pose.rotation[2][1], sense = lean < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
+  kernels_->differ(*snow_, lines(k), s, TANGENT_STEP, sense, differences_);
+  if (std::fabs(lean) < LEVEL) {  // a level base has two tangents: between them
+    const std::vector<double> one = differences_.values;
+    kernels_->differ(*snow_, lines(k), s, TANGENT_STEP, -sense, differences_);
+    for (std::size_t i = 0; i < one.size(); i++) differences_.values[i] = 0.5 * (one[i] + differences_.values[i]);
   }
-  add_stiffness(runner(k), s, differences_, stiffness, out);
-  add_friction_damping(runner(k), s, damping, out);
+  const bool bends = runner(k).nodes() > 2;
+  kernels_->add_stiffness(s, differences_, stiffness, bends, out);
+  out.add_turning(wrenches_[std::size_t(k)], stiffness);
+  if (damping > 0.0) kernels_->add_friction_damping(s, damping, bends, out);
 }
 
-void SnowContact::remember(int k, GrooveLines& lines, const Pose& pose) {
-  Sections& s = sections_[std::size_t(k)];
-  kernels_->find_sections(runner(k), pose, *snow_, lines, s);
-  for (int i = 0; i < s.count(); i++)
-    if (s.line(i) >= lines.first && s.line(i) < lines.end) remember_section(s, i, *snow_, lines, lines.slot(s.line(i)));
+void SnowContact::remember(int k, GrooveLines& lines) const {
+  const Sections& s = sections(k);
+  for (std::int64_t n = lines.first; n < lines.end; n++) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
 }
 
-// The history along the way, up to but without its end.
+// The history of all lines along the way, up to but without its end.
 void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   const int parts = int(std::ceil(to.dt / snow_->look_back - 1e-9));
   if (state_.accepted.empty()) return;
-  for (int part = 1; part < parts; part++)
-    remember(k, lines, between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts));
+  for (int part = 1; part < parts; part++) {
+    const Pose pose = between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts);
+    kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
+    remember(k, lines);
+  }
+}
+
+// The lines whose history hangs on the way between two poses and not on its ends alone: ahead, where the snow was not
+// touched yet, where the edge slips, and where the base passes its deepest place.
+void SnowContact::find_needed(const GrooveLines& lines, double way) {
+  const auto& v = lines.values;
+  const auto marked = [&](std::int64_t n) {
+    return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5;
+  };
+  const auto depth = [&](std::int64_t n) { return v[DEPTH_MARKED][lines.slot(n)]; };
+  const auto over = std::int64_t(std::ceil(way / lines.spacing()));
+  needed_.clear();
+  bool ahead = true;
+  std::int64_t deepest = lines.end + over + 1;
+  for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
+    const int slot = lines.slot(n);
+    if (marked(n - over) && marked(n - over - 1) && marked(n - over + 1) && depth(n - over) >= depth(n - over - 1) &&
+        depth(n - over) >= depth(n - over + 1))
+      deepest = n - over;
+    ahead = ahead && !marked(n);
+    const double held = std::fabs(v[ANCHOR][slot] - v[EDGE_MARKED][slot]);
+    const bool slips = v[ANCHORED][slot] > 0.5 && held > SLIPPING * snow_->shear_displacement;
+    if (ahead || slips || std::llabs(n - deepest) <= over) needed_.push_back(n);
+  }
+}
+
+// [march] As `march`, for the lines that need it.
+void SnowContact::march_where_needed(int k, const Situation& to) {
+  GrooveLines& lines = state_.lines[std::size_t(k)];
+  const int parts = int(std::ceil(to.dt / snow_->look_back - 1e-9));
+  if (state_.accepted.empty() || parts < 2) return;
+  const Pose &from = state_.accepted[std::size_t(k)], &end = to.poses[std::size_t(k)];
+  double square = 0.0;
+  for (std::size_t a = 0; a < 3; a++)
+    square += (end.position[a] - from.position[a]) * (end.position[a] - from.position[a]);
+  find_needed(lines, std::sqrt(square));
+  if (needed_.empty()) return;
+  for (const std::int64_t n : needed_) before_[std::size_t(k)].lines.push_back(lines.line(lines.slot(n)));
+  Sections& s = sections_[std::size_t(k)];
+  for (int part = 1; part < parts; part++) {
+    kernels_->find_sections(runner(k), between(from, end, double(part) / parts), *snow_, lines, needed_.back(), s);
+    for (const std::int64_t n : needed_) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
+  }
 }
 
 // The lines at the end of a step, before its end is remembered: those that stand, or where that changes them a copy.
@@ -216,16 +257,29 @@ std::vector<Reaction> SnowContact::force(const Situation& at) {
 }
 
 void SnowContact::begin(const Situation& foreseen) {
-  trial_ = state_.lines;
+  take_back();
   for (int k = 0; k < runners(); k++) {
-    GrooveLines& trial = trial_[std::size_t(k)];
-    trial.lay_ahead(runner(k), foreseen.poses[std::size_t(k)], *snow_);
-    march(k, trial, foreseen);
+    GrooveLines& lines = state_.lines[std::size_t(k)];
+    Before& before = before_[std::size_t(k)];
+    before.first = lines.first, before.end = lines.end;
+    before.lines.clear();
+    lines.lay_ahead(runner(k), foreseen.poses[std::size_t(k)], *snow_);
+    march_where_needed(k, foreseen);
   }
+  begun_ = true;
+}
+
+void SnowContact::take_back() {
+  for (std::size_t k = 0; begun_ && k < before_.size(); k++) {
+    GrooveLines& lines = state_.lines[k];
+    lines.first = before_[k].first, lines.end = before_[k].end;
+    for (const GrooveLines::Line& line : before_[k].lines) lines.put_back(line);
+  }
+  begun_ = false;
 }
 
 void SnowContact::accept(const Situation& at) {
-  std::swap(state_.lines, trial_);
+  begun_ = false;
   for (int k = 0; k < runners(); k++) settle_history(k, at.poses[std::size_t(k)]);
   state_.accepted = at.poses;
 }
@@ -237,15 +291,17 @@ void SnowContact::update(const Situation& to) {
     lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
     lines.lay_ahead(runner(k), pose, *snow_);
     march(k, lines, to);
+    kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
     settle_history(k, pose);
   }
   state_.accepted = to.poses;
 }
 
-// The end of a step enters the history; lines that the ski has left are dropped, new ones laid.
+// The end of a step, for which the sections stand, enters the history; lines that the ski has left are dropped, new
+// ones laid.
 void SnowContact::settle_history(int k, const Pose& pose) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
-  remember(k, lines, pose);
+  remember(k, lines);
   if (lines.is_uneven(pose)) lay_anew(k, pose);
   lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
   lines.lay_ahead(runner(k), pose, *snow_);
@@ -264,7 +320,8 @@ void SnowContact::lay_anew(int k, const Pose& pose) {
   lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
   state_.strips[std::size_t(k)] = snow_->archive.new_strip();
   lines.lay_ahead(runner(k), pose, *snow_);
-  remember(k, lines, pose);
+  kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
+  remember(k, lines);
   for (std::int64_t n = lines.first; n < lines.end && !displaced.empty(); n++) {
     const int i = s.index(n);
     if (s.touches(i)) lines.values[ANCHOR][lines.slot(n)] = s[EDGE_PLACE][i] + interpolated(displaced, s[STATION][i]);

@@ -40,7 +40,7 @@ class SnowContact {
   const Sections& sections(int k) const { return sections_[std::size_t(k)]; }
   const GrooveLines& lines(int k) const { return state_.lines[std::size_t(k)]; }
   int strip(int k) const { return state_.strips[std::size_t(k)]; }
-  const char* instruction_set() const { return kernels_->name; }
+  const Kernels& kernels() const { return *kernels_; }
   Laws laws;
 
   // Forces at a situation: the history advances from the last accepted pose on copies; the snow stays as it is.
@@ -49,15 +49,16 @@ class SnowContact {
   // The step to a situation is accepted: the snow remembers it.
   void update(const Situation& to);
 
-  // The same for one who tries many poses for the end of a step: `begin` lets the history advance on copies towards an
-  // end foreseen, up to but without it; `look` gives the forces of one runner (in the ski's axes) at a pose there;
-  // `accept` makes the copies the snow, at a pose looked at or another.
+  // The same for one who tries many poses for the end of a step: `begin` lets the history advance towards an end
+  // foreseen, up to but without it; `look` gives the forces of one runner (in the ski's axes) at a pose there;
+  // `take_back` lets the snow be as before `begin`; `accept` makes it remember the end, at the pose looked at last or
+  // one next to it.
   void begin(const Situation& foreseen);
   const Wrench& look(int k, const Pose& pose, const Motion& motion);
+  void take_back();
   void accept(const Situation& at);
-  // Weighted sum of minus the derivatives by pose and by motion at a pose, by differences section by section.
-  void find_tangent(int k, const Pose& pose, const Motion& motion, double stiffness, double damping,
-                    RunnerTangent& out);
+  // Weighted sum of minus the derivatives by pose and by motion at the pose looked at last: what Newton's method needs.
+  void find_tangent(int k, const Pose& pose, double stiffness, double damping, RunnerTangent& out);
 
   // Minus the derivatives of each runner's force and moment by its own pose (rotation about the slope's axes at the
   // boot) and velocity: (6, 6) each, row by row, by central differences.
@@ -90,8 +91,14 @@ class SnowContact {
   std::vector<GrooveLines> trial_;
   std::vector<Sections> sections_;
   std::vector<Wrench> wrenches_;
-  Sections moved_;
   SectionDifferences differences_;
+  std::vector<std::int64_t> needed_;  // lines, the foremost first
+  struct Before {                     // of one runner, what `begin` has changed
+    std::int64_t first, end;
+    std::vector<GrooveLines::Line> lines;
+  };
+  std::vector<Before> before_;
+  bool begun_ = false;
 
   GrooveLines& history(int k, const Situation& at);
   const Wrench& evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, Sections& s);
@@ -99,7 +106,9 @@ class SnowContact {
   void settle_history(int k, const Pose& pose);
   void lay_anew(int k, const Pose& pose);
   void march(int k, GrooveLines& lines, const Situation& to);
-  void remember(int k, GrooveLines& lines, const Pose& pose);
+  void find_needed(const GrooveLines& lines, double way);
+  void march_where_needed(int k, const Situation& to);
+  void remember(int k, GrooveLines& lines) const;
 };
 
 }  // namespace skisnow

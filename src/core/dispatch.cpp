@@ -61,9 +61,9 @@ const Kernels& kernels() {
   return baseline::SET;
 }
 
-void Sections::prepare(const GrooveLines& lines) {
+void Sections::prepare(const GrooveLines& lines, std::int64_t first) {
   if (values.length() != lines.capacity()) values.resize(lines.capacity());
-  first_block = lines.first >= 0 ? lines.first / BLOCK : -((-lines.first + BLOCK - 1) / BLOCK);
+  first_block = first >= 0 ? first / BLOCK : -((-first + BLOCK - 1) / BLOCK);
   blocks = int((lines.end - first_block * BLOCK + BLOCK - 1) / BLOCK);
 }
 

@@ -12,6 +12,7 @@ namespace {
 constexpr int MOST_ITERATIONS = 12;
 constexpr double SLOW = 0.15;             // contraction from which on the matrix is made anew
 constexpr double UNSEEN = 0.3;            // contraction to reckon with before it was seen
+constexpr double LEAST_ERROR = 0.1;       // of the tolerance: what a step's own error is taken for at least
 constexpr double SAME_REACH = 0.1;        // by which β may differ from that of a matrix that is kept
 constexpr double LEAST_SHARE = 1.0 / 64;  // of a fixed step, into which it is divided where it is not solved
 constexpr double FARTHEST = 1.0;          // way (m), turn (rad), bend beyond which a step has diverged
@@ -23,9 +24,10 @@ constexpr double MILNE = 0.35;  // error of BDF2 over its distance from the pred
 
 Dynamics::Dynamics(Body body, SnowContact& contact, const StepRule& rule)
     : body_(std::move(body)), contact_(&contact), rule_(rule), layout_(body_.layout()), step_(rule.first) {
+  body_.kernels = &contact.kernels().band;
   state = next_ = BodyState(layout_);
   rate_before_ = moved_ = increment_ = residual_ = difference_ = state.rate;
-  system_ = BorderedSystem(layout_);
+  system_ = BorderedSystem(layout_, contact.kernels().band);
   end_.poses.resize(body_.skis.size());
   end_.motions.resize(body_.skis.size());
 }
@@ -95,7 +97,7 @@ void Dynamics::find_residual(const Formula& f) {
 
 // What the body does to a ski: the ski's way and rotation in its own axes by the body's.
 struct Carried {
-  double by[BODY][BODY] = {};
+  double by[BODY][BORDER_ROW] = {};
 
   explicit Carried(const FlexibleSki& ski) {
     const Vector3& r = ski.boot;
@@ -108,32 +110,27 @@ struct Carried {
 };
 
 void Dynamics::add_contact_tangent(double stiffness, double damping) {
+  const auto carry = body_.kernels->carry;
   for (std::size_t k = 0; k < body_.skis.size(); k++) {
     const FlexibleSki& ski = body_.skis[k];
-    contact_->find_tangent(int(k), end_.poses[k], end_.motions[k], stiffness, damping, tangent_);
+    contact_->find_tangent(int(k), end_.poses[k], stiffness, damping, tangent_);
     const Carried carried(ski);
-    double half[BODY][BODY] = {};
-    for (int r = 0; r < BODY; r++)
-      for (int c = 0; c < BODY; c++)
-        for (int m = 0; m < BODY; m++) half[r][c] += tangent_.body[r][m] * carried.by[m][c];
-    for (int r = 0; r < BODY; r++)
-      for (int c = 0; c < BODY; c++)
-        for (int m = 0; m < BODY; m++) system_.corner[r][c] += carried.by[m][r] * half[m][c];
+    for (int m = 0; m < BODY; m++) {
+      double half[BORDER_ROW] = {};
+      carry(tangent_.body[m], &carried.by[0][0], half);
+      for (int r = 0; r < BODY; r++)
+        for (int c = 0; c < BODY; c++) system_.corner[r][c] += carried.by[m][r] * half[c];
+    }
     for (std::size_t j = 0; j < ski.unknown.size(); j++)
       for (int c = 0; c < 3 && ski.unknown[j] >= 0; c++) {
         const int row = ski.unknown[j] + c;
         const auto node = 3 * j + std::size_t(c);
-        double* border = system_.border(int(k), row);
-        double* column = system_.border_column(int(k), row);
-        for (int a = 0; a < BODY; a++)
-          for (int m = 0; m < BODY; m++) {
-            border[a] += tangent_.beam_by_body[6 * node + std::size_t(m)] * carried.by[m][a];
-            column[a] += tangent_.body_by_beam[6 * node + std::size_t(m)] * carried.by[m][a];
-          }
+        carry(tangent_.beam_by_body.data() + BORDER_ROW * node, &carried.by[0][0], system_.border(int(k), row));
+        carry(tangent_.body_by_beam.data() + BORDER_ROW * node, &carried.by[0][0], system_.border_column(int(k), row));
         double* band = system_.band(int(k), row);
         for (int m = 0; m < 2 * HALF_BAND + 1; m++) {
           const int other = row + m - HALF_BAND;
-          if (other >= 0 && other < ski.size()) band[m] += tangent_.beam[(2 * HALF_BAND + 1) * node + std::size_t(m)];
+          if (other >= 0 && other < ski.size()) band[m] += tangent_.beam[BAND_ROW * node + std::size_t(m)];
         }
       }
   }
@@ -176,7 +173,7 @@ double Dynamics::size_of(const Numbers& rates, double reach) const {
 
 // [newton] The rates at the step's end; whether they were found.
 bool Dynamics::solve_step(const Formula& f) {
-  const double close = std::min(rule_.closeness * rule_.tolerance, 0.1 * contact_->shear_displacement());
+  const double displacement = 0.1 * contact_->shear_displacement();
   double last = std::numeric_limits<double>::infinity();
   bool renew = kept_ <= 0 || std::fabs(f.reach - reach_) > SAME_REACH * reach_;
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
@@ -200,7 +197,9 @@ bool Dynamics::solve_step(const Formula& f) {
     for (std::size_t i = 0; i < residual_.size(); i++) next_.rate[i] += damping * residual_[i];
     place(f);
     const double contraction = iteration > 0 ? contraction_ : std::max(contraction_, UNSEEN);
-    if (contraction / (1.0 - contraction) * size < close) {
+    // close to what the step's own error is, where that is below the tolerance
+    const double own = std::clamp(error(f), LEAST_ERROR * rule_.tolerance, rule_.tolerance);
+    if (contraction / (1.0 - contraction) * size < std::min(rule_.closeness * own, displacement)) {
       kept_--;
       return true;
     }
@@ -300,14 +299,10 @@ Advance Dynamics::advance(double until, long most) {
   for (long tries = 0; time < until; tries++) {
     if (tries == most) return Advance::PAUSED;
     const double left = until - time;
-    double h = std::min(step_, left);
-    if (rule_.fixed) {
-      h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));
-      if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
-      h *= share_;
-    } else if (h < left * (1.0 - ROUNDING) && h > 0.5 * left) {
-      h = 0.5 * left;  // no crumbs at the end
-    }
+    // equal steps on the way that is left: the matrix serves them all
+    double h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));
+    if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
+    h *= share_;
     const Formula f = formula(h);
     predict(f);
     fill_end();
@@ -316,6 +311,7 @@ Advance Dynamics::advance(double until, long most) {
     const bool solved = solve_step(f) && is_sound(h);
     if (rule_.fixed) {
       if (!solved) {  // in two halves, and so on
+        contact_->take_back();
         counts_.rejected++;
         kept_ = 0;
         share_ *= 0.5;
@@ -326,15 +322,16 @@ Advance Dynamics::advance(double until, long most) {
     } else {
       const double wanted = solved ? SAFETY * std::cbrt(rule_.tolerance / std::max(error(f), 1e-30)) : 0.5;
       if (!solved || wanted < SAFETY) {
+        contact_->take_back();
         counts_.rejected++;
         kept_ = 0;
         step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
         if (step_ < rule_.shortest) return Advance::STEP_TOO_SMALL;
         continue;
       }
-      if (h >= step_ && wanted > UP)
+      if (h * wanted > UP * step_)
         step_ = std::min(rule_.longest, on_ladder(step_ * 1.19));
-      else if (wanted < DOWN)
+      else if (h * wanted < DOWN * step_)
         step_ = on_ladder(h * wanted);
     }
     const bool reached = h >= left * (1.0 - ROUNDING);

@@ -105,6 +105,7 @@ class Dynamics {
   bool factor_static(double inertia);
   double static_square(const Numbers& left) const;
   void find_height(Numbers& left);
+  double find_equilibrium();
   void static_residual(const BodyState& at, Numbers& out);
 };
 

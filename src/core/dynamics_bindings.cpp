@@ -34,6 +34,7 @@ FlexibleSki flexible_ski(const Array& boot, const Array& axes, const Array& unkn
   out.stiffness = copied(stiffness);
   out.coupling = copied(coupling);
   out.damping = damping;
+  out.prepare();
   return out;
 }
 

@@ -1,7 +1,7 @@
 // What acts along and across the edge, and the sums on the runner.
 #pragma once
 
-#include "section_kernels.hpp"
+#include "pressure_kernels.hpp"
 
 namespace skisnow::SKISNOW_LANES {
 
@@ -26,14 +26,11 @@ struct Centre {
   Vector<V> at;
   V arm;
 
-  Centre(const Sections& s, int i) {
-    const V force = load<V>(s[FORCE] + i), moment = load<V>(s[MOMENT] + i), fall = load<V>(s[DEPTH_FALL] + i);
+  Centre(const Cut<V>& c, V force, V moment) {
     const V off = moment / select(force > 0.0, force, all<V>(1.0));
-    const Vector<V> left = load3<V>(s, LINE_LEFT_0, i), normal = load3<V>(s, LINE_NORMAL_0, i);
-    at = {load<V>(s[STATION] + i) + off * (left.x - fall * normal.x),
-          load<V>(s[EDGE_LEFT] + i) + off * (left.y - fall * normal.y),
-          load<V>(s[EDGE_UP] + i) + off * (left.z - fall * normal.z)};
-    arm = load<V>(s[EDGE_REACH] + i) + off * load<V>(s[BASE_WIDENING] + i);
+    at = {c.station + off * (c.left.x - c.fall * c.normal.x), c.edge_left + off * (c.left.y - c.fall * c.normal.y),
+          c.edge_up + off * (c.left.z - c.fall * c.normal.z)};
+    arm = c.reach + off * c.widening;
   }
 };
 
@@ -58,13 +55,13 @@ void slide(const Motion& motion, const Pose& pose, const Snow& snow, Sections& s
   const double fade = law.fade_speed * law.fade_speed;
   for (int i = 0; i < s.count(); i++) beam_rates(motion, s, i, s[BEAM_FORCE][i], s[BEAM_MOMENT][i]);
   for (int i = 0; i < s.count(); i += WIDTH<V>) {
-    const Centre<V> centre(s, i);
-    const V sp = load<V>(s[TWIST_SINE] + i), cp = load<V>(s[TWIST_COSINE] + i);
+    const Cut<V> c = Cut<V>::stored(s, i);
+    const Centre<V> centre(c, load<V>(s[FORCE] + i), load<V>(s[MOMENT] + i));
     const V deflecting = load<V>(s[BEAM_FORCE] + i), turning = load<V>(s[BEAM_MOMENT] + i) * centre.arm;
     const Vector<V> velocity{m.v[0] + m.o[1] * centre.at.z - m.o[2] * centre.at.y,
-                             m.v[1] + m.o[2] * centre.at.x - m.o[0] * centre.at.z - sp * turning,
-                             m.v[2] + m.o[0] * centre.at.y - m.o[1] * centre.at.x + deflecting - cp * turning};
-    const V sliding = dot(velocity, load3<V>(s, ALONG_0, i)), speed = absolute(sliding);
+                             m.v[1] + m.o[2] * centre.at.x - m.o[0] * centre.at.z - c.sp * turning,
+                             m.v[2] + m.o[0] * centre.at.y - m.o[1] * centre.at.x + deflecting - c.cp * turning};
+    const V sliding = dot(velocity, c.along), speed = absolute(sliding);
     const V film = 1.0 / (1.0 + speed / law.film_speed), size = 1.0 / root(sliding * sliding + fade);
     const V mu = law.constant + speed * (law.linear + law.square * speed) + law.film * film;
     const V growth = law.linear + 2.0 * law.square * speed - law.film / law.film_speed * film * film;
@@ -74,46 +71,94 @@ void slide(const Motion& motion, const Pose& pose, const Snow& snow, Sections& s
   }
 }
 
+// What acts on a section: the snow's force and its moment about the edge, μ with its sign, shear strength, thrust and
+// the share of the displacement in use.
+template <class V>
+struct Acting {
+  V share, force, moment, friction, strength, thrust, used;
+};
+
+// The forces of one section.
+template <class V>
+struct Pushed {
+  static constexpr int PARTS = 8;
+  V shear, along;
+  V parts[PARTS];  // force and moment about the boot in the ski's axes; force and moment on the beam
+
+  Pushed(const Cut<V>& c, const Acting<V>& by, double compaction) {
+    const V none{};
+    const MaskOf<V> wet = (by.share > 0.0) & (c.deepest > 0.0);
+    const Centre<V> centre(c, by.force, by.moment);
+    const V by_twist = c.twist_slope * by.moment / (1.0 - c.sine * c.sine) * c.size;
+    const V resistance = (by.force * c.climb + by_twist) * compaction;
+    along = select(wet, resistance - by.friction * by.force, none);
+    const V used = within(by.used, -1.0, 1.0), area = c.deepest * by.share;
+    shear = select(wet, by.strength * area * used, none);
+    const V thrust = select(wet, by.thrust * area * absolute(used), none);
+    const Vector<V>& n = c.normal;
+    const Vector<V> a{by.force * n.x + along * c.along.x, by.force * n.y + along * c.along.y,
+                      by.force * n.z + along * c.along.z};
+    const Vector<V> z{shear * c.across.x + thrust * n.x, shear * c.across.y + thrust * n.y,
+                      shear * c.across.z + thrust * n.z};
+    const Vector<V> moment = cross(centre.at, a), edge_moment = cross({c.station, c.edge_left, c.edge_up}, z);
+    const V turning = -centre.arm * (c.sp * a.y + c.cp * a.z) - c.reach * (c.sp * z.y + c.cp * z.z);
+    const V all_parts[PARTS] = {
+        a.x + z.x, a.y + z.y, a.z + z.z, moment.x + edge_moment.x, moment.y + edge_moment.y, moment.z + edge_moment.z,
+        a.z + z.z, turning};
+    for (int k = 0; k < PARTS; k++) parts[k] = select(wet, all_parts[k], none);
+  }
+};
+
 // [push] All forces of the sections, summed to the wrench on the boot and the loads of the beam.
 template <class V>
 void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out) {
   Sum sums[6];
   const double compaction = snow.compaction_resistance ? 1.0 : 0.0;
   for (int i = 0; i < s.count(); i += WIDTH<V>) {
-    const int lane = i % BLOCK;
-    const V share = load<V>(s[SHARE] + i), deepest = load<V>(s[DEEPEST] + i), none{};
-    const MaskOf<V> wet = (share > 0.0) & (deepest > 0.0);
-    const Centre<V> centre(s, i);
-    const V force = load<V>(s[FORCE] + i), sine = load<V>(s[EDGE_SINE] + i);
-    const V by_twist =
-        load<V>(s[TWIST_SLOPE] + i) * load<V>(s[MOMENT] + i) / (1.0 - sine * sine) * load<V>(s[ALONG_SIZE] + i);
-    const V resistance = (force * load<V>(s[DEPTH_CLIMB] + i) + by_twist) * compaction;
-    const V along = select(wet, resistance - load<V>(s[FRICTION] + i) * force, none);
-    const V used = within(load<V>(s[SHEAR_USED] + i), -1.0, 1.0), area = deepest * share;
-    const V shear = select(wet, load<V>(s[EDGE_STRENGTH] + i) * area * used, none);
-    const V thrust = select(wet, load<V>(s[EDGE_THRUST] + i) * area * absolute(used), none);
-    const Vector<V> n = load3<V>(s, LINE_NORMAL_0, i), t = load3<V>(s, ALONG_0, i);
-    const Vector<V> a{force * n.x + along * t.x, force * n.y + along * t.y, force * n.z + along * t.z};
-    const Vector<V> across = load3<V>(s, ACROSS_0, i);
-    const Vector<V> z{shear * across.x + thrust * n.x, shear * across.y + thrust * n.y,
-                      shear * across.z + thrust * n.z};
-    const Vector<V> edge{load<V>(s[STATION] + i), load<V>(s[EDGE_LEFT] + i), load<V>(s[EDGE_UP] + i)};
-    const Vector<V> moment = cross(centre.at, a), edge_moment = cross(edge, z);
-    const V sp = load<V>(s[TWIST_SINE] + i), cp = load<V>(s[TWIST_COSINE] + i);
-    const V parts[6] = {
-        a.x + z.x, a.y + z.y, a.z + z.z, moment.x + edge_moment.x, moment.y + edge_moment.y, moment.z + edge_moment.z};
-    for (int c = 0; c < 6; c++) {
-      const V part = select(wet, parts[c], none);
-      store(s[SectionField(FORCE_0 + c)] + i, part);
-      sums[c].add(lane, part);
-    }
-    store(s[SHEAR] + i, shear);
-    store(s[PUSH] + i, along);
-    store(s[BEAM_FORCE] + i, select(wet, a.z + z.z, none));
-    store(s[BEAM_MOMENT] + i,
-          select(wet, -centre.arm * (sp * a.y + cp * a.z) - load<V>(s[EDGE_REACH] + i) * (sp * z.y + cp * z.z), none));
+    const Acting<V> by{load<V>(s[SHARE] + i),     load<V>(s[FORCE] + i),         load<V>(s[MOMENT] + i),
+                       load<V>(s[FRICTION] + i),  load<V>(s[EDGE_STRENGTH] + i), load<V>(s[EDGE_THRUST] + i),
+                       load<V>(s[SHEAR_USED] + i)};
+    const Pushed<V> pushed(Cut<V>::stored(s, i), by, compaction);
+    for (int k = 0; k < Pushed<V>::PARTS; k++) store(s[SectionField(FORCE_0 + k)] + i, pushed.parts[k]);
+    for (int k = 0; k < 6; k++) sums[k].add(i % BLOCK, pushed.parts[k]);
+    store(s[SHEAR] + i, pushed.shear);
+    store(s[PUSH] + i, pushed.along);
   }
   for (int a = 0; a < 3; a++) out.force[a] = sums[a].total(), out.moment[a] = sums[a + 3].total();
+}
+
+// [local_tangent] How the forces of each section change as the base there is moved to the left, off the snow, and
+// twisted: minus the derivatives by differences of one step, the laws' values held. `sense`: of the steps to the left
+// and of the twist.
+template <class V>
+void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, double step, double sense,
+            SectionDifferences& out) {
+  const double compaction = snow.compaction_resistance ? 1.0 : 0.0;
+  for_lanes<V>(s, lines, [&](int i, int j) {
+    const Cut<V> base(s, i);
+    Acting<V> by;
+    by.share = load<V>(s[SHARE] + i), by.friction = load<V>(s[FRICTION] + i);
+    by.strength = load<V>(s[EDGE_STRENGTH] + i), by.thrust = load<V>(s[EDGE_THRUST] + i);
+    const bool dry = !any((by.share > 0.0) & (load<V>(s[DEEPEST] + i) > 0.0));
+    for (int change = 0; change < SectionDifferences::CHANGES; change++) {
+      const double way = change == SectionDifferences::OFF ? step : sense * step;
+      Cut<V> c = base;
+      if (change == SectionDifferences::LEFT) c.aside = all<V>(way);
+      if (change == SectionDifferences::OFF) c.height += way;
+      if (change == SectionDifferences::TWIST) c.sp += way * base.cp, c.cp -= way * base.sp;
+      V parts[Pushed<V>::PARTS] = {};
+      if (!dry) {
+        c.cut(snow);
+        const Pressed<V> answer(snow, lines, j, c);
+        by.force = by.share * answer.force, by.moment = by.share * answer.moment,
+        by.used = shear_used(snow, lines, j, c);
+        const Pushed<V> pushed(c, by, compaction);
+        for (int k = 0; k < Pushed<V>::PARTS; k++)
+          parts[k] = (load<V>(s[SectionField(FORCE_0 + k)] + i) - pushed.parts[k]) / way;
+      }
+      for (int k = 0; k < Pushed<V>::PARTS; k++) store(out.column(change, k) + i, parts[k]);
+    }
+  });
 }
 
 }  // namespace skisnow::SKISNOW_LANES

@@ -22,25 +22,15 @@ double triangle(const Ground& ground, int i, int j, int k) {
   return 0.5 * std::fabs((y[j] - y[i]) * (g[k] - g[i]) - (y[k] - y[i]) * (g[j] - g[i]));
 }
 
-bool is_deeper(const Ground& ground, const Segment& pressed) {
-  if (pressed.a < ground.first() - THIN || pressed.b > ground.last() + THIN) return true;
-  for (int j = 0; j < ground.count; j++) {
-    const double where = ground.place[j];
-    if (where >= pressed.a && where <= pressed.b && pressed.at(where) > ground.depth[j] + THIN) return true;
-  }
-  return pressed.depth_a > ground.at(pressed.a, true) + THIN || pressed.depth_b > ground.at(pressed.b, false) + THIN;
-}
-
-// The deeper of both between two neighbouring knots of the old ground.
-void merge_piece(const Ground& old, int j, const Segment& pressed, Ground& out) {
+// The deeper of both between two neighbouring knots of the old ground; whether that is the pressed one anywhere.
+bool merge_piece(const Ground& old, int j, const Segment& pressed, Ground& out) {
   const double a = old.place[j], b = old.place[j + 1];
-  if (b - a < 1e-15) return;
-  const double slope = (old.depth[j + 1] - old.depth[j]) / (b - a);
   const double from = std::max(a, pressed.a), to = std::min(b, pressed.b);
-  if (to <= from) return;
+  if (b - a < 1e-15 || to <= from) return false;
+  const double slope = (old.depth[j + 1] - old.depth[j]) / (b - a);
   const double old_from = old.depth[j] + slope * (from - a), old_to = old.depth[j] + slope * (to - a);
   const double over_from = pressed.at(from) - old_from, over_to = pressed.at(to) - old_to;
-  if (over_from <= THIN && over_to <= THIN) return;
+  if (over_from <= THIN && over_to <= THIN) return false;
   if (from > a) out.append(from, old_from);
   if (from > a && over_from > THIN) out.append(from, pressed.at(from));
   if (over_from < -THIN || over_to < -THIN) {
@@ -49,11 +39,62 @@ void merge_piece(const Ground& old, int j, const Segment& pressed, Ground& out) 
   }
   if (to < b && over_to > THIN) out.append(to, pressed.at(to));
   if (to < b) out.append(to, old_to);
+  return true;
+}
+
+// A segment apart from the ground: nothing has touched what lies between, no depth.
+void join_apart(const Ground& old, const Segment& pressed, Ground& out) {
+  const auto copy = [&] {
+    for (int j = 0; j < old.count; j++) out.append(old.place[j], old.depth[j]);
+  };
+  const bool before = pressed.b < old.first();
+  if (!before) copy(), out.append(old.last(), 0.0), out.append(pressed.a, 0.0);
+  out.append(pressed.a, pressed.depth_a), out.append(pressed.b, pressed.depth_b);
+  if (before) out.append(pressed.b, 0.0), out.append(old.first(), 0.0), copy();
+}
+
+// A segment over part of the ground, or beyond one of its ends; whether it is the deeper anywhere.
+bool join(const Ground& old, const Segment& pressed, Ground& out) {
+  bool deeper = false;
+  int j = 0;
+  while (j < old.count && old.place[j] < pressed.a) j++;
+  std::copy_n(old.place, j, out.place), std::copy_n(old.depth, j, out.depth);
+  out.count = j;
+  if (j > 0) {
+    deeper = j < old.count && merge_piece(old, j - 1, pressed, out);
+  } else if (pressed.a < old.first()) {
+    deeper = pressed.a < old.first() - THIN;
+    out.append(pressed.a, pressed.depth_a), out.append(old.first(), pressed.at(old.first()));
+  }
+  for (; j < old.count && old.place[j] <= pressed.b; j++) {
+    // at an end of the segment a knot keeps its own depth to the outside: there may be a wall
+    const double where = old.place[j], own = old.depth[j];
+    if (where == pressed.a) out.append(where, own);
+    out.append(where, std::max(own, pressed.at(where)));
+    if (where == pressed.b) out.append(where, own);
+    if (j + 1 < old.count && merge_piece(old, j, pressed, out)) deeper = true;
+  }
+  if (j < old.count) out.append(old.place[j], old.depth[j]), j++;
+  for (; j < old.count && out.count < Ground::ROOM; j++, out.count++)
+    out.place[out.count] = old.place[j], out.depth[out.count] = old.depth[j];
+  for (; j < old.count; j++) out.append(old.place[j], old.depth[j]);
+  if (pressed.b > old.last()) {
+    deeper = deeper || pressed.b > old.last() + THIN;
+    out.append(old.last(), pressed.at(old.last())), out.append(pressed.b, pressed.depth_b);
+  }
+  return deeper;
 }
 
 constexpr double ALIKE = 1.0 + 1e-4, TINY_AREA = 1e-24;  // (m²): of areas that are alike but for rounding
 
 }  // namespace
+
+Ground& Ground::operator=(const Ground& other) {
+  count = other.count;
+  std::copy_n(other.place, count, place);
+  std::copy_n(other.depth, count, depth);
+  return *this;
+}
 
 void Ground::append(double at, double deep) {
   if (count > 0 && std::fabs(place[count - 1] - at) < THIN && std::fabs(depth[count - 1] - deep) < THIN) return;
@@ -79,34 +120,11 @@ bool Ground::press(double a, double depth_a, double b, double depth_b) {
     append(a, depth_a), append(b, depth_b);
     return true;
   }
-  if (!is_deeper(*this, pressed)) return false;
   Ground out;
-  if (b < first()) {
-    out.append(a, depth_a), out.append(b, depth_b);
-    // nothing has touched what lies between: no depth
-    out.append(b, 0.0);
-    out.append(first(), 0.0);
-  }
-  if (a < first() && b >= first()) {
-    out.append(a, depth_a);
-    out.append(first(), pressed.at(first()));
-  }
-  for (int j = 0; j < count; j++) {
-    // at an end of the segment a knot keeps its own depth to the outside: there may be a wall
-    const bool under = place[j] >= a && place[j] <= b;
-    if (!under || place[j] == a) out.append(place[j], depth[j]);
-    if (under) out.append(place[j], std::max(depth[j], pressed.at(place[j])));
-    if (place[j] == b) out.append(place[j], depth[j]);
-    if (j + 1 < count) merge_piece(*this, j, pressed, out);
-  }
-  if (a > last()) {
-    out.append(last(), 0.0);
-    out.append(a, 0.0);
-    out.append(a, depth_a);
-    out.append(b, depth_b);
-  } else if (b > last()) {
-    out.append(last(), pressed.at(last()));
-    out.append(b, depth_b);
+  if (b < first() || a > last()) {
+    join_apart(*this, pressed, out);
+  } else if (!join(*this, pressed, out)) {
+    return false;
   }
   *this = out;
   return true;
@@ -114,18 +132,21 @@ bool Ground::press(double a, double depth_a, double b, double depth_b) {
 
 // Two that are alike but for rounding go together, the outermost first: the mirror image is simplified as its original.
 void Ground::simplify(double area, int most) {
-  if (count < 3) return;
   double size[ROOM];
+  const auto smallest = [&] {
+    double least = size[1];
+    for (int j = 2; j + 1 < count; j++) least = std::min(least, size[j]);
+    return least;
+  };
   for (int j = 1; j + 1 < count; j++) size[j] = triangle(*this, j - 1, j, j + 1);
   while (count > 2) {
-    const int least = int(std::min_element(size + 1, size + count - 1) - size);
-    const double alike = size[least] * ALIKE + TINY_AREA;
-    if (size[least] > area && count <= most) break;
+    const double least = smallest(), alike = least * ALIKE + TINY_AREA;
+    if (least > area && count <= most) break;
     int first = 1, last = count - 2;
     while (size[first] > alike) first++;
     while (size[last] > alike) last--;
     if (last - first < 2) {
-      drop(least, size);
+      drop(size[last] < size[first] ? last : first, size);
     } else {
       drop(last, size);
       drop(first, size);

@@ -15,6 +15,10 @@ struct Ground {
   double place[ROOM];
   double depth[ROOM];
 
+  Ground() = default;
+  Ground(const Ground& other) { *this = other; }
+  Ground& operator=(const Ground& other);
+
   void clear() { count = 0; }
   bool empty() const { return count < 2; }
   double first() const { return place[0]; }

@@ -16,7 +16,7 @@ struct Pressed {
 // [hypoplastic] From a to b; there the depth is `depth + fall x`, the lift `lift + slope x`, and a lift up to `thin`
 // counts for none.
 template <class V>
-inline Pressed<V> pressed_part(V a, V b, V depth, V fall, V lift, V slope, V hardness, V excess, double thin) {
+SKISNOW_INLINE Pressed<V> pressed_part(V a, V b, V depth, V fall, V lift, V slope, V hardness, V excess, double thin) {
   const V zero = -lift / select(absolute(slope) > 1e-30, slope, all<V>(1e-30));
   const MaskOf<V> at_a = lift + slope * a > thin, at_b = lift + slope * b > thin;
   const V middle = minimum(maximum(zero, a), b);

@@ -4,8 +4,7 @@
 #pragma once
 
 #include "force_kernels.hpp"
-#include "pressure_kernels.hpp"
-#include "section_kernels.hpp"
+#include "tangent_kernels.hpp"
 
 namespace skisnow::SKISNOW_LANES {
 

@@ -8,6 +8,9 @@
 #include <cstdint>
 #include <cstring>
 
+// Each instruction set has these for itself: a function that is not part of its caller would be shared between them.
+#define SKISNOW_INLINE inline __attribute__((always_inline))
+
 namespace skisnow {
 
 constexpr int BLOCK = 8;  // lines that lie side by side in memory; a multiple of every number of lanes
@@ -35,55 +38,55 @@ template <class V>
 using MaskOf = Mask<WIDTH<V>>;
 
 template <class V>
-inline V load(const double* from) {
+SKISNOW_INLINE V load(const double* from) {
   V value;
   std::memcpy(&value, from, sizeof value);
   return value;
 }
 
 template <class V>
-inline void store(double* to, V value) {
+SKISNOW_INLINE void store(double* to, V value) {
   std::memcpy(to, &value, sizeof value);
 }
 
 template <class V>
-inline V all(double value) {
+SKISNOW_INLINE V all(double value) {
   return V{} + value;
 }
 
 template <class V>
-inline V select(MaskOf<V> mask, V yes, V no) {
+SKISNOW_INLINE V select(MaskOf<V> mask, V yes, V no) {
   return mask ? yes : no;
 }
 
 template <class V>
-inline V minimum(V a, V b) {
+SKISNOW_INLINE V minimum(V a, V b) {
   return a < b ? a : b;
 }
 
 template <class V>
-inline V maximum(V a, V b) {
+SKISNOW_INLINE V maximum(V a, V b) {
   return a > b ? a : b;
 }
 
 template <class V>
-inline V within(V value, double low, double high) {
+SKISNOW_INLINE V within(V value, double low, double high) {
   return minimum(maximum(value, all<V>(low)), all<V>(high));
 }
 
 template <class V>
-inline V absolute(V value) {
+SKISNOW_INLINE V absolute(V value) {
   return maximum(value, -value);
 }
 
 template <class V>
-inline V root(V value) {
+SKISNOW_INLINE V root(V value) {
   for (int i = 0; i < WIDTH<V>; i++) value[i] = __builtin_sqrt(value[i]);
   return value;
 }
 
 template <class M>
-inline bool any(M mask) {
+SKISNOW_INLINE bool any(M mask) {
   std::int64_t found = 0;
   for (unsigned i = 0; i < sizeof(M) / 8; i++) found |= mask[i];
   return found != 0;
@@ -94,7 +97,7 @@ struct Sum {
   double part[BLOCK] = {};
 
   template <class V>
-  void add(int lane, V value) {
+  SKISNOW_INLINE void add(int lane, V value) {
     store(part + lane, load<V>(part + lane) + value);
   }
 

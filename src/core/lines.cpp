@@ -104,6 +104,27 @@ void GrooveLines::keep(int slot, const Ground& ground) {
   }
 }
 
+GrooveLines::Line GrooveLines::line(int slot) const {
+  Line out;
+  out.slot = slot;
+  for (int field = 0; field < LINE_FIELDS; field++) out.values[field] = values[LineField(field)][slot];
+  for (int j = 0; j < KNOTS; j++) {
+    const auto at = std::size_t(tile(slot, j));
+    out.place[j] = place[at], out.depth[j] = depth[at], out.slope[j] = slope[at];
+  }
+  out.knots = knots[std::size_t(slot)];
+  return out;
+}
+
+void GrooveLines::put_back(const Line& line) {
+  for (int field = 0; field < LINE_FIELDS; field++) values[LineField(field)][line.slot] = line.values[field];
+  for (int j = 0; j < KNOTS; j++) {
+    const auto at = std::size_t(tile(line.slot, j));
+    place[at] = line.place[j], depth[at] = line.depth[j], slope[at] = line.slope[j];
+  }
+  knots[std::size_t(line.slot)] = line.knots;
+}
+
 double GrooveLines::station(std::int64_t number, const Pose& pose) const {
   const int at = slot(number);
   const Vector3 ahead = pose.axis(0), left = pose.axis(1), lateral = this->lateral(at);

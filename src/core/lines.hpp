@@ -52,6 +52,15 @@ class GrooveLines {
   Ground ground(int slot) const;
   void keep(int slot, const Ground& ground);
 
+  // All that is kept of a line, to put it back.
+  struct Line {
+    int slot;
+    double values[LINE_FIELDS], place[KNOTS], depth[KNOTS], slope[KNOTS];
+    std::uint8_t knots;
+  };
+  Line line(int slot) const;
+  void put_back(const Line& line);
+
   // Position along the straight ski under which a line passes (m).
   double station(std::int64_t number, const Pose& pose) const;
 

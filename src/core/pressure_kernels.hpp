@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "hypoplastic.hpp"
-#include "lane_loops.hpp"
+#include "section_kernels.hpp"
 
 namespace skisnow::SKISNOW_LANES {
 
@@ -18,6 +18,7 @@ struct Pressure {
 
   // [press_piece] A straight piece of ground from a to b (within the wet base), its lift there `lift + slope x`.
   void add(V a, V b, V lift, V slope) {
+    if (!any(a < b)) return;
     const auto [c, d, u, v] = pressed_part(a, b, depth, fall, lift, slope, hardness, excess, THIN);
     const V width = v - u, covered = d - c, both = v + u, ends = d + c;
     q0 += width - covered;
@@ -85,7 +86,9 @@ void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, P
     const V b = load<V>(place + BLOCK * (k + 1)) - edge, ground = load<V>(slope + BLOCK * k);
     const V lift = load<V>(depth + BLOCK * k) - ground * a - out.depth, rise = ground - out.fall;
     const V low = inside(a, wet_from, wet_to), high = inside(b, wet_from, wet_to);
-    if (!cuts) {
+    a = b;
+    if (!any(low < high)) continue;
+    if (!any((cut.from < high) & (cut.to > low) & (cut.from < cut.to))) {
       out.add(low, high, lift, rise);
     } else {
       // beside the cut the ground as it was, over it the deeper of both
@@ -100,37 +103,52 @@ void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, P
       out.add(meet, last, select(old_last, lift, V{}), select(old_last, rise, cut_rise));
       out.add(last, high, lift, rise);
     }
-    a = b;
   }
   if (cuts) cut_piece(a, cut.to);
+}
+
+// What the snow answers to the base on a line: force and its moment about the edge for each metre of ski, elastic
+// energy.
+template <class V>
+struct Pressed {
+  V force, moment, energy;
+
+  Pressed(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
+    const V wet_to = maximum(c.wet_to, c.wet_from);
+    Pressure<V> sums;
+    sums.hardness = load<V>(lines.values[HARDNESS] + j), sums.excess = load<V>(lines.values[EXCESS] + j);
+    sums.depth = c.edge_depth, sums.fall = c.fall;
+    if (snow.unloading_ratio > 1.0) add_ground(lines, j, c.place, c.wet_from, wet_to, sums);
+    sums.resultants(c.wet_from, wet_to, force, moment, energy);
+  }
+};
+
+// [shear_used] The share of the way to full strength by which the edge is displaced. It holds where it did before, else
+// where it came through the surface since it was last looked at.
+template <class V>
+V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c) {
+  const V above = load<V>(lines.values[DEPTH_ABOVE] + j), edge_above = load<V>(lines.values[EDGE_ABOVE] + j);
+  const V through = c.place - c.deepest / (c.deepest - above) * (c.place - edge_above);
+  const V anchor = select(load<V>(lines.values[ANCHORED] + j) > 0.5, load<V>(lines.values[ANCHOR] + j),
+                          select(load<V>(lines.values[ABOVE] + j) > 0.5, through, c.place));
+  return (anchor - c.place) / snow.shear_displacement;
 }
 
 // [press] What the snow answers to each section, and how far the shear at its edge is displaced.
 template <class V>
 void press(const Snow& snow, const GrooveLines& lines, Sections& s) {
   for_lanes<V>(s, lines, [&](int i, int j) {
-    const V share = load<V>(s[SHARE] + i), deepest = load<V>(s[DEEPEST] + i), none{};
-    const MaskOf<V> wet = (share > 0.0) & (deepest > 0.0);
+    const V share = load<V>(s[SHARE] + i), none{};
+    const Cut<V> c = Cut<V>::stored(s, i);
+    const MaskOf<V> wet = (share > 0.0) & (c.deepest > 0.0);
     for (SectionField field : {FORCE, MOMENT, SNOW_ENERGY, SHEAR_USED, EDGE_STRENGTH, EDGE_THRUST})
       store(s[field] + i, none);
     if (!any(wet)) return;
-    const V edge = load<V>(s[EDGE_PLACE] + i), wet_from = load<V>(s[WET_FROM] + i);
-    const V wet_to = maximum(load<V>(s[WET_TO] + i), wet_from);
-    Pressure<V> sums;
-    sums.hardness = load<V>(lines.values[HARDNESS] + j), sums.excess = load<V>(lines.values[EXCESS] + j);
-    sums.depth = load<V>(s[EDGE_DEPTH] + i), sums.fall = load<V>(s[DEPTH_FALL] + i);
-    if (snow.unloading_ratio > 1.0) add_ground(lines, j, edge, wet_from, wet_to, sums);
-    V force, moment, energy;
-    sums.resultants(wet_from, wet_to, force, moment, energy);
-    store(s[FORCE] + i, select(wet, share * force, none));
-    store(s[MOMENT] + i, select(wet, share * moment, none));
-    store(s[SNOW_ENERGY] + i, select(wet, share * energy, none));
-    // the edge holds where it did before, else where it came through the surface since it was last looked at
-    const V above = load<V>(lines.values[DEPTH_ABOVE] + j), edge_above = load<V>(lines.values[EDGE_ABOVE] + j);
-    const V through = edge - deepest / (deepest - above) * (edge - edge_above);
-    const V anchor = select(load<V>(lines.values[ANCHORED] + j) > 0.5, load<V>(lines.values[ANCHOR] + j),
-                            select(load<V>(lines.values[ABOVE] + j) > 0.5, through, edge));
-    store(s[SHEAR_USED] + i, select(wet, (anchor - edge) / snow.shear_displacement, none));
+    const Pressed<V> answer(snow, lines, j, c);
+    store(s[FORCE] + i, select(wet, share * answer.force, none));
+    store(s[MOMENT] + i, select(wet, share * answer.moment, none));
+    store(s[SNOW_ENERGY] + i, select(wet, share * answer.energy, none));
+    store(s[SHEAR_USED] + i, select(wet, shear_used(snow, lines, j, c), none));
     store(s[EDGE_STRENGTH] + i, select(wet, snow.strength_share * load<V>(lines.values[STRENGTH] + j), none));
   });
 }

@@ -26,7 +26,6 @@ struct Pose {
   Vector3 position{};
   double rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // [slope axis][ski axis]
   std::vector<double> beam;  // (nodes, 3): deflection (m), its slope towards the tail, twist (rad)
-  double extra[4] = {};      // deflection, rise ahead, twist and its slope, added everywhere: for differences
 
   Vector3 axis(int which) const { return {rotation[0][which], rotation[1][which], rotation[2][which]}; }
 };

@@ -131,8 +131,7 @@ struct Shapes {
 
 // [bend] Height and slope of the bent base; sine and cosine of its twist.
 template <class V>
-void bend(const Pose& pose, const GrooveLines& lines, Sections& s) {
-  const double* extra = pose.extra;
+void bend(const GrooveLines& lines, Sections& s) {
   for_lanes<V>(s, lines, [&](int i, int) {
     const V z = load<V>(s[IN_ELEMENT] + i), h = load<V>(s[ELEMENT_LENGTH] + i), y = 1.0 - z, per_length = 1.0 / h;
     const V w = load<V>(s[FRONT_DEFLECTION] + i), a = load<V>(s[FRONT_SLOPE] + i), t = load<V>(s[FRONT_TWIST] + i);
@@ -140,92 +139,131 @@ void bend(const Pose& pose, const GrooveLines& lines, Sections& s) {
     const Shapes<V> shape(z, h);
     const V deflection = shape.front * w + shape.front_slope * a + shape.rear * v + shape.rear_slope * b;
     const V rise = 6.0 * z * y * per_length * (w - v) - y * (1.0 - 3.0 * z) * a - z * (3.0 * z - 2.0) * b;
-    const V twist = y * t + z * u + extra[2], q = twist * twist;
-    store(s[BASE_HEIGHT] + i, load<V>(s[BASE_HEIGHT] + i) + deflection + extra[0]);
-    store(s[BASE_RISE] + i, load<V>(s[BASE_RISE] + i) + rise + extra[1]);
-    store(s[TWIST_SLOPE] + i, (t - u) * per_length + extra[3]);
+    const V twist = y * t + z * u, q = twist * twist;
+    store(s[BASE_HEIGHT] + i, load<V>(s[BASE_HEIGHT] + i) + deflection);
+    store(s[BASE_RISE] + i, load<V>(s[BASE_RISE] + i) + rise);
+    store(s[TWIST_SLOPE] + i, (t - u) * per_length);
     // series: the next terms are below 1e-9 at 0.3 rad
     store(s[TWIST_COSINE] + i, 1.0 - q * (0.5 - q * (1.0 / 24.0 - q * (1.0 / 720.0))));
     store(s[TWIST_SINE] + i, twist * (1.0 - q * (1.0 / 6.0 - q * (1.0 / 120.0 - q * (1.0 / 5040.0)))));
   });
 }
 
-// The section of one line through the base, as it is worked out.
+// The section of one line through the base.
 template <class V>
 struct Cut {
-  V station, half, height, rise, sp, cp, twist_slope;
-  Vector<V> from, ahead, normal, left;
-  V sine, middle, deepest, side, reach, edge_depth, edge_left, edge_up;
-  Vector<V> along;  // of the edge, 1 ahead
-  V steep, normal_ahead, fall, place;
+  // of the bent base: the section's place along the ski, half width and its slope, height and its slope, sine and
+  // cosine of the twist and its slope; how far its middle lies to the left of the ski's axis (for differences)
+  V station, half, flare, height, rise, sp, cp, twist_slope, aside{};
+  Vector<V> from, ahead, normal, left;  // the line
+  V sine, deepest, reach, edge_depth, edge_left, edge_up, place;
+  V fall, climb, widening, wet_from, wet_to;
+  Vector<V> across, along;
+  V size;  // one over the length of `along` before it was made a unit
 
-  // [edge] The deeper edge: where it is, how deep, and its direction.
-  void find_edge(V flare, double per_blend) {
-    middle = (from.x - station) * normal.x + from.y * normal.y + (from.z - height) * normal.z;
+  // The base as it is bent, not yet cut.
+  Cut(const Sections& s, int i) {
+    station = load<V>(s[STATION] + i), half = load<V>(s[HALF_WIDTH] + i), flare = load<V>(s[FLARE] + i);
+    height = load<V>(s[BASE_HEIGHT] + i), rise = load<V>(s[BASE_RISE] + i);
+    sp = load<V>(s[TWIST_SINE] + i), cp = load<V>(s[TWIST_COSINE] + i), twist_slope = load<V>(s[TWIST_SLOPE] + i);
+    from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
+    normal = load3<V>(s, LINE_NORMAL_0, i), left = load3<V>(s, LINE_LEFT_0, i);
+  }
+
+  // A section that was cut and stored.
+  static Cut stored(const Sections& s, int i) {
+    Cut c(s, i);
+    c.sine = load<V>(s[EDGE_SINE] + i), c.deepest = load<V>(s[DEEPEST] + i), c.reach = load<V>(s[EDGE_REACH] + i);
+    c.edge_depth = load<V>(s[EDGE_DEPTH] + i), c.edge_left = load<V>(s[EDGE_LEFT] + i);
+    c.edge_up = load<V>(s[EDGE_UP] + i), c.place = load<V>(s[EDGE_PLACE] + i), c.fall = load<V>(s[DEPTH_FALL] + i);
+    c.climb = load<V>(s[DEPTH_CLIMB] + i), c.widening = load<V>(s[BASE_WIDENING] + i);
+    c.wet_from = load<V>(s[WET_FROM] + i), c.wet_to = load<V>(s[WET_TO] + i);
+    c.across = load3<V>(s, ACROSS_0, i), c.along = load3<V>(s, ALONG_0, i), c.size = load<V>(s[ALONG_SIZE] + i);
+    return c;
+  }
+
+  void store_at(Sections& s, int i) const {
+    store(s[EDGE_SINE] + i, sine), store(s[DEEPEST] + i, deepest), store(s[EDGE_REACH] + i, reach);
+    store(s[EDGE_DEPTH] + i, edge_depth), store(s[EDGE_LEFT] + i, edge_left), store(s[EDGE_UP] + i, edge_up);
+    store(s[EDGE_PLACE] + i, place), store(s[DEPTH_FALL] + i, fall), store(s[DEPTH_CLIMB] + i, climb);
+    store(s[BASE_WIDENING] + i, widening), store(s[WET_FROM] + i, wet_from), store(s[WET_TO] + i, wet_to);
+    store3(s, ACROSS_0, i, across), store3(s, ALONG_0, i, along), store(s[ALONG_SIZE] + i, size);
+  }
+
+  // [edge] The deeper edge: where it is, how deep; the fall of the depth to the left.
+  void find_edge(double per_blend) {
+    const V middle = (from.x - station) * normal.x + (from.y - aside) * normal.y + (from.z - height) * normal.z;
     sine = sp * normal.z - cp * normal.y;
     deepest = middle + half * absolute(sine);
-    side = edge_side_of<V>(sine * per_blend);
+    const V side = edge_side_of<V>(sine * per_blend);
     reach = side * half;
     edge_depth = middle + reach * sine;
-    edge_left = reach * cp;
+    edge_left = aside + reach * cp;
     edge_up = height - reach * sp;
     const V outwards = flare * side, twisting = reach * twist_slope;
-    along = {all<V>(1.0), outwards * cp - twisting * sp, rise - outwards * sp - twisting * cp};
-    normal_ahead = twisting - rise * cp;
-    steep = 1.0 / (normal_ahead * normal.x + sp * normal.y + cp * normal.z);
-    fall = (normal_ahead * left.x + sp * left.y + cp * left.z) * steep;
+    raw_ = {all<V>(1.0), outwards * cp - twisting * sp, rise - outwards * sp - twisting * cp};
+    normal_ahead_ = twisting - rise * cp;
+    steep_ = 1.0 / (normal_ahead_ * normal.x + sp * normal.y + cp * normal.z);
+    fall = (normal_ahead_ * left.x + sp * left.y + cp * left.z) * steep_;
   }
 
   // [edge_place] Where it crosses the line; beyond tip and tail it goes on along its own direction.
   void find_place() {
     const V beyond = (from.x - station) * ahead.x + (from.y - edge_left) * ahead.y + (from.z - edge_up) * ahead.z;
     place = (station - from.x) * left.x + (edge_left - from.y) * left.y + (edge_up - from.z) * left.z +
-            beyond * dot(along, left) / dot(along, ahead);
+            beyond * dot(raw_, left) / dot(raw_, ahead);
   }
-};
 
-constexpr double LEVEL = 1e-12;  // fall of the depth across below which a base is level
+  // [wet_base] Where on the line the base is in the snow.
+  void find_wet() {
+    widening = cp * left.y - sp * left.z + fall * sine;
+    const V right_end = -(half + reach) / widening, left_end = (half - reach) / widening;
+    const V down = select(absolute(fall) > LEVEL, fall, all<V>(LEVEL)), water = -edge_depth / down;
+    wet_from = select(down > 0.0, maximum(right_end, water), right_end);
+    wet_to = select(down > 0.0, left_end, minimum(left_end, water));
+  }
+
+  // [edge_directions] In the surface: across the edge and along it; how fast the depth grows along it.
+  void find_directions() {
+    const Vector<V> raw = cross(normal, raw_);
+    size = 1.0 / root(dot(raw, raw));
+    across = scaled(raw, size), along = cross(across, normal);
+    climb = (normal_ahead_ * along.x + sp * along.y + cp * along.z) * steep_;
+  }
+
+  void cut(const Snow& snow) {
+    find_edge(1.0 / snow.edge_blend_sine);
+    find_place();
+    find_wet();
+    find_directions();
+  }
+
+ private:
+  static constexpr double LEVEL = 1e-12;  // fall of the depth across below which a base is level
+  Vector<V> raw_;                         // along the edge, 1 ahead
+  V normal_ahead_, steep_;
+};
 
 // [cut_base] The plane section of the base over each line: the deeper edge, directions, where the base is wet.
 template <class V>
 void cut_base(const Snow& snow, const GrooveLines& lines, Sections& s) {
-  const double per_blend = 1.0 / snow.edge_blend_sine;
   for_lanes<V>(s, lines, [&](int i, int) {
-    Cut<V> c;
-    c.station = load<V>(s[STATION] + i), c.half = load<V>(s[HALF_WIDTH] + i), c.height = load<V>(s[BASE_HEIGHT] + i);
-    c.rise = load<V>(s[BASE_RISE] + i), c.sp = load<V>(s[TWIST_SINE] + i), c.cp = load<V>(s[TWIST_COSINE] + i);
-    c.twist_slope = load<V>(s[TWIST_SLOPE] + i);
-    c.from = load3<V>(s, FROM_BOOT_0, i), c.ahead = load3<V>(s, LINE_AHEAD_0, i);
-    c.normal = load3<V>(s, LINE_NORMAL_0, i), c.left = load3<V>(s, LINE_LEFT_0, i);
-    c.find_edge(load<V>(s[FLARE] + i), per_blend);
-    c.find_place();
-    const V widening = c.cp * c.left.y - c.sp * c.left.z + c.fall * c.sine;
-    const V right_end = -(c.half + c.reach) / widening, left_end = (c.half - c.reach) / widening;
-    const V down = select(absolute(c.fall) > LEVEL, c.fall, all<V>(LEVEL)), water = -c.edge_depth / down;
-    const Vector<V> raw = cross(c.normal, c.along);
-    const V size = 1.0 / root(dot(raw, raw));
-    const Vector<V> across = scaled(raw, size), along = cross(across, c.normal);
-    store(s[EDGE_SINE] + i, c.sine), store(s[DEEPEST] + i, c.deepest), store(s[EDGE_DEPTH] + i, c.edge_depth);
-    store(s[EDGE_REACH] + i, c.reach), store(s[EDGE_LEFT] + i, c.edge_left), store(s[EDGE_UP] + i, c.edge_up);
-    store(s[EDGE_PLACE] + i, c.place), store(s[DEPTH_FALL] + i, c.fall), store(s[BASE_WIDENING] + i, widening);
-    store(s[WET_FROM] + i, select(down > 0.0, maximum(right_end, water), right_end));
-    store(s[WET_TO] + i, select(down > 0.0, left_end, minimum(left_end, water)));
-    store3(s, ACROSS_0, i, across);
-    store3(s, ALONG_0, i, along);
-    store(s[ALONG_SIZE] + i, size);
-    store(s[DEPTH_CLIMB] + i, (c.normal_ahead * along.x + c.sp * along.y + c.cp * along.z) * c.steep);
+    Cut<V> c(s, i);
+    c.cut(snow);
+    c.store_at(s, i);
   });
 }
 
 template <class V>
-void find_sections(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines, Sections& s) {
-  s.prepare(lines);
+void find_sections(const Runner& runner, const Pose& pose, const Snow& snow, const GrooveLines& lines,
+                   std::int64_t first, Sections& s) {
+  s.prepare(lines, first);
   take_lines<V>(pose, lines, s);
   cross_axis<V>(runner, snow, lines, s);
   cross_edge<V>(runner, lines, s);
   give_share<V>(runner, lines, s);
   look_up(runner, pose, s);
-  bend<V>(pose, lines, s);
+  bend<V>(lines, s);
   cut_base<V>(snow, lines, s);
 }
 

@@ -2,6 +2,7 @@
 // answers.
 #pragma once
 
+#include "bordered.hpp"
 #include "columns.hpp"
 #include "lines.hpp"
 #include "runner.hpp"
@@ -57,7 +58,7 @@ struct Sections {
   std::int64_t line(int i) const { return first_block * BLOCK + i; }
   int index(std::int64_t line) const { return int(line - first_block * BLOCK); }
   bool touches(int i) const { return (*this)[SHARE][i] > 0.0 && (*this)[DEEPEST][i] > 0.0; }
-  void prepare(const GrooveLines& lines);
+  void prepare(const GrooveLines& lines, std::int64_t first);  // for the lines from the first one
 };
 
 struct Wrench {
@@ -65,14 +66,42 @@ struct Wrench {
   std::vector<double> beam;              // (nodes, 3): force, moment of the slope, moment of the twist
 };
 
-// The three parts of an evaluation, each over all lines of a runner.
+// How the eight answers of a section (force, moment about the boot, force and moment on the beam) change with three
+// local movements of the base: to the left across it, off it, and its twist. Minus the derivatives.
+struct SectionDifferences {
+  static constexpr int ANSWERS = 8;
+  enum Change { LEFT, OFF, TWIST, CHANGES };
+  std::vector<double> values;  // [change][answer][section]
+  int count = 0;
+
+  void resize(int sections) {
+    count = sections;
+    values.resize(std::size_t(ANSWERS * CHANGES) * std::size_t(sections));
+  }
+  double* column(int change, int answer) {
+    return values.data() + (std::size_t(change) * ANSWERS + std::size_t(answer)) * std::size_t(count);
+  }
+  const double* column(int change, int answer) const {
+    return const_cast<SectionDifferences*>(this)->column(change, answer);
+  }
+};
+
+struct RunnerTangent;
+
+// The parts of an evaluation, each over all lines of a runner.
 struct Kernels {
   const char* name;  // of the instruction set
   int lanes;
-  void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, Sections&);
+  void (*find_sections)(const Runner&, const Pose&, const Snow&, const GrooveLines&, std::int64_t first, Sections&);
   void (*press)(const Snow&, const GrooveLines&, Sections&);  // pressure, strength, share of the displacement in use
   void (*slide)(const Motion&, const Pose&, const Snow&, Sections&);  // sliding speed along the edge and μ
   void (*push)(const Motion&, const Pose&, const Snow&, Sections&, Wrench&);
+  // of sections that were looked at; a step (m, rad), and its sense to the left and of the twist
+  void (*differ)(const Snow&, const GrooveLines&, const Sections&, double step, double sense, SectionDifferences&);
+  // add to a tangent what the sections' derivatives give, and friction by its growth with the sliding speed
+  void (*add_stiffness)(const Sections&, const SectionDifferences&, double weight, bool bends, RunnerTangent&);
+  void (*add_friction_damping)(const Sections&, double weight, bool bends, RunnerTangent&);
+  BandKernels band;
 };
 
 const Kernels& kernels();                        // the widest that this processor has

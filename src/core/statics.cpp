@@ -119,6 +119,12 @@ void Dynamics::find_height(Numbers& left) {
 }
 
 double Dynamics::settle() {
+  const double last = find_equilibrium();
+  contact_->take_back();
+  return last;
+}
+
+double Dynamics::find_equilibrium() {
   Numbers left = state.rate, step = state.rate;
   BodyState trial = state;
   double longest = std::numeric_limits<double>::infinity(), inertia = FIRST_INERTIA;
@@ -156,6 +162,7 @@ double Dynamics::settle() {
     const bool rests = longest < SETTLED || (longest < ROUNDING && longest > 0.5 * before);
     if (rests && inertia < LITTLE_INERTIA) break;
   }
+  contact_->take_back();
   return inertia < MOST_INERTIA ? longest : std::numeric_limits<double>::infinity();
 }
 
