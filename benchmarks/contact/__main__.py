@@ -28,7 +28,8 @@ from .paths import Answer, all_answers
 ROOT = Path(__file__).resolve().parents[2]
 KEYS: list[tuple[str, str, dict[str, Any]]] = [
     ("spacing", "0.02 m", {"0.01": {"spacing": 0.01}, "0.04": {"spacing": 0.04}}),
-    ("look_back", "1.25 ms", {"0.6": {"look_back": 0.6e-3}, "2.5": {"look_back": 2.5e-3}}),
+    ("part_along", "10 mm", {"5": {"part_along": 0.005}, "20": {"part_along": 0.02}}),
+    ("part_across", "2 mm", {"1": {"part_across": 1e-3}, "4": {"part_across": 4e-3}}),
     ("knot_area", "1e-4", {"0": {"knot_area": 0.0}, "1e-3": {"knot_area": 1e-3}}),
     (
         "edge_blend_angle",

@@ -226,7 +226,8 @@ NB_MODULE(_core, m) {
       .def_rw("compaction_resistance", &Snow::compaction_resistance)
       .def_rw("friction", &Snow::friction)
       .def_rw("knot_area", &Snow::knot_area)
-      .def_rw("look_back", &Snow::look_back);
+      .def_rw("part_along", &Snow::part_along)
+      .def_rw("part_across", &Snow::part_across);
 
   nb::class_<SnowContact::State>(m, "State");
   nb::class_<SnowContact>(m, "Contact")

@@ -105,6 +105,7 @@ double interpolated(const std::vector<std::pair<double, double>>& table, double 
   return before->second + (at - before->first) / (after->first - before->first) * (after->second - before->second);
 }
 
+constexpr double MOST_PARTS = 1e4;     // of a way
 constexpr double SLIPPING = 0.999;     // share of the displacement from which on an edge slips
 constexpr double LEVEL = 1e-6;         // sine of the roll of a base that is level
 constexpr double TANGENT_STEP = 1e-8;  // m, rad
@@ -179,10 +180,28 @@ void SnowContact::remember(int k, GrooveLines& lines) const {
   for (std::int64_t n = lines.first; n < lines.end; n++) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
 }
 
+// Into how many parts the way from the accepted pose is divided; one where the runner was put there in no time.
+int SnowContact::parts(int k, const Situation& at) const {
+  if (!(at.dt > 0.0)) return 1;
+  const Pose& to = at.poses[std::size_t(k)];
+  const Pose& from = state_.accepted[std::size_t(k)];
+  double most = 1.0;
+  for (const double station : {runner(k).tip, runner(k).tail}) {
+    double along = 0.0, square = 0.0;
+    for (std::size_t a = 0; a < 3; a++) {
+      const double way = to.position[a] - from.position[a] + station * (to.rotation[a][0] - from.rotation[a][0]);
+      along += way * from.rotation[a][0], square += way * way;
+    }
+    const double across = std::sqrt(std::max(square - along * along, 0.0));
+    most = std::max({most, std::fabs(along) / snow_->part_along, across / snow_->part_across});
+  }
+  return int(std::ceil(std::min(most, MOST_PARTS) - 1e-9));
+}
+
 // The history of all lines along the way, up to but without its end.
 void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
-  const int parts = int(std::ceil(to.dt / snow_->look_back - 1e-9));
   if (state_.accepted.empty()) return;
+  const int parts = this->parts(k, to);
   for (int part = 1; part < parts; part++) {
     const Pose pose = between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts);
     kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
@@ -217,9 +236,10 @@ void SnowContact::find_needed(const GrooveLines& lines, double way) {
 // [march] As `march`, for the lines that need it.
 void SnowContact::march_where_needed(int k, const Situation& to) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
-  const int parts = int(std::ceil(to.dt / snow_->look_back - 1e-9));
-  if (state_.accepted.empty() || parts < 2) return;
+  if (state_.accepted.empty()) return;
   const Pose &from = state_.accepted[std::size_t(k)], &end = to.poses[std::size_t(k)];
+  const int parts = this->parts(k, to);
+  if (parts < 2) return;
   double square = 0.0;
   for (std::size_t a = 0; a < 3; a++)
     square += (end.position[a] - from.position[a]) * (end.position[a] - from.position[a]);
@@ -237,7 +257,7 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
 GrooveLines& SnowContact::history(int k, const Situation& at) {
   GrooveLines& standing = state_.lines[std::size_t(k)];
   const Pose& pose = at.poses[std::size_t(k)];
-  const bool marches = !state_.accepted.empty() && at.dt > snow_->look_back * (1.0 + 1e-9);
+  const bool marches = !state_.accepted.empty() && parts(k, at) > 1;
   const bool reaches = standing.count() > 0 && standing.station(standing.end - 1, pose) > runner(k).tip &&
                        standing.station(standing.first, pose) < runner(k).tail;
   if (!marches && reaches) return standing;

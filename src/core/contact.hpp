@@ -105,6 +105,7 @@ class SnowContact {
   Reaction reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion);
   void settle_history(int k, const Pose& pose);
   void lay_anew(int k, const Pose& pose);
+  int parts(int k, const Situation& at) const;
   void march(int k, GrooveLines& lines, const Situation& to);
   void find_needed(const GrooveLines& lines, double way);
   void march_where_needed(int k, const Situation& to);

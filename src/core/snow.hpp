@@ -22,8 +22,9 @@ struct Snow {
   double edge_blend_sine = 0.0349;     // sine of the edge angle above which the shear acts at the edge alone
   bool compaction_resistance = true;
   FrictionLaw friction;
-  double knot_area = 1e-4;     // share of depth times width of a contact below which a knot is dropped
-  double look_back = 1.25e-3;  // longest part of a step over which the history is marched at once (s)
+  double knot_area = 1e-4;  // share of depth times width of a contact below which a knot is dropped
+  // longest way (m) of tip and tail, along the ski and across it, over which the history is marched at once
+  double part_along = 0.01, part_across = 2e-3;
   Archive archive;
 };
 

@@ -38,7 +38,8 @@ class Snow:
     compaction_resistance: bool
     friction: FrictionLaw
     knot_area: float
-    look_back: float
+    part_along: float
+    part_across: float
 
 class Contact:
     instruction_set: str

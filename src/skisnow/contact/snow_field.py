@@ -13,20 +13,21 @@ from ..compiled import core
 from ..errors import ParameterError
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from ..forces.shear import ShearLaw
+from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..geometry.surfaces import Grid, Plane
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-SHEAR_DISPLACEMENT: Final = 0.5e-3
-"""Displacement of an edge across to its full strength (m) (Choice: that of the simulated turns)."""
 EDGE_BLEND: Final = math.radians(2.0)
 """Edge angle (rad) above which the shear acts at the edge alone; below it moves to the middle (Choice)."""
 FADE_SPEED: Final = 0.01
 """Sliding speed (m/s) below which friction fades to zero (Choice): Coulomb's law, regularised."""
 KNOT_AREA: Final = 1e-4
 """Share of a contact's depth times width below which a knot of the groove is dropped (Choice)."""
-LOOK_BACK: Final = 1.25e-3
-"""Longest part of a step (s) over which the history advances at once (Choice)."""
+PART_ALONG: Final = 0.01
+"""Longest way (m) of tip or tail along the ski over which the history advances at once (Choice)."""
+PART_ACROSS: Final = 2e-3
+"""The same across the ski (m): what an edge cuts on the way hangs on where it was between (Choice)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +52,7 @@ class SnowField:
         Whether the snow that is pressed down resists along the edge.
     shear_displacement
         Of an edge across to its full strength (m), > 0: a penalty stiffness in front of Coulomb-like slip.
-    edge_blend_angle, fade_speed, knot_area, look_back
+    edge_blend_angle, fade_speed, knot_area, part_along, part_across
         Numerics, see the constants of this module for what each does.
 
     Raises
@@ -71,14 +72,15 @@ class SnowField:
     edge_blend_angle: float = EDGE_BLEND
     fade_speed: float = FADE_SPEED
     knot_area: float = KNOT_AREA
-    look_back: float = LOOK_BACK
+    part_along: float = PART_ALONG
+    part_across: float = PART_ACROSS
     compiled: core.Snow = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         _require("snow_hardness", _least(self.snow_hardness), above=0.0)
         _require("failure_shear_stress", _least(self.failure_shear_stress), least=0.0)
         _require("unloading_ratio", self.unloading_ratio, least=1.0)
-        for name in ("shear_displacement", "edge_blend_angle", "fade_speed", "look_back"):
+        for name in ("shear_displacement", "edge_blend_angle", "fade_speed", "part_along", "part_across"):
             _require(name, getattr(self, name), above=0.0)
         _require("knot_area", self.knot_area, least=0.0)
         object.__setattr__(self, "compiled", self._compiled())
@@ -90,7 +92,7 @@ class SnowField:
         snow.unloading_ratio, snow.shear_displacement = self.unloading_ratio, self.shear_displacement
         snow.edge_blend_sine = math.sin(self.edge_blend_angle)
         snow.compaction_resistance, snow.friction = self.compaction_resistance, self._friction()
-        snow.knot_area, snow.look_back = self.knot_area, self.look_back
+        snow.knot_area, snow.part_along, snow.part_across = self.knot_area, self.part_along, self.part_across
         return snow
 
     def _friction(self) -> core.FrictionLaw:

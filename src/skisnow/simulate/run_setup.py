@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..contact import Runner, SnowContact, SnowField
+from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, StepControl
 from ..errors import RangeWarning
 from ..forces.friction import LinearFriction
@@ -25,6 +26,10 @@ ELEMENTS: Final = 40
 """Finite elements over a ski at least: 4.5 cm each (Choice, see the convergence of the docs)."""
 LINE_SPACING: Final = 0.02
 """Largest spacing (m) of the snow's lines (Choice)."""
+FAST: Final = 10.0
+"""Times the tolerance, to which the fast method holds a step's error (Choice)."""
+FAST_PART: Final = 0.02
+"""Way along a ski (m) over which its history is marched at once with the fast method (Choice: the lines' spacing)."""
 FLOATING_DEPTH: Final = 0.1
 """Depth (m) by which a flat base must carry the sledge, or it has sunk from the start (Choice)."""
 AT_REST: Final = 1e-6
@@ -130,7 +135,8 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None) -> Setup:
 
 def _control(scenario: Scenario) -> StepControl:
     solver = scenario.solver
-    return StepControl(first=solver.step, fixed=solver.fixed, tolerance=solver.tolerance)
+    tolerance = solver.tolerance * (FAST if solver.method == "fast" else 1.0)
+    return StepControl(first=solver.step, fixed=solver.fixed, tolerance=tolerance)
 
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
@@ -163,7 +169,9 @@ def _snow(scenario: Scenario) -> SnowField:
         friction=friction,
         surface=_surface(scenario),
         compaction_resistance=contact.compaction_resistance,
+        shear_displacement=contact.shear_displacement,
         knot_area=scenario.solver.groove_tolerance,
+        part_along=FAST_PART if scenario.solver.method == "fast" else PART_ALONG,
     )
 
 

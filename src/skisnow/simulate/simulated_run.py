@@ -46,7 +46,7 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
     "Take harder snow, less mass or a wider ski.",
     "energy_open": "The balance of energy is open by more than a tenth of what was turned over: these numbers are not "
-    "those of a sledge on snow. Take smaller steps, or the error control (solver.method ros2, solver.fixed false); on "
+    "those of a sledge on snow. Take smaller steps, or the error control (solver.fixed false); on "
     "very hard snow, or at more than 50° of edge angle, a smaller tolerance.",
     "step_too_small": "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen "
     "the tolerance, or take a smaller k_u/H_V.",

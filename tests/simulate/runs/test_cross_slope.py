@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow import Run, simulated_run
-from skisnow.contact.snow_field import SHEAR_DISPLACEMENT as HOLDING
+from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT as HOLDING
 from skisnow.simulate.scenario import Solver
 
 from .sledges import GRAVITY, rigid_ski, scenario, total_mass

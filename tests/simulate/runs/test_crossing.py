@@ -47,9 +47,11 @@ def first() -> tuple[float, Setup]:
     return lost, setup
 
 
-def test_on_virgin_snow_the_direction_does_not_matter(first: tuple[float, Setup]) -> None:
-    lost, _ = gone_over(sledge(0.7))
-    assert lost == pytest.approx(first[0], rel=1e-9)
+@pytest.mark.parametrize("heading", [0.7, 1.0])
+def test_on_virgin_snow_the_direction_does_not_matter(first: tuple[float, Setup], heading: float) -> None:
+    """But for rounding: it decides which of two knots that are alike a groove gives up."""
+    lost, _ = gone_over(sledge(heading))
+    assert lost == pytest.approx(first[0], rel=2e-4)
 
 
 @pytest.mark.parametrize("angle_deg", [90.0, 60.0, 30.0, 15.0])

@@ -28,7 +28,7 @@ def up_and_back(unloading_ratio: float, *, duration: float = 3.2) -> Run:
             heading_deg=180.0,
             speed=SPEED,
             duration=duration,
-            solver=Solver(tolerance=3e-8),
+            solver=Solver(tolerance=1e-8),
         )
     )
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from skisnow import Run, simulated_run
-from skisnow.contact.snow_field import SHEAR_DISPLACEMENT as HOLDING
+from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT as HOLDING
 from skisnow.simulate.scenario import Solver
 
 from ..equilibrium.synthetic import circular_sidecut
@@ -99,11 +99,22 @@ def test_holds_below_the_limit(share: float) -> None:
     assert abs(shear[-1] - shear[half]) < 1e-3 * total_mass(run.scenario) * SPEED**2 / RADIUS * path
 
 
+def path_radius(run: Run) -> float:
+    """Of the circle through the path in the second half (m)."""
+    x, y = run.place[run.time > 0.5 * run.time[-1], :2].T
+    (a, b, c), *_ = np.linalg.lstsq(np.column_stack([2.0 * x, 2.0 * y, np.ones(len(x))]), x**2 + y**2)
+    return float(np.sqrt(c + a**2 + b**2))
+
+
 @pytest.mark.parametrize("share", [1.1, 1.25, 2.0])
 def test_slips_above_the_limit(share: float) -> None:
-    """The snow cannot turn it tighter than m v²/R = S_f ∫ e ds; keeping it turning takes some, so R is larger."""
+    """The snow cannot turn it tighter than m v²/R = S_f ∫ e ds; keeping it turning takes some, so R is larger.
+
+    v falls, by 5 % at twice the limit. The heading drifts away from the path there.
+    """
     run = circle(strength=sufficient_strength() / share)
-    assert share * RADIUS < radius(run) < 1.35 * share * RADIUS
+    square = float(np.mean(run.speed[run.time > 0.5 * run.time[-1]] ** 2))
+    assert 1.0 < path_radius(run) / (share * RADIUS * square / SPEED**2) < 1.12
     shear = run.energies["shear"]
     half = len(run.time) // 2
     assert shear[-1] - shear[half] > 5.0

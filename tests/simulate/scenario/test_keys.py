@@ -20,8 +20,8 @@ SCHEMA = json.loads((SCHEMAS / "scenario.schema.json").read_text(encoding="utf-8
 
 def test_switches_and_words_have_pythons_defaults() -> None:
     told = {key: SCENARIO_KEYS[key].default for key in ("solver.method", "solver.fixed", "snow.compaction_resistance")}
-    assert told == {"solver.method": "ros2", "solver.fixed": False, "snow.compaction_resistance": True}
-    assert (Solver().method, Solver().fixed) == ("ros2", False)
+    assert told == {"solver.method": "default", "solver.fixed": False, "snow.compaction_resistance": True}
+    assert (Solver().method, Solver().fixed) == ("default", False)
 
 
 def test_defaults_stand_in_the_unit_of_their_key() -> None:

@@ -28,8 +28,6 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
         A key is missing, two say the same or do not go together, or a file that one names cannot be read.
     """
     values = dict(given.values)
-    if values.get("solver.method") == "fast":
-        values.setdefault("solver.fixed", True)
     for name, key in SCENARIO_KEYS.items():
         if key.needed and name not in values:
             raise ParameterError(_missing(name))

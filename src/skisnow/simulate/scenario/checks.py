@@ -26,11 +26,6 @@ def require_sound(scenario: Scenario) -> None:
 
 def _together(scenario: Scenario) -> Iterator[str]:
     sledge, ski, start = scenario.sledge, scenario.ski, scenario.start
-    if scenario.solver.method == "fast" and not scenario.solver.fixed:
-        yield (
-            'solver.fixed is false beside solver.method = "fast", which has no control of the error: its steps are '
-            'fixed. Leave solver.fixed out or write true, or take solver.method = "ros2"'
-        )
     width = float(ski.width.max())
     if sledge.stance_width < width * (1.0 - 1e-9):  # the width of a ski file is rounded on its way to metres
         yield (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias, get_args
 
+from ...forces.shear.displacement import SHEAR_DISPLACEMENT
 from ...inputs import Quantity, Search, Section, Word, require_declared
 from ...snow import SnowProperties
 
@@ -30,6 +31,8 @@ class Contact:
         k_u/H_V ≥ 1; 1: elastic.
     compaction_resistance
         Whether the base's slope along the ski counts as resistance.
+    shear_displacement
+        u_y > 0 (m).
     friction, friction_by_speed
         μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m).
     """
@@ -62,6 +65,17 @@ class Contact:
             origin="exact: else a gliding ski would cut its groove for nothing",
         ),
     ] = True
+    shear_displacement: Annotated[
+        float,
+        Quantity(
+            "snow.shear_displacement_mm",
+            "u_y, the way of an edge across until the snow holds it with all of S_f",
+            lowest=0.01,  # below, a step's corrections are as large
+            highest=10.0,
+            origin="not measured: a choice. The law of the paper is its limit 0",
+            search=Search(0.2e-3, 0.01e-3, 5e-3, logarithmic=True),
+        ),
+    ] = SHEAR_DISPLACEMENT
     friction: Annotated[
         float,
         Quantity(

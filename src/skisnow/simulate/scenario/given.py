@@ -14,6 +14,7 @@ from .built_in import scenario_names, scenario_text
 from .identify_section import require_known
 from .keys import SCENARIO_KEYS, SECTIONS
 from .replaced import replaced
+from .solver import present_method
 
 PATH_KEYS: Final = tuple(name for name, key in SCENARIO_KEYS.items() if isinstance(key, Word) and key.names_file)
 """Keys that name a file."""
@@ -59,8 +60,7 @@ class GivenScenario:
         ----------
         changes
             By full names, or by names without their section. What the scenario says in another way gives room: a
-            named snow replaces H_V and S_f, a ski's file its name, elastic snow the unloading ratio, fast steps the
-            word on whether they are fixed.
+            named snow replaces H_V and S_f, a ski's file its name, elastic snow the unloading ratio.
         folder
             Where relative paths among the changes start; None: the current folder.
 
@@ -159,7 +159,8 @@ def _meant(name: str, key: str, known: Iterable[str]) -> str:
 
 def in_ranges(values: Mapping[str, object]) -> dict[str, InputValue]:
     """Check each value by its key."""
-    return {name: SCENARIO_KEYS[name].in_range(value) for name, value in values.items()}
+    words = {name: present_method(value) if name == "solver.method" else value for name, value in values.items()}
+    return {name: SCENARIO_KEYS[name].in_range(value) for name, value in words.items()}
 
 
 def change_of(word: str) -> tuple[str, object]:

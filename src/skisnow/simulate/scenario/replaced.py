@@ -14,15 +14,14 @@ _REPLACED_BY_VALUE: Final = {
     ("slope.kind", "plane"): ("slope.profile", "slope.profile_gap"),
     ("slope.kind", "profile"): ("slope.angle_deg",),
     ("snow.penetration", "elastic"): ("snow.unloading_ratio",),
-    ("solver.method", "fast"): ("solver.fixed",),
 }
 
 
 def replaced(name: str, value: object) -> tuple[str, ...]:
     """The keys that give room when a key gets a value.
 
-    >>> replaced("ski.file", "mine.toml"), replaced("solver.method", "fast")
-    (('ski.name',), ('solver.fixed',))
+    >>> replaced("ski.file", "mine.toml"), replaced("snow.penetration", "elastic")
+    (('ski.name',), ('snow.unloading_ratio',))
     """
     by_value = _REPLACED_BY_VALUE.get((name, value), ()) if isinstance(value, str) else ()
     return (*_REPLACED.get(name, ()), *by_value)

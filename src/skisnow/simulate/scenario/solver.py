@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from ...inputs import Quantity, require_declared
 from ..carve_keys import MOST_ELEMENTS
 
-Method: TypeAlias = Literal["ros2", "fast"]
+FORMER_METHOD: Final = "ros2"
+Method: TypeAlias = Literal["default", "fast"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,10 +21,10 @@ class Solver:
         Method,
         Quantity(
             "solver.method",
-            "implicit steps of BDF2 with the error controlled, or fixed ones of the fast mode",
+            "how exact: fast holds the error of a step to ten times the tolerance",
             origin="choice: the more exact one",
         ),
-    ] = "ros2"
+    ] = "default"
     step: Annotated[
         float,
         Quantity(
@@ -37,7 +39,7 @@ class Solver:
         float,
         Quantity(
             "solver.tolerance_mm",
-            "largest error of place that one step may make by its own estimate",
+            "largest error of place that one step may make by its own estimate; with method = fast ten times as large",
             lowest=1e-9,
             highest=10.0,
             origin="choice: see the tests of convergence",
@@ -47,7 +49,7 @@ class Solver:
         bool,
         Quantity(
             "solver.fixed",
-            "whether the step stays as it is, without control of the error; left out with method = fast: true",
+            "whether the step stays as it is, without control of the error",
             origin="choice: a step that is too long is wrong without a sign",
         ),
     ] = False
@@ -100,4 +102,19 @@ class Solver:
     ] = 0.01
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "method", present_method(self.method))
         require_declared(self)
+
+
+def present_method(word: object) -> object:
+    """The word of today for a method that has had another.
+
+    Warns
+    -----
+    DeprecationWarning
+        For that other.
+    """
+    if word != FORMER_METHOD:
+        return word
+    warnings.warn(f'solver.method = "{FORMER_METHOD}" is now called "default"', DeprecationWarning, stacklevel=3)
+    return "default"
