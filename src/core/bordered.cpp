@@ -9,7 +9,8 @@ namespace skisnow {
 Layout::Layout(const std::vector<int>& sizes) : size_(sizes) {
   for (int size : sizes) {
     first_.push_back(length_);
-    length_ += (size + HALF_BAND + BORDER_ROW - 1) / BORDER_ROW * BORDER_ROW;
+    // whole rows, and one more: the last of them reaches HALF_BAND beyond its end
+    length_ += (size + BORDER_ROW - 1) / BORDER_ROW * BORDER_ROW + BORDER_ROW;
   }
 }
 
