@@ -18,7 +18,7 @@ help:
 	@echo "make test      the tests that take minutes, not hours"
 	@echo "make test-all  those and the long ones"
 	@echo "make lint      ruff, mypy, import-linter"
-	@echo "make sanitize  the contact's tests with the compiled core under sanitizers"
+	@echo "make sanitize  the compiled core under sanitizers: tests of contact, motion and carve"
 	@echo "make docs      the documentation, into docs/_build/html"
 	@echo "make bench     what is measured, as ratios in one run"
 	@echo "make lock      requirements/*.txt after a change of pyproject.toml; UPGRADE=--upgrade takes the newest of all"
@@ -85,9 +85,10 @@ lint: $(VENV)/.skisnow-dev
 	$(BIN)/lint-imports --no-cache
 	$(BIN)/clang-format --dry-run --Werror src/core/*
 
-# The core built with sanitizers, and the tests of the contact run under them: SANITIZE=thread finds races.
+# The core built with sanitizers, and the tests of its own run under them: SANITIZE=thread finds races.
 SANITIZE ?= address,undefined
 SANITIZED := build/sanitize-$(SANITIZE)
+SANITIZED_TESTS ?= tests/compiled tests/contact tests/dynamics tests/ski/beam tests/simulate/equilibrium
 RUNTIMES := $(if $(findstring thread,$(SANITIZE)),tsan,asan ubsan) stdc++
 PRELOAD = $(foreach each,$(RUNTIMES),$(shell c++ -print-file-name=lib$(each).so))
 sanitize: $(VENV)/.skisnow-dev
@@ -99,7 +100,7 @@ sanitize: $(VENV)/.skisnow-dev
 # -S: the checkout's own core is not to be found
 	LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
 		PYTHONPATH=$(SANITIZED)/package:$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \
-		$(BIN)/python -S -m pytest -q -p no:cacheprovider -p no:xdist tests/contact
+		$(BIN)/python -S -m pytest -q -p no:cacheprovider -p no:xdist $(SANITIZED_TESTS)
 
 docs: $(VENV)/.skisnow-dev
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html

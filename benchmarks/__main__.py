@@ -11,7 +11,6 @@ import os
 import platform
 import subprocess
 import sys
-import tempfile
 
 TURNS, IDENTIFY, WEB, CONTACT = "turns", "identify", "web", "contact"
 PARTS = (TURNS, IDENTIFY, WEB, CONTACT)
@@ -47,16 +46,12 @@ def main() -> None:
 
 
 def _turns(options: argparse.Namespace) -> None:
-    """In a cache of their own: Numba does not see that a function which a cached one calls has changed."""
-    with tempfile.TemporaryDirectory() as cache:
-        os.environ["NUMBA_CACHE_DIR"] = cache  # before anything compiled is imported
-        from .turns.table import Effort, print_tables
+    from .turns.table import Effort, print_tables
 
-        print_tables(Effort(options.duration, options.repeats, options.runs))
+    print_tables(Effort(options.duration, options.repeats, options.runs))
 
 
 def _identify(options: argparse.Namespace) -> None:
-    """With the user's cache: an identification starts with compiled code."""
     from .identify.table import print_tables
 
     print_tables(options.duration)

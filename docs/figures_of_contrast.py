@@ -117,7 +117,6 @@ def all_runs() -> dict[tuple[str, str, float], Run]:
         for name in SCENARIOS:
             for ratio in RATIOS[:2]:
                 asked[name, f"{strength:g}", ratio] = (name, keys | {"snow.unloading_ratio": ratio})
-    _computed(("carver-42m", {"run.length_m": 0.1}))  # compiled before the processes start
     with ProcessPoolExecutor() as pool:
         return dict(zip(asked, pool.map(_computed, asked.values()), strict=True))
 

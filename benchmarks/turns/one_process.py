@@ -1,6 +1,6 @@
 """What the first run of a process costs, and each further one: ``python -m benchmarks.turns.one_process SECONDS``.
 
-Prints JSON. A process of its own: the peak of its memory is that of the run with the compiler loaded.
+Prints JSON. A process of its own: the peak of its memory is that of the run.
 """
 
 from __future__ import annotations
@@ -25,22 +25,19 @@ def peak_MB() -> float:
     if status.exists():
         (line,) = (line for line in status.read_text(encoding="ascii").splitlines() if line.startswith("VmHWM:"))
         return float(line.split()[1]) * KILOBYTE / MEGABYTE
-    return _most_MB(resource.RUSAGE_SELF)
-
-
-def _most_MB(who: int) -> float:
-    return resource.getrusage(who).ru_maxrss * (1.0 if sys.platform == "darwin" else KILOBYTE) / MEGABYTE
+    unit = 1.0 if sys.platform == "darwin" else KILOBYTE
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / MEGABYTE
 
 
 def costs(duration_s: float) -> dict[str, float]:
-    """Seconds until the first run begins to move, and memory (MB), also of the largest process that compiled for it."""
+    """Seconds until the first run begins to move, and memory (MB)."""
     start = time.perf_counter()
     from .cases import Runs
 
     runs = Runs(duration_s)
     wall_s = runs.of({}).wall_s
     ready_s = time.perf_counter() - start - wall_s
-    one, compiling = peak_MB(), _most_MB(resource.RUSAGE_CHILDREN)
+    one = peak_MB()
     for _ in range(FURTHER_RUNS):
         runs.of({})
     growth = (peak_MB() - one) / FURTHER_RUNS
@@ -50,7 +47,6 @@ def costs(duration_s: float) -> dict[str, float]:
     tracemalloc.stop()
     return {
         "ready_s": ready_s,
-        "compiling_MB": compiling,
         "one_run_MB": one,
         "growth_per_run_MB": growth,
         "arrays_of_a_run_MB": arrays,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 import time
@@ -101,35 +100,31 @@ def many(duration_s: float, case: Case, *, count: int, workers: int | None = Non
     )
 
 
-def in_one_process(duration_s: float, cache: Path) -> dict[str, float]:
-    """What `one_process.costs` tells of a process with compiled code in that folder, or none yet."""
+def in_one_process(duration_s: float) -> dict[str, float]:
+    """What `one_process.costs` tells."""
     words = [sys.executable, "-m", "benchmarks.turns.one_process", str(duration_s)]
-    done = subprocess.run(words, check=True, capture_output=True, text=True, cwd=ROOT, env=_environment(cache))
+    done = subprocess.run(words, check=True, capture_output=True, text=True, cwd=ROOT)
     found: dict[str, float] = json.loads(done.stdout)
     return found
 
 
-def cached_start_s(cache: Path, *, repeats: int) -> float:
-    """Least time of a command that simulates next to nothing, with compiled code in that folder (s)."""
+def start_s(*, repeats: int) -> float:
+    """Least time of a command that simulates next to nothing (s)."""
     words = ["simulate", SCENARIO, "--set", "run.duration_s=0.01"]
-    return _least(["-m", "skisnow", *words], cache, repeats)
+    return _least(["-m", "skisnow", *words], repeats)
 
 
-def bare_start_s(cache: Path, *, repeats: int) -> float:
-    """Least time in which a process imports what every run needs of others: NumPy and Numba (s)."""
-    return _least(["-c", "import numpy, numba"], cache, repeats)
+def bare_start_s(*, repeats: int) -> float:
+    """Least time in which a process imports what every run needs of others: NumPy (s)."""
+    return _least(["-c", "import numpy"], repeats)
 
 
-def _least(words: list[str], cache: Path, repeats: int) -> float:
+def _least(words: list[str], repeats: int) -> float:
     def call() -> None:
-        subprocess.run([sys.executable, *words], check=True, capture_output=True, env=_environment(cache))
+        subprocess.run([sys.executable, *words], check=True, capture_output=True)
 
     call()
     return min(timed(call) for _ in range(repeats))
-
-
-def _environment(cache: Path) -> dict[str, str]:
-    return {**os.environ, "NUMBA_CACHE_DIR": str(cache)}
 
 
 def _end_off(duration_s: float, case: Case, speed: float, end: np.ndarray[Any, Any]) -> float:

@@ -25,7 +25,7 @@ class Speed:
     case
         What was run.
     seconds, simulated_s
-        Wall time without compiling, and what it simulated.
+        Wall time, and what it simulated.
     steps, rejected_steps
         Of the integrator.
     end_off_m

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import platform
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from pathlib import Path
 
 from skisnow.errors import SkisnowError
 from skisnow.simulate.batch import available_cores
@@ -15,8 +13,6 @@ from skisnow.simulate.batch import available_cores
 from . import peers, processes, speed
 from .cases import DEFAULT_STEP, FAST, HARD_SNOW, LONG_STEP, SCENARIO, Runs, fixed
 from .speed import Speed, told
-
-CACHE_VARIABLE = "NUMBA_CACHE_DIR"
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,14 +24,12 @@ class Effort:
     batch: int = 64
 
 
-def tables(effort: Effort, cache: Path) -> Iterator[str]:
-    """Lines of Markdown, as they are found; the folder `cache` is to hold compiled code, and is empty."""
+def tables(effort: Effort) -> Iterator[str]:
+    """Lines of Markdown, as they are found."""
     yield (
         f"{SCENARIO}, {effort.duration_s:g} s; {datetime.now(UTC):%Y-%m-%d}, Python {platform.python_version()}, "
         f"{available_cores()} cores, {platform.machine()}; shortest of {effort.repeats} runs"
     )
-    told("a process that compiles everything")
-    cold = processes.in_one_process(effort.duration_s, cache)
     runs = Runs(effort.duration_s)
     found = speed.speeds(runs, repeats=effort.repeats)
     yield from speed_table(found)
@@ -46,7 +40,7 @@ def tables(effort: Effort, cache: Path) -> Iterator[str]:
         batches.append(processes.many(effort.duration_s, case, count=effort.batch))
     yield from batch_table(batches)
     told("starts")
-    yield from start_table(cold, cache, effort)
+    yield from start_table(effort)
     told("peers")
     base = next(each for each in found if each.case is DEFAULT_STEP)
     yield from peer_table(list(peers.peers(duration_s=effort.duration_s / 5.0, repeats=effort.repeats)), base)
@@ -106,20 +100,17 @@ def batch_table(batches: Sequence[processes.Batch]) -> Iterator[str]:
     yield row("largest process (MB)", lambda b: f"{b.worker_MB:.0f}")
 
 
-def start_table(cold: dict[str, float], cache: Path, effort: Effort) -> Iterator[str]:
+def start_table(effort: Effort) -> Iterator[str]:
     """Starts and memory."""
-    warm = processes.in_one_process(effort.duration_s, cache)
-    start, bare = (of(cache, repeats=effort.repeats) for of in (processes.cached_start_s, processes.bare_start_s))
+    found = processes.in_one_process(effort.duration_s)
+    start, bare = (of(repeats=effort.repeats) for of in (processes.start_s, processes.bare_start_s))
     yield from _head("start and memory", "measured", "to reach")
-    yield _row("first run of all until it moves: compiling (s)", f"{cold['ready_s']:.1f}", "")
-    yield _row("the same with the compiled code kept (s)", f"{warm['ready_s']:.2f}", "1")
-    yield _row("`skisnow simulate` of 0.01 s, compiled code kept (s)", f"{start:.2f}", "1")
-    yield _row("of that: Python with NumPy and Numba (s)", f"{bare:.2f}", "")
-    yield _row("memory of a process that compiles (MB)", f"{cold['compiling_MB']:.0f}", "400")
-    yield _row("memory of the first run of all (MB)", f"{cold['one_run_MB']:.0f}", "400")
-    yield _row("memory of one run, compiled code kept (MB)", f"{warm['one_run_MB']:.0f}", "400")
-    yield _row("arrays of one run at their most (MB)", f"{warm['arrays_of_a_run_MB']:.1f}", "")
-    yield _row("growth of the process with each further run (MB)", f"{warm['growth_per_run_MB']:.2f}", "5")
+    yield _row("first run of a process until it moves (s)", f"{found['ready_s']:.2f}", "1")
+    yield _row("`skisnow simulate` of 0.01 s (s)", f"{start:.2f}", "1")
+    yield _row("of that: Python with NumPy (s)", f"{bare:.2f}", "")
+    yield _row("memory of one run (MB)", f"{found['one_run_MB']:.0f}", "150")
+    yield _row("arrays of one run at their most (MB)", f"{found['arrays_of_a_run_MB']:.1f}", "")
+    yield _row("growth of the process with each further run (MB)", f"{found['growth_per_run_MB']:.2f}", "5")
 
 
 def peer_table(found: Sequence[peers.Peer], base: Speed) -> Iterator[str]:
@@ -138,11 +129,8 @@ def peer_table(found: Sequence[peers.Peer], base: Speed) -> Iterator[str]:
 
 
 def print_tables(effort: Effort) -> None:
-    """Measure with compiled code made for it, so that the time of compiling is one of the numbers.
-
-    Call it before anything that Numba compiles is imported.
-    """
-    for line in tables(effort, Path(os.environ[CACHE_VARIABLE])):
+    """Measure and print."""
+    for line in tables(effort):
         print(line, flush=True)
 
 

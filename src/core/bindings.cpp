@@ -183,8 +183,9 @@ nb::tuple force(SnowContact& self, const Array& position, const Array& rotation,
 }  // namespace skisnow
 
 namespace skisnow {
+void bind_carve(nb::module_& m);
 void bind_dynamics(nb::module_& m);
-}
+}  // namespace skisnow
 
 NB_MODULE(_core, m) {
   using namespace skisnow;
@@ -278,5 +279,6 @@ NB_MODULE(_core, m) {
             self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
           },
           nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"));
+  bind_carve(m);
   bind_dynamics(m);
 }

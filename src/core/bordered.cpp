@@ -9,6 +9,7 @@ namespace skisnow {
 Layout::Layout(const std::vector<int>& sizes) : size_(sizes) {
   for (int size : sizes) {
     first_.push_back(length_);
+    // whole rows, and one more: the last of them reaches HALF_BAND beyond its end
     length_ += (size + BORDER_ROW - 1) / BORDER_ROW * BORDER_ROW + BORDER_ROW;
   }
 }

@@ -21,6 +21,12 @@ struct LaneTypes {
   typedef std::int64_t Mask __attribute__((vector_size(N * 8)));
 };
 
+template <>
+struct LaneTypes<1> {  // a number alone
+  using Value = double;
+  using Mask = bool;
+};
+
 template <int N>
 using Lanes = typename LaneTypes<N>::Value;
 template <int N>

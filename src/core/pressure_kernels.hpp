@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "hypoplastic.hpp"
 #include "section_kernels.hpp"
 
 namespace skisnow::SKISNOW_LANES {
@@ -18,16 +19,7 @@ struct Pressure {
   // [press_piece] A straight piece of ground from a to b (within the wet base), its lift there `lift + slope x`.
   void add(V a, V b, V lift, V slope) {
     if (!any(a < b)) return;
-    const V zero = -lift / select(absolute(slope) > 1e-30, slope, all<V>(1e-30));
-    const MaskOf<V> at_a = lift + slope * a > THIN, at_b = lift + slope * b > THIN;
-    const V middle = minimum(maximum(zero, a), b);
-    const V c = select(at_a, a, select(at_b, middle, b)), d = select(at_b, b, select(at_a, middle, b));
-    // what bears: the pressure r there is above zero from u to v
-    const V r = hardness * depth - excess * lift, r_slope = hardness * fall - excess * slope;
-    V none = -r / select(absolute(r_slope) > 1e-30, r_slope, all<V>(1e-30));
-    none = minimum(maximum(none, c), d);
-    const MaskOf<V> at_c = r + r_slope * c > 0.0, at_d = r + r_slope * d > 0.0;
-    const V u = select(at_c, c, select(at_d, none, d)), v = select(at_d, d, select(at_c, none, d));
+    const auto [c, d, u, v] = pressed_part(a, b, depth, fall, lift, slope, hardness, excess, THIN);
     const V width = v - u, covered = d - c, both = v + u, ends = d + c;
     q0 += width - covered;
     q1 += width * both - covered * ends;

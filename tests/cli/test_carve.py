@@ -358,7 +358,7 @@ def test_interrupt_while_commands_are_loaded_ends_in_one_line(monkeypatch: pytes
 
 
 def test_help_loads_no_numbers() -> None:
-    """Other commands and --help must not wait for the compiler and the drawing library."""
+    """Other commands and --help must not wait for what computes and for the drawing library."""
     code = (
         "import sys\nfrom skisnow.cli import main\n"
         "try:\n    main(['carve', '--help'])\nexcept SystemExit:\n    pass\n"

@@ -9,7 +9,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "methods" / "dynamics.md").read_text("utf-8")
 PLAIN = re.sub(r"\$.*?\$", "", re.sub(r"\$\$.*?\$\$", "", PAGE, flags=re.DOTALL), flags=re.DOTALL)
 CORE = ROOT / "src" / "core"
-SOURCES = "\n".join((CORE / f"{name}.cpp").read_text("utf-8") for name in ("dynamics", "statics", "along"))
+FILES = ("dynamics.cpp", "statics.cpp", "along.cpp", "tangent_kernels.hpp")
+SOURCES = "\n".join((CORE / name).read_text("utf-8") for name in FILES)
 
 
 def test_marks() -> None:

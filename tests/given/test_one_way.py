@@ -11,8 +11,6 @@ READERS = re.compile(r"\b(tomllib|json|orjson)\.loads?\(|\bfrom (tomllib|json|or
 ITS_OWN = {
     Path("given/toml_text.py"),
     Path("given/json_text.py"),
-    Path("simulate/compilation.py"),  # a note of this program beside its machine code
-    Path("machine_code.py"),
 }
 
 

@@ -74,10 +74,8 @@ class Trials:
             "no:randomly",
         ]
         words += ["--hypothesis-profile=ci", "--doctest-modules", *dict.fromkeys([*first, *self.tests])]
-        # what was compiled for one state of the program is not taken for another
-        with tempfile.TemporaryDirectory(prefix="mutation-kept-") as kept:
-            own = {"PYTHONPATH": str(self.tree / "src"), "PYTHONDONTWRITEBYTECODE": "1", "NUMBA_CACHE_DIR": kept}
-            return _status(words, self.tree, os.environ | own, self.limit)
+        own = {"PYTHONPATH": str(self.tree / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
+        return _status(words, self.tree, os.environ | own, self.limit)
 
 
 def _status(words: list[str], folder: Path, environment: dict[str, str], limit: float) -> int | None:

@@ -14,7 +14,7 @@ from skisnow.ski import read_ski, ski_named
 from skisnow.web.lab_skis import LabSkis, ski_of_texts
 
 from .conftest import Served
-from .test_carve_page import COMPILING_MS
+from .test_carve_page import ANSWERED_MS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -77,7 +77,7 @@ def test_factors_and_values_at_stations_are_drawn_and_saved(page: Page, served: 
     page.goto(f"{served.address}carve")
     page.get_by_label("Compared with").click()
     page.get_by_role("option", name="soft waist").click()
-    page.get_by_role("columnheader", name="soft waist").wait_for(timeout=COMPILING_MS)
+    page.get_by_role("columnheader", name="soft waist").wait_for(timeout=ANSWERED_MS)
     radii = page.get_by_role("row", name="Turn radius at the boot").get_by_role("cell").all_inner_texts()
     assert len(set(radii)) == 2
 

@@ -101,7 +101,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _answers(options: argparse.Namespace) -> list[CarveAnswer]:
-    with announced("loading and, on a machine's first run, compiling the solver, once"):
+    with announced("loading"):
         from ..simulate.carve_answer import answered
         from ..simulate.carve_keys import CARVE_KEYS
         from ..simulate.carve_question import carve_question

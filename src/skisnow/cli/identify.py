@@ -84,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _prepared(options: argparse.Namespace) -> ScenarioFile:
     """What can be refused is refused before the work."""
-    with announced("loading; for marks, on a machine's first run, compiling the solver, once"):
+    with announced("loading"):
         from ..identify.bootstrap import require_bootstrap
         from ..identify.posterior import require_emcee
         from ..simulate.scenario import scenario_file

@@ -111,7 +111,7 @@ class _Pace:
         if self._kept is None:
             self._kept = done
             kept = f"{done} of {total} points are finished already; " if done else ""
-            self._progress(f"{kept}starting the workers (the first carve on a machine compiles its solver, once)")
+            self._progress(f"{kept}starting the workers")
         elif self._begun is None:
             self._begun = (time.monotonic(), done)
         else:

@@ -117,3 +117,43 @@ class Dynamics:
     def begin(self) -> None: ...
     def advance(self, until: float, most: int) -> int: ...
     def along(self, ski: int) -> FloatArray: ...
+
+class CarvedSki: ...
+
+class CarveConditions:
+    def __init__(
+        self,
+        edge_angle: float,
+        hardness: float,
+        excess: float,
+        load: float,
+        moment: float,
+        side_force: float,
+        side_force_bending: bool,
+        twists: bool,
+        bevel: float,
+        bevel_width: float,
+        pitch_of_force: float,
+        pitch_of_shear: float,
+        /,
+    ) -> None: ...
+
+def carved_ski(
+    stations: FloatArray,
+    front: int,
+    stiffness: FloatArray,
+    waist: float,
+    running_length: float,
+    bent_by_width: FloatArray,
+    bent_by_height: FloatArray,
+    /,
+) -> CarvedSki: ...
+def find_carve(
+    ski: CarvedSki,
+    conditions: CarveConditions,
+    offset: FloatArray | None,
+    near: tuple[FloatArray, FloatArray, FloatArray] | None,
+) -> tuple[bool, int, FloatArray, tuple[float, float, float], FloatArray, FloatArray]: ...
+def banded_factors(matrix: FloatArray, /) -> FloatArray: ...
+def banded_solution(factors: FloatArray, right: FloatArray, from_row: int, /) -> FloatArray: ...
+def strip_sums(intervals: FloatArray, /) -> FloatArray: ...

@@ -20,9 +20,8 @@ from ..ski.beam.clamped import ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
 from ..units import MM
-from .equilibrium.assembly import Conditions
 from .equilibrium.edge_line import EdgeLine
-from .equilibrium.solve import RIGID_PLASTIC, Solution, solved
+from .equilibrium.solve import RIGID_PLASTIC, Conditions, Solution, solved
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_converged"]
@@ -299,9 +298,8 @@ def _conditions(
         load=load,
         moment=moment,
         side_force=load * math.tan(edge_angle),
-        groove_follows_path=0.0,
-        side_force_bending=float(side_force_bending),
-        twists=float(twist and edge_angle > 0.0),
+        side_force_bending=side_force_bending,
+        twists=twist and edge_angle > 0.0,
         bevel=ski.base_bevel,
         bevel_width=ski.edge_width,
         pitch_of_force=1.0,
@@ -312,7 +310,6 @@ def _conditions(
 def _following_path(model: ClampedSki, conditions: Conditions) -> Solution:
     """Repeat with the edge's offset from the path until path and edge line agree."""
     solution = solved(model, conditions)
-    path = conditions._replace(groove_follows_path=1.0)
     offset = np.zeros(len(model.stations.station))
     share, before = 0.5, math.inf
     for _ in range(_MOST_PATHS):
@@ -329,7 +326,7 @@ def _following_path(model: ClampedSki, conditions: Conditions) -> Solution:
             share *= 0.7
         before = size
         offset = offset + share * change
-        solution = solved(model, path, offset=offset, near=solution)
+        solution = solved(model, conditions, offset=offset, near=solution)
     return Solution(False, *(getattr(solution, name) for name in Solution.__slots__[1:]))
 
 

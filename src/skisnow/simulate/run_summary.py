@@ -123,7 +123,7 @@ def _moments(run: Run) -> dict[str, Any]:
 
 
 def _provenance(files: Iterable[Path]) -> dict[str, Any]:
-    packages = ("skisnow", "numpy", "scipy", "numba")
+    packages = ("skisnow", "numpy", "scipy")
     return {
         "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},
         "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},

@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eigh
 
-from skisnow.ski.beam.banded import assembled, dense, factor, solve
+from skisnow.compiled import core
+from skisnow.ski.beam.banded import assembled, dense
 from skisnow.ski.beam.elements import GAUSS_POINTS, mass_matrices, stiffness_matrices
 
 FloatArray = npt.NDArray[np.float64]
@@ -56,10 +57,7 @@ def chain(length: float, elements: int, *, held: bool) -> Chain:
 
 def banded_solution(matrix: FloatArray, right: FloatArray) -> FloatArray:
     """Solution by the banded LU."""
-    factors, unknown = matrix.copy(), right.reshape(-1, 1).copy()
-    factor(factors)
-    solve(factors, unknown, 1)
-    return np.asarray(unknown[:, 0])
+    return core.banded_solution(core.banded_factors(matrix), np.ascontiguousarray(right.reshape(-1, 1)), 0)[:, 0]
 
 
 def frequencies(stiffness: FloatArray, mass: FloatArray, degrees: tuple[int, ...]) -> FloatArray:

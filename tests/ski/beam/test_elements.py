@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from skisnow.ski.beam.banded import multiplied
+from skisnow.ski.beam.banded import dense
 from skisnow.ski.beam.elements import curvature_shape, deflection_shape, slope_shape, stiffness_matrices, twist_shape
 
 from .conftest import banded_solution, chain, frequencies, observed_order
@@ -111,10 +111,10 @@ def test_mass_of_rigid_motion() -> None:
     lift, turn, twist = (np.zeros(beam.size) for _ in range(3))
     lift[0::3], twist[2::3] = 1.0, 1.0
     turn[0::3], turn[1::3] = beam.node, 1.0
-    assert lift @ multiplied(mass, lift) == pytest.approx(MASS * LENGTH, rel=1e-12)
-    assert turn @ multiplied(mass, turn) == pytest.approx(MASS * LENGTH**3 / 3.0, rel=1e-12)
-    assert turn @ multiplied(mass, lift) == pytest.approx(MASS * LENGTH**2 / 2.0, rel=1e-12)
-    assert twist @ multiplied(mass, twist) == pytest.approx(INERTIA * LENGTH, rel=1e-12)
+    assert lift @ dense(mass) @ lift == pytest.approx(MASS * LENGTH, rel=1e-12)
+    assert turn @ dense(mass) @ turn == pytest.approx(MASS * LENGTH**3 / 3.0, rel=1e-12)
+    assert turn @ dense(mass) @ lift == pytest.approx(MASS * LENGTH**2 / 2.0, rel=1e-12)
+    assert twist @ dense(mass) @ twist == pytest.approx(INERTIA * LENGTH, rel=1e-12)
 
 
 def test_shapes_are_a_cubic_and_its_derivatives() -> None:

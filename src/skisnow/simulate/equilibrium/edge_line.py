@@ -8,7 +8,7 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ...ski.beam.clamped import ClampedSki, beam_at
+from ...ski.beam.clamped import ClampedSki, beam_at, beam_at_stations
 from .solve import Solution
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -28,17 +28,23 @@ class EdgeLine:
         self._model = model
         self._edge_angle = edge_angle
         self._u = solution.u
-        self.station = model.stations.station
-        self.deflection, self.twist = beam_at(model, solution.u, self.station)
-        self.position = self.at(self.station)
+        stations = model.stations
+        self.station = stations.station
+        self.deflection, self.twist = beam_at_stations(model, solution.u)
+        self.position = self._across(stations.width, stations.base_height, self.deflection, self.twist)
 
     def at(self, station: npt.ArrayLike) -> FloatArray:
         """Position (m) of the edge at stations (m)."""
         where = np.atleast_1d(np.asarray(station, float))
-        deflection, twist = beam_at(self._model, self._u, where)
-        section = self._model.ski.at(where)
-        across = section.width / 2.0 * np.cos(self._edge_angle + twist)
-        return np.asarray(across + (section.base_height + deflection) * math.sin(self._edge_angle))
+        ski = self._model.ski
+        width, height = (np.interp(where, ski.station[::-1], each[::-1]) for each in (ski.width, ski.base_height))
+        return self._across(width, height, *beam_at(self._model, self._u, where))
+
+    def _across(
+        self, width: FloatArray, base_height: FloatArray, deflection: FloatArray, twist: FloatArray
+    ) -> FloatArray:
+        across = width / 2.0 * np.cos(self._edge_angle + twist)
+        return np.asarray(across + (base_height + deflection) * math.sin(self._edge_angle))
 
     def radius_over(self, front: float, rear: float) -> float | None:
         """Radius (m) of the circle through the edge at `front`, the boot and `rear`; positive: the ends lead inwards.

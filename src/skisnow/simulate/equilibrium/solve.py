@@ -1,32 +1,41 @@
-"""Equilibrium of a clamped ski in snow: starting shape, elastic snow first, then the snow's memory by continuation."""
+"""Equilibrium of a clamped ski in snow, found by the compiled core: elastic snow first, then the snow's memory."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+import functools
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from ...compiled import core
 from ...ski.beam.clamped import ClampedSki
 from ...ski.ski import Ski
-from .assembly import BORDER, Conditions, Sections, new_system
-from .newton import newton
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-TOLERANCE: Final = 1e-11
-"""Size (m) of the last correction to the edge depth."""
 RIGID_PLASTIC: Final = 1000.0
 """Unloading ratio that stands for rigid-plastic snow: the groove springs back by a thousandth of its depth."""
-MOST_ITERATIONS: Final = 60
-MOST_STAGES: Final = 40
-SOFTENINGS: Final = (1000.0, 30.0, 3.0)
-_SHALLOWEST_WEDGE: Final = 0.01  # rad; flatter than this the first guess treats the base as flat
 _CONFORMING_SHARE: Final = 0.9  # of the running length that the first guess bends onto the snow
-_CONTACT_SHARE: Final = 0.9  # of the running length that the first guess loads evenly
+_NEAR: Final = 1e-4  # m, over which the first guess takes the slope of the base
+
+
+class Conditions(NamedTuple):
+    """Snow, load and modelling choices, in SI."""
+
+    edge_angle: float
+    hardness: float
+    excess: float  # k_u - H_V
+    load: float
+    moment: float
+    side_force: float
+    side_force_bending: bool
+    twists: bool
+    bevel: float
+    bevel_width: float
+    pitch_of_force: float  # share with which the snow's force takes part in the balance of moments about the boot
+    pitch_of_shear: float  # share of the side force
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,80 +66,6 @@ class Solution:
     force_per_length: FloatArray
 
 
-class _Search:
-    """Newton's method on one ski, from the state that it has reached."""
-
-    def __init__(self, model: ClampedSki, conditions: Conditions, offset: FloatArray | None) -> None:
-        stations = model.stations
-        n = len(stations.station)
-        self._model, self._conditions = model, conditions
-        self._sections = Sections(
-            stations.station,
-            stations.weight,
-            stations.width,
-            stations.base_height,
-            stations.dof,
-            stations.deflection,
-            stations.twist,
-            _places_across(model, conditions, np.zeros(1)),
-            np.zeros(n) if offset is None else offset,
-        )
-        self._spare = new_system(model.size, n)
-        self.system = new_system(model.size, n)
-        self.iterations = 0
-        self.restart(conditions)
-
-    def restart(self, conditions: Conditions) -> None:
-        """Go back to the first guess for these conditions."""
-        self.u, self.border = _first_guess(self._model, conditions)
-
-    def continues(self, near: Solution, conditions: Conditions) -> bool:
-        """Start from another solution; back at the first guess if that fails."""
-        self.u[:], self.border[:] = near.u, (near.boot_depth, near.boot_slope, near.shear_stress)
-        self._sections = self._sections._replace(place=_places_across(self._model, conditions, near.edge_depth))
-        converged = self.reaches(conditions)
-        if not converged:
-            self.restart(conditions)
-        return converged
-
-    def place_groove(self) -> None:
-        """Keep the groove where the present state has its waterline."""
-        place = _places_across(self._model, self._conditions, self.system.depth)
-        self._sections = self._sections._replace(place=place)
-
-    def reaches(self, conditions: Conditions) -> bool:
-        """Go to the equilibrium under other conditions; stay where it was if that fails."""
-        kept = self.u.copy(), self.border.copy()
-        converged, iterations = newton(
-            self._sections,
-            conditions,
-            self._model.stiffness,
-            self.u,
-            self.border,
-            self.system,
-            self._spare,
-            TOLERANCE,
-            MOST_ITERATIONS,
-        )
-        self.iterations += int(iterations)
-        if not converged:
-            self.u[:], self.border[:] = kept
-        return bool(converged)
-
-    def follows(self, path: Callable[[float], Conditions]) -> bool:
-        """Go along a path of conditions from 0 (where it stands) to 1, in one step or as many as it needs."""
-        reached, stride = 0.0, 1.0
-        for _ in range(MOST_STAGES):
-            target = min(reached + stride, 1.0)
-            if self.reaches(path(target)):
-                if target == 1.0:
-                    return True
-                reached, stride = target, 2.0 * stride
-            else:
-                stride /= 3.0
-        return False
-
-
 def solved(
     model: ClampedSki, conditions: Conditions, *, offset: FloatArray | None = None, near: Solution | None = None
 ) -> Solution:
@@ -145,91 +80,71 @@ def solved(
     conditions
         Snow, load and choices.
     offset
-        Of the edge from the path at each station (m), where the groove follows the path; None: 0.
+        Where the groove follows a path, of the edge from that at each station (m); None: the groove follows the edge.
     near
         A solution that this one is thought to be close to; tried first.
     """
-    search = _Search(model, conditions, offset)
-    converged = near is not None and search.continues(near, conditions)
-    converged = (
-        converged or _loaded(search, conditions) or any(_hardened(search, conditions, share) for share in SOFTENINGS)
+    from_there = None
+    if near is not None:
+        border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
+        from_there = (near.u, border, near.edge_depth)
+    found = core.find_carve(_core_ski(model), core.CarveConditions(*conditions), offset, from_there)
+    converged, iterations, u, (depth, slope, stress), edge_depth, force = found
+    return Solution(converged, iterations, u, depth, slope, stress, edge_depth, force)
+
+
+@functools.lru_cache(maxsize=32)
+def _core_ski(model: ClampedSki) -> core.CarvedSki:
+    stations = model.stations
+    held = stations.dof < 0
+    front = int(stations.dof[np.argmax(held.any(axis=1)), 2]) + 1
+    rows = np.column_stack(
+        [
+            stations.station,
+            stations.weight,
+            stations.width,
+            stations.base_height,
+            _first_unknown(stations.dof, front),
+            np.where(held, 0.0, stations.deflection),
+            np.where(held, 0.0, stations.twist),
+        ]
     )
-    depth, slope, stress = (float(value) for value in search.border)
-    system = search.system
-    return Solution(converged, search.iterations, search.u, depth, slope, stress, system.depth, system.force)
+    waist = float(model.ski.at(0.0).width)
+    return core.carved_ski(rows, front, model.stiffness, waist, model.ski.running_length, *_bent_onto_snow(model))
 
 
-def _loaded(search: _Search, conditions: Conditions) -> bool:
-    """Elastic snow, then memory: the logarithm of the unloading ratio grows from 0."""
-    if not search.reaches(conditions._replace(excess=0.0)):
-        return False
-    if conditions.excess == 0.0:
-        return True
-    search.place_groove()
-    goal = math.log1p(conditions.excess / conditions.hardness)
-    return search.follows(lambda share: conditions._replace(excess=conditions.hardness * math.expm1(share * goal)))
+def _first_unknown(dof: npt.NDArray[np.int64], front: int) -> FloatArray:
+    """Of each station's element, where six that are held stand between the unknowns before and behind the clamp."""
+    before, behind = dof[:, 0], dof[:, 3]
+    first = np.where(before >= front, before + 6, np.where(behind >= front, behind + 3, front))
+    return np.where((before >= 0) & (before < front), before, first).astype(float)
 
 
-def _hardened(search: _Search, conditions: Conditions, softening: float) -> bool:
-    """The same on softer snow, which is then hardened."""
+def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
+    """Unknowns of a ski bent onto the snow over most of its running length, and straight beyond.
 
-    def softer(share: float) -> Conditions:
-        factor = softening ** (share - 1.0)
-        return conditions._replace(hardness=factor * conditions.hardness, excess=factor * conditions.excess)
-
-    search.restart(softer(0.0))
-    return _loaded(search, softer(0.0)) and search.follows(softer)
-
-
-def _first_guess(model: ClampedSki, conditions: Conditions) -> tuple[FloatArray, FloatArray]:
-    """A ski bent so that its edge is straight in the snow, as deep as a rigid one of that contact length would be."""
-    ski, angle = model.ski, conditions.edge_angle
-    length = _CONTACT_SHARE * ski.running_length
-    waist = float(ski.at(0.0).width)
-    wedge = math.sqrt(2.0 * conditions.load * math.tan(max(angle, _SHALLOWEST_WEDGE)) / (conditions.hardness * length))
-    flat = conditions.load / (conditions.hardness * length * waist * math.cos(angle)) + waist / 2.0 * math.sin(angle)
-    depth = min(wedge, flat)
-    border = np.zeros(BORDER)
-    border[0] = depth - waist / 2.0 * math.sin(angle)
-    border[2] = conditions.side_force / (depth * length)
-    return _conforming(model, angle), border
-
-
-def _conforming(model: ClampedSki, angle: float) -> FloatArray:
-    """Unknowns of a ski bent onto the snow over most of its running length, and straight beyond."""
+    By half its width, to be taken times tan ϑ, and by the height of its base, which is to be taken off.
+    """
     ski, node = model.ski, model.node
     dof = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
+    free = dof[:, 0] >= 0
     front, rear = (_CONFORMING_SHARE * end for end in _ends(ski))
     inside = np.clip(node, rear, front)
-    near = 1e-4
+    before, behind, here, boot = (ski.at(place) for place in (inside + _NEAR, inside - _NEAR, inside, np.zeros(1)))
 
-    def lift(station: FloatArray) -> FloatArray:
-        at = ski.at(station)
-        return math.tan(angle) * at.width / 2.0 - at.base_height
+    def bent(before: FloatArray, behind: FloatArray, here: FloatArray, boot: FloatArray) -> FloatArray:
+        slope = (before - behind) / (2.0 * _NEAR)
+        u = np.zeros(model.size)
+        u[dof[free, 0]] = (here - boot + slope * (node - inside))[free]
+        u[dof[free, 1]] = -slope[free]  # the elements run from tip to tail
+        return u
 
-    slope = (lift(inside + near) - lift(inside - near)) / (2.0 * near)
-    deflection = lift(inside) - lift(np.zeros(1)) + slope * (node - inside)
-    u = np.zeros(model.size)
-    free = dof[:, 0] >= 0
-    u[dof[free, 0]] = deflection[free]
-    u[dof[free, 1]] = -slope[free]  # the elements run from tip to tail
-    return u
+    return (
+        bent(before.width / 2.0, behind.width / 2.0, here.width / 2.0, boot.width / 2.0),
+        bent(before.base_height, behind.base_height, here.base_height, boot.base_height),
+    )
 
 
 def _ends(ski: Ski) -> tuple[float, float]:
     front, rear = ski.contact_points
     return min(front, float(ski.station[0])), max(rear, float(ski.station[-1]))
-
-
-def _places_across(model: ClampedSki, conditions: Conditions, edge_depth: FloatArray) -> FloatArray:
-    """Places across at which the groove is kept: about the waterline, and at the ends of bevel and base."""
-    tangent = math.tan(max(conditions.edge_angle, 1e-9))
-    reach = float(model.stations.width.max()) * math.cos(conditions.edge_angle)
-    waterline = max(float(np.max(edge_depth)), 0.0) / tangent
-    if waterline > 0.6 * reach:
-        place = np.linspace(0.0, 1.05 * reach, 5)
-    else:
-        place = np.append(np.array([0.0, 0.5, 1.0, 1.7]) * waterline, 1.05 * reach)
-    if conditions.bevel > 0.0:
-        place = np.append(place, conditions.bevel_width * math.cos(conditions.edge_angle))
-    return np.unique(place)

@@ -126,6 +126,13 @@ def beam_at(model: ClampedSki, u: FloatArray, station: npt.ArrayLike) -> tuple[F
     return deflection, np.sum(twist_shape(local) * value, axis=-1)
 
 
+def beam_at_stations(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Deflection (m) and twist (rad) of the base relative to the boot at the model's stations, for the unknowns u."""
+    stations = model.stations
+    value = np.where(stations.dof >= 0, u[stations.dof], 0.0)
+    return np.einsum("ij,ij->i", stations.deflection, value), np.einsum("ij,ij->i", stations.twist, value)
+
+
 def _nodes(front: float, rear: float, clamp_length: float, elements: int) -> FloatArray:
     half = clamp_length / 2.0
     spacing = (front - rear) / elements

@@ -78,7 +78,7 @@ def add_page(lab: Lab) -> None:
 
 
 class _Solver:
-    """Answers one question at a time; skis are read once. Imported late: the solver's compiler is heavy."""
+    """Answers one question at a time; skis are read once. Imported late: what computes is heavy."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -115,7 +115,7 @@ class _Carve:
         with ui.element("div").classes("sliders"):
             for key in SLIDERS:
                 self._slider(key)
-        self._status = ui.label(f"{COMPUTING} On a machine's first run the solver is compiled, once.").classes("status")
+        self._status = ui.label(COMPUTING).classes("status")
         self._status.props("role=status")
         self._facts = ui.element("div").classes("table")
         self._named: list[str] = []

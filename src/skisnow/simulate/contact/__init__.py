@@ -1,1 +1,0 @@
-"""Snow against the base of a ski."""
