@@ -127,11 +127,14 @@ def main(words: list[str] | None = None) -> int:
     with ExitStack() as kept:
         trees = [kept.enter_context(copied_tree(ROOT)) for _ in range(asked.workers)]
         start = time.monotonic()
-        if Trials(trees[0], tests, 3600.0).status() != 0:
+        reach = trees[0] / ".reach.json"
+        if Trials(trees[0], tests, 3600.0, reach).look() != 0:
             sys.exit(f"the tests fail without an error planted: {' '.join(tests)}")
         limit = asked.limit_s or 60.0 + 5.0 * asked.workers * (time.monotonic() - start)
         survivors, late = [], 0
-        for number, (one, verdict) in enumerate(verdicts(planted, [Trials(tree, tests, limit) for tree in trees]), 1):
+        for number, (one, verdict) in enumerate(
+            verdicts(planted, [Trials(tree, tests, limit, reach) for tree in trees]), 1
+        ):
             print(f"{number} of {len(planted)}: {verdict}, {one[1].kind}, {one[0]}", file=sys.stderr, flush=True)
             late += verdict == OUT_OF_TIME
             if verdict == SURVIVED:

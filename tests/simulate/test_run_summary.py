@@ -125,7 +125,10 @@ def test_an_open_balance_is_warned_of() -> None:
 
 def test_energy_open_is_an_outcome_of_the_schema() -> None:
     found = summary_dict(replace(opened(1e4), outcome="energy_open", remedy=REMEDIES["energy_open"]), ASKED.values)
-    jsonschema.validate(found, SCHEMA)
+    assert list(jsonschema.Draft202012Validator(SCHEMA).iter_errors(found)) == []
+    assert (found["outcome"], found["remedy"]) == ("energy_open", REMEDIES["energy_open"])
+    with pytest.raises(jsonschema.ValidationError, match="'energy_shut' is not one of"):
+        jsonschema.validate(found | {"outcome": "energy_shut"}, SCHEMA)
 
 
 def test_what_is_not_finite_is_null() -> None:
