@@ -111,6 +111,7 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("-n", type=int, default=50, help="number of errors (50)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1, help="copies of the tree that are tested at once (1)")
+    parser.add_argument("--only", nargs="*", type=int, default=[], help="numbers of the errors to plant (all)")
     parser.add_argument("--tests", nargs="*", default=[], help="further test files and folders that count")
     parser.add_argument("--file", default="", help="only files of the room whose path contains this")
     parser.add_argument(
@@ -123,6 +124,7 @@ def main(words: list[str] | None = None) -> int:
     """Number of errors that survived."""
     asked = asked_of(words)
     planted = drawn([path for path in files_of(asked.room) if asked.file in str(path)], asked.n, asked.seed)
+    planted = [one for number, one in enumerate(planted, 1) if number in (asked.only or [number])]
     tests = (*room_tests(asked.room), *asked.tests)
     with ExitStack() as kept:
         trees = [kept.enter_context(copied_tree(ROOT)) for _ in range(asked.workers)]

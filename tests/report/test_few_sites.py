@@ -36,6 +36,15 @@ def test_the_first_sentence_is_about_the_sites(material: Material) -> None:
     assert "without an interval: fewer than 4 sites" in hardness
 
 
+def test_one_site_has_an_interval_over_its_experiments(campaign: Campaign) -> None:
+    one = replace(campaign, name="real", shear=None, penetration=first_series(campaign, 30))
+    results = results_of(one)
+    hardness = plain(key_results(Material(one, results))[0])
+    own = next(row for row in results["comparisons"] if row["quantity"] == "H_V_N_per_mm3")
+    assert f"{significant(own['own'])} N/mm³ (95 % interval {interval(own['own_interval'])}" in hardness
+    assert hardness.endswith("30 of 30 penetration experiments used, at 1 site.")
+
+
 def test_no_slope_on_two_densities_is_called_significant(material: Material) -> None:
     relations = plain(key_results(material)[-1])
     assert relations.startswith("Relations: significant at 5 %: none; not significant: none; not judged")
