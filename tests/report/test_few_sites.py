@@ -14,7 +14,7 @@ from skisnow.report.sentences.caveats import caveats
 from skisnow.report.sentences.key_results import key_results
 from skisnow.report.sentences.regressions import regression_sentences
 
-from .conftest import first_series, results_of
+from .conftest import Reported, first_series, results_of
 
 
 def plain(markup: str) -> str:
@@ -61,3 +61,13 @@ def test_warnings_of_fits_come_first_among_the_caveats(material: Material) -> No
 def replace_warnings(material: Material, warnings: list[str]) -> Material:
     results = {**material.results, "penetration": {**material.results["penetration"], "warnings": warnings}}
     return Material(material.campaign, results)
+
+
+def test_relations_stand_where_their_p_value_puts_them(reference: Reported) -> None:
+    results = reference.results
+    rows = [row for row in results["regressions"] if row["p"] is not None][:4]
+    judged = [row | {"p": p, "interval_by_site": None} for row, p in zip(rows, (0.011, 0.05, 0.049, 0.6), strict=True)]
+    relations = plain(key_results(Material(reference.campaign, results | {"regressions": judged}))[-1])
+    yes, no = relations.split("; not significant: ")
+    assert re.findall(r"p = ([0-9.]+)", yes) == ["0.011", "0.049"]
+    assert re.findall(r"p = ([0-9.]+)", no.partition(". How large")[0]) == ["0.050", "0.60"]

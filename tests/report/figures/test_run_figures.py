@@ -132,6 +132,8 @@ def test_energies_stack_to_a_level_rim(run: Run) -> None:
     every, losses = axes_of(figure)
     assert len(every.collections) == 9
     assert len(losses.collections) == 5
+    (level,) = every.lines
+    assert np.asarray(level.get_ydata()) == pytest.approx(np.full(2, total[0]))
     assert losses.dataLim.y1 == pytest.approx(-run.energies["potential"][-1])
     # a tenth of the friction gone: the title names what is missing
     less = run.energies | {"friction": 0.9 * run.energies["friction"]}
@@ -211,6 +213,8 @@ def test_band_is_drawn_around_the_nominal_track(run: Run) -> None:
     with journal_style():
         figure = track_band(timed(run), tracks)
     plan = axes_of(figure)[0]
+    ends = [np.asarray(line.get_xydata(), dtype=float) for line in plan.lines if line.get_marker() == "."]
+    assert np.concatenate(ends) == pytest.approx(np.array([[track.x[-1], track.y[-1]] for track in tracks]))
     nominal = next(line for line in plan.lines if line.get_color() == VERMILLION)
     assert np.asarray(nominal.get_xdata()) == pytest.approx(run.place[:, 0])
     assert np.asarray(nominal.get_ydata()) == pytest.approx(run.place[:, 1])
