@@ -17,6 +17,7 @@ from skisnow.report.figures.grip_map import grip_map
 from skisnow.report.figures.model_rmse import model_rmse
 from skisnow.report.figures.radius_map import radius_map
 from skisnow.report.figures.run_motion import run_motion
+from skisnow.report.figures.seating_offsets import seating_offsets
 from skisnow.report.figures.shear_force_depth import shear_force_depth
 from skisnow.report.figures.style import journal_style, site_styles
 from skisnow.report.material import Material
@@ -139,3 +140,9 @@ def test_a_force_of_nothing_has_an_axis(material: Material) -> None:
         drawing = shear_force_depth(nothing, site_styles(nothing))
     assert isinstance(drawing, Drawing)
     assert drawing.figure.axes[0].get_ylim() == (0.0, 1.0)
+
+
+def test_offsets_are_drawn_beside_a_line_of_none(material: Material) -> None:
+    with journal_style():
+        (axes,) = seating_offsets(material, site_styles(material)).figure.axes  # type: ignore[union-attr]
+    assert [0.0, 0.0] in [np.asarray(line.get_ydata()).tolist() for line in axes.lines]
