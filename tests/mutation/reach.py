@@ -1,6 +1,7 @@
 """A pytest plugin that writes down which functions of the program each test file calls, and how long it takes.
 
-What a fixture of a module or session calls counts for all tests that use it; other processes are not looked into.
+What a fixture of a module or session calls counts for all tests that use it. Processes that a test starts write down
+theirs by themselves (`children/sitecustomize.py`).
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ Function: TypeAlias = tuple[str, int]
 """File from the tree's top, and first line."""
 PLACE: Final = "SKISNOW_TESTS_REACH"
 """Variable of the environment with the path of what is written."""
+CURRENT, CALLS, SOURCE = (f"{PLACE}_{name}" for name in ("CURRENT", "CALLS", "SOURCE"))
+"""Those of the test file that runs now, of what other processes call, and of the folder that counts."""
 
 
 class Reach:
@@ -45,6 +48,7 @@ class Reach:
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
         name = str(item.path.relative_to(self.root))
         self.now, start = self.calls[name], time.monotonic()
+        Path(os.environ[CURRENT]).write_text(name, encoding="utf-8")
         sys.settrace(self.seen)
         threading.settrace(self.seen)
         yield
@@ -62,6 +66,9 @@ class Reach:
         self.now = before
 
     def pytest_sessionfinish(self) -> None:
+        for line in Path(os.environ[CALLS]).read_text(encoding="utf-8").splitlines():
+            name, file, first = line.split("\t")
+            self.calls[name].add((file, int(first)))
         found = {
             name: [self.seconds[name], sorted((str(Path(file).relative_to(self.root)), line) for file, line in calls)]
             for name, calls in self.calls.items()

@@ -17,7 +17,7 @@ from types import MappingProxyType
 import pytest
 
 from .mutants import Mutant
-from .reach import PLACE, function_at, nearest
+from .reach import CALLS, CURRENT, PLACE, SOURCE, function_at, nearest
 
 CAUGHT = "caught"
 OUT_OF_TIME = "out of time"
@@ -67,8 +67,14 @@ class Trials:
     def look(self) -> int | None:
         """Exit status of all tests; what they reach is written down."""
         assert self.reach is not None
-        paths = os.pathsep.join([str(self.tree / "src"), str(Path(__file__).parent)])
-        return self.status(more=("-p", "reach"), environment={"PYTHONPATH": paths, PLACE: str(self.reach)})
+        own = Path(__file__).parent
+        paths = os.pathsep.join(map(str, (self.tree / "src", own, own / "children")))
+        with tempfile.TemporaryDirectory(prefix="mutation-reach-") as folder:
+            calls = Path(folder) / "calls"
+            calls.touch()
+            told = {PLACE: self.reach, CURRENT: Path(folder) / "current", CALLS: calls, SOURCE: self.tree / "src"}
+            environment = {name: str(path) for name, path in told.items()}
+            return self.status(more=("-p", "reach"), environment={"PYTHONPATH": paths, **environment})
 
     def status(
         self,
@@ -88,7 +94,8 @@ class Trials:
             # compiled loops are kept under the fingerprint of their sources: an error in one finds nothing kept
             "NUMBA_CACHE_DIR": str(self.tree / ".machine-code"),
         }
-        status = _status(words, self.tree, {**os.environ, **own, **environment}, self.limit)
+        outer = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
+        status = _status(words, self.tree, {**outer, **own, **environment}, self.limit)
         return 0 if status == pytest.ExitCode.NO_TESTS_COLLECTED else status
 
 
