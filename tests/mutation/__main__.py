@@ -47,6 +47,18 @@ def room_tests(room: str, *, root: Path = ROOT) -> tuple[str, ...]:
     return tuple(name for name in named if (root / name).exists())
 
 
+def files_beside(parts: Iterable[str], files: list[Path]) -> list[Path]:
+    """Files that are in none of these folders and files of the program."""
+    return [path for path in files if not any(path.is_relative_to(SOURCE / part) for part in parts)]
+
+
+def left_out_tests(parts: Iterable[str]) -> tuple[str, ...]:
+    """The tests and doctests of these folders and files of the program, whether there are any or not."""
+    places = [Path(part) for part in parts]
+    tests = [f"tests/{place.parent / f'test_{place.name}' if place.suffix else place}" for place in places]
+    return (*tests, *(str(SOURCE / place) for place in places))
+
+
 def changed_lines(path: Path, mutant: Mutant, *, root: Path = ROOT) -> str:
     """The error as a diff without surroundings."""
     source = (root / path).read_text(encoding="utf-8")
@@ -113,6 +125,9 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--workers", type=int, default=1, help="copies of the tree that are tested at once (1)")
     parser.add_argument("--only", nargs="*", type=int, default=[], help="numbers of the errors to plant (all)")
     parser.add_argument("--tests", nargs="*", default=[], help="further test files and folders that count")
+    parser.add_argument(
+        "--leave-out", nargs="*", default=[], help="folders and files of the room that count no more, with their tests"
+    )
     parser.add_argument("--file", default="", help="only files of the room whose path contains this")
     parser.add_argument(
         "--limit-s", type=float, help="time for each (default: a minute and five times what all tests take)"
@@ -123,19 +138,20 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
 def main(words: list[str] | None = None) -> int:
     """Number of errors that survived."""
     asked = asked_of(words)
-    planted = drawn([path for path in files_of(asked.room) if asked.file in str(path)], asked.n, asked.seed)
+    files = files_beside(asked.leave_out, [path for path in files_of(asked.room) if asked.file in str(path)])
+    planted = drawn(files, asked.n, asked.seed)
     planted = [one for number, one in enumerate(planted, 1) if number in (asked.only or [number])]
-    tests = (*room_tests(asked.room), *asked.tests)
+    tests, left_out = (*room_tests(asked.room), *asked.tests), left_out_tests(asked.leave_out)
     with ExitStack() as kept:
         trees = [kept.enter_context(copied_tree(ROOT)) for _ in range(asked.workers)]
         start = time.monotonic()
         reach = trees[0] / ".reach.json"
-        if Trials(trees[0], tests, 3600.0, reach).look() != 0:
+        if Trials(trees[0], tests, 3600.0, reach, left_out).look() != 0:
             sys.exit(f"the tests fail without an error planted: {' '.join(tests)}")
         limit = asked.limit_s or 60.0 + 5.0 * asked.workers * (time.monotonic() - start)
         survivors, late = [], 0
         for number, (one, verdict) in enumerate(
-            verdicts(planted, [Trials(tree, tests, limit, reach) for tree in trees]), 1
+            verdicts(planted, [Trials(tree, tests, limit, reach, left_out) for tree in trees]), 1
         ):
             print(f"{number} of {len(planted)}: {verdict}, {one[1].kind}, {one[0]}", file=sys.stderr, flush=True)
             late += verdict == OUT_OF_TIME

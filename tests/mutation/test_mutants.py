@@ -10,7 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutation.__main__ import changed_lines, drawn, files_of, place_of, room_tests, verdicts
+from tests.mutation.__main__ import (
+    changed_lines,
+    drawn,
+    files_beside,
+    files_of,
+    left_out_tests,
+    place_of,
+    room_tests,
+    verdicts,
+)
 from tests.mutation.mutants import Mutant, mutants
 from tests.mutation.reach import function_at, nearest
 from tests.mutation.trial import CAUGHT, OUT_OF_TIME, SURVIVED, Trials, copied_tree
@@ -60,6 +69,19 @@ def test_errors_of_a_real_room_are_small_and_drawn_by_seed() -> None:
     for path, mutant in few:
         assert len([line for line in changed_lines(path, mutant).splitlines() if line[0] == "+"]) == 2  # file, line
     assert room_tests("track") == ("tests/track", "src/skisnow/track")
+
+
+def test_parts_that_are_left_out_have_no_tests_either() -> None:
+    files = files_of("track")
+    left = files_beside(["track/marks.py"], files)
+    assert [path for path in files if path not in left] == [Path("src/skisnow/track/marks.py")]
+    assert files_beside(["track"], files) == []
+    assert left_out_tests(["simulate/motion", "simulate/batch.py"]) == (
+        "tests/simulate/motion",
+        "tests/simulate/test_batch.py",
+        "src/skisnow/simulate/motion",
+        "src/skisnow/simulate/batch.py",
+    )
 
 
 def test_the_function_around_a_character_is_found() -> None:

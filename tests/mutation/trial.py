@@ -46,6 +46,7 @@ class Trials:
     tests: tuple[str, ...]  # files and folders below the tree
     limit: float  # s for each mutant
     reach: Path | None = None  # which functions each test file calls, as `tests.mutation.reach` writes it
+    left_out: tuple[str, ...] = ()  # test files and folders that do not run
 
     def verdict(self, path: Path, mutant: Mutant) -> str:
         """Whether the tests catch the error in this file (given from the tree's top); the file is itself again.
@@ -87,7 +88,7 @@ class Trials:
         """Exit status of these tests or all, 0 where there are none; None where time ran out."""
         words = [sys.executable, "-m", "pytest", "-x", "-q", "--hypothesis-profile=ci", "--doctest-modules"]
         words += [word for name in ("cacheprovider", "xdist", "randomly") for word in ("-p", f"no:{name}")]
-        words += [*more, *(f"--ignore={name}" for name in without), *(tests or self.tests)]
+        words += [*more, *(f"--ignore={name}" for name in (*self.left_out, *without)), *(tests or self.tests)]
         own = {
             "PYTHONPATH": str(self.tree / "src"),
             "PYTHONDONTWRITEBYTECODE": "1",
