@@ -128,6 +128,16 @@ def test_side_of_the_slope_counts() -> None:
     assert own.demand(right, math.inf) == pytest.approx(-across, rel=1e-9)
 
 
+def test_a_mean_radius_weighs_each_by_its_variance() -> None:
+    """10 m ± 1 m and 16 m ± 2 m: (10 + 16/4)/(1 + 1/4) = 11.2 m ± 1/√1.25 m; one without a number counts nothing."""
+    radius, sd = np.array([10.0, 16.0, np.nan]), np.array([1.0, 2.0, 1.0])
+    ones = np.ones(3)
+    found = grooves(Marks("three", ones, ones, radius, ones, ones, sd))
+    assert found.mean_radius == pytest.approx(11.2)
+    assert found.mean_radius_sd == pytest.approx(1.25**-0.5)
+    assert math.isnan(grooves().mean_radius) and math.isnan(grooves().mean_radius_sd)
+
+
 def test_elastic_snow_keeps_no_mark() -> None:
     with pytest.raises(ParameterError, match="elastic snow keeps no mark"):
         identify("carved-46m", marks(2e-3, 4e-3, 16.0), "H_V", changes={"snow.unloading_ratio": 1.0})

@@ -37,7 +37,10 @@ def found_from(data: Any, free: str = "mu_0,speed", **more: Any) -> Identificati
 class TestStraight:
     def test_a_track_without_noise_gives_the_truth(self) -> None:
         """The search may end a fifth of a standard error (3e-4, 3e-3 m/s) off; a linear model ends far nearer."""
-        found = found_from(track())
+        said: list[str] = []
+        found = found_from(track(), told=said.append)
+        assert said[0].endswith("simulated runs")
+        assert any("last steps with the scenario's own solver" in words for words in said)
         assert found.outcome == "converged"
         assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
         assert found["speed"].value == pytest.approx(TRUE_SPEED, abs=1e-4)
