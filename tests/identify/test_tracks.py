@@ -57,8 +57,11 @@ class TestStraight:
         """Third differences of 2 x 41 numbers, by their median: right to some 20 %; half is allowed."""
         one = track(seed=2, stated=False)
         assert estimated_noise(one.time, one.place[:, :2]) == pytest.approx(SD, rel=0.5)
-        stated = found_from(track(seed=2))["mu_0"].standard_error
-        assert found_from(one)["mu_0"].standard_error == pytest.approx(stated, rel=0.3)
+        found, known = found_from(one), found_from(track(seed=2))
+        assert found["mu_0"].standard_error == pytest.approx(known["mu_0"].standard_error, rel=0.3)
+        law = "95 % intervals from the curvature of the sum of squares, by "
+        assert f"{law}Student's t with the noise that the residuals show; accuracy estimated" in found.methods
+        assert f"{law}the normal distribution; accuracy stated by the data" in known.methods
 
     def test_noise_beyond_the_stated_accuracy_widens_the_intervals_and_is_told(self) -> None:
         one = track(seed=3)
