@@ -12,18 +12,19 @@ import argparse
 import difflib
 import random
 import sys
-import time
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from queue import Queue
 from typing import Final, TypeAlias
 
 from .mutants import Mutant, mutants
+from .reach import whole_time
 from .trial import OUT_OF_TIME, SURVIVED, Trials, copied_tree
 
 Planted: TypeAlias = tuple[Path, Mutant]
@@ -124,6 +125,8 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1, help="copies of the tree that are tested at once (1)")
     parser.add_argument("--only", nargs="*", type=int, default=[], help="numbers of the errors to plant (all)")
+    parser.add_argument("--only-reaching", action="store_true", help="run the test files alone that reach the error")
+    parser.add_argument("--reach", type=Path, help="file of which test reaches what; kept for the next time")
     parser.add_argument("--tests", nargs="*", default=[], help="further test files and folders that count")
     parser.add_argument(
         "--leave-out", nargs="*", default=[], help="folders and files of the room that count no more, with their tests"
@@ -144,15 +147,15 @@ def main(words: list[str] | None = None) -> int:
     tests, left_out = (*room_tests(asked.room), *asked.tests), left_out_tests(asked.leave_out)
     with ExitStack() as kept:
         trees = [kept.enter_context(copied_tree(ROOT)) for _ in range(asked.workers)]
-        start = time.monotonic()
-        reach = trees[0] / ".reach.json"
-        if Trials(trees[0], tests, 3600.0, reach, left_out).look() != 0:
+        reach = asked.reach.resolve() if asked.reach else trees[0] / ".reach.json"
+        first = Trials(trees[0], tests, 3600.0, reach, asked.only_reaching, left_out)
+        if not reach.exists() and first.look() != 0:
+            reach.unlink(missing_ok=True)
             sys.exit(f"the tests fail without an error planted: {' '.join(tests)}")
-        limit = asked.limit_s or 60.0 + 5.0 * asked.workers * (time.monotonic() - start)
+        limit = asked.limit_s or 60.0 + 5.0 * asked.workers * whole_time(reach)
+        trials = [replace(first, tree=tree, limit=limit) for tree in trees]
         survivors, late = [], 0
-        for number, (one, verdict) in enumerate(
-            verdicts(planted, [Trials(tree, tests, limit, reach, left_out) for tree in trees]), 1
-        ):
+        for number, (one, verdict) in enumerate(verdicts(planted, trials), 1):
             print(f"{number} of {len(planted)}: {verdict}, {one[1].kind}, {one[0]}", file=sys.stderr, flush=True)
             late += verdict == OUT_OF_TIME
             if verdict == SURVIVED:

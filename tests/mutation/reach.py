@@ -102,3 +102,8 @@ def nearest(reach: Path, file: Path, line: int | None) -> list[str]:
         if any(place == str(file) and (line is None or first == line) for place, first in calls)
     ]
     return [name for _, name in sorted(calling)]
+
+
+def whole_time(reach: Path) -> float:
+    """Seconds that all tests took."""
+    return float(sum(seconds for seconds, _ in json.loads(reach.read_text(encoding="utf-8")).values()))

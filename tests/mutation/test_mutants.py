@@ -21,7 +21,7 @@ from tests.mutation.__main__ import (
     verdicts,
 )
 from tests.mutation.mutants import Mutant, mutants
-from tests.mutation.reach import function_at, nearest
+from tests.mutation.reach import function_at, nearest, whole_time
 from tests.mutation.trial import CAUGHT, OUT_OF_TIME, SURVIVED, Trials, copied_tree
 
 
@@ -100,6 +100,7 @@ def test_test_files_that_call_a_function_come_first_the_quick_ones_before(tmp_pa
     assert nearest(reach, Path("a.py"), 3) == ["quick.py", "slow.py"]
     assert nearest(reach, Path("a.py"), None) == ["quick.py", "other.py", "slow.py"]
     assert nearest(reach, Path("c.py"), None) == []
+    assert whole_time(reach) == pytest.approx(10.1)
 
 
 @pytest.fixture

@@ -46,6 +46,7 @@ class Trials:
     tests: tuple[str, ...]  # files and folders below the tree
     limit: float  # s for each mutant
     reach: Path | None = None  # which functions each test file calls, as `tests.mutation.reach` writes it
+    only_reaching: bool = False  # whether test files that do not call the changed function are left out
     left_out: tuple[str, ...] = ()  # test files and folders that do not run
 
     def verdict(self, path: Path, mutant: Mutant) -> str:
@@ -60,7 +61,8 @@ class Trials:
         try:
             file.write_text(mutant.planted(text), encoding="utf-8", newline="")
             status = self.status(first) if first else 0
-            status = status if status != 0 else self.status(without=first)
+            if status == 0 and not (first and self.only_reaching):
+                status = self.status(without=first)
         finally:
             file.write_bytes(source)
         return OUT_OF_TIME if status is None else CAUGHT if status else SURVIVED
