@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import count
+from typing import Literal
+from unittest.mock import patch
 
 import pytest
 
@@ -12,6 +16,7 @@ import pytest
 # processes test at once
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from skisnow.report.figures import drawing as figure_drawing
 from skisnow.report.figures.drawing import Drawing, Picture
 
 # what is started in the background is told to ignore Ctrl-C, which tests of an interrupt would wait for
@@ -36,3 +41,22 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
     for place in ("figures", "pictures"):
         monkeypatch.setattr(f"skisnow.report.{place}.pictured", empty)
+
+
+@contextmanager
+def without_png() -> Iterator[None]:
+    """It takes half of a figure's time: for tests of what the SVG and the words say."""
+    drawn_as = figure_drawing._drawn_as
+
+    def drawn(form: Literal["png", "svg"], drawing: Drawing) -> bytes:
+        return drawn_as(form, drawing) if form == "svg" else b""
+
+    with patch.object(figure_drawing, "_drawn_as", drawn):
+        yield
+
+
+@pytest.fixture
+def svg_alone() -> Iterator[None]:
+    """Empty files in place of PNGs."""
+    with without_png():
+        yield

@@ -102,23 +102,33 @@ def test_a_fit_is_told_with_what_was_before(straight: Path, capsys: Printed) -> 
 
 def test_out_writes_the_json_and_the_figure(straight: Path, tmp_path: Path, capsys: Printed) -> None:
     folder = tmp_path / "new" / "folder"
-    found = answer([str(straight), str(straight), "--out", str(folder)], capsys)
-    assert json.loads((folder / "compare.json").read_text(encoding="utf-8")) == found
+    other = straight.rename(straight.with_name("Straße.csv"))
+    found = answer([str(other), str(other), "--out", str(folder)], capsys)
+    text = (folder / "compare.json").read_text(encoding="utf-8")
+    assert json.loads(text) == found
+    assert text.startswith('{\n "')  # lines indented by one, as in every file of ours
+    assert "Straße.csv" in text
     assert (folder / "track_comparison.png").read_bytes().startswith(b"\x89PNG")
     assert "<svg" in (folder / "track_comparison.svg").read_text(encoding="utf-8")
 
 
-def test_latitude_and_longitude_come_into_the_slopes_frame(tmp_path: Path, capsys: Printed) -> None:
-    """A run due north over y m on the map is y/cos 10° long on a slope of 10°; no heights: it lies on the slope."""
+@pytest.mark.parametrize("azimuth", [0, 90])
+def test_latitude_and_longitude_come_into_the_slopes_frame(azimuth: int, tmp_path: Path, capsys: Printed) -> None:
+    """A run due north, or east, over y m on the map is y/cos 10° long on a slope of 10°; no heights: it lies on it."""
     metres = np.linspace(0.0, 30.0, 31)
     e_squared, sine = 0.00669437999, math.sin(math.radians(47.0))
-    degree = math.radians(6378137.0 * (1.0 - e_squared) / (1.0 - e_squared * sine**2) ** 1.5)  # meridian's radius
-    rows = [f"{t},{47.0 + y / degree!r},11.0" for t, y in enumerate(metres.tolist())]
+    vertical = 6378137.0 / math.sqrt(1.0 - e_squared * sine**2)
+    meridian = 6378137.0 * (1.0 - e_squared) / (1.0 - e_squared * sine**2) ** 1.5
+    if azimuth == 0:
+        places = [(47.0 + y / math.radians(meridian), 11.0) for y in metres.tolist()]
+    else:
+        places = [(47.0, 11.0 + y / math.radians(vertical * math.cos(math.radians(47.0)))) for y in metres.tolist()]
+    rows = [f"{t},{lat!r},{lon!r}" for t, (lat, lon) in enumerate(places)]
     (tmp_path / "north.csv").write_text("\n".join(["time,lat,lon", *rows]), encoding="utf-8")
     run = write(tmp_path / "run.csv", np.column_stack([metres / math.cos(math.radians(10.0)), 0.0 * metres]))
-    frame = ["--fall-line-azimuth-deg", "0", "--slope-angle-deg", "10"]
+    frame = ["--fall-line-azimuth-deg", str(azimuth), "--slope-angle-deg", "10"]
     found = answer([str(run), str(tmp_path / "north.csv"), *frame], capsys)
-    # the earth falls away from the plane by 30²/(2 · 6.4e6) m, 0.07 mm
+    # the earth falls away from the plane by 30²/(2 · 6.4e6) m, 0.07 mm, and a parallel bends to the pole by as much
     assert found["nearest"]["max_m"] < 1e-4
     assert found["arc_length"]["max_m"] < 1e-4
     assert found["measured"]["length_m"] == pytest.approx(30.0 / math.cos(math.radians(10.0)), rel=1e-6)

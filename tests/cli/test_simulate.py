@@ -90,7 +90,9 @@ def test_folder_holds_summary_track_file_and_report(tmp_path: Path, capsys: Prin
     folder = tmp_path / "new" / "run"
     assert main(["simulate", *ASKED, "--verify", "--out", str(folder)]) == 0
     assert {"summary.json", "track.csv", "run.nc", "report.html", "figures"} == {each.name for each in folder.iterdir()}
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    text = (folder / "summary.json").read_text(encoding="utf-8")
+    assert text.startswith('{\n "')  # lines indented by one, as in every file of ours
+    summary = json.loads(text)
     jsonschema.validate(summary, SCHEMA)
     with (folder / "track.csv").open(newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))

@@ -4,6 +4,7 @@ import hashlib
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -92,12 +93,28 @@ def test_from_add_to_export_in_words(shell: Shell, folder: Path, tmp_path: Path)
     out, told = shell.text("add", folder)
     id_ = out.split()[0]
     assert f"{id_}  Gröden: 2 files, 44 bytes, is kept\nchecked: errors" in out
+    assert out.endswith("(`skisnow check` lists them)\n")
     assert told == ""
     assert "was in the store already" in shell.text("add", folder)[0]
     assert shell.text("list")[0].startswith(f"{id_}  2")
     assert hashlib.sha256(RAW).hexdigest() in shell.text("show", id_)[0]
     assert str(tmp_path / "out") in shell.text("export", id_, "--out", tmp_path / "out")[0]
     assert shell.text("verify") == ("All is sound.\n", "")
+
+
+@pytest.mark.parametrize(("counts", "lists"), [((0, 0), False), ((1, 0), True), ((0, 2), True)])
+def test_whoever_has_something_to_look_at_is_told_where(
+    counts: tuple[int, int], lists: bool, shell: Shell, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    add = Store.add
+
+    def counted(store: Store, *words: Any, **named: Any) -> Any:
+        return replace(add(store, *words, **named), n_errors=counts[0], n_warnings=counts[1])
+
+    monkeypatch.setattr(Store, "add", counted)
+    told = shell.text("add", folder)[0]
+    assert f"checked: errors {counts[0]}, warnings {counts[1]}" in told
+    assert ("(`skisnow check` lists them)" in told) == lists
 
 
 def test_an_empty_store(shell: Shell, place: Path) -> None:

@@ -119,14 +119,14 @@ class Kind:
     read: Callable[[Path], object]
 
 
-def _campaign(path: Path) -> None:
+def _campaign(path: Path) -> object:
     try:
-        read_campaign_file(decode(path.read_bytes()).text, [])
+        return read_campaign_file(decode(path.read_bytes()).text, [])
     except UnreadableTextError:
-        return
+        return None
 
 
-def _identify(path: Path) -> None:
+def _identify(path: Path) -> object:
     given = given_scenario(path)
     own = given_parameters(given.identify)
     _clock(given, None)
@@ -136,12 +136,12 @@ def _identify(path: Path) -> None:
     asked = scenario_file(path)
     read = collected(given, asked, [cells], ["friction.mu_0"])
     keys = keys_of_runs(["friction.mu_0"], read.runs)
-    parameter_table(keys, values_to_begin_with(asked, read, own), own)
+    return parameter_table(keys, values_to_begin_with(asked, read, own), own)
 
 
-def _changes(path: Path) -> None:
+def _changes(path: Path) -> object:
     words = [line.replace("\0", "") for line in path.read_bytes().decode("utf-8", "surrogateescape").split("\n")]
-    scenario_file("carved-46m", changes=dict(change_of(word) for word in words if "=" in word))
+    return scenario_file("carved-46m", changes=dict(change_of(word) for word in words if "=" in word))
 
 
 SCENARIO = scenario_text("carved-46m").encode()

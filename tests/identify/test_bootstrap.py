@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 
 from skisnow.errors import ParameterError
 from skisnow.identify import Identification, identify
-from skisnow.identify.bootstrap import BootstrapBy, bootstrapped
+from skisnow.identify.bootstrap import BootstrapBy, _resampled, bootstrapped
 from skisnow.identify.observations import Fit, Kind, Values
 from skisnow.identify.parameter import Parameter
 from skisnow.identify.problem import problem_of
@@ -65,13 +65,19 @@ def resampled(by: BootstrapBy, seed: int) -> tuple[Decay, Identification]:
     return decay, bootstrapped(found, solution, 80, by, np.random.default_rng(4), lambda _: None)
 
 
+def test_what_is_drawn_scatters_about_nothing() -> None:
+    """Each series without its own mean: of constant ones nothing is left."""
+    residuals = np.concatenate([np.full(7, 3.0), np.full(5, -2.0)])
+    assert _resampled(residuals, [7, 5], np.random.default_rng(1)).tolist() == [0.0] * 12
+    rising = _resampled(np.arange(9.0) + 5.0, [9], np.random.default_rng(1))
+    assert set(rising.tolist()) <= set((np.arange(9.0) - 4.0).tolist())
+
+
 def refits_by_scipy(decay: Decay, found: Identification, linear: np.ndarray) -> np.ndarray:
     """The same resamples fitted by another program.
 
     What was drawn follows from the linear samples' own draws: the same numbers in the same order.
     """
-    from skisnow.identify.bootstrap import _resampled
-
     a, b = (float(found[key].value or 0.0) for key in ("a", "b"))
     best = decay.residuals([{"a": a, "b": b}])[0]
     assert best is not None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -128,6 +130,30 @@ def test_side_of_the_slope_counts() -> None:
     assert own.demand(right, math.inf) == pytest.approx(-across, rel=1e-9)
 
 
+def test_a_mean_radius_weighs_each_by_its_variance() -> None:
+    """10 m ± 1 m and 16 m ± 2 m: (10 + 16/4)/(1 + 1/4) = 11.2 m ± 1/√1.25 m; one without a number counts nothing."""
+    radius, sd = np.array([10.0, 16.0, np.nan]), np.array([1.0, 2.0, 1.0])
+    ones = np.ones(3)
+    found = grooves(Marks("three", ones, ones, radius, ones, ones, sd))
+    assert found.mean_radius == pytest.approx(11.2)
+    assert found.mean_radius_sd == pytest.approx(1.25**-0.5)
+    assert math.isnan(grooves().mean_radius) and math.isnan(grooves().mean_radius_sd)
+
+
+def test_a_profile_is_as_steep_as_where_the_run_starts() -> None:
+    """It falls by tan 12° at x = 7 m: the pull of the slope on a turn across it is that of 12°."""
+    own = grooves()
+    scenario = own.asked.scenario
+    slope = SimpleNamespace(gradients=lambda x: -math.tan(math.radians(12.0)) if x == 7.0 else 0.0, gravity=9.81)
+    start = replace(scenario.start, x=7.0)
+    asked = SimpleNamespace(
+        scenario=SimpleNamespace(slope=slope, start=start, ski=scenario.ski), values=own.asked.values
+    )
+    pulled = MarkGrooves(own.marks, cast("Any", asked)).demand({"start.heading_deg": 90.0}, math.inf)
+    mass = scenario.sledge.mass + 2.0 * scenario.ski.mass
+    assert pulled == pytest.approx(mass * 9.81 * math.sin(math.radians(12.0)), rel=1e-9)
+
+
 def test_elastic_snow_keeps_no_mark() -> None:
     with pytest.raises(ParameterError, match="elastic snow keeps no mark"):
         identify("carved-46m", marks(2e-3, 4e-3, 16.0), "H_V", changes={"snow.unloading_ratio": 1.0})
@@ -179,6 +205,8 @@ def test_the_strength_alone_from_marks_of_an_edge_that_held(stated: bool) -> Non
     radius = float(np.mean(data.turn_radius))
     needed = (scenario.sledge.mass + 2.0 * scenario.ski.mass) * 7.0**2 / radius / (2.0 * groove.grip_area) / 1e6
     assert low == pytest.approx(needed * (1.0 - 1.645 * 0.02 / 2.0), rel=1e-3)  # four places, 1/R, one-sided
+    assert low is not None
+    assert f"the turn needed {needed:.3g} N/mm² (95 %: at least {low:.3g})" in found.warnings[0]
     assert len(found.fits) == 1
     assert found.data == (("marks.csv", "marks left in the snow (places: 4)"),)
     assert identification_dict(found)["parameters"]["snow.S_f_N_per_mm2"]["interval"] == [low, None]

@@ -165,6 +165,50 @@ def test_a_prior_pulls_as_much_as_it_knows() -> None:
     assert found.standard_error == pytest.approx(free / math.sqrt(2.0), rel=0.01)
 
 
+def test_a_prior_is_weighed_by_the_noise_that_the_residuals_show() -> None:
+    """Nobody states an accuracy; the noise is a fifth of the nominal 10 ms, and the pull as with that stated."""
+    changes = CHANGES | {"drag.drag_area_m2": AREA}
+    noise = 0.002 * np.random.default_rng(5).standard_normal(len(STATION))
+    data = cells(truth() + noise, sd=None)
+    alone = identify("carved-46m", data, "mu_0", changes=changes)["mu_0"]
+    assert alone.value is not None and alone.standard_error is not None
+    mean = alone.value + 2.0 * alone.standard_error
+    text = f'[identify."friction.mu_0"]\nprior_mean = {mean!r}\nprior_sd = {alone.standard_error!r}\n'
+    found = identify(with_section(text), data, "mu_0", changes=changes)["mu_0"]
+    assert found.value == pytest.approx(alone.value + alone.standard_error, abs=0.1 * alone.standard_error)
+
+
+def test_a_free_clock_is_set_by_the_times_that_are_known_best() -> None:
+    """The sum of the residuals, each over its variance, is nothing."""
+    sd = np.where(np.arange(len(STATION)) % 2, 0.002, 0.02)
+    noise = sd * np.random.default_rng(2).standard_normal(len(STATION))
+    data = PhotoCells("cells.csv", (PhotoCellRun("1", STATION, truth() + 5.0 + noise, sd),))
+    found = identify("carved-46m", data, "mu_0,drag_area", changes=CHANGES, clock_is_free=True)
+    (fit,) = found.fits
+    weight = fit.sd[:, 0] ** -2.0
+    assert np.sum(weight * fit.residual[:, 0]) / np.sum(weight) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_as_many_stations_as_times_and_at_least_one() -> None:
+    with pytest.raises(ParameterError, match="run a: 2 stations and 3 times"):
+        PhotoCellRun("a", STATION[:2], truth()[:3])
+    with pytest.raises(ParameterError, match="run a: 0 stations and 0 times"):
+        PhotoCellRun("a", STATION[:0], truth()[:0])
+
+
+def test_what_is_being_done_is_told() -> None:
+    said: list[str] = []
+    identify(
+        "carved-46m",
+        cells(truth()),
+        "mu_0,drag_area",
+        changes=CHANGES,
+        profile=True,
+        told=said.append,
+    )
+    assert [words for words in said if "profile of" in words] == ["profile of mu_0", "profile of drag_area"]
+
+
 def with_section(text: str) -> Path:
     import tempfile
 

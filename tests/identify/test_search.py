@@ -48,6 +48,21 @@ def test_a_jacobian_of_a_search_is_asked_at_once() -> None:
     assert set(asked[1:]) <= {2, 4}  # trial steps, central differences
 
 
+def test_differences_are_taken_over_a_standard_error() -> None:
+    """Residuals 40 x and 300 y of known noise: 1/40, and 1/300 held to the smallest step."""
+    asked: list[Places] = []
+
+    def residuals(many: Places) -> list[np.ndarray | None]:
+        asked.append(many)
+        return [np.array([40.0 * (a - 0.3), 300.0 * (b - 0.2)]) for a, b in many]
+
+    manner = replace(Manner(), accuracy_is_stated=True, keeps_jacobian=0.0, smallest_step=0.01, largest_step=0.05)
+    Search(residuals, -FAR, FAR, manner).run(np.zeros(2))
+    central = [many for many in asked[1:] if len(many) == 4][-1]
+    assert (central[0] - central[1]) / 2.0 == pytest.approx([0.025, 0.0])
+    assert (central[2] - central[3]) / 2.0 == pytest.approx([0.0, 0.01])
+
+
 def test_interrupts_keep_the_best_so_far() -> None:
     calls = 0
 
@@ -92,6 +107,7 @@ def test_uncertainty_is_that_of_linear_least_squares() -> None:
     covariance = np.linalg.inv(design.T @ design)
     assert found.covariance == pytest.approx(covariance, rel=1e-8)
     assert found.correlation[0, 2] == pytest.approx(covariance[0, 2] / np.sqrt(covariance[0, 0] * covariance[2, 2]))
+    assert found.alone == pytest.approx(1.0 / np.linalg.norm(design, axis=0))
     assert not found.groups
 
 

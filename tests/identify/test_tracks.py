@@ -37,7 +37,10 @@ def found_from(data: Any, free: str = "mu_0,speed", **more: Any) -> Identificati
 class TestStraight:
     def test_a_track_without_noise_gives_the_truth(self) -> None:
         """The search may end a fifth of a standard error (3e-4, 3e-3 m/s) off; a linear model ends far nearer."""
-        found = found_from(track())
+        said: list[str] = []
+        found = found_from(track(), told=said.append)
+        assert said[:2] == ["starting; 1 simulated runs", "starting; 2 simulated runs"]
+        assert any("last steps with the scenario's own solver" in words for words in said)
         assert found.outcome == "converged"
         assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
         assert found["speed"].value == pytest.approx(TRUE_SPEED, abs=1e-4)
@@ -54,8 +57,11 @@ class TestStraight:
         """Third differences of 2 x 41 numbers, by their median: right to some 20 %; half is allowed."""
         one = track(seed=2, stated=False)
         assert estimated_noise(one.time, one.place[:, :2]) == pytest.approx(SD, rel=0.5)
-        stated = found_from(track(seed=2))["mu_0"].standard_error
-        assert found_from(one)["mu_0"].standard_error == pytest.approx(stated, rel=0.3)
+        found, known = found_from(one), found_from(track(seed=2))
+        assert found["mu_0"].standard_error == pytest.approx(known["mu_0"].standard_error, rel=0.3)
+        law = "95 % intervals from the curvature of the sum of squares, by "
+        assert f"{law}Student's t with the noise that the residuals show; accuracy estimated" in found.methods
+        assert f"{law}the normal distribution; accuracy stated by the data" in known.methods
 
     def test_noise_beyond_the_stated_accuracy_widens_the_intervals_and_is_told(self) -> None:
         one = track(seed=3)

@@ -12,18 +12,19 @@ import argparse
 import difflib
 import random
 import sys
-import time
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from queue import Queue
 from typing import Final, TypeAlias
 
 from .mutants import Mutant, mutants
+from .reach import whole_time
 from .trial import OUT_OF_TIME, SURVIVED, Trials, copied_tree
 
 Planted: TypeAlias = tuple[Path, Mutant]
@@ -45,6 +46,18 @@ def room_tests(room: str, *, root: Path = ROOT) -> tuple[str, ...]:
     """The room's tests and the examples in its docstrings."""
     named = [f"tests/{room}", f"tests/test_{room}.py", f"{SOURCE}/{room}", f"{SOURCE}/{room}.py"]
     return tuple(name for name in named if (root / name).exists())
+
+
+def files_beside(parts: Iterable[str], files: list[Path]) -> list[Path]:
+    """Files that are in none of these folders and files of the program."""
+    return [path for path in files if not any(path.is_relative_to(SOURCE / part) for part in parts)]
+
+
+def left_out_tests(parts: Iterable[str]) -> tuple[str, ...]:
+    """The tests and doctests of these folders and files of the program, whether there are any or not."""
+    places = [Path(part) for part in parts]
+    tests = [f"tests/{place.parent / f'test_{place.name}' if place.suffix else place}" for place in places]
+    return (*tests, *(str(SOURCE / place) for place in places))
 
 
 def changed_lines(path: Path, mutant: Mutant, *, root: Path = ROOT) -> str:
@@ -111,7 +124,13 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("-n", type=int, default=50, help="number of errors (50)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1, help="copies of the tree that are tested at once (1)")
+    parser.add_argument("--only", nargs="*", type=int, default=[], help="numbers of the errors to plant (all)")
+    parser.add_argument("--only-reaching", action="store_true", help="run the test files alone that reach the error")
+    parser.add_argument("--reach", type=Path, help="file of which test reaches what; kept for the next time")
     parser.add_argument("--tests", nargs="*", default=[], help="further test files and folders that count")
+    parser.add_argument(
+        "--leave-out", nargs="*", default=[], help="folders and files of the room that count no more, with their tests"
+    )
     parser.add_argument("--file", default="", help="only files of the room whose path contains this")
     parser.add_argument(
         "--limit-s", type=float, help="time for each (default: a minute and five times what all tests take)"
@@ -122,16 +141,21 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
 def main(words: list[str] | None = None) -> int:
     """Number of errors that survived."""
     asked = asked_of(words)
-    planted = drawn([path for path in files_of(asked.room) if asked.file in str(path)], asked.n, asked.seed)
-    tests = (*room_tests(asked.room), *asked.tests)
+    files = files_beside(asked.leave_out, [path for path in files_of(asked.room) if asked.file in str(path)])
+    planted = drawn(files, asked.n, asked.seed)
+    planted = [one for number, one in enumerate(planted, 1) if number in (asked.only or [number])]
+    tests, left_out = (*room_tests(asked.room), *asked.tests), left_out_tests(asked.leave_out)
     with ExitStack() as kept:
         trees = [kept.enter_context(copied_tree(ROOT)) for _ in range(asked.workers)]
-        start = time.monotonic()
-        if Trials(trees[0], tests, 3600.0).status() != 0:
+        reach = asked.reach.resolve() if asked.reach else trees[0] / ".reach.json"
+        first = Trials(trees[0], tests, 3600.0, reach, asked.only_reaching, left_out)
+        if not reach.exists() and first.look() != 0:
+            reach.unlink(missing_ok=True)
             sys.exit(f"the tests fail without an error planted: {' '.join(tests)}")
-        limit = asked.limit_s or 60.0 + 5.0 * asked.workers * (time.monotonic() - start)
+        limit = asked.limit_s or 60.0 + 5.0 * asked.workers * whole_time(reach)
+        trials = [replace(first, tree=tree, limit=limit) for tree in trees]
         survivors, late = [], 0
-        for number, (one, verdict) in enumerate(verdicts(planted, [Trials(tree, tests, limit) for tree in trees]), 1):
+        for number, (one, verdict) in enumerate(verdicts(planted, trials), 1):
             print(f"{number} of {len(planted)}: {verdict}, {one[1].kind}, {one[0]}", file=sys.stderr, flush=True)
             late += verdict == OUT_OF_TIME
             if verdict == SURVIVED:

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from tests.mutation.__main__ import changed_lines, drawn, files_of, place_of, room_tests, verdicts
+from tests.mutation.__main__ import (
+    changed_lines,
+    drawn,
+    files_beside,
+    files_of,
+    left_out_tests,
+    place_of,
+    room_tests,
+    verdicts,
+)
 from tests.mutation.mutants import Mutant, mutants
+from tests.mutation.reach import function_at, nearest, whole_time
 from tests.mutation.trial import CAUGHT, OUT_OF_TIME, SURVIVED, Trials, copied_tree
 
 
@@ -59,6 +71,38 @@ def test_errors_of_a_real_room_are_small_and_drawn_by_seed() -> None:
     assert room_tests("track") == ("tests/track", "src/skisnow/track")
 
 
+def test_parts_that_are_left_out_have_no_tests_either() -> None:
+    files = files_of("track")
+    left = files_beside(["track/marks.py"], files)
+    assert [path for path in files if path not in left] == [Path("src/skisnow/track/marks.py")]
+    assert files_beside(["track"], files) == []
+    assert left_out_tests(["simulate/motion", "simulate/batch.py"]) == (
+        "tests/simulate/motion",
+        "tests/simulate/test_batch.py",
+        "src/skisnow/simulate/motion",
+        "src/skisnow/simulate/batch.py",
+    )
+
+
+def test_the_function_around_a_character_is_found() -> None:
+    source = "A = 1\n\n@cache\ndef f(x=2):\n    def g():\n        return 3\n    return 4\n"
+    assert [function_at(source, source.index(digit)) for digit in "1234"] == [None, None, 5, 3]
+
+
+def test_test_files_that_call_a_function_come_first_the_quick_ones_before(tmp_path: Path) -> None:
+    reach = tmp_path / "reach.json"
+    calls = {
+        "slow.py": [9.0, [["a.py", 3]]],
+        "quick.py": [0.1, [["a.py", 3], ["b.py", 3]]],
+        "other.py": [1.0, [["a.py", 7]]],
+    }
+    reach.write_text(json.dumps(calls))
+    assert nearest(reach, Path("a.py"), 3) == ["quick.py", "slow.py"]
+    assert nearest(reach, Path("a.py"), None) == ["quick.py", "other.py", "slow.py"]
+    assert nearest(reach, Path("c.py"), None) == []
+    assert whole_time(reach) == pytest.approx(10.1)
+
+
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
     """A program with a room of one function, tests that know half of it, and a file that git does not have."""
@@ -85,12 +129,15 @@ def trials(tree: Path) -> Iterator[Trials]:
 @pytest.mark.slow
 def test_what_no_test_asks_for_survives(tree: Path, trials: Trials) -> None:
     """The product is asked for, the limit is not; a loop without end is caught by time; the copy is left as it was."""
-    assert trials.status() == 0
+    trials = replace(trials, reach=trials.tree / "reach.json")
+    assert trials.look() == 0
+    assert trials.reach is not None
     (path,) = files_of("toy", root=tree)
     source = (tree / path).read_text()
     product = Mutant("arithmetic", source.index("*"), source.index("*") + 1, "/")
     limit = Mutant("comparison", source.index(">"), source.index(">") + 1, ">=")
     found = dict(verdicts([(path, product), (path, limit)], [trials]))
+    assert nearest(trials.reach, path, function_at(source, product.start)) == ["tests/toy/test_area.py"]
     assert found == {(path, product): CAUGHT, (path, limit): SURVIVED}
     assert place_of(path, limit, root=tree) == ("toy/area.py", "if a > 9:", "if a >= 9:")
     start = source.index("return a * b")

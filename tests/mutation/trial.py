@@ -8,12 +8,16 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
+
+import pytest
 
 from .mutants import Mutant
+from .reach import CALLS, CURRENT, PLACE, SOURCE, function_at, nearest
 
 CAUGHT = "caught"
 OUT_OF_TIME = "out of time"
@@ -41,41 +45,59 @@ class Trials:
     tree: Path
     tests: tuple[str, ...]  # files and folders below the tree
     limit: float  # s for each mutant
+    reach: Path | None = None  # which functions each test file calls, as `tests.mutation.reach` writes it
+    only_reaching: bool = False  # whether test files that do not call the changed function are left out
+    left_out: tuple[str, ...] = ()  # test files and folders that do not run
 
     def verdict(self, path: Path, mutant: Mutant) -> str:
-        """Whether the tests catch the error in this file (given from the tree's top); the file is itself again."""
+        """Whether the tests catch the error in this file (given from the tree's top); the file is itself again.
+
+        The test files that call the changed function are asked before the others.
+        """
         file = self.tree / path
         source = file.read_bytes()
+        text = source.decode()
+        first = nearest(self.reach, path, function_at(text, mutant.start)) if self.reach else []
         try:
-            file.write_text(mutant.planted(source.decode()), encoding="utf-8", newline="")
-            status = self.status(path)
+            file.write_text(mutant.planted(text), encoding="utf-8", newline="")
+            status = self.status(first) if first else 0
+            if status == 0 and not (first and self.only_reaching):
+                status = self.status(without=first)
         finally:
             file.write_bytes(source)
         return OUT_OF_TIME if status is None else CAUGHT if status else SURVIVED
 
-    def status(self, path: Path | None = None) -> int | None:
-        """Exit status of the tests, None where time ran out; those that are named after `path` come first."""
-        first = (
-            [str(each.relative_to(self.tree)) for each in self.tree.glob(f"tests/**/test_{path.stem}.py")]
-            if path
-            else []
-        )
-        words = [
-            sys.executable,
-            "-m",
-            "pytest",
-            "-x",
-            "-q",
-            "-p",
-            "no:cacheprovider",
-            "-p",
-            "no:xdist",
-            "-p",
-            "no:randomly",
-        ]
-        words += ["--hypothesis-profile=ci", "--doctest-modules", *dict.fromkeys([*first, *self.tests])]
-        own = {"PYTHONPATH": str(self.tree / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
-        return _status(words, self.tree, os.environ | own, self.limit)
+    def look(self) -> int | None:
+        """Exit status of all tests; what they reach is written down."""
+        assert self.reach is not None
+        own = Path(__file__).parent
+        paths = os.pathsep.join(map(str, (self.tree / "src", own, own / "children")))
+        with tempfile.TemporaryDirectory(prefix="mutation-reach-") as folder:
+            calls = Path(folder) / "calls"
+            calls.touch()
+            told = {PLACE: self.reach, CURRENT: Path(folder) / "current", CALLS: calls, SOURCE: self.tree / "src"}
+            environment = {name: str(path) for name, path in told.items()}
+            return self.status(more=("-p", "reach"), environment={"PYTHONPATH": paths, **environment})
+
+    def status(
+        self,
+        tests: Collection[str] = (),
+        *,
+        without: Collection[str] = (),
+        more: Collection[str] = (),
+        environment: Mapping[str, str] = MappingProxyType({}),
+    ) -> int | None:
+        """Exit status of these tests or all, 0 where there are none; None where time ran out."""
+        words = [sys.executable, "-m", "pytest", "-x", "-q", "--hypothesis-profile=ci", "--doctest-modules"]
+        words += [word for name in ("cacheprovider", "xdist", "randomly") for word in ("-p", f"no:{name}")]
+        words += [*more, *(f"--ignore={name}" for name in (*self.left_out, *without)), *(tests or self.tests)]
+        own = {
+            "PYTHONPATH": str(self.tree / "src"),
+            "PYTHONDONTWRITEBYTECODE": "1",
+        }
+        outer = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
+        status = _status(words, self.tree, {**outer, **own, **environment}, self.limit)
+        return 0 if status == pytest.ExitCode.NO_TESTS_COLLECTED else status
 
 
 def _status(words: list[str], folder: Path, environment: dict[str, str], limit: float) -> int | None:

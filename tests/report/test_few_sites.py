@@ -14,7 +14,7 @@ from skisnow.report.sentences.caveats import caveats
 from skisnow.report.sentences.key_results import key_results
 from skisnow.report.sentences.regressions import regression_sentences
 
-from .conftest import analysis_of, first_series
+from .conftest import Reported, altered, analysis_of, first_series
 
 
 def plain(markup: str) -> str:
@@ -36,6 +36,16 @@ def test_the_first_sentence_is_about_the_sites(material: Material) -> None:
     assert "without an interval: fewer than 4 sites" in hardness
 
 
+def test_one_site_has_an_interval_over_its_experiments(campaign: Campaign) -> None:
+    one = replace(campaign, name="real", shear=None, penetration=first_series(campaign, 30))
+    analysis = analysis_of(one)
+    results = analysis.results
+    hardness = plain(key_results(Material(analysis))[0])
+    own = next(row for row in results["comparisons"] if row["quantity"] == "H_V_N_per_mm3")
+    assert f"{significant(own['own'])} N/mm³ (95 % interval {interval(own['own_interval'])}" in hardness
+    assert hardness.endswith("30 of 30 penetration experiments used, at 1 site.")
+
+
 def test_no_slope_on_two_densities_is_called_significant(material: Material) -> None:
     relations = plain(key_results(material)[-1])
     assert relations.startswith("Relations: significant at 5 %: none; not significant: none; not judged")
@@ -53,3 +63,14 @@ def replace_warnings(material: Material, warnings: list[str]) -> Material:
     found = material.analysis.penetration
     assert found is not None
     return Material(replace(material.analysis, penetration=replace(found, warnings=tuple(warnings))))
+
+
+def test_relations_stand_where_their_p_value_puts_them(reference: Reported) -> None:
+    results = reference.results
+    rows = [row for row in results["regressions"] if row["p"] is not None][:4]
+    judged = [row | {"p": p, "interval_by_site": None} for row, p in zip(rows, (0.011, 0.05, 0.049, 0.6), strict=True)]
+    other = altered(reference.analysis, results | {"regressions": judged})
+    relations = plain(key_results(Material(other))[-1])
+    yes, no = relations.split("; not significant: ")
+    assert re.findall(r"p = ([0-9.]+)", yes) == ["0.011", "0.049"]
+    assert re.findall(r"p = ([0-9.]+)", no.partition(". How large")[0]) == ["0.050", "0.60"]

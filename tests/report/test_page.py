@@ -208,6 +208,7 @@ def test_synthetic_stands_wherever_the_numbers_do(reference: Reported) -> None:
         assert path.suffix == ".csv" or "Synthetic data." in path.read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("svg_alone")
 def test_a_measured_campaign_is_not_called_synthetic(campaign: Campaign, tmp_path: Path) -> None:
     found = reported(replace(campaign, name="Hintertux", place="glacier", penetration=None), tmp_path)
     page = re.sub(r"base64,[A-Za-z0-9+/=]+", "", found.html)
@@ -217,6 +218,7 @@ def test_a_measured_campaign_is_not_called_synthetic(campaign: Campaign, tmp_pat
         assert "synthetic" not in path.read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("svg_alone")
 def test_names_are_text_and_never_markup(campaign: Campaign, tmp_path: Path) -> None:
     assert campaign.shear is not None
     shear = replace(campaign.shear, site=tuple(f"{_HOSTILE} {name}" for name in campaign.shear.site))
@@ -248,6 +250,7 @@ def test_what_is_not_stated_is_said(campaign: Campaign, tmp_path: Path) -> None:
     assert not (tmp_path / "figures" / "fig06_hardness_density.svg").exists()
 
 
+@pytest.mark.usefixtures("svg_alone")
 @pytest.mark.parametrize(
     ("case", "figures"),
     [

@@ -16,8 +16,10 @@ from skisnow.simulate.run import LOST, STORED, Run, SkiHistory
 from skisnow.simulate.scenario.keys import SCENARIO_KEYS
 from skisnow.simulate.scenario.values import in_sections, scenario_values
 
+from ..conftest import without_png
 from .runs import circle_run
 
+pytestmark = pytest.mark.usefixtures("svg_alone")
 CHECKED = {"solver.elements": {"was": 40.0, "now": 80.0, "end_moves_cm": 0.125, "outcome": "finished"}}
 
 
@@ -53,7 +55,8 @@ def run() -> Run:
 @pytest.fixture(scope="module")
 def folder(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("run")
-    write_run_report(run, summary_of(run), folder)
+    with without_png():
+        write_run_report(run, summary_of(run), folder)
     return folder
 
 

@@ -55,6 +55,20 @@ def test_few_sites_come_first_with_their_comparison_and_no_interval_over_them(ca
     assert density.endswith("not judged (values of the predictor: 2)")
 
 
+def test_many_regressions_and_sites_are_cut_and_the_rest_counted(reference: Reported) -> None:
+    row = next(row for row in reference.results["regressions"] if row["p"] is not None)
+    sites = [each | {"site": f"{each['site']} {n}"} for each in reference.results["site_means"] for n in (1, 2)]
+    for count in (20, 21, 23):
+        text = summary(reference.results | {"regressions": [row] * count, "site_means": sites})
+        assert text.count(f"  {row['response']} on {row['terms'][1]}") == 20
+        assert (f"  and {count - 20} more in results.json" in text) == (count > 20)
+        assert "not judged: with fewer" not in text
+    counts = [sum(each["quantity"] == key for each in sites) for key in ("H_V_N_per_mm3", "S_f_N_per_mm2")]
+    for count in counts:
+        assert (f"  and {count - 8} more sites in results.json" in text) == (count > 8)
+    assert max(counts) > 8
+
+
 def test_a_campaign_with_nothing_has_a_summary(campaign: Campaign) -> None:
     silent = replace(campaign, penetration=None, shear=None, gauge_resolution=None, load_uncertainty=None)
     text = summary(results_of(silent))

@@ -6,8 +6,10 @@ import csv
 import io
 from dataclasses import replace
 
+from skisnow.report.material import Material
 from skisnow.report.table import Column, Table
 from skisnow.report.table_csv import table_csv
+from skisnow.report.tables import tables_of
 
 from .conftest import Reported
 
@@ -72,3 +74,32 @@ def test_the_report_s_experiments_equal_the_results(reference: Reported) -> None
     low, high = zip(*(row["H_V_interval_N_per_mm3"] for row in experiments), strict=True)
     assert [float(row["H_V_N_per_mm3_low"]) for row in rows] == list(low)
     assert [float(row["H_V_N_per_mm3_high"]) for row in rows] == list(high)
+
+
+HEADS = {
+    "sites": "site penetration_n penetration_used H_V_N_per_mm3 H_V_range_N_per_mm3 shear_n shear_used S_f_N_per_mm2 "
+    "S_f_range_N_per_mm2",
+    "corrections": "file row experiment column old new who when why",
+    "warnings": "severity code file row column experiment value allowed action",
+    "models": "row selected a0 a1 b0 b1 at_bound n_parameters rmse_N rmse_dof_N rmse_free_N printed_rmse_N",
+    "model_tests": "full reduced F df1 df2 p rmse_change_percent valid_classically",
+    "errors_in_depth": "row procedure a0 a1 b0 b1 at_bound rmse_N rmse_free_N",
+    "hardness_by_procedure": "experiment site used H_V_N_per_mm3 H_V_fitted_N_per_mm3 relative_scatter",
+    "seating_distribution": "quantile depth_offset_mm H_V_change_percent",
+    "seating_largest": "experiment site edge_angle_deg H_V_N_per_mm3 depth_offset_mm H_V_change_percent",
+    "seating": "experiment site used depth_offset_mm H_V_change_percent",
+    "regressions": "response predictor group n intercept slope slope_by_site rmse rmse_dof r2 F p",
+    "site_comparisons": "quantity site_a site_b ratio p n_for_10_percent",
+    "comparisons": "source quantity value range own own_range own_over_published",
+    "marks": "code sentence excludes penetration_n shear_n experiments",
+    "penetration_experiments": "experiment site tool edge_angle_deg n_loads used flags H_e_N_per_mm H_A_N_per_mm2 "
+    "H_V_N_per_mm3",
+    "shear_experiments": "experiment site plate edge_angle_deg depth_mm F_t_N S_f_N_per_mm2 used flags",
+    "files": "file sha256",
+}
+"""What other programs read the tables by."""
+
+
+def test_columns_of_every_table_have_their_names(reference: Reported) -> None:
+    tables = tables_of(Material(reference.analysis))
+    assert {name: " ".join(column.key for column in table.columns) for name, table in tables.items()} == HEADS

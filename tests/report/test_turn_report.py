@@ -27,6 +27,7 @@ from skisnow.simulate.run import Run
 from skisnow.snow import SnowProperties
 from skisnow.units import N_PER_MM2, N_PER_MM3
 
+from ..conftest import without_png
 from .runs import RADIUS, circle_run
 
 SNOW = SnowProperties(
@@ -73,7 +74,8 @@ def chain() -> TurnChain:
 @pytest.fixture(scope="module")
 def folder(chain: TurnChain, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("turn")
-    write_turn_report(chain, folder)
+    with without_png():
+        write_turn_report(chain, folder)
     return folder
 
 

@@ -1,15 +1,20 @@
 """The batch runner: the same rows whatever the workers and interruptions."""
 
 import itertools
+import os
+import signal
 from collections.abc import Iterator
+from functools import partial
+from multiprocessing import Pipe
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
 from skisnow.errors import OutputError, ParameterError
 from skisnow.simulate.batch import run_batch
 from skisnow.simulate.batch_file import KeptRows, row_text
+from skisnow.simulate.worker_process import begin_worker
 
 POINTS = [[("n", n), ("third", n / 3.0), ("text", 'a "quoted", ü\nline')] for n in range(25)]
 ROWS = [dict(point) for point in POINTS]
@@ -37,6 +42,38 @@ def place(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("workers", [1, 2, 3])
 def test_rows_are_in_the_order_of_the_points(workers: int) -> None:
     assert run_batch(POINTS, dict, workers=workers) == ROWS
+
+
+def own_process(_point: Any) -> dict[str, Any]:
+    return {"process": os.getpid()}
+
+
+@pytest.mark.parametrize(("workers", "points", "own"), [(1, 4, True), (2, 1, True), (2, 4, False)])
+def test_other_processes_are_started_for_several_points_alone(workers: int, points: int, own: bool) -> None:
+    rows = run_batch(POINTS[:points], partial(own_process), workers=workers)
+    assert {row["process"] == os.getpid() for row in rows} == {own}
+
+
+def test_a_row_that_cannot_be_kept_is_told_with_its_file(place: Path) -> None:
+    class Full:
+        def write(self, _: bytes) -> None:
+            raise OSError(28, "No space left on device")
+
+    kept = KeptRows(place, {}, cast("Any", Full()))
+    with pytest.raises(OutputError, match=r"rows\.partial cannot be written: No space left on device"):
+        kept.add([(0, row_text({}))])
+    assert kept.rows == {}
+
+
+def test_a_worker_leaves_an_interrupt_to_its_parent() -> None:
+    before = signal.getsignal(signal.SIGINT)
+    parent, child = Pipe()
+    try:
+        begin_worker(child)
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        parent.send("the thread ends, and not the process")
+        signal.signal(signal.SIGINT, before)
 
 
 def test_nothing_to_do_is_done() -> None:

@@ -122,9 +122,22 @@ def test_an_open_balance_is_warned_of() -> None:
     assert run_warnings(still) == ()  # less than 1 J
 
 
+def test_energies_stand_at_both_ends_and_the_heading_at_the_last() -> None:
+    run = straight_run(ASKED.scenario)
+    rising = np.linspace(1.0, 5.0, len(run.time))
+    found = summary_dict(replace(run, heading=rising / 10.0, energies=dict.fromkeys(run.energies, rising)))
+    assert found["end"]["heading_deg"] == pytest.approx(math.degrees(0.5))
+    energies = found["energies"]
+    assert {energies[name] for name in energies if name.endswith("_start_J")} == {1.0}
+    assert {energies[name] for name in energies if not name.endswith("_start_J")} == {5.0}
+
+
 def test_energy_open_is_an_outcome_of_the_schema() -> None:
     found = summary_dict(replace(opened(1e4), outcome="energy_open", remedy=REMEDIES["energy_open"]), ASKED.values)
-    jsonschema.validate(found, SCHEMA)
+    assert list(jsonschema.Draft202012Validator(SCHEMA).iter_errors(found)) == []
+    assert (found["outcome"], found["remedy"]) == ("energy_open", REMEDIES["energy_open"])
+    with pytest.raises(jsonschema.ValidationError, match="'energy_shut' is not one of"):
+        jsonschema.validate(found | {"outcome": "energy_shut"}, SCHEMA)
 
 
 def test_what_is_not_finite_is_null() -> None:

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from skisnow import carve, published_snow, read_ski
-from skisnow.errors import ParameterError
+from skisnow.errors import OutputError, ParameterError
 from skisnow.simulate.batch_file import KeptRows
 from skisnow.simulate.carve_keys import CARVE_KEYS
-from skisnow.study import StudyState, read_study, read_table, run_study, study_state
+from skisnow.study import StudyState, StudyTable, read_study, read_table, run_study, study_state
 
 TEXT = """
 out = "table.csv"
@@ -135,6 +135,38 @@ def test_table_of_another_study_is_kept_beside_and_anything_else_is_not_replaced
     with pytest.raises(ParameterError, match="It is not replaced"):
         run_study(study, workers=1)
     assert study.out.read_text(encoding="utf-8").startswith("experiment")
+
+
+def test_an_earlier_table_that_cannot_be_moved_is_told(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run_study(read_study(study_file), workers=1)
+    before = read_study(study_file).out.read_bytes()
+    study_file.write_text(TEXT.replace("[400, 800]", "[900]"), encoding="utf-8")
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "rename", full)
+    with pytest.raises(OutputError, match=r"table\.previous\.csv .*No space left on device"):
+        run_study(read_study(study_file), workers=1)
+    assert read_study(study_file).out.read_bytes() == before
+
+
+def test_an_error_that_nobody_foresaw_is_the_reason_of_its_point(
+    study_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("by nothing")
+
+    monkeypatch.setattr("skisnow.study.carve_subject.answered", broken)
+    (row, *_) = run_study(read_study(study_file), workers=1).rows
+    assert (row["outcome"], row["reason"]) == ("error", "unexpected ZeroDivisionError: by nothing")
+    assert (row["ski"], row["load_N"]) == ("slalom", 400.0)
+
+
+def test_outcomes_are_counted_the_most_frequent_first() -> None:
+    rows = [{"outcome": name} for name in ("error", "carves", "skids", "carves", "error", "carves", "rests")]
+    table = StudyTable((), rows, ())
+    assert list(table.counts().items()) == [("carves", 3), ("error", 2), ("rests", 1), ("skids", 1)]
 
 
 @pytest.mark.parametrize("there", [True, False])

@@ -55,14 +55,15 @@ def damages(draw: st.DrawFn) -> Damage:
     return damage
 
 
-def require_track_or_our_error(path: Path, kind: str | None = None) -> None:
+def require_track_or_our_error(path: Path, kind: str | None = None) -> bool:
+    """Whether a track was read."""
     try:
         track = read_track(path, kind=kind)  # type: ignore[arg-type]
     except FieldDataError as error:
         message = str(error)
         assert path.name in message
         assert "allowed: " in message
-        return
+        return False
     n = len(track)
     assert n > 0
     assert track.place.shape == (n, 3)
@@ -73,6 +74,7 @@ def require_track_or_our_error(path: Path, kind: str | None = None) -> None:
     assert set(track.marks) == set(MARKS)
     assert np.isfinite(track.place[track.usable, :2]).all()
     assert track.marks["no_fix"][np.isnan(track.place[:, 0])].all()
+    return True
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -7,6 +7,7 @@ The process that draws for the lab runs this file, too, under another name: noth
 from __future__ import annotations
 
 import os
+import sys
 
 UNDRAWN = "SKISNOW_TESTS_UNDRAWN"
 
@@ -27,12 +28,17 @@ def leave_figures_empty() -> None:
 
 
 if __name__ == "__main__":
+    from pathlib import Path
+
     from skisnow.field.store import Store
+    from skisnow.web import runs
     from skisnow.web.server import serve
     from skisnow.web.settings import Lab
 
     place, port, tells, are_drawn = globals()["given"]
     os.environ[UNDRAWN] = "" if are_drawn else "1"
+    if not are_drawn:
+        runs.COMMAND = (sys.executable, str(Path(__file__).with_name("simulate_here.py")))
     with Store.open(place) as store:
         serve(Lab(store, place.parent / "lab"), host="127.0.0.1", port=port, token=None, tell=tells.send)
 elif os.environ.get(UNDRAWN):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import urllib.request
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from skisnow.estimate import analyse, results_dict
 from skisnow.field import read_campaign, write_reference
 from skisnow.field.store import Journals, NewEntry, Store
 from skisnow.web.analyses import MOST_CAMPAIGNS
+from skisnow.web.analysing import choosable_marks
 
 from .conftest import DRAWING_MS, Served, downloaded_results
 
@@ -53,7 +55,8 @@ def html(served: Served, path: str) -> str:
 
 def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Path) -> None:
     id_ = kept_campaign(served, tmp_path / "reference")
-    results = results_dict(analyse(read_campaign(tmp_path / "reference")))
+    campaign = read_campaign(tmp_path / "reference")
+    results = results_dict(analyse(campaign))
     pressed, sheared = used(results)
     of_pressed, of_sheared = (len(results[kind]["experiments"]) for kind in ("penetration", "shear"))
 
@@ -74,6 +77,14 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
     assert page.locator("figure img").count() == drawn
     row = next(row for row in given["penetration"]["experiments"] if row["experiment"] == first["experiment"])
     assert not row["used"] and "cancelled" in row["flags"]
+    page.locator("summary", has_text="Leave out experiments with these marks").press("Enter")
+    box = page.get_by_role("checkbox", name=choosable_marks()["layered"], exact=True)
+    assert box.is_checked() == ("layered" in campaign.excluding)
+    box.press("Space")
+    excluding = campaign.excluding ^ {"layered"}
+    more = used(results_dict(analyse(replace(campaign, excluding=excluding))))[0]
+    assert more != pressed
+    page.get_by_text(told(more - ("layered" not in first["flags"])), exact=True).wait_for(timeout=DRAWING_MS)
     page.locator("summary", has_text="Every penetration experiment").press("Enter")
     page.locator("details[open] table").get_by_text(str(first["experiment"]), exact=True).wait_for()
 
@@ -98,6 +109,7 @@ def test_the_numbers_are_there_with_the_page_until_something_is_entered(
     page.goto(served.address.rstrip("/") + path)
     page.get_by_text("1 penetration experiment, 1 used; 0 shear experiments, 0 used.").first.wait_for()
     assert "1 penetration experiment, 1 used" in html(served, path)
+    assert f"/enter/{id_}" in html(served, path)  # the way back
     drawn = page.locator("figure img").first
     drawn.wait_for()
     assert len(drawn.get_attribute("src") or "") > 5000 and drawn.evaluate("each => each.decode().then(() => true)")

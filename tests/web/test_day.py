@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import io
 import json
-import subprocess
-import sys
 import tomllib
 import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pytest
 from PIL import Image
 
+from skisnow.cli import main
 from skisnow.field.store import Journals, Store, grown
 from skisnow.field.store.description import Description, description_text
 from skisnow.report.numerals import significant
@@ -172,7 +172,7 @@ def unpacked(download: Download, place: Path) -> Path:
     return place
 
 
-def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
+def test_a_day(page: Page, served: Served, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     describe(page, served)
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
@@ -206,8 +206,8 @@ def test_a_day(page: Page, served: Served, tmp_path: Path) -> None:
     with page.expect_download() as download:
         follow(page, "Export")
     folder = unpacked(download.value, tmp_path / "export") / "campaign"
-    command = [sys.executable, "-m", "skisnow", "analyse", str(folder), "--json"]
-    by_command = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    assert main(["analyse", str(folder), "--json"]) == 0
+    by_command = json.loads(capsys.readouterr().out)
     for results in (by_command, by_lab):
         results["provenance"].pop("time")
     assert by_command == by_lab

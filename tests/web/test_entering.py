@@ -153,6 +153,9 @@ def test_the_keyboard_alone_on_a_phone(page: Page, served: Served) -> None:
     page.keyboard.type("2.15\n\n")  # the tabulator marked what stood there; the usual reason is taken
     page.get_by_text("corrected from 22.5").wait_for()
     press(page, "button", "Cancel this test", key="Space")
+    press(page, "button", "Leave it as it was")
+    page.get_by_role("button", name="Cancel this test").and_(page.locator(":focus")).wait_for()
+    press(page, "button", "Cancel this test", key="Space")
     page.keyboard.type("the tool slipped\n")
     page.get_by_text("Cancelled: the tool slipped").wait_for()
     press(page, "button", "Undo: cancelled (the tool slipped)")

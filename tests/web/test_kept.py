@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import io
 import json
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import pytest
 
+from skisnow.cli import main
 from skisnow.field.store import Store
 
 from .conftest import Served, downloaded_results, follow, killed_and_started_again, ready
@@ -19,6 +18,7 @@ from .conftest import Served, downloaded_results, follow, killed_and_started_aga
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+Printed: TypeAlias = pytest.CaptureFixture[str]
 FILES = {
     "campaign.toml": """name = "From <a> drawer"
 observers = ["Ada", "Bo"]
@@ -72,8 +72,7 @@ def exported(page: Page, served: Served, place: Path) -> Path:
 def exported_by_command(served: Served, place: Path) -> Path:
     with Store.open(served.store) as store:
         (stored,) = store.list()
-    command = [sys.executable, "-m", "skisnow", "store", "export", stored.id, "--out", str(place)]
-    subprocess.run([*command, "--store", str(served.store)], check=True, capture_output=True)
+    assert main(["store", "export", stored.id, "--out", str(place), "--store", str(served.store)]) == 0
     return place
 
 
@@ -81,9 +80,11 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
 
 
-def analysed(folder: Path) -> dict[str, Any]:
-    command = [sys.executable, "-m", "skisnow", "analyse", str(folder), "--json"]
-    answer: dict[str, Any] = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+def analysed(folder: Path, printed: Printed) -> dict[str, Any]:
+    """What the command prints."""
+    printed.readouterr()
+    assert main(["analyse", str(folder), "--json"]) == 0
+    answer: dict[str, Any] = json.loads(printed.readouterr().out)
     return answer
 
 
@@ -96,7 +97,7 @@ def correct(page: Page, field: str, text: str, why: str) -> None:
     page.get_by_text("Corrected; the first reading is kept.").wait_for()
 
 
-def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path: Path) -> None:
+def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path: Path, capsys: Printed) -> None:
     imported(page, served)
     follow(page, "Analysis")
     page.get_by_text("3 penetration experiments, 2 used; 1 shear experiment, 1 used.").wait_for()  # 1 is marked
@@ -136,7 +137,7 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
     assert contents(folder) == contents(exported_by_command(served, tmp_path / "back"))
     for name, text in FILES.items():
         assert (folder / name).read_bytes() == text.encode(), name
-    results = analysed(folder)
+    results = analysed(folder, capsys)
     rows = {row["experiment"]: row for row in results["penetration"]["experiments"]}
     assert [rows[name]["used"] for name in "123"] == [True, True, False]
     # by hand, Eqn 2 of a wedge: V = L e² / (2 tan ϑ) at e = 2.6 mm, ϑ = 30°: H_V = 60 N / V
@@ -153,7 +154,9 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
     assert by_lab == results
 
 
-def test_what_a_test_has_once_is_corrected_in_every_row(page: Page, served: Served, tmp_path: Path) -> None:
+def test_what_a_test_has_once_is_corrected_in_every_row(
+    page: Page, served: Served, tmp_path: Path, capsys: Printed
+) -> None:
     imported(page, served)
     follow(page, "Correct")
     page.get_by_text("B: 1").click()
@@ -165,7 +168,7 @@ def test_what_a_test_has_once_is_corrected_in_every_row(page: Page, served: Serv
     page.get_by_text("S_f = 0.200 N/mm²").wait_for()  # 30 N m / 0.25 m / (100 mm × 6 mm), by hand
     correct(page, "Moment (N m)", "36", "misread")
     page.get_by_text("S_f = 0.240 N/mm²").wait_for()
-    results = analysed(exported(page, served, tmp_path / "export"))
+    results = analysed(exported(page, served, tmp_path / "export"), capsys)
     row = results["penetration"]["experiments"][2]
     assert (row["site"], row["edge_angle_deg"]) == ("A", 45.0)
     assert abs(results["shear"]["experiments"][0]["S_f_N_per_mm2"] - 0.24) < 1e-12

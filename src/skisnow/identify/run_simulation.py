@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -106,8 +106,3 @@ def _row(run: Run, times: FloatArray) -> Row:
         "y_m": found[:, 1].tolist(),
         "speed_m_per_s": speed.tolist(),
     }
-
-
-def start_values(table: Mapping[str, Any], keys: Sequence[str]) -> dict[str, float]:
-    """Those of the keys that a table has, as numbers."""
-    return {key: float(table[key]) for key in keys if table.get(key) is not None}

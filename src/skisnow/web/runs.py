@@ -29,6 +29,7 @@ State: TypeAlias = Literal["waiting", "running", "done", "failed", "cancelled"]
 
 JOB: Final = "job.json"
 LAST_WORDS: Final = 600
+COMMAND: tuple[str, ...] = (sys.executable, "-m", "skisnow")
 _PAUSE_S: Final = 0.3
 
 
@@ -140,9 +141,11 @@ class Runs:
         self._keep(replace(job, state="running"))
         self._running, self.progress = job.name, "starting"
         changes = [word for key, value in job.changes.items() for word in ("--set", f"{key}={value}")]
-        command = (sys.executable, "-m", "skisnow", "simulate", job.scenario, *changes)
         self._process = await asyncio.create_subprocess_exec(
-            *command,
+            *COMMAND,
+            "simulate",
+            job.scenario,
+            *changes,
             "--out",
             str(self.folder / job.name),
             stdout=asyncio.subprocess.DEVNULL,

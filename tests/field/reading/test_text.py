@@ -108,6 +108,15 @@ def test_open_quote_names_its_row(more: int) -> None:
     assert caught.value.row == 3
 
 
+@pytest.mark.parametrize("cell", ["x" * 200_000, '"' + "x" * 200_000 + '"', '"' + "5,6\n" * 60_000])
+def test_a_cell_without_end_is_not_taken_for_an_open_quote_alone(cell: str) -> None:
+    with pytest.raises(UnreadableTextError) as caught:
+        list(look_at_csv(f"a,b\n1,2\n3,{cell}".encode()).records())
+    assert caught.value.row == 3
+    assert caught.value.value == "a cell of more than 131072 characters"
+    assert caught.value.allowed == "quotes in pairs, and cells of at most 32767 characters"
+
+
 @pytest.mark.parametrize("count", [RECORDS_AT_ONCE - 1, RECORDS_AT_ONCE, RECORDS_AT_ONCE + 1])
 def test_no_record_is_lost_between_portions(count: int) -> None:
     data = "\n".join(map(str, range(count))).encode()

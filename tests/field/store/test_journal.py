@@ -178,18 +178,24 @@ def test_the_list_counts_entries(store: Store) -> None:
     assert (head.id, head.n_entries) == (id_, 3)
 
 
-def test_entries_can_only_be_added_by_the_rules(store: Store) -> None:
+@pytest.mark.parametrize(
+    ("action", "about", "rule"),
+    [("overwrite", 1, "known_action"), ("correct", None, "about_an_entry"), ("add", 1, "about_an_entry")],
+)
+def test_entries_can_only_be_added_by_the_rules(store: Store, action: str, about: int | None, rule: str) -> None:
     """The table itself refuses what no program should write."""
     id_, _ = campaign_with(Journals(store), "1.5")
+    before = Journals(store).entries(id_)
     with (
         sqlite3.connect(store.path) as connection,
-        pytest.raises(sqlite3.IntegrityError, match="CHECK constraint failed: ck_journal_entry_known_action"),
+        pytest.raises(sqlite3.IntegrityError, match=f"CHECK constraint failed: ck_journal_entry_{rule}"),
     ):
         connection.execute(
-            "INSERT INTO journal_entry (journal_id, at, who, action, file, test, cells, why) "
-            "VALUES (?, '', '', 'overwrite', '', '', '{}', '')",
-            (id_,),
+            "INSERT INTO journal_entry (journal_id, at, who, action, file, test, about, cells, why) "
+            "VALUES (?, '', '', ?, '', '', ?, '{}', '')",
+            (id_, action, about),
         )
+    assert Journals(store).entries(id_) == before
 
 
 def test_what_comes_later_can_be_put_on_top(store: Store) -> None:

@@ -56,6 +56,18 @@ def test_curves_are_the_numbers(found: dict[str, Any]) -> None:
     assert top < 0 < bottom  # depth grows downwards and the undisturbed surface is in the picture
 
 
+def test_what_was_asked_stands_above(found: dict[str, Any]) -> None:
+    with journal_style():
+        title = carved_skis(found).get_suptitle()
+        first = found["skis"][0]
+        rest = first | {"inputs": first["inputs"] | {"at_rest": True, "S_f_N_per_mm2": None}}
+        at_rest = carved_skis({"skis": [rest]}).get_suptitle()
+    # race piste: 2A/cos² 55° of the publication
+    hard, strong = "$H_V$ = 0.207 N/mm³", "$S_f$ = 0.522 N/mm²"
+    assert title == f"Steady carve: ϑ = 45°, load 800 N, {hard}, {strong}, $k_u/H_V$ = 10.0"
+    assert at_rest == f"At rest: ϑ = 45°, load 800 N, {hard}"
+
+
 def test_circles_have_the_radii_of_the_answer(found: dict[str, Any]) -> None:
     """Edge line and contact ends are read off 1 cm stations: the radii agree to half a per cent."""
     for answer in found["skis"]:

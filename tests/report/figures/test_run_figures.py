@@ -53,6 +53,11 @@ def test_track_is_drawn_down_the_fall_line_with_the_left_ski_on_the_left(run: Ru
     right = next(line for line in plan.lines if line.get_color() == VERMILLION)
     middle = len(run.time) // 2
     assert np.asarray(left.get_ydata())[middle] - np.asarray(right.get_ydata())[middle] == pytest.approx(STANCE)
+    for ski, line in enumerate((left, right)):
+        assert np.array_equal(np.asarray(line.get_xydata()), run.skis.track[:, ski, :2])
+    long, wide = np.ptp(run.skis.track[..., :2].reshape(-1, 2), axis=0) + 1.2  # 0.6 m around
+    # 158 mm of 180 for the plan, 38 mm below for the grooves, 38 mm for what stands around
+    assert figure.get_size_inches() * 25.4 == pytest.approx([180.0, 158.0 * wide / long + 76.0])
     marks = next(line for line in plan.lines if line.get_marker() == "o")
     assert len(np.asarray(marks.get_xdata())) == 5  # 0 to 4 s
 
@@ -127,6 +132,8 @@ def test_energies_stack_to_a_level_rim(run: Run) -> None:
     every, losses = axes_of(figure)
     assert len(every.collections) == 9
     assert len(losses.collections) == 5
+    (level,) = every.lines
+    assert np.asarray(level.get_ydata()) == pytest.approx(np.full(2, total[0]))
     assert losses.dataLim.y1 == pytest.approx(-run.energies["potential"][-1])
     # a tenth of the friction gone: the title names what is missing
     less = run.energies | {"friction": 0.9 * run.energies["friction"]}
@@ -206,8 +213,12 @@ def test_band_is_drawn_around_the_nominal_track(run: Run) -> None:
     with journal_style():
         figure = track_band(timed(run), tracks)
     plan = axes_of(figure)[0]
+    ends = [np.asarray(line.get_xydata(), dtype=float) for line in plan.lines if line.get_marker() == "."]
+    assert np.concatenate(ends) == pytest.approx(np.array([[track.x[-1], track.y[-1]] for track in tracks]))
     nominal = next(line for line in plan.lines if line.get_color() == VERMILLION)
     assert np.asarray(nominal.get_xdata()) == pytest.approx(run.place[:, 0])
     assert np.asarray(nominal.get_ydata()) == pytest.approx(run.place[:, 1])
     wide, narrow = (np.asarray(patch.get_path().vertices) for patch in plan.patches[:2])
+    whole = np.isfinite(band_of(offsets(timed(run), tracks)[0])[0]).sum()
+    assert len(wide) == len(narrow) == 2 * whole + 1  # both rims, at every time, and back to the first corner
     assert np.ptp(wide[:, 0]) > np.ptp(narrow[:, 0])

@@ -272,6 +272,7 @@ def test_start_off_the_profile_is_refused(tmp_path: Path) -> None:
         ({"edge_angle_deg": -0.5236}, "sledge.edge_angle_deg is -0.5236: that looks like radians. If it is, write -30"),
         ({"angle_deg": 0.175}, "slope.angle_deg is 0.175: that looks like radians. If it is, write 10.03"),
         ({"H_V_N_per_mm3": 2e8}, "is it in N/m³? If it is, write 0.2"),
+        ({"H_V_N_per_mm3": 1e-6}, "1e-06 N/mm³ is outside"),
         ({"S_f_N_per_mm2": 0.9}, "failure shear stress S_f 0.9 N/mm² is outside"),
         ({"edge_angle_deg": -70}, "edge angle 70 ° is outside"),
         ({"mu_0": 0.2}, "coefficient of friction 0.2 is outside the 0.023 to 0.139"),

@@ -12,7 +12,7 @@ import pytest
 
 from skisnow.errors import SkisnowError
 from skisnow.web.replay import replay_of_run
-from skisnow.web.replay.tracks import LARGEST_BYTES, MOST_POINTS, Placing, TrackFolders, number_of
+from skisnow.web.replay.tracks import LARGEST_BYTES, LONGEST_WAIT_S, MOST_POINTS, Placing, TrackFolders, number_of
 
 from ...report.runs import circle_run
 from .test_lab_page import kept
@@ -83,6 +83,17 @@ def test_what_is_no_track_is_refused_and_leaves_nothing(
     assert list(tmp_path.glob("tracks/*")) == []
 
 
+def test_what_is_just_allowed_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file of the largest size, waited for as long as may be; a byte more is refused."""
+    content, tracks = csv([(0, 0, 0, 0), (1, 1, 1, 0)]), TrackFolders(tmp_path)
+    monkeypatch.setattr("skisnow.web.replay.tracks.LARGEST_BYTES", len(content))
+    for wait in (-LONGEST_WAIT_S, LONGEST_WAIT_S):
+        assert tracks.keep(io.BytesIO(content), Placing("x.csv", None, wait))[1] == 2
+    monkeypatch.setattr("skisnow.web.replay.tracks.LARGEST_BYTES", len(content) - 1)
+    with pytest.raises(SkisnowError, match="is not taken in"):
+        tracks.keep(io.BytesIO(content), Placing("x.csv"))
+
+
 def test_a_name_that_leads_elsewhere_is_no_track(tmp_path: Path) -> None:
     tracks, replay = TrackFolders(tmp_path), replay_of_run(circle_run(count=21))
     tracks.keep(io.BytesIO(csv([(0, 0, 0, 0), (1, 1, 1, 0)])), Placing("x.csv"))
@@ -114,8 +125,6 @@ def test_a_track_is_added_and_drawn_beside_a_run(served: Any, page: Any, tmp_pat
     add("wrong <b>.gpx", "")
     page.get_by_role("heading", name="This was not taken in").wait_for()
     page.get_by_text("wrong <b>.gpx").wait_for()
-    add("measured.gpx", "")
-    page.get_by_text("say in which compass direction the slope falls").wait_for()
     add("measured.gpx", "180")
     page.get_by_text("Choose the run that it is to stand beside.").wait_for()
     (name,) = TrackFolders(served.store.parent / "lab").names()

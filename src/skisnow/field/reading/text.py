@@ -145,8 +145,9 @@ class CsvText:
                 line = reader.line_num + 1 + skipped
             line = lines.pop()  # its last cell swallowed the end
             rows.pop()
-        except csv.Error:
-            pass  # a cell beyond the csv module's limit: an open quote swallows the file
+        except csv.Error:  # a cell beyond the csv module's limit: an open quote swallows the file, or it is as long
+            yield lines, rows
+            raise _endless_cell(line) from None
         yield lines, rows
         raise _open_quote(line)
 
@@ -180,6 +181,15 @@ def _open_quote(line: int) -> UnreadableTextError:
         value='"',
         allowed="quotes in pairs",
         action="A quote opened in this row is never closed, so that the rest of the file was not read; close it.",
+    )
+
+
+def _endless_cell(line: int) -> UnreadableTextError:
+    return UnreadableTextError(
+        row=line,
+        value=f"a cell of more than {csv.field_size_limit()} characters",
+        allowed=f"quotes in pairs, and cells of at most {LONGEST_CELL} characters",
+        action="Close the quote that is opened in this row, or shorten the cell.",
     )
 
 

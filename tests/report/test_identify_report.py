@@ -1,0 +1,205 @@
+"""What an identification says in a terminal, on its page, in its table and in its figures, from numbers made up."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.identify.identification import Effort, Identification, Identified, Profile, identification_dict
+from skisnow.identify.observations import Fit
+from skisnow.identify.parameter import Parameter
+from skisnow.report.figures.identify_fits import residuals_along, tracks_above
+from skisnow.report.figures.identify_profiles import profiles_drawn
+from skisnow.report.figures.style import journal_style
+from skisnow.report.identify_report import write_identify_report
+from skisnow.report.identify_summary import identify_summary
+
+MU = Parameter(key="friction.mu_0", name="mu_0", start=0.04, lower=0.0, upper=0.5, size=0.05)
+AREA = Parameter(
+    key="drag.drag_area_m2", name="drag_area", start=0.4, lower=0.0, upper=2.0, size=0.1, unit="m²",
+    prior_mean=0.45, prior_sd=0.1,
+)  # fmt: skip
+
+
+def cells(name: str, *, late: float = 0.0) -> Fit:
+    """Three cells, the second without a time; the last is `late` seconds later than the parameters give."""
+    station = np.array([20.0, 40.0, 60.0])
+    fitted = np.array([[3.0], [5.0], [6.5]])
+    measured = fitted + np.array([[0.01], [np.nan], [late]])
+    return Fit(
+        name=name, kind="photo_cells", along=station, labels=("time (s)",), measured=measured, fitted=fitted,
+        sd=np.full((3, 1), 0.004),
+    )  # fmt: skip
+
+
+def along_a_track(name: str) -> Fit:
+    """Ten metres down and 4 m to the left; the speed is not measured."""
+    fitted = np.stack([np.linspace(0.0, 10.0, 11), np.linspace(0.0, 4.0, 11), np.full(11, 5.0)], axis=1)
+    measured = fitted + np.array([0.1, -0.2, np.nan])
+    labels = ("x (m)", "y (m)", "speed (m/s)")
+    return Fit(
+        name=name, kind="track", along=np.linspace(0.0, 2.0, 11), labels=labels, measured=measured, fitted=fitted,
+        sd=np.full((11, 3), 0.05),
+    )  # fmt: skip
+
+
+@pytest.fixture
+def found() -> Identification:
+    mu = Identified(
+        parameter=MU, value=0.0423456, standard_error=0.0012, interval=(0.0399, 0.0447),
+        profile_interval=(0.0398, None), bootstrap_interval=(0.04, 0.045), at_bound=True,
+    )  # fmt: skip
+    area = Identified(parameter=AREA, value=0.41, standard_error=0.02, interval=(0.37, 0.45))
+    value = np.linspace(0.035, 0.05, 7)
+    profile = Profile("friction.mu_0", value, ((value - 0.0423456) / 0.0012) ** 2, 4.0)
+    return Identification(
+        outcome="converged", reason="The search ended.", scenario="carved-46m", parameters=(mu, area),
+        correlation=np.array([[1.0, -0.93], [-0.93, 1.0]]), covariance=np.diag([0.0012**2, 0.02**2]),
+        points=6, degrees_of_freedom=4, warnings=("Two are hardly told apart",), methods=("By Gauss and Newton",),
+        fits=(cells("a"), cells("b", late=0.02)), profiles=(profile,),
+        effort=Effort(simulations=12, kept_simulations=5, rounds=3, wall_s=1.25), data=(("cells.csv", "photo cells"),),
+    )  # fmt: skip
+
+
+def test_the_terminal_has_every_number(found: Identification) -> None:
+    """A value to two digits of its standard error."""
+    lines = identify_summary(found).splitlines()
+    assert lines == [
+        "carved-46m: converged",
+        "The search ended.",
+        "",
+        "cells.csv: photo cells",
+        "",
+        "friction.mu_0      0.0423    [0.0399, 0.0447]  profile at least 0.0398  bootstrap [0.0400, 0.0450]  "
+        "on its bound",
+        "drag.drag_area_m2  0.410 m²  [0.370, 0.450]",
+        "",
+        "correlations: mu_0 and drag_area -0.93",
+        "",
+        "points 6, degrees of freedom 4",
+        "By Gauss and Newton",
+        "12 simulated runs, 5 kept from before, 1.25 s",
+    ]
+
+
+def test_what_is_not_known_is_said(found: Identification) -> None:
+    nothing = replace(
+        found, parameters=(Identified(parameter=MU), Identified(parameter=AREA, value=0.41)), data=(),
+        correlation=np.full((2, 2), np.nan), effort=Effort(simulations=12, wall_s=1.25),
+    )  # fmt: skip
+    lines = identify_summary(nothing).splitlines()
+    assert lines[3].split() == ["friction.mu_0", "-", "no", "interval"]
+    assert lines[4].split() == ["drag.drag_area_m2", "0.410", "m²", "no", "interval"]
+    assert not any(line.startswith("correlations") for line in lines)
+    assert lines[-1] == "12 simulated runs, 1.25 s"
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_page_has_its_sections_and_the_table_every_measured_number(found: Identification, tmp_path: Path) -> None:
+    said: list[str] = []
+    page = write_identify_report(found, identification_dict(found), tmp_path, progress=said.append)
+    assert page == tmp_path / "report.html"
+    text = page.read_text(encoding="utf-8")
+    for heading in (
+        "Outcome",
+        "Warnings",
+        "Measured and identified",
+        "Correlations",
+        "Profiles",
+        "How it was computed",
+    ):
+        assert f" {heading}</h2>" in text, heading
+    assert text.count("<figure") == 2
+    for sentence in (
+        "mu_0, drag_area: converged", "Outcome: converged. The search ended.", "Two are hardly told apart.",
+        "cells.csv was taken for photo cells.", "By Gauss and Newton.", "12 simulated runs, 3 Jacobians, 1.2 s.",
+    ):  # fmt: skip
+        assert sentence in text, sentence
+    assert said[-1] == "report.html"
+    with (tmp_path / "fits.csv").open(newline="", encoding="utf-8") as stream:
+        rows = list(csv.reader(stream))
+    assert rows[0] == ["run", "kind", "along", "quantity", "measured", "identified", "sd"]
+    assert rows[1:] == [
+        ["a", "photo_cells", "20.0", "time (s)", "3.01", "3.0", "0.004"],
+        ["a", "photo_cells", "60.0", "time (s)", "6.5", "6.5", "0.004"],
+        ["b", "photo_cells", "20.0", "time (s)", "3.01", "3.0", "0.004"],
+        ["b", "photo_cells", "60.0", "time (s)", "6.52", "6.5", "0.004"],
+    ]
+    assert json.loads((tmp_path / "identification.json").read_text(encoding="utf-8"))["points"] == 6
+    names = {path.name for path in (tmp_path / "figures").iterdir()}
+    assert names == {f"{name}.{kind}" for name in ("residuals_photo_cells", "profiles") for kind in ("png", "svg")}
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_one_parameter_has_no_correlations_and_an_earlier_figure_goes(found: Identification, tmp_path: Path) -> None:
+    write_identify_report(found, identification_dict(found), tmp_path)
+    one = replace(
+        found, parameters=found.parameters[:1], correlation=np.eye(1), profiles=(), warnings=(),
+        fits=(along_a_track("gps"),),
+    )  # fmt: skip
+    text = write_identify_report(one, identification_dict(one), tmp_path).read_text(encoding="utf-8")
+    assert not any(f" {heading}</h2>" in text for heading in ("Correlations", "Profiles", "Warnings"))
+    names = {path.stem for path in (tmp_path / "figures").iterdir()}
+    assert names == {"tracks", "residuals_track"}
+
+
+def test_profiles_are_drawn_with_what_the_curvature_foretells(found: Identification) -> None:
+    """Here the profile is the parabola itself: both curves are the same, over the whole width."""
+    with journal_style():
+        figure = profiles_drawn(found)
+    (axes,) = figure.axes
+    profile, curve, limit = (np.asarray(line.get_xydata(), dtype=float) for line in axes.lines)
+    assert profile == pytest.approx(np.stack([found.profiles[0].value, found.profiles[0].rise], axis=1))
+    assert curve[[0, -1], 0] == pytest.approx([0.035, 0.05])
+    assert np.interp(profile[:, 0], curve[:, 0], curve[:, 1]) == pytest.approx(profile[:, 1], abs=0.01)
+    assert limit[:, 1] == pytest.approx([4.0, 4.0])
+    assert axes.get_ylim() == pytest.approx((-0.5, 12.0))
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("mu 0", "rise of the sum of squares")
+    one, four = found.profiles[0], [found.profiles[0]] * 4
+    with journal_style():
+        panels = profiles_drawn(replace(found, profiles=tuple(four))).axes
+    assert [axes.get_visible() for axes in panels] == [True] * 4 + [False] * 2  # two rows of three
+    area = replace(one, key="drag.drag_area_m2")
+    with journal_style():
+        assert profiles_drawn(replace(found, profiles=(area,))).axes[0].get_xlabel() == "drag area (m²)"
+
+
+def test_residuals_are_measured_minus_identified_in_a_band_of_two_deviations(found: Identification) -> None:
+    with journal_style():
+        figure = residuals_along(found.fits)
+    (axes,) = figure.axes
+    first, second, zero = (np.asarray(line.get_xydata(), dtype=float) for line in axes.lines)
+    assert first == pytest.approx(np.array([[20.0, 0.01], [60.0, 0.0]]))
+    assert second == pytest.approx(np.array([[20.0, 0.01], [60.0, 0.02]]))
+    assert zero[:, 1].tolist() == [0.0, 0.0]
+    band = axes.collections[0].get_paths()[0].get_extents()
+    assert (band.x0, band.x1, band.y0, band.y1) == pytest.approx((20.0, 60.0, -0.008, 0.008))
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("station (m)", "time\nmeasured − identified (s)")
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a", "b"]
+
+
+def test_a_quantity_that_nobody_measured_has_no_panel() -> None:
+    with journal_style():
+        figure = residuals_along([along_a_track("gps")])
+    assert [axes.get_ylabel().partition("\n")[0] for axes in figure.axes] == ["x", "y"]
+    assert figure.axes[-1].get_xlabel() == "time (s)"
+    assert np.asarray(figure.axes[1].lines[0].get_ydata()) == pytest.approx(np.full(11, -0.2))
+
+
+def test_tracks_are_seen_from_above_with_the_measured_points() -> None:
+    with journal_style():
+        figure = tracks_above([along_a_track("first"), along_a_track("second")])
+    (axes,) = figure.axes
+    line, points = (np.asarray(drawn.get_xydata(), dtype=float) for drawn in axes.lines[:2])
+    assert line[-1] == pytest.approx([10.0, 4.0])
+    assert points[-1] == pytest.approx([10.1, 3.8])
+    assert axes.get_aspect() == 1.0
+    texts = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert sorted(texts) == ["first, identified", "first, measured", "second, identified", "second, measured"]
+    # 180 mm wide less 25 mm for the axis, and 2 m around: 155 mm for 12.1 m, so 6 m have 78 mm and 25 mm below
+    assert figure.get_size_inches()[1] * 25.4 == pytest.approx(155.0 * 6.0 / 12.0 + 25.0, rel=0.02)

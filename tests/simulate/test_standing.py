@@ -1,0 +1,34 @@
+"""How far to the sides skis carry, worked out for a ski with straight sides."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from skisnow.simulate.standing import _carried_across
+
+
+def carried(hardness: float, edge_angle_deg: float) -> tuple[float, float]:
+    """Skis 1.7 m long and 70 mm wide, 0.5 m apart, under 425 N: to the right and to the left (m)."""
+    scenario = SimpleNamespace(
+        ski=SimpleNamespace(width=np.array([0.06, 0.07]), station=np.array([0.9, 0.0, -0.8])),
+        sledge=SimpleNamespace(edge_angle=math.radians(edge_angle_deg), stance_width=0.5),
+        contact=SimpleNamespace(snow=SimpleNamespace(snow_hardness=hardness)),
+    )
+    return _carried_across(cast("Any", SimpleNamespace(scenario=scenario, numbers={"load_N": 425.0})))
+
+
+def test_edged_skis_carry_from_their_edge_to_the_waterline() -> None:
+    """4 · 425 N/(12.5 MN/m³ · 0.8 · 1.7 m) = (10 mm)²: 20 mm of the base are wet, on the side of the edge."""
+    inner, outer = 0.25 + 0.02 - 0.035, 0.25 + 0.035
+    assert carried(12.5e6, 45.0) == pytest.approx((inner, outer))
+    assert carried(12.5e6, -45.0) == pytest.approx((outer, inner))
+
+
+def test_in_soft_snow_and_flat_the_whole_base_carries() -> None:
+    for angle in (45.0, -45.0, 0.0):
+        assert carried(1e5, angle) == pytest.approx((0.285, 0.285))
