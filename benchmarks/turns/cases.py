@@ -43,20 +43,37 @@ def fixed(step_ms: float, **more: object) -> dict[str, object]:
     return {"solver.fixed": True, "solver.step_ms": step_ms} | {f"solver.{name}": value for name, value in more.items()}
 
 
-NORMAL_REFERENCE: Final[Mapping[str, object]] = MappingProxyType(fixed(0.1))
-HARD_REFERENCE: Final[Mapping[str, object]] = MappingProxyType(HARD_SNOW | fixed(0.025))
-DEFAULT_STEP: Final = Case("ROS2, 0.5 ms", fixed(0.5), NORMAL_REFERENCE, "15")
-FAST: Final = Case("fast mode, 1 ms", fixed(1.0, method="fast"), NORMAL_REFERENCE, "40")
-LONG_STEP: Final = Case("ROS2, 1 ms", fixed(1.0), NORMAL_REFERENCE)
+FINE: Final[Mapping[str, object]] = MappingProxyType(
+    {
+        "solver.elements": 80,
+        "solver.line_spacing_mm": 10.0,
+        "solver.tolerance_mm": 1e-5,
+        "solver.groove_tolerance": 3e-6,
+    }
+)
+"""What a reference has: twice the elements, half the line spacing, a thirtieth of both tolerances."""
+SOFT: Final = {"snow.H_V_N_per_mm3": 0.04}
+FIRM: Final = {"snow.H_V_N_per_mm3": 1.0}
+SKID: Final = FIRM | {"snow.S_f_N_per_mm2": 0.25}
+STIFF_EDGE: Final = {"snow.shear_displacement_mm": 0.05}
+
+
+def _case(name: str, goal: str, snow: Mapping[str, object], **solver: object) -> Case:
+    return Case(name, {**snow, **{f"solver.{key}": value for key, value in solver.items()}}, {**snow, **FINE}, goal)
+
+
+FAST: Final = _case("fast", "100", {}, method="fast")
+DEFAULT: Final = _case("default", "50", {})
 CASES: Final = (
     FAST,
-    DEFAULT_STEP,
-    LONG_STEP,
-    Case("ROS2, error control (as it comes)", {}, NORMAL_REFERENCE),
-    Case("H_V = 90 N/mm³, ROS2, 0.1 ms", HARD_SNOW | fixed(0.1), HARD_REFERENCE, "5"),
-    Case("H_V = 90 N/mm³, ROS2, 0.25 ms", HARD_SNOW | fixed(0.25), HARD_REFERENCE),
-    Case("H_V = 90 N/mm³, error control", HARD_SNOW, HARD_REFERENCE),
-    Case("H_V = 90 N/mm³, ROS2, 0.5 ms: the step of soft snow", HARD_SNOW | fixed(0.5), HARD_REFERENCE),
+    DEFAULT,
+    _case("fast, u_y = 0.05 mm", "100", STIFF_EDGE, method="fast"),
+    _case("default, u_y = 0.05 mm", "50", STIFF_EDGE),
+    _case("default, H_V = 0.04 N/mm³", "40", SOFT),
+    _case("default, H_V = 1 N/mm³", "40", FIRM),
+    _case("default, H_V = 90 N/mm³, S_f = 10 N/mm²", "8", HARD_SNOW),
+    _case("default, a skid: H_V = 1 N/mm³, S_f = 0.25 N/mm²", "", SKID),
+    _case("fixed steps of 1 ms", "", {}, **{"fixed": True, "step_ms": 1.0}),
 )
 
 

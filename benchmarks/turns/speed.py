@@ -77,7 +77,7 @@ def speeds(runs: Runs, *, repeats: int, cases: Sequence[Case] = CASES) -> list[S
 
 
 def finer(runs: Runs, changes: Mapping[str, object]) -> Iterator[Finer]:
-    """A run with a fixed step again, with twice the elements, half the line spacing, half the cells."""
+    """A run again, finer by two in one choice: elements, line spacing, tolerance of the steps and of the groove."""
     base = runs.of(changes)
     for key, solver in refined_solvers(base).items():
         if key != "solver.step_ms":
