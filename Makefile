@@ -57,11 +57,13 @@ $(TOOLS)/.tools: requirements/tools.txt
 	$(TOOLS)/bin/python $(PIP) --require-hashes --requirement requirements/tools.txt
 	@touch $@
 
+# what a slow turn on a gentle slope asks of the snow, the weak snow of site C can hold
+TURN := --set slope.angle_deg=5 --set start.speed_m_per_s=4.5 --set sledge.edge_angle_deg=40
 demo: $(VENV)/.skisnow
 	rm -rf $(DEMO)
 	$(BIN)/skisnow reference $(DEMO)/campaign --seed $(SEED)
 	$(BIN)/skisnow analyse $(DEMO)/campaign --out $(DEMO)/results
-	$(BIN)/python examples/campaign_to_turn.py $(DEMO)/results/results.json $(DEMO)/turn
+	$(BIN)/skisnow turn $(DEMO)/campaign --site C $(TURN) --out $(DEMO)/turn
 	@echo "To enter tests and look at turns in a browser: $(BIN)/skisnow serve"
 	@echo
 	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser."

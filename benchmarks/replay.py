@@ -14,7 +14,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skisnow import read_scenario, simulated_run
+from skisnow.simulate.scenario import read_scenario
+from skisnow.simulate.simulated_run import simulate
 from skisnow.web.replay import replay_bytes, replay_of_run, write_replay
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def runs(duration: float) -> tuple[Replay, Replay]:
     """The run and its ghost."""
     changes = {"run.duration_s": duration}
     found = [
-        simulated_run(read_scenario("carved-46m", changes=changes | {"snow.penetration": kind}))
+        simulate(read_scenario("carved-46m", changes=changes | {"snow.penetration": kind}))
         for kind in ("hypoplastic", "elastic")
     ]
     return replay_of_run(found[0], title="carved-46m"), replay_of_run(found[1], title="elastic snow")

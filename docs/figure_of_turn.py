@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from PIL import Image
 
-from skisnow import read_scenario, simulated_run
+from skisnow import scenario, simulate
 from skisnow.report.figures.figure_file import write_figure
 from skisnow.report.figures.run_along_ski import along_ski_map, highest
 from skisnow.report.figures.run_track import SKI_COLOURS, draw_plan, track_limits
@@ -67,8 +67,7 @@ def _draw_depth(figure: Figure, axes: Axes, run: Run) -> None:
 def main() -> None:
     """Simulate and draw, with 128 colours: a third of the bytes."""
     run, elastic = (
-        simulated_run(read_scenario(SCENARIO, changes={"snow.penetration": kind}))
-        for kind in ("hypoplastic", "elastic")
+        simulate(scenario(SCENARIO, changes={"snow.penetration": kind})) for kind in ("hypoplastic", "elastic")
     )
     write_figure(PICTURE, lambda: turn(run, elastic))
     with Image.open(PICTURE) as picture:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from matplotlib.lines import Line2D
 from PIL import Image
 
-from skisnow import read_scenario, simulated_run
+from skisnow import scenario, simulate
 from skisnow.report.figures.figure_file import write_figure
 from skisnow.report.figures.runs_compared import LINE_STYLES, runs_compared
 from skisnow.report.figures.style import COLOURS, DOUBLE_MM, GREY, legend_below, new_figure
@@ -100,7 +100,7 @@ def apart(run: Run, other: Run) -> float:
 
 
 def _computed(asked: tuple[str, dict[str, Any]]) -> Run:
-    return simulated_run(read_scenario(asked[0], changes=asked[1]))
+    return simulate(scenario(asked[0], changes=asked[1]))
 
 
 def all_runs() -> dict[tuple[str, str, float], Run]:
@@ -111,7 +111,7 @@ def all_runs() -> dict[tuple[str, str, float], Run]:
         for name in SCENARIOS
         for ratio in RATIOS
     }
-    hardness = read_scenario(SCENARIOS[0]).contact.snow.snow_hardness / 1e9
+    hardness = scenario(SCENARIOS[0]).contact.snow.snow_hardness / 1e9
     for strength in STRENGTHS:
         keys = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength}
         for name in SCENARIOS:

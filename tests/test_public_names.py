@@ -1,27 +1,119 @@
-"""What `import skisnow` offers, and what the contact as a room of its own adds to it: nothing."""
+"""What `import skisnow` offers: names that are there, load late, stay callable, and what reaches up."""
 
 from __future__ import annotations
 
+import ast
+import inspect
 import subprocess
 import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
 
 import skisnow
+from skisnow.identify.identifying import identify
+from skisnow.simulate.simulated_run import simulate
+from skisnow.study import run_study
 
-LOOK = """
+PACKAGE = Path(skisnow.__file__).parent
+
+IMPORT_ALONE = """
 import sys
 import skisnow
-before = list(skisnow.__all__)
-assert "skisnow.compiled" not in sys.modules
-import skisnow.contact
-assert skisnow.__all__ == before
-assert not set(skisnow.contact.__all__) & set(before)
+heavy = {"numpy", "scipy", "matplotlib", "pandas", "xarray", "skisnow.compiled", "skisnow.simulate"}
+assert not heavy & set(sys.modules), heavy & set(sys.modules)
+"""
+NAME_FIRST = """
+import skisnow
+for name in ("simulate", "identify", "study", "chain"):
+    assert callable(getattr(skisnow, name)), name
+import skisnow.simulate.run, skisnow.identify.data, skisnow.study.axes, skisnow.chain.ensemble
+for name in ("simulate", "identify", "study", "chain"):
+    assert callable(getattr(skisnow, name)), name
+assert skisnow.simulate.run.Run is skisnow.Run
+"""
+ROOM_FIRST = """
+import skisnow.simulate.run, skisnow.identify.data, skisnow.study.axes, skisnow.chain.ensemble
+from skisnow import chain, identify, simulate, study
+assert all(map(callable, (chain, identify, simulate, study)))
+import skisnow
+assert skisnow.simulate is simulate and skisnow.simulate.run.Run is skisnow.Run
 """
 
 
-def test_the_contact_leaves_the_public_names_as_they_are() -> None:
-    subprocess.run([sys.executable, "-c", LOOK], check=True)
+@pytest.mark.parametrize("lines", [IMPORT_ALONE, NAME_FIRST, ROOM_FIRST], ids=["alone", "name first", "room first"])
+def test_names_in_either_order_of_imports(lines: str) -> None:
+    subprocess.run([sys.executable, "-c", lines], check=True)
 
 
 def test_every_public_name_is_there() -> None:
     assert [name for name in skisnow.__all__ if not hasattr(skisnow, name)] == []
     assert skisnow.__all__ == sorted(set(skisnow.__all__))
+
+
+def test_type_checkers_see_the_same_names() -> None:
+    tree = ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8"))
+    (block,) = (node for node in tree.body if isinstance(node, ast.If))
+    imports = [name for node in block.body if isinstance(node, ast.ImportFrom) for name in node.names]
+    assert sorted(each.asname or each.name for each in imports) == skisnow.__all__
+    assert [name for name in skisnow.__all__ if f"``{name}``" not in (skisnow.__doc__ or "")] == []
+
+
+def test_a_room_that_is_a_verb_is_its_function() -> None:
+    for room, function in ((skisnow.simulate, simulate), (skisnow.identify, identify), (skisnow.study, run_study)):
+        assert inspect.signature(room) == inspect.signature(function)
+    with pytest.raises(TypeError, match="scenario"):
+        skisnow.simulate()  # type: ignore[call-arg]
+
+
+def test_former_names_stay_and_say_what_they_are_called_now() -> None:
+    with pytest.warns(DeprecationWarning, match=r"skisnow\.simulated_run is called skisnow\.simulate now"):
+        assert skisnow.simulated_run is skisnow.simulate
+    with pytest.warns(DeprecationWarning, match=r"skisnow\.read_scenario is called skisnow\.scenario now"):
+        assert skisnow.read_scenario is skisnow.scenario
+
+
+@pytest.mark.parametrize(
+    ("module", "former", "now"),
+    [
+        ("simulate.simulated_run", "simulated_run", "simulate"),
+        ("simulate.verification", "verified", "verify"),
+        ("track.comparison", "compared", "compare_tracks"),
+    ],
+)
+def test_a_former_function_is_the_present_one_with_a_warning(module: str, former: str, now: str) -> None:
+    names = vars(import_module(f"skisnow.{module}"))
+    assert inspect.signature(names[former]) == inspect.signature(names[now])
+    with pytest.warns(DeprecationWarning, match=f"{former} is called {now} now"), pytest.raises(TypeError):
+        names[former]()
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="simulat"):
+        _ = skisnow.simulat
+
+
+def test_only_these_places_reach_up() -> None:
+    """An object of a lower room may ask an upper one to draw and write it, through `from_above` alone."""
+    found, imports = {}, set()
+    for path in PACKAGE.rglob("*.py"):
+        place = path.relative_to(PACKAGE).as_posix()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
+                continue
+            if node.func.id == "from_above":
+                room, name = (ast.literal_eval(argument) for argument in node.args)
+                found[f"{room}.{name}"] = place
+            if node.func.id in ("import_module", "__import__") and not place.startswith("web/"):  # the topmost room
+                imports.add(place)
+    assert found == {
+        "report.run_drawings.run_figure": "simulate/run.py",
+        "report.run_folder.write_run": "simulate/run.py",
+        "report.run_frames.run_dataframe": "simulate/run.py",
+        "report.run_frames.run_dataset": "simulate/run.py",
+    }
+    assert imports == {"__init__.py", "callable_rooms.py", "from_above.py", "report/run_frames.py"}
+    for each in found:
+        module, _, name = each.rpartition(".")
+        assert callable(getattr(import_module(f"skisnow.{module}"), name))

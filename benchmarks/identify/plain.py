@@ -9,7 +9,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import least_squares
 
 from skisnow.simulate.scenario import Stop, read_scenario, scenario_file
-from skisnow.simulate.simulated_run import simulated_run
+from skisnow.simulate.simulated_run import simulate
 from skisnow.track.track import Track
 
 from .twin import NOISE, SCENARIO, Case
@@ -37,7 +37,7 @@ def plainly_identified(case: Case, track: Track) -> Plain:
         runs += 1
         values = {key: float(value) for key, value in zip(keys, scaled * scale, strict=True)}
         scenario = replace(read_scenario(SCENARIO, changes=values), stop=Stop(duration=float(track.time[-1]) + 1e-9))
-        run = simulated_run(scenario)
+        run = simulate(scenario)
         within = np.minimum(track.time, run.time[-1])
         place = CubicHermiteSpline(run.time, run.place[:, :2], run.velocity[:, :2])(within)
         return np.asarray((place - track.place[:, :2]).ravel() / NOISE)

@@ -9,7 +9,7 @@ from typing import Final
 
 from skisnow.simulate.run import Run
 from skisnow.simulate.scenario import read_scenario
-from skisnow.simulate.simulated_run import simulated_run
+from skisnow.simulate.simulated_run import simulate
 
 SCENARIO: Final = "carved-46m"
 HARD_SNOW: Final = {"snow.H_V_N_per_mm3": 90, "snow.S_f_N_per_mm2": 10}
@@ -69,7 +69,7 @@ class Runs:
 
     def of(self, changes: Mapping[str, object]) -> Run:
         """The turn with these keys changed."""
-        return simulated_run(read_scenario(SCENARIO, changes={**changes, "run.duration_s": self.duration_s}))
+        return simulate(read_scenario(SCENARIO, changes={**changes, "run.duration_s": self.duration_s}))
 
     def reference(self, changes: Mapping[str, object]) -> Run:
         """The same, kept."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from skisnow.errors import SkisnowError
 from skisnow.simulate.run import Run
-from skisnow.simulate.simulated_run import simulated_run
+from skisnow.simulate.simulated_run import simulate
 from skisnow.simulate.verification import refined_solvers
 
 from .cases import CASES, Case, Runs
@@ -82,7 +82,7 @@ def finer(runs: Runs, changes: Mapping[str, object]) -> Iterator[Finer]:
     for key, solver in refined_solvers(base).items():
         if key != "solver.step_ms":
             told(f"finer: {key}")
-            run = simulated_run(replace(base.scenario, solver=solver))
+            run = simulate(replace(base.scenario, solver=solver))
             yield Finer(key, run.wall_s / base.wall_s, end_distance(run, base))
 
 

@@ -163,7 +163,9 @@ bool Dynamics::factor(double reach) {
 
 // How far rates move the boots, ends a metre off that turn with them, and the beams, in a time (m).
 double Dynamics::size_of(const Numbers& rates, double reach) const {
-  double most = 0.0;
+  double most = 0.0, sum = 0.0;
+  for (double each : rates) sum += each;
+  if (!std::isfinite(sum)) return std::numeric_limits<double>::infinity();
   for (std::size_t a = 0; a < BODY; a++) most = std::max(most, std::fabs(rates[a]));
   for (int k = 0; k < layout_.beams(); k++)
     for (int i = 0; i < layout_.size(k); i += 3)

@@ -32,7 +32,10 @@ double arm(std::size_t place, const Layout& layout) {
 
 double Dynamics::static_length(const Numbers& step) const {
   double most = 0.0;
-  for (std::size_t i = 0; i < step.size(); i++) most = std::max(most, std::fabs(step[i] * arm(i, layout_)));
+  for (std::size_t i = 0; i < step.size(); i++) {
+    if (!std::isfinite(step[i])) return std::numeric_limits<double>::infinity();
+    most = std::max(most, std::fabs(step[i] * arm(i, layout_)));
+  }
   return most;
 }
 
@@ -144,7 +147,10 @@ double Dynamics::find_equilibrium() {
     step = left;
     system_.solve(step);
     const double length = static_length(step);
-    if (!std::isfinite(length)) return length;
+    if (!std::isfinite(length)) {
+      inertia *= 4.0;
+      continue;
+    }
     const double share = std::min(1.0, LONGEST / std::max(length, 1e-300));
     for (double& each : step) each *= share;
     move(state, step, trial);

@@ -1,29 +1,41 @@
 """skisnow turns what was measured on a slope into what a ski does on it.
 
-The public names, loaded when first used:
+The public names, loaded when first used. Verbs act, nouns are what comes out of them or goes into them:
 
-``read_campaign``, ``check_campaign``
+``read_campaign``, ``check_campaign``, ``Campaign``
     A folder of field measurements to a checked `Campaign`, or to the list of its problems.
-``analyse``, ``results_dict``
-    A campaign to snow hardness, failure shear stress, the choice of the model and the regressions.
-``write_report``
-    Results to a self-contained report with figures and tables.
+``analyse``, ``Analysis``, ``results_dict``, ``write_report``
+    A campaign to snow hardness, failure shear stress, the choice of the model and the regressions; the snow of a site
+    out of them (`Analysis.snow`); results.json; a self-contained report with figures and tables.
 ``Store``
     The embedded store that keeps campaigns byte for byte.
 ``write_reference``
     A synthetic campaign with the design of Mössner and others (2013).
 ``SnowProperties``, ``snow_from_results``, ``published_snow``, ``published_names``
-    Snow as the force laws need it: from numbers, from an analysed campaign, by the name of a publication.
+    Snow as the force laws need it: from numbers, from results.json, by the name of a publication.
 ``Ski``, ``read_ski``, ``ski_names``
     A ski from its file or from the catalogue.
 ``carve``, ``rest``, ``Equilibrium``
     A ski in snow under a load, carving steadily or at rest.
-``read_scenario``, ``scenario_names``, ``Scenario``, ``simulated_run``, ``Run``
-    A sledge on two flexible skis: a scenario from its file or a built-in one, and the run that comes out of it.
-``read_track``, ``Track``, ``GeodeticPoint``, ``in_slope_frame``
-    Where something was on a slope, and when: from the files of receivers and watches, into the slope's frame.
-``track_summary``, ``TrackSummary``
-    What a track says: distance, speed, runs and lifts, turns with their radii.
+``scenario``, ``scenario_names``, ``Scenario``
+    What a run is: a built-in scenario by its name or any other from its file; `Scenario.with_` makes another of it.
+``Plane``, ``Profile``, ``Contact``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
+    The parts of a scenario: slope, how snow and skis meet, drag, sledge, where it begins and ends, how it is computed.
+``simulate``, ``Run``, ``verify``, ``Refinement``
+    A sledge on two flexible skis: the run that comes out of a scenario, and how exact it is.
+``chain``, ``TurnChain``
+    From a campaign to a turn in one call, with a band over the uncertainty of the snow.
+``read_track``, ``Track``, ``GeodeticPoint``, ``in_slope_frame``, ``track_summary``, ``TrackSummary``
+    Where something was on a slope, and when: from the files of receivers and watches, into the slope's frame; what a
+    track says: distance, speed, runs and lifts, turns with their radii.
+``compare_tracks``, ``Comparison``
+    A simulated track held against a measured one.
+``identify``, ``Identification``
+    Friction, drag and snow from tracks, photo-cell times or tracks left in the snow.
+``study``, ``read_study``, ``Study``, ``StudyTable``, ``run_batch``
+    One question over a grid or a sample of its inputs; one function over many points, on all cores.
+``SnowField``, ``SnowContact``, ``Runner``, ``ContactForces``
+    Snow that remembers, and any body of one's own in it.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 """
@@ -34,15 +46,27 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .chain.chaining import chain
+    from .contact import ContactForces, Runner, SnowContact, SnowField
     from .estimate import Analysis, analyse, results_dict
     from .field import Campaign, check_campaign, read_campaign, write_reference
     from .field.store import Store
-    from .report import write_report
-    from .simulate import Equilibrium, Run, Scenario, carve, read_scenario, rest, scenario_names
-    from .simulate.simulated_run import simulated_run
+    from .identify import Identification
+    from .identify.identifying import identify
+    from .report import TurnChain, write_report
+    from .simulate import Equilibrium, Run, Scenario, carve, rest, scenario_names
+    from .simulate.batch import run_batch
+    from .simulate.scenario import Air, Contact, Plane, Profile, Solver, Start, Stop
+    from .simulate.scenario import read_scenario as scenario
+    from .simulate.simulated_run import simulate
+    from .simulate.sledge import RigidSledge
+    from .simulate.verification import Refinement, verify
     from .ski import Ski, read_ski, ski_names
     from .snow import SnowProperties, published_names, published_snow, snow_from_results
     from .statistics import regress
+    from .study import Study, StudyTable, read_study
+    from .study import run_study as study
+    from .track.comparison import Comparison, compare_tracks
     from .track.projection import GeodeticPoint
     from .track.read import read_track
     from .track.slope_frame import in_slope_frame
@@ -50,62 +74,106 @@ if TYPE_CHECKING:
     from .track.track import Track
 
 __all__ = [
+    "Air",
     "Analysis",
     "Campaign",
+    "Comparison",
+    "Contact",
+    "ContactForces",
     "Equilibrium",
     "GeodeticPoint",
+    "Identification",
+    "Plane",
+    "Profile",
+    "Refinement",
+    "RigidSledge",
     "Run",
+    "Runner",
     "Scenario",
     "Ski",
+    "SnowContact",
+    "SnowField",
     "SnowProperties",
+    "Solver",
+    "Start",
+    "Stop",
     "Store",
+    "Study",
+    "StudyTable",
     "Track",
     "TrackSummary",
+    "TurnChain",
     "analyse",
     "carve",
+    "chain",
     "check_campaign",
+    "compare_tracks",
+    "identify",
     "in_slope_frame",
     "published_names",
     "published_snow",
     "read_campaign",
-    "read_scenario",
     "read_ski",
+    "read_study",
     "read_track",
     "regress",
     "rest",
     "results_dict",
+    "run_batch",
+    "scenario",
     "scenario_names",
-    "simulated_run",
+    "simulate",
     "ski_names",
     "snow_from_results",
+    "study",
     "track_summary",
+    "verify",
     "write_reference",
     "write_report",
 ]
 
 _ROOMS = {
+    "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
     "estimate": ("Analysis", "analyse", "results_dict"),
     "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
     "field.store": ("Store",),
-    "report": ("write_report",),
-    "simulate": ("Equilibrium", "Run", "Scenario", "carve", "read_scenario", "rest", "scenario_names"),
-    "simulate.simulated_run": ("simulated_run",),
+    "identify": ("Identification",),
+    "report": ("TurnChain", "write_report"),
+    "simulate": ("Equilibrium", "Run", "Scenario", "carve", "rest", "scenario_names"),
+    "simulate.batch": ("run_batch",),
+    "simulate.scenario": ("Air", "Contact", "Plane", "Profile", "Solver", "Start", "Stop"),
+    "simulate.sledge": ("RigidSledge",),
+    "simulate.verification": ("Refinement", "verify"),
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),
     "statistics": ("regress",),
+    "study": ("Study", "StudyTable", "read_study"),
+    "track.comparison": ("Comparison", "compare_tracks"),
     "track.projection": ("GeodeticPoint",),
     "track.read": ("read_track",),
     "track.slope_frame": ("in_slope_frame",),
     "track.summary": ("TrackSummary", "track_summary"),
     "track.track": ("Track",),
 }
-_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
+_PLACES = {name: (room, name) for room, names in _ROOMS.items() for name in names}
+_PLACES["scenario"] = ("simulate.scenario", "read_scenario")
+_CALLABLE_ROOMS = ("chain", "identify", "simulate", "study")
+"""Rooms whose name is a verb: they can be called, see `skisnow.callable_rooms`."""
+_FORMER_NAMES = {"read_scenario": "scenario", "simulated_run": "simulate"}
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _ROOM_OF:
+    if name in _CALLABLE_ROOMS:
+        return import_module(f".{name}", __name__)
+    if name in _FORMER_NAMES:
+        from .former_names import warn_of_former_name
+
+        warn_of_former_name(f"skisnow.{name}", f"skisnow.{_FORMER_NAMES[name]}")
+        return __getattr__(_FORMER_NAMES[name])
+    if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f".{_ROOM_OF[name]}", __name__), name)
+    room, own_name = _PLACES[name]
+    return getattr(import_module(f".{room}", __name__), own_name)
 
 
 def __dir__() -> list[str]:

@@ -12,13 +12,12 @@ import jsonschema
 import numpy as np
 import pytest
 
-import skisnow.identify
 from skisnow.cli import main
 
 from ..identify import straight_tracks
 from ..identify.test_photo_cell_times import AREA, CHANGES, MU, STATION, truth
 
-SCHEMA = json.loads((files(skisnow.identify) / "schemas" / "identification.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads((files("skisnow.identify") / "schemas" / "identification.schema.json").read_text(encoding="utf-8"))
 SETS = [word for key, value in CHANGES.items() for word in ("--set", f"{key}={value}")]
 Printed = pytest.CaptureFixture[str]
 
@@ -123,7 +122,7 @@ def test_an_interrupted_search_is_kept_and_gone_on_with(
     sets = [word for key, value in straight_tracks.SCENARIO.items() for word in ("--set", f"{key}={value}")]
     words = ["carved-46m", str(path), "--free", "mu_0,speed", "--workers", "1", "--out", str(tmp_path / "out"), *sets]
     module = sys.modules["skisnow.simulate.simulated_run"]
-    simulate, calls = module.simulated_run, []
+    simulate, calls = module.simulate, []
 
     def stopping(scenario: Any) -> Any:
         calls.append(scenario)
@@ -131,7 +130,7 @@ def test_an_interrupted_search_is_kept_and_gone_on_with(
             raise KeyboardInterrupt
         return simulate(scenario)
 
-    monkeypatch.setattr(module, "simulated_run", stopping)
+    monkeypatch.setattr(module, "simulate", stopping)
     assert answer(words, capsys, status=130)["outcome"] == "interrupted"
     found = answer([*words, "--resume"], capsys)
     assert found["outcome"] == "converged"

@@ -15,13 +15,12 @@ from typing import Any
 import jsonschema
 import pytest
 
-import skisnow
 from skisnow import Run, Scenario
 from skisnow.cli import main
 
 from ..simulate.straight_run import STRAIGHT, straight_run
 
-SCHEMA = json.loads((files(skisnow.simulate) / "schemas" / "summary.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads((files("skisnow.simulate") / "schemas" / "summary.schema.json").read_text(encoding="utf-8"))
 ASKED = ["carved-46m", *(word for key, value in STRAIGHT.items() for word in ("--set", f"{key}={value}"))]
 LENGTH = 10.0 + 2.0 * 9.81 * (0.17364817766693033 - 0.05 * 0.984807753012208)  # 2 s from 5 m/s down 10°, μ = 0.05
 Printed = pytest.CaptureFixture[str]
@@ -33,7 +32,7 @@ Replaced = Callable[[Simulate], None]
 def replaced(monkeypatch: pytest.MonkeyPatch) -> Replaced:
     def put(simulate: Simulate) -> None:
         module = ModuleType("skisnow.simulate.simulated_run")
-        vars(module)["simulated_run"] = simulate
+        vars(module)["simulate"] = simulate
         monkeypatch.setitem(sys.modules, "skisnow.simulate.simulated_run", module)
 
     put(straight_run)

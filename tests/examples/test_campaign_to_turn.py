@@ -1,8 +1,7 @@
-"""The example from an analysed campaign to a turn: the chain that make demo runs, on fewer runs."""
+"""The example from a campaign to a turn: the chain that make demo runs, on fewer runs."""
 
 from __future__ import annotations
 
-import json
 import re
 import subprocess
 import sys
@@ -10,26 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from skisnow.estimate import analyse, results_dict
-from skisnow.estimate.results_text import results_json
-from skisnow.field.reference import reference_campaign
+import skisnow
 
-EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "campaign_to_turn.py"
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("results") / "results.json"
-    path.write_bytes(results_json(results_dict(analyse(reference_campaign(1).campaign(), n_resamples=100))))
-    return path
-
-
-def run(*words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, str(EXAMPLE), *words], capture_output=True, text=True, check=False)
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLE = ROOT / "examples" / "campaign_to_turn.py"
 
 
 @pytest.mark.slow
-def test_chain_from_results_to_report(results: Path, tmp_path: Path) -> None:
+def test_chain_from_campaign_to_report(tmp_path: Path) -> None:
     """Both turns carve, and the one on snow that springs back is the wider and draws more on its grip.
 
     By hand: 80 kg at the 6.7 m/s of the end on 15 m and a slope of 5° ask for at most 80 (6.7²/15 + 9.81 sin 5°) =
@@ -37,7 +24,9 @@ def test_chain_from_results_to_report(results: Path, tmp_path: Path) -> None:
     40°, are e = √(2 · 400 tan 40° / (H_V · 1.5)) = 1.0 mm deep and hold 2 S_f e · 1.5 m = 410 N; in a groove that stays
     the afterbody carries little, the forebody goes deeper and both find more to hold on to.
     """
-    done = run(str(results), str(tmp_path), "--runs", "4", "--workers", "2")
+    skisnow.write_reference(tmp_path / "campaign", seed=1)
+    words = [str(tmp_path / "campaign"), str(tmp_path / "turn"), "--runs", "4"]
+    done = subprocess.run([sys.executable, str(EXAMPLE), *words], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     told = done.stdout
     assert re.search(r"contact “elastic” is wider than that with “hypoplastic, .*”, by [0-9.]+ %", told)
@@ -47,18 +36,16 @@ def test_chain_from_results_to_report(results: Path, tmp_path: Path) -> None:
     assert shares is not None
     elastic, hypoplastic = map(float, shares.groups())
     assert 0.2 < hypoplastic < elastic < 308 / 410
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    page = (tmp_path / "turn" / "report.html").read_text(encoding="utf-8")
     assert "Synthetic data." in page
     assert "Both hold their edges." in page
     assert "run 5 of 5" in done.stderr
-    assert {path.name for path in (tmp_path / "figures").glob("*.png")} == {
-        "contacts.png", "along_ski.png", "grip.png", "band.png",
-    }  # fmt: skip
 
 
-def test_site_without_shear_tests_is_refused_in_words(results: Path, tmp_path: Path) -> None:
-    experiments = json.loads(results.read_text(encoding="utf-8"))["shear"]["experiments"]
-    assert "site A" not in {row["site"] for row in experiments}
-    done = run(str(results), str(tmp_path), "--site", "site A", "--runs", "3")
-    assert done.returncode == 1
-    assert "S_f" in done.stderr
+def test_example_and_demonstration_use_public_names_alone() -> None:
+    assert re.findall(r"^(?:from|import) (skisnow.*)$", EXAMPLE.read_text(encoding="utf-8"), re.MULTILINE) == [
+        "skisnow"
+    ]
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    recipe = makefile.partition("\ndemo:")[2].partition("\n\n")[0]
+    assert re.findall(r"\$\(BIN\)/(\w+)", recipe) == ["skisnow"] * 4  # the last one in what it prints

@@ -26,7 +26,7 @@ TRUE_FRICTION, TRUE_SPEED, SD = 0.06, 5.5, 0.02
 def put(monkeypatch: pytest.MonkeyPatch) -> None:
     """In place of the simulator, as far as this process goes."""
     module = ModuleType("skisnow.simulate.simulated_run")
-    vars(module)["simulated_run"] = straight_run
+    vars(module)["simulate"] = straight_run
     monkeypatch.setitem(sys.modules, "skisnow.simulate.simulated_run", module)
 
 

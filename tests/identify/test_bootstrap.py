@@ -141,7 +141,7 @@ class TestTracks:
     def test_an_interrupt_keeps_values_and_runs(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         kept = tmp_path / "simulations.partial"
         module = sys.modules["skisnow.simulate.simulated_run"]
-        simulate, calls = module.simulated_run, 0
+        simulate, calls = module.simulate, 0
         whole = found_from(track(seed=2), bootstrap=50)
 
         def stopping(scenario: Any) -> Any:
@@ -151,7 +151,7 @@ class TestTracks:
                 raise KeyboardInterrupt
             return simulate(scenario)
 
-        monkeypatch.setattr(module, "simulated_run", stopping)
+        monkeypatch.setattr(module, "simulate", stopping)
         stopped = found_from(track(seed=2), bootstrap=50, kept=kept)
         assert stopped.outcome == "interrupted"
         assert stopped["mu_0"].value == whole["mu_0"].value

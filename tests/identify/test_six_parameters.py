@@ -10,7 +10,7 @@ import pytest
 
 from skisnow.identify import Identification, identify
 from skisnow.simulate.scenario import read_scenario
-from skisnow.simulate.simulated_run import simulated_run
+from skisnow.simulate.simulated_run import simulate
 from skisnow.track.track import Track
 
 SCENARIO: Final = "carved-46m"
@@ -35,7 +35,7 @@ OF_THE_SNOW: Final = {
 
 def twin(truth: Mapping[str, float], duration_s: float) -> Track:
     """Ten points a second with 2 cm of noise, stated."""
-    run = simulated_run(read_scenario(SCENARIO, changes={**truth, "run.duration_s": duration_s, "run.output_ms": 10.0}))
+    run = simulate(read_scenario(SCENARIO, changes={**truth, "run.duration_s": duration_s, "run.output_ms": 10.0}))
     time, place = run.time[::10], run.place[::10].copy()
     place += NOISE * np.random.default_rng(6).standard_normal(place.shape)
     return Track(

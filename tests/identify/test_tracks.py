@@ -14,7 +14,7 @@ from skisnow.errors import FieldDataError, ParameterError
 from skisnow.identify import Identification, identification_dict, identify
 from skisnow.identify.track_positions import estimated_noise
 from skisnow.simulate.scenario import read_scenario
-from skisnow.simulate.simulated_run import simulated_run
+from skisnow.simulate.simulated_run import simulate
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.track import Track
 
@@ -158,7 +158,7 @@ class TestStraight:
         import sys
 
         calls = 0
-        simulate = sys.modules["skisnow.simulate.simulated_run"].simulated_run
+        simulate = sys.modules["skisnow.simulate.simulated_run"].simulate
 
         def stopping(scenario: Any) -> Any:
             nonlocal calls
@@ -167,7 +167,7 @@ class TestStraight:
                 raise KeyboardInterrupt
             return simulate(scenario)
 
-        monkeypatch.setattr(sys.modules["skisnow.simulate.simulated_run"], "simulated_run", stopping)
+        monkeypatch.setattr(sys.modules["skisnow.simulate.simulated_run"], "simulate", stopping)
         found = found_from(track(seed=6))
         assert found.outcome == "interrupted"
         assert found["mu_0"].value is not None
@@ -232,7 +232,7 @@ def test_times_that_run_backwards_are_refused(tmp_path: Path) -> None:
 def test_friction_of_a_simulated_run_is_found_again() -> None:
     """One second of the carved turn, 2 mm of noise at 20 Hz: within four standard errors, themselves small."""
     truth = {"friction.mu_0": 0.05, "start.speed_m_per_s": 7.3, "run.duration_s": 1.0}
-    run = simulated_run(read_scenario("carved-46m", changes=truth))
+    run = simulate(read_scenario("carved-46m", changes=truth))
     at = np.arange(0, len(run.time), 5)
     place = run.place[at] + 2e-3 * np.random.default_rng(1).standard_normal((len(at), 3))
     measured = Track(

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow import read_scenario, simulated_run
-from skisnow.simulate.scenario import Solver
+from skisnow.simulate.scenario import Solver, read_scenario
+from skisnow.simulate.simulated_run import simulate
 
 from .twins import grooves, tables
 from .twins.__main__ import DOCS, KINDS, main
@@ -37,7 +37,7 @@ def test_a_seed_is_the_same_truth_for_ever() -> None:
 
 def test_the_truth_has_finer_numbers_than_the_identification() -> None:
     asked = read_scenario("carver-42m", changes={"run.duration_s": 0.01})
-    chosen, solver = simulated_run(asked).numbers, finer(asked).solver
+    chosen, solver = simulate(asked).numbers, finer(asked).solver
     assert solver.elements == 2 * chosen["elements"]
     assert solver.line_spacing == pytest.approx(chosen["line_spacing_m"] / 2.0)
     assert solver.groove_tolerance == pytest.approx(Solver().groove_tolerance / 2.0)
@@ -46,7 +46,7 @@ def test_the_truth_has_finer_numbers_than_the_identification() -> None:
 
 def test_a_track_is_the_run_at_10_hz_with_2_cm_and_the_drift() -> None:
     """Of 2 × 20 numbers the standard deviation is known to 11 %; three times that is allowed."""
-    run = simulated_run(read_scenario("carver-42m", changes={"run.duration_s": 2.0, "run.output_ms": 10.0}))
+    run = simulate(read_scenario("carver-42m", changes={"run.duration_s": 2.0, "run.output_ms": 10.0}))
     plain = track_of(run, Truth({}, ""), 3)
     assert np.diff(plain.time) == pytest.approx(np.full(len(plain) - 1, 0.1))
     off = (plain.place - run.place[::10])[:, :2]

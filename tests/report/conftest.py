@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from skisnow.estimate import analyse, results_dict
+from skisnow.estimate import Analysis, analyse
 from skisnow.field import Campaign, PenetrationTests, ShearTests
 from skisnow.field.reference import reference_campaign
 from skisnow.report import write_report
@@ -16,26 +16,33 @@ from skisnow.report import write_report
 
 @dataclass(frozen=True)
 class Reported:
-    """A campaign with its results and the folder of its report."""
+    """An analysis and the folder of its report."""
 
-    campaign: Campaign
-    results: dict[str, Any]
+    analysis: Analysis
     folder: Path
+
+    @property
+    def results(self) -> dict[str, Any]:
+        return self.analysis.results
 
     @property
     def html(self) -> str:
         return (self.folder / "report.html").read_text(encoding="utf-8")
 
 
-def results_of(campaign: Campaign) -> dict[str, Any]:
+def analysis_of(campaign: Campaign) -> Analysis:
     """Few resamples: the tests hold the report against the results, whatever these are."""
-    return results_dict(analyse(campaign, n_resamples=100))
+    return analyse(campaign, n_resamples=100)
+
+
+def results_of(campaign: Campaign) -> dict[str, Any]:
+    return analysis_of(campaign).results
 
 
 def reported(campaign: Campaign, folder: Path) -> Reported:
-    results = results_of(campaign)
-    write_report(campaign, results, folder)
-    return Reported(campaign, results, folder)
+    analysis = analysis_of(campaign)
+    write_report(analysis, folder)
+    return Reported(analysis, folder)
 
 
 def first_series(campaign: Campaign, count: int) -> PenetrationTests:

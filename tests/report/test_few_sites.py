@@ -14,7 +14,7 @@ from skisnow.report.sentences.caveats import caveats
 from skisnow.report.sentences.key_results import key_results
 from skisnow.report.sentences.regressions import regression_sentences
 
-from .conftest import first_series, results_of
+from .conftest import analysis_of, first_series
 
 
 def plain(markup: str) -> str:
@@ -24,7 +24,7 @@ def plain(markup: str) -> str:
 @pytest.fixture(scope="module")
 def material(campaign: Campaign) -> Material:
     two = replace(campaign, name="real", shear=None, penetration=first_series(campaign, 60))
-    return Material(two, results_of(two))
+    return Material(analysis_of(two))
 
 
 def test_the_first_sentence_is_about_the_sites(material: Material) -> None:
@@ -50,5 +50,6 @@ def test_warnings_of_fits_come_first_among_the_caveats(material: Material) -> No
 
 
 def replace_warnings(material: Material, warnings: list[str]) -> Material:
-    results = {**material.results, "penetration": {**material.results["penetration"], "warnings": warnings}}
-    return Material(material.campaign, results)
+    found = material.analysis.penetration
+    assert found is not None
+    return Material(replace(material.analysis, penetration=replace(found, warnings=tuple(warnings))))

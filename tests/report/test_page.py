@@ -15,7 +15,7 @@ import pytest
 from skisnow.field import Campaign
 from skisnow.report.material import Material
 
-from .conftest import Reported, first_series, first_shear, reported
+from .conftest import Reported, analysis_of, first_series, first_shear, reported
 
 _HOSTILE = "<script>alert('x')</script> & a_b"
 
@@ -319,5 +319,5 @@ def test_the_days_of_the_campaign_are_read_from_its_times(campaign: Campaign) ->
     dated = replace(
         campaign, penetration=None, density=None, drop_cone=None, shear=replace(shear, further={"time": times})
     )
-    assert Material(dated, {}).dates == ("2026-01-31", "2026-02-03")
-    assert Material(replace(dated, shear=shear), {}).dates is None
+    assert Material(analysis_of(dated)).dates == ("2026-01-31", "2026-02-03")
+    assert Material(analysis_of(replace(dated, shear=shear))).dates is None

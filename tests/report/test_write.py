@@ -65,7 +65,7 @@ def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
 
     monkeypatch.setattr("skisnow.report.write.write_file", noting)
     with matplotlib.rc_context({"font.size": 31.0, "svg.fonttype": "path", "axes.grid": True}):
-        write_report(reference.campaign, reference.results, tmp_path, progress=said.append)
+        write_report(reference.analysis, tmp_path, progress=said.append)
         assert matplotlib.rcParams["font.size"] == 31.0
         assert matplotlib.rcParams["svg.fonttype"] == "path"
         assert matplotlib.rcParams["axes.grid"]
@@ -99,5 +99,5 @@ def test_a_place_that_cannot_be_written_is_a_clear_error(reference: Reported, tm
     taken = tmp_path / "taken"
     taken.write_text("a file, not a folder")
     with pytest.raises(OutputError, match="cannot be written"):
-        write_report(reference.campaign, reference.results, taken)
+        write_report(reference.analysis, taken)
     assert taken.read_text() == "a file, not a folder"

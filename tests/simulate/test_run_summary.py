@@ -11,7 +11,6 @@ import jsonschema
 import numpy as np
 import pytest
 
-import skisnow
 from skisnow.simulate.run import Run
 from skisnow.simulate.run_summary import run_warnings, summary_dict
 from skisnow.simulate.scenario import scenario_file
@@ -19,7 +18,7 @@ from skisnow.simulate.simulated_run import REMEDIES
 
 from .straight_run import STRAIGHT, straight_run
 
-SCHEMA = json.loads((files(skisnow.simulate) / "schemas" / "summary.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json.loads((files("skisnow.simulate") / "schemas" / "summary.schema.json").read_text(encoding="utf-8"))
 ASKED = scenario_file("carved-46m", changes=STRAIGHT)
 CONTRACT = {
     *("outcome", "remedy", "run_length_m", "simulated_s", "wall_s", "steps", "rejected_steps", "energies"),

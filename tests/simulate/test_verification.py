@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from skisnow import Run, Scenario, read_scenario
-from skisnow.simulate.scenario import Solver
-from skisnow.simulate.verification import refined_solvers, verification_dict, verified
+from skisnow import Run, Scenario
+from skisnow.simulate.scenario import Solver, read_scenario
+from skisnow.simulate.verification import refined_solvers, verification_dict, verify
 
 from .straight_run import STRAIGHT, straight_run
 
@@ -33,7 +33,7 @@ def test_a_fixed_step_is_halved_in_place_of_the_tolerance() -> None:
 
 def test_end_moves_by_what_the_choice_changes() -> None:
     """The made-up run misses by 40 mm / elements: from 40 to 80 its end moves by 0.5 mm."""
-    found = verification_dict(verified(straight_run(read_scenario("carved-46m", changes=STRAIGHT)), straight_run))
+    found = verification_dict(verify(straight_run(read_scenario("carved-46m", changes=STRAIGHT)), straight_run))
     assert list(found) == KEYS
     moved = {key: each["end_moves_cm"] for key, each in found.items()}
     assert moved == pytest.approx({**dict.fromkeys(KEYS, 0.0), "solver.elements": 0.05}, rel=1e-9, abs=1e-12)
@@ -54,5 +54,5 @@ def test_interrupted_repetition_keeps_those_before_it() -> None:
         return straight_run(scenario, outcome="interrupted" if len(asked) == 3 else "finished")
 
     run = straight_run(read_scenario("carved-46m", changes=STRAIGHT))
-    assert [each.key for each in verified(run, interrupted_third)] == KEYS[:2]
+    assert [each.key for each in verify(run, interrupted_third)] == KEYS[:2]
     assert len(asked) == 3

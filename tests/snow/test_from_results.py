@@ -154,3 +154,13 @@ def test_numbers_that_no_snow_has_are_refused(tmp_path: Path, hardness: float, s
 def test_the_ends_of_what_is_taken_belong_to_it(tmp_path: Path, value: float) -> None:
     snow = snow_from_results(results_file(tmp_path, [penetration(value)], [shear(value)]))
     assert (snow.snow_hardness, snow.failure_shear_stress) == pytest.approx((value * 1e9, value * 1e6))
+
+
+def test_a_site_may_be_named_without_the_word_site(tmp_path: Path) -> None:
+    rows = [penetration(0.1, "site A"), penetration(0.4, "Site B"), penetration(0.2, "b")]
+    path = results_file(tmp_path, rows, [])
+    assert snow_from_results(path, site="A").snow_hardness == pytest.approx(0.1e9)
+    assert snow_from_results(path, site="b").snow_hardness == pytest.approx(0.2e9)  # its own name goes before
+    assert snow_from_results(path, site="B").snow_hardness == pytest.approx(0.4e9)
+    with pytest.raises(ParameterError, match="of site 'C'; it has some of 'Site B', 'b', 'site A'"):
+        snow_from_results(path, site="C")

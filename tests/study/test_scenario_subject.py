@@ -34,7 +34,7 @@ slope.angle_deg = [0, 10]
 def replaced(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Run]], None]:
     def put(simulate: Callable[..., Run]) -> None:
         module = ModuleType("skisnow.simulate.simulated_run")
-        vars(module)["simulated_run"] = simulate
+        vars(module)["simulate"] = simulate
         monkeypatch.setitem(sys.modules, "skisnow.simulate.simulated_run", module)
 
     put(straight_run)

@@ -35,7 +35,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Analyse, write what was asked for, print the summary."""
-    from ..estimate import analyse, results_dict
+    from ..estimate import analyse
     from ..estimate.results_text import results_json
     from ..field import read_campaign
     from ..memory import paused_collector
@@ -51,17 +51,16 @@ def run(options: argparse.Namespace) -> int:
         if options.out is not None:
             ready(options.out)
         analysis = analyse(campaign, geometry=options.geometry, progress=progress, **chosen)
-        results = results_dict(analysis)
         if options.out is not None:
             from ..report import write_report
 
-            write_report(campaign, results, options.out, progress=progress)
+            write_report(analysis, options.out, progress=progress)
     if options.json:
-        print(results_json(results).decode("utf-8"), end="")
+        print(results_json(analysis.results).decode("utf-8"), end="")
         return 0
     from ..report.summary import summary
 
-    print(summary(results))
+    print(summary(analysis.results))
     if options.out is not None:
         print(f"Report: {options.out / 'report.html'}", file=sys.stderr)
     return 0

@@ -89,7 +89,7 @@ def _compared(options: argparse.Namespace) -> Comparison:
     fit = [word.strip() for word in options.fit_offset.split(",")] if options.fit_offset is not None else []
     require_offsets(fit)
     with announced("reading the tracks and finding nearest places"):
-        from ..track.comparison import compared
+        from ..track.comparison import compare_tracks
 
         measured = _read(options.measured)
         simulated = _read(options.simulated)
@@ -97,7 +97,7 @@ def _compared(options: argparse.Namespace) -> Comparison:
             simulated = _read(options.simulated, origin=measured.origin)
         tracks = [_in_slope(track, options) for track in (simulated, measured)]
         time_from = options.time_from and options.time_from.replace("-", "_")
-        return compared(*tracks, fit=fit, time_from=time_from, from_above=options.from_above)
+        return compare_tracks(*tracks, fit=fit, time_from=time_from, from_above=options.from_above)
 
 
 def _read(path: Path, *, origin: GeodeticPoint | None = None) -> Track:

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from ..simulate.run import Run
     from ..simulate.scenario import Scenario, ScenarioFile
 
-SUMMARY, REPLAY = "summary.json", "replay.html"
 LOADING = "loading"
 
 
@@ -93,9 +92,9 @@ def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
 def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, dict[str, Any] | None]:
     with ExitStack() as loading, Progress() as progress:
         loading.enter_context(announced(LOADING))
-        from ..simulate.simulated_run import simulated_run
+        from ..simulate.simulated_run import simulate
 
-        found = simulated_run(asked.scenario, progress=_Pace(progress, begun=loading.close))
+        found = simulate(asked.scenario, progress=_Pace(progress, begun=loading.close))
         loading.close()
         if not verify or found.outcome == "interrupted":
             return found, None
@@ -103,15 +102,15 @@ def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, dict[str, Any]
 
 
 def _verified(found: Run, progress: Progress) -> dict[str, Any]:
-    from ..simulate.simulated_run import simulated_run
-    from ..simulate.verification import refined_solvers, verification_dict, verified
+    from ..simulate.simulated_run import simulate
+    from ..simulate.verification import refined_solvers, verification_dict, verify
 
     keys = iter(refined_solvers(found))
 
     def finer(scenario: Scenario) -> Run:
-        return simulated_run(scenario, progress=_Pace(progress, f"finer {next(keys)}: "))
+        return simulate(scenario, progress=_Pace(progress, f"finer {next(keys)}: "))
 
-    return verification_dict(verified(found, finer))
+    return verification_dict(verify(found, finer))
 
 
 def _tell(options: argparse.Namespace, asked: ScenarioFile, found: Run, verification: dict[str, Any] | None) -> None:
@@ -131,25 +130,19 @@ def _tell(options: argparse.Namespace, asked: ScenarioFile, found: Run, verifica
 
 
 def _write(folder: Path, found: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
-    """Write all files beside the folder's own and move them into place: never those of two runs together."""
-    from ..files import write_file
-    from ..report.run_report import FIGURES, write_run_report
-    from ..simulate.track_table import write_track
-    from ..staging import staged
+    from ..report.run_folder import REPLAY, write_run
 
-    figures = [f"figures/{name}.{form}" for name in FIGURES for form in ("png", "svg")]
-    with staged(folder, last=SUMMARY) as stage:
-        stage.stale += [*figures, REPLAY]
-        text = json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1)
-        write_file(stage.path / SUMMARY, f"{text}\n")
-        write_track(found, stage.path / "track.csv")
-        with Progress() as progress:
-            page = write_run_report(found, summary, stage.path, progress=lambda doing: progress(f"writing {doing}"))
+    def replay(place: Path) -> None:
         if replay_title is not None:
             from ..web.replay import write_replay
 
-            write_replay(found, stage.path / REPLAY, title=replay_title)
-    print(f"Report: {folder / page.name}", file=sys.stderr)
+            write_replay(found, place / REPLAY, title=replay_title)
+
+    with Progress() as progress:
+        page = write_run(
+            found, folder, summary=summary, beside=replay, progress=lambda doing: progress(f"writing {doing}")
+        )
+    print(f"Report: {page}", file=sys.stderr)
     if replay_title is not None:
         print(f"Replay: {folder / REPLAY}", file=sys.stderr)
 

@@ -11,6 +11,8 @@ import numpy.typing as npt
 
 from ..compiled import core
 from ..errors import ParameterError
+from ..shown import Facts, Shown, amount, ends
+from ..units import MM
 
 if TYPE_CHECKING:
     from ..ski import Ski
@@ -21,8 +23,8 @@ TABLE_STEP: Final = 1e-3
 """Spacing (m) of the table in which the core looks up width and height; between its rows they are linear."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Runner:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Runner(Shown):
     """A base with two edges: how wide and how high it is along its length. It has no mass: that is its body's.
 
     Attributes
@@ -46,6 +48,11 @@ class Runner:
     half_width: FloatArray
     base_height: FloatArray
     nodes: FloatArray | None = None
+
+    def _facts(self) -> Facts:
+        length = amount(float(self.position[0] - self.position[-1]), "m")
+        nodes = "rigid" if self.nodes is None else f"{len(self.nodes)} nodes"
+        return Facts(f"{length} long, half width {ends(self.half_width, 'mm', factor=MM)}, {nodes}")
 
     def __post_init__(self) -> None:
         for name in ("position", "half_width", "base_height"):

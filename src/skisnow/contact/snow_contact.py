@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..compiled import core
 from ..errors import ParameterError
+from ..shown import Facts, Shown, field_facts
 
 if TYPE_CHECKING:
     from ..forces.friction import FrictionLaw
@@ -28,8 +29,8 @@ ORTHONORMAL: Final = 1e-9
 """By how much a rotation may fail to be one."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ContactForces:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ContactForces(Shown):
     """What the snow does to k runners.
 
     Attributes
@@ -43,9 +44,13 @@ class ContactForces:
     wrench: FloatArray
     beam_loads: tuple[FloatArray, ...]
 
+    def _facts(self) -> Facts:
+        rows = tuple((f"runner {k}", _wrench_in_words(each)) for k, each in enumerate(self.wrench))
+        return Facts(f"on {len(self.wrench)} runners", rows)
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Sections:
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Sections(Shown):
     """A runner's sections over the lines of snow, from the tail on; all (n,).
 
     Attributes
@@ -75,8 +80,13 @@ class Sections:
     strength: FloatArray
     shear_used: FloatArray
 
+    def _facts(self) -> Facts:
+        units = dict.fromkeys(("position_along_ski", "length", "depth", "edge_place"), "m")
+        units |= dict.fromkeys(("normal_force", "shear", "push"), "N") | {"sliding": "m/s", "strength": "N/m²"}
+        return field_facts(self, units)
 
-class SnowContact:
+
+class SnowContact(Shown):
     """Runners in a snow that keeps what they press into it.
 
     ``force`` looks at a pose and leaves the snow as it is; ``update`` accepts a step. In between the history advances
@@ -121,8 +131,8 @@ class SnowContact:
             called = None if friction is None else _coefficient(friction)
             self.compiled.set_laws(called, None if snow.shear is None else _strength(snow.shear), snow.fade_speed)
 
-    def __repr__(self) -> str:
-        return f"SnowContact({len(self.runners)} runners, {self.compiled.instruction_set})"
+    def _facts(self) -> Facts:
+        return Facts(f"of {len(self.runners)} runners, {self.compiled.instruction_set}: {self.snow._facts().title}")
 
     @property
     def instruction_set(self) -> str:
@@ -257,3 +267,8 @@ class _strength:  # noqa: N801
             worst = float(np.degrees(angle[meets][~np.isfinite(found[:, meets]).all(axis=0)][0]))
             raise ParameterError(f"{self.law!r} gives no finite strength at an edge angle of {worst:.3g} degrees")
         return found
+
+
+def _wrench_in_words(wrench: FloatArray) -> str:
+    force, moment = (", ".join(f"{each:.4g}" for each in part) for part in (wrench[:3], wrench[3:]))
+    return f"force ({force}) N, moment ({moment}) N m"

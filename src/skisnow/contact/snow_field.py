@@ -15,6 +15,8 @@ from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, Qua
 from ..forces.shear import ShearLaw
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..geometry.surfaces import Grid, Plane
+from ..shown import Facts, Shown, amount
+from ..units import N_PER_MM2, N_PER_MM3
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -30,8 +32,8 @@ PART_ACROSS: Final = 2e-3
 """The same across the ski (m): what an edge cuts on the way hangs on where it was between (Choice)."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SnowField:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SnowField(Shown):
     """One snow, which any number of contacts share; what one leaves behind, the others meet.
 
     Attributes
@@ -75,6 +77,16 @@ class SnowField:
     part_along: float = PART_ALONG
     part_across: float = PART_ACROSS
     compiled: core.Snow = field(init=False, repr=False)
+
+    def _facts(self) -> Facts:
+        def told(value: float | Grid, size: float, unit: str) -> str:
+            return "over the place" if isinstance(value, Grid) else amount(value / size, unit)
+
+        hardness = told(self.snow_hardness, N_PER_MM3, "N/mm³")
+        stress = told(self.failure_shear_stress, N_PER_MM2, "N/mm²")
+        friction = self.friction if isinstance(self.friction, int | float) else type(self.friction).__name__
+        laws = f"friction {friction}, shear {'S_f' if self.shear is None else type(self.shear).__name__}"
+        return Facts(f"H_V {hardness}, S_f {stress}, k_u/H_V {amount(self.unloading_ratio)}, {laws}")
 
     def __post_init__(self) -> None:
         _require("snow_hardness", _least(self.snow_hardness), above=0.0)

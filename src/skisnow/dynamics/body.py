@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from ..compiled import core
 from ..errors import ParameterError
+from ..shown import ShownFields
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -24,8 +25,8 @@ def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
     return array
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class FlexibleSki:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class FlexibleSki(ShownFields):
     """A beam clamped to the body at its boot: three unknowns to a free node (deflection, its slope, twist).
 
     Attributes
@@ -80,8 +81,8 @@ class FlexibleSki:
         return core.flexible_ski(boot, axes, unknown, mass, stiffness, coupling, self.damping)
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Body:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class Body(ShownFields):
     """A rigid body on skis, SI, vectors in its own frame but for gravity.
 
     Attributes

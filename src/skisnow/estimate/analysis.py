@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +14,8 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..field import read_campaign
 from ..field.records import Campaign
+from ..shown import Facts, Shown, amount, field_facts, span
+from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import FittedHardness, fit_models_with_depth_errors, fitted_hardness
 from .fit_warnings import fit_warnings
@@ -32,10 +36,11 @@ from .regressions import Regression, Source, regressions
 from .screening import Screened, screened_penetration, screened_shear
 from .seating import Seating, seating
 from .shear_stress import ShearStress, shear_stress
+from .site_snow import site_snow
 from .sites import SiteComparison, SiteMean, compare_sites, site_means
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from ..geometry import GeometryForm
 
@@ -47,16 +52,20 @@ FEWEST_RESAMPLES: Final = 100
 DEFAULT_SEED: Final = 1
 
 
-@dataclass(frozen=True)
-class ModelTable:
+@dataclass(frozen=True, repr=False)
+class ModelTable(Shown):
     """The nine fitted rows with bootstrap intervals of a0, a1, b0, b1 by model ((4, 2) each); none where withheld."""
 
     fits: tuple[ModelFit, ...]
     intervals: dict[Model, FloatArray]
 
+    def _facts(self) -> Facts:
+        rows = tuple((fit.model.id, f"rmse {amount(fit.rmse, 'N')}") for fit in self.fits)
+        return Facts(f"of {len(rows)} rows", rows)
 
-@dataclass(frozen=True)
-class PenetrationAnalysis:
+
+@dataclass(frozen=True, repr=False)
+class PenetrationAnalysis(Shown):
     """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
 
     ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say. ``table``,
@@ -74,18 +83,42 @@ class PenetrationAnalysis:
     errors_in_depth: ModelTable | None
     warnings: tuple[str, ...] = ()
 
+    def _facts(self) -> Facts:
+        return field_facts(self, {}, title=_used_of(self.screened))
 
-@dataclass(frozen=True)
-class ShearAnalysis:
+
+@dataclass(frozen=True, repr=False)
+class ShearAnalysis(Shown):
     """All that the shear experiments say, over all experiments."""
 
     screened: Screened
     stress: ShearStress
 
+    def _facts(self) -> Facts:
+        return Facts(_used_of(self.screened))
 
-@dataclass(frozen=True)
-class Analysis:
-    """A campaign analysed. `skisnow.estimate.results_dict` gives it as the contents of results.json."""
+
+@dataclass(frozen=True, repr=False)
+class Analysis(Shown):
+    """A campaign analysed.
+
+    Attributes
+    ----------
+    campaign
+        What was analysed.
+    geometry, seed, n_resamples
+        How: see `analyse`.
+    penetration, shear
+        What the experiments of each kind say, in SI; None where the campaign has none.
+    regressions, site_means, site_comparisons, comparisons
+        Relations between the quantities, sites beside each other, published values beside the campaign's own.
+    own_hardness, own_stress
+        Means over all sites.
+    observations
+        The used experiments with the snow that they were made on.
+    time
+        When it was made.
+    """
 
     campaign: Campaign
     geometry: GeometryForm
@@ -99,6 +132,56 @@ class Analysis:
     comparisons: tuple[Comparison, ...]
     own_hardness: OwnValue
     own_stress: OwnValue
+    observations: Mapping[Source, Observations]
+    time: datetime = field(default_factory=lambda: datetime.now(UTC))
+
+    @cached_property
+    def results(self) -> dict[str, Any]:
+        """The contents of results.json, see `results_dict`; not to be changed."""
+        from .results import results_dict
+
+        return results_dict(self)
+
+    def snow(self, site: str | None = None, *, unloading_ratio: float | None = None) -> SnowProperties:
+        """The snow of a site: the geometric mean of H_V and the mean of S_f over the used experiments, with intervals.
+
+        The same numbers as `skisnow.snow_from_results` reads from results.json.
+
+        Parameters
+        ----------
+        site
+            As the campaign calls it; "C" is also its "site C". Left out: all sites together.
+        unloading_ratio
+            k_u/H_V, which no experiment of the campaign says: 1 is snow that springs back, 10 or more snow that keeps
+            its grooves. `Scenario.with_` takes it over.
+
+        Raises
+        ------
+        ParameterError
+            No used penetration experiment is of that site; the message names the sites that have some.
+        """
+        return site_snow(self, site, unloading_ratio)
+
+    def _facts(self) -> Facts:
+        selected = self.penetration.selected if self.penetration is not None else None
+        rows = [
+            ("penetration", "none" if self.penetration is None else _used_of(self.penetration.screened)),
+            ("shear", "none" if self.shear is None else _used_of(self.shear.screened)),
+            ("H_V", _own(self.own_hardness, "N/mm³")),
+            ("S_f", _own(self.own_stress, "N/mm²")),
+            ("model", "none" if selected is None else f"{selected.model.id}, rmse {amount(selected.rmse, 'N')}"),
+            ("sites", ", ".join(dict.fromkeys(row.site for row in self.site_means)) or "none"),
+        ]
+        return Facts(f"of {self.campaign.name!r}", tuple(rows))
+
+
+def _used_of(screened: Screened) -> str:
+    return f"{int(screened.used.sum())} of {len(screened.used)} experiments used"
+
+
+def _own(mean: OwnValue, unit: str) -> str:
+    """A mean over the campaign with its interval, in the unit that it is held in."""
+    return f"{amount(mean.value, unit)} ({span(mean.low, mean.high)})"
 
 
 def analyse(
@@ -171,6 +254,7 @@ def _analysis(
         ),
         own_hardness=own_hardness,
         own_stress=own_stress,
+        observations=observations,
     )
 
 

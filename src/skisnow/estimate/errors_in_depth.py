@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
+from ..shown import ShownFields
 from ..statistics.bounded import non_negative_fits
 from .hardness import DEFINITIONS, hardness_of_all_readings
 from .layering import layering
@@ -41,8 +42,8 @@ FEWEST_READINGS: Final = 4
 """A series needs so many readings for its offset to be fitted: two parameters, and two degrees of freedom left."""
 
 
-@dataclass(frozen=True)
-class FittedHardness:
+@dataclass(frozen=True, repr=False)
+class FittedHardness(ShownFields):
     """Hardness of m series from all their readings.
 
     Attributes

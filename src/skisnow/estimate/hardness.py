@@ -23,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..constants import CONFIDENCE
+from ..shown import ShownFields
 from ..statistics.combined_uncertainty import expanded_factor
 from ..units import N_PER_MM, N_PER_MM2, N_PER_MM3
 
@@ -86,8 +87,8 @@ class ReadingUncertainty:
     load: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class Hardness:
+@dataclass(frozen=True, slots=True, repr=False)
+class Hardness(ShownFields):
     """Hardness of m series by one definition, in SI; NaN where it does not exist.
 
     Attributes

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..shown import ShownFields
 from ..statistics.bounded import non_negative_fit
 from .hardness import DEFINITIONS
 
@@ -77,8 +78,8 @@ MODELS: Final = (
 NESTED_PAIRS: Final = tuple((full, reduced) for full in MODELS for reduced in MODELS if full.contains(reduced))
 
 
-@dataclass(frozen=True)
-class ModelFit:
+@dataclass(frozen=True, repr=False)
+class ModelFit(ShownFields):
     """A fitted row, in SI (a and b such that F in N from A in m², V in m³, H in SI, ϑ in rad).
 
     Attributes

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from ..shown import ShownFields
 from ..units import MM, N_PER_MM2, N_PER_MM3
 
 if TYPE_CHECKING:
@@ -28,8 +29,8 @@ DENSITY_KEY = "snow_density_kg_per_m3"
 DROP_CONE_KEY = "drop_cone_depth_mm"
 
 
-@dataclass(frozen=True)
-class Observations:
+@dataclass(frozen=True, repr=False)
+class Observations(ShownFields):
     """Columns of one kind of experiment (NaN: not known), the site and the spot (``""``: none) of each."""
 
     columns: Mapping[str, FloatArray]

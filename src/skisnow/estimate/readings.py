@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..field.screening import reading_at_largest_load
 from ..geometry import in_form
+from ..shown import ShownFields
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -23,8 +24,8 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class Readings:
+@dataclass(frozen=True, repr=False)
+class Readings(ShownFields):
     """n readings of m series in SI, series after series, each in the order of loading.
 
     Attributes

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from ..errors import FitError
 from ..names import numbered
+from ..shown import ShownFields
 from ..statistics.clusters import cluster_intervals
 from ..statistics.linear import LinearFit, linear_fit
 from .observations import ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY, HARDNESS_KEY, STRESS_KEY
@@ -51,8 +52,8 @@ PLANS: Final = (
 )
 
 
-@dataclass(frozen=True)
-class Regression:
+@dataclass(frozen=True, repr=False)
+class Regression(ShownFields):
     """A regression with intercept on one predictor; ``fit`` is None where the data do not determine it.
 
     ``predictor_values`` counts the different values that the predictor takes. ``interval_by_site`` (2, 2) treats sites

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import platform
 from dataclasses import asdict
-from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -359,5 +358,5 @@ def _provenance(analysis: Analysis) -> Json:
         "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},
         "seed": analysis.seed,
         "options": {"geometry": analysis.geometry, "n_resamples": analysis.n_resamples},
-        "time": datetime.now(UTC).isoformat(timespec="seconds"),
+        "time": analysis.time.isoformat(timespec="seconds"),
     }

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..field.screening import mark_problems, screen_penetration, screen_shear
 from ..names import numbered
+from ..shown import ShownFields
 from ..units import N_PER_MM3
 from .hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
 from .layering import layered
@@ -34,8 +35,8 @@ NORMAL_MAD: Final = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
 
 
-@dataclass(frozen=True, slots=True)
-class Screened:
+@dataclass(frozen=True, slots=True, repr=False)
+class Screened(ShownFields):
     """Marks of each experiment by code, and which experiments are used (masks over the experiments)."""
 
     marks: Mapping[str, BoolArray]
@@ -94,9 +95,19 @@ def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]
     return outlier
 
 
-def marks_of(campaign: Campaign, *, geometry: GeometryForm = "extended") -> list[Problem]:
-    """Every mark of a campaign as a problem of severity ``mark``, the one that needs the hardness included."""
-    penetration, shear = screened_penetration(campaign, geometry=geometry), screened_shear(campaign)
+def screened_both(campaign: Campaign, *, geometry: GeometryForm) -> tuple[Screened, Screened]:
+    """The penetration and the shear experiments, screened."""
+    return screened_penetration(campaign, geometry=geometry), screened_shear(campaign)
+
+
+def marks_of(
+    campaign: Campaign, *, geometry: GeometryForm = "extended", screened: tuple[Screened, Screened] | None = None
+) -> list[Problem]:
+    """Every mark of a campaign as a problem of severity ``mark``, the one that needs the hardness included.
+
+    ``screened`` is what `screened_both` gives, where that is at hand.
+    """
+    penetration, shear = screened or screened_both(campaign, geometry=geometry)
     problems = mark_problems(campaign, penetration.marks, shear.marks, geometry=geometry)
     tests = campaign.penetration
     if tests is None:

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..constants import CONFIDENCE
+from ..shown import ShownFields
 from ..statistics.combined_uncertainty import expanded_factor
 
 if TYPE_CHECKING:
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class Seating:
+@dataclass(frozen=True, slots=True, repr=False)
+class Seating(ShownFields):
     """Depth zero of m series: the tool touched at gauge reading ``offset``; true depth = reading - offset.
 
     Attributes

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..constants import CONFIDENCE
+from ..shown import ShownFields
 from ..statistics.combined_uncertainty import expanded_factor
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class ShearStress:
+@dataclass(frozen=True, slots=True, repr=False)
+class ShearStress(ShownFields):
     """Failure shear force F_t (N) and stress S_f (N/m²) of each test, its 95 % interval (n, 2); NaN where undefined."""
 
     force: FloatArray

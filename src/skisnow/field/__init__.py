@@ -3,7 +3,7 @@
 from .density_records import DensityLayers, read_density_layers
 from .marks import MARKS, Mark
 from .problems import Problem
-from .reading import check_campaign, read_campaign
+from .reading import campaign_of_files, check_campaign, read_campaign
 from .records import (
     AppliedCorrection,
     Campaign,
@@ -32,6 +32,7 @@ __all__ = [
     "ReferenceNoise",
     "ShearTests",
     "SnowMicroPenProfile",
+    "campaign_of_files",
     "check_campaign",
     "mark_problems",
     "read_campaign",

@@ -17,6 +17,7 @@ from ..errors import FieldDataError
 from ..inputs import Quantity
 from ..units import CM
 from .problems import error
+from .reading.campaign_files import FilesOfFolder
 from .reading.raw_files import RawFiles
 from .reading.table_forms import TableForm
 from .reading.tables import read_table
@@ -80,7 +81,7 @@ def read_density_layers(path: Path) -> DensityLayers:
         With every problem of the file, each with its row and column.
     """
     path = Path(path)
-    files = RawFiles(path.parent)
+    files = RawFiles(FilesOfFolder(path.parent))
     table = _read(path.name, files)
     if table is not None and not table.absent:
         files.found.extend(_layers_upside_down(path.name, table))

@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from ..shown import Facts, Shown, amount, ends
+from ..units import DEGREE, MM
+
 if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping, Sequence
     from pathlib import Path
@@ -26,8 +29,8 @@ BoolArray = npt.NDArray[np.bool_]
 Key = TypeVar("Key", bound="Hashable")
 
 
-@dataclass(frozen=True, slots=True)
-class PenetrationSeries:
+@dataclass(frozen=True, slots=True, repr=False)
+class PenetrationSeries(Shown):
     """One penetration experiment: a tool at one edge angle under rising loads.
 
     Attributes
@@ -47,9 +50,13 @@ class PenetrationSeries:
     load: FloatArray
     penetration_depth: FloatArray
 
+    def _facts(self) -> Facts:
+        told = f"{self.tool} at {amount(self.edge_angle / DEGREE, '°')}, {len(self.load)} loads {ends(self.load, 'N')}"
+        return Facts(f"{self.experiment} at {self.site}: {told}, {ends(self.penetration_depth, 'mm', factor=MM)} deep")
 
-@dataclass(frozen=True, slots=True)
-class PenetrationTests:
+
+@dataclass(frozen=True, slots=True, repr=False)
+class PenetrationTests(Shown):
     """All m penetration experiments of a campaign, n readings in the order of the file.
 
     Attributes
@@ -91,6 +98,16 @@ class PenetrationTests:
         """Count the experiments."""
         return len(self.experiment)
 
+    def _facts(self) -> Facts:
+        rows = (
+            ("sites", _listed(self.site)),
+            ("tools", _listed(self.tool)),
+            ("edge angles", ends(self.edge_angle, "°", factor=DEGREE)),
+            ("loads", ends(self.load, "N")),
+            ("depths", ends(self.penetration_depth, "mm", factor=MM)),
+        )
+        return Facts(f"of {len(self)} experiments, {len(self.load)} readings", rows)
+
     @property
     def series_of_reading(self) -> IntArray:
         """Index of the experiment that each reading belongs to."""
@@ -109,8 +126,8 @@ class PenetrationTests:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class ShearTests:
+@dataclass(frozen=True, slots=True, repr=False)
+class ShearTests(Shown):
     """All shear experiments of a campaign, one row each.
 
     Attributes
@@ -143,9 +160,20 @@ class ShearTests:
         """Count the experiments."""
         return len(self.experiment)
 
+    def _facts(self) -> Facts:
+        rows = (
+            ("sites", _listed(self.site)),
+            ("plates", _listed(self.plate)),
+            ("edge angles", ends(self.edge_angle, "°", factor=DEGREE)),
+            ("depths", ends(self.penetration_depth, "mm", factor=MM)),
+            ("lever arms", ends(self.lever_arm, "mm", factor=MM)),
+            ("moments", ends(self.moment, "N m")),
+        )
+        return Facts(f"of {len(self)} experiments", rows)
 
-@dataclass(frozen=True, slots=True)
-class DensitySamples:
+
+@dataclass(frozen=True, slots=True, repr=False)
+class DensitySamples(Shown):
     """Samples of a density cutter: ρ in kg/m³. ``further`` as in `PenetrationTests`."""
 
     sample: tuple[str, ...]
@@ -155,13 +183,16 @@ class DensitySamples:
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
+    def _facts(self) -> Facts:
+        return Facts(f"of {len(self.sample)} samples: {ends(self.snow_density, 'kg/m³')}; {_listed(self.site)}")
+
     def site_means(self) -> dict[str, float]:
         """Mean density of each site's samples that were not cancelled (kg/m³)."""
         return _means(self.site, self.snow_density, self.cancelled)
 
 
-@dataclass(frozen=True, slots=True)
-class DropConeTests:
+@dataclass(frozen=True, slots=True, repr=False)
+class DropConeTests(Shown):
     """Repeats of a drop-cone test: depth H_p in m, larger is *softer*. A test is the mean of its repeats."""
 
     test: tuple[str, ...]
@@ -172,6 +203,11 @@ class DropConeTests:
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
+    def _facts(self) -> Facts:
+        return Facts(
+            f"of {len(self.test)} repeats: {ends(self.drop_cone_depth, 'mm', factor=MM)}; {_listed(self.site)}"
+        )
+
     def site_means(self) -> dict[str, float]:
         """Mean over each site's tests of the mean over the test's repeats (m); a cancelled test takes no part."""
         tests = list(zip(self.site, self.test, strict=True))
@@ -179,6 +215,10 @@ class DropConeTests:
         cancelled = tuple("cancelled" if test in gone else "" for test in tests)
         means = _means(tests, self.drop_cone_depth, cancelled)
         return _means([site for site, _ in means], np.array(list(means.values())), ("",) * len(means))
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(dict.fromkeys(names))
 
 
 def _means(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) -> dict[Key, float]:
@@ -204,8 +244,8 @@ class AppliedCorrection:
     why: str
 
 
-@dataclass(frozen=True, slots=True)
-class Campaign:
+@dataclass(frozen=True, slots=True, repr=False)
+class Campaign(Shown):
     """A checked campaign, corrections applied.
 
     Attributes
@@ -256,6 +296,18 @@ class Campaign:
     file_hashes: Mapping[str, str]
     corrections: tuple[AppliedCorrection, ...] = ()
     unread_files: tuple[str, ...] = ()
+
+    def _facts(self) -> Facts:
+        tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}
+        told = [(name, "none" if table is None else table._facts().title) for name, table in tables.items()]
+        gauge = "not stated" if self.gauge_resolution is None else amount(self.gauge_resolution / MM, "mm")
+        rows = (
+            ("place", self.place or "not stated"),
+            *told,
+            ("gauge step", gauge),
+            ("warnings", str(len(self.problems))),
+        )
+        return Facts(f"{self.name!r}", rows)
 
     @property
     def depth_uncertainty(self) -> float | None:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..shown import ShownFields
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -21,8 +22,8 @@ class Plane:
     """The plane z = 0: the slope's own axes, x down the fall line, y left, z out of the snow (m)."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Grid:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Grid(ShownFields):
     """Values over evenly spaced places, joined by smooth patches.
 
     Attributes

@@ -1,7 +1,11 @@
-"""Parameters from tracks, photo-cell times, or marks left in the snow."""
+"""Parameters from tracks, photo-cell times, or marks left in the snow.
+
+The room can be called: `skisnow.identify(…)` is `skisnow.identify.identify`.
+"""
 
 from __future__ import annotations
 
+from ..callable_rooms import make_callable
 from .identification import Identification, Identified, identification_dict
 from .identifying import identify
 from .marks import Marks, read_marks
@@ -20,3 +24,5 @@ __all__ = [
     "read_marks",
     "read_photo_cells",
 ]
+
+make_callable(__name__, ".identifying", "identify")

@@ -13,6 +13,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..shown import Facts, Shown, amount, ends, span
 from .observations import Fit
 from .parameter import Parameter
 
@@ -30,8 +31,8 @@ REASONS: dict[Outcome, str] = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Identified:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Identified(Shown):
     """One parameter, in the unit that its key names; None where a number does not exist.
 
     Attributes
@@ -58,9 +59,21 @@ class Identified:
     at_bound: bool = False
     identifiable: bool = True
 
+    def _facts(self) -> Facts:
+        return Facts(f"{self.parameter.key} = {self.in_words}")
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Profile:
+    @property
+    def in_words(self) -> str:
+        """The value with its interval in the key's unit, and whether the data determine it."""
+        low, high = self.interval or (None, None)
+        told = amount(self.value, self.parameter.unit)
+        if low is not None and high is not None:
+            told = f"{told} ({span(low, high)})"
+        return f"{told}{'' if self.identifiable else ', not determined'}{', at a bound' if self.at_bound else ''}"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Profile(Shown):
     """The sum of squares along one parameter with all others fitted anew.
 
     Attributes
@@ -78,6 +91,9 @@ class Profile:
     rise: FloatArray
     limit: float
 
+    def _facts(self) -> Facts:
+        return Facts(f"of {self.key} at {len(self.value)} values, {ends(self.value)}")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effort:
@@ -89,8 +105,8 @@ class Effort:
     wall_s: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Identification:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class Identification(Shown):
     """What came out.
 
     Attributes
@@ -144,6 +160,10 @@ class Identification:
     posterior: FloatArray | None = None
     effort: Effort = field(default_factory=Effort)
     data: tuple[tuple[str, str], ...] = ()
+
+    def _facts(self) -> Facts:
+        rows = tuple((each.parameter.key, each.in_words) for each in self.parameters)
+        return Facts(f"{self.outcome.replace('_', ' ')}: {self.scenario}, {self.points} points", rows)
 
     @property
     def values(self) -> dict[str, float | None]:

@@ -70,7 +70,7 @@ def identify(
         Keys that are looked for, with or without section and unit; ``KEY@RUN`` in one run of several, ``KEY@each`` in
         each a value of its own, as keys of the start always. Left out: those with a table ``[identify."KEY"]``.
     changes
-        Other values of the scenario, as `skisnow.read_scenario` takes them.
+        Other values of the scenario, as `skisnow.scenario` takes them.
     starts
         Searches, the first from the scenario's values, the others from random places about them.
     profile

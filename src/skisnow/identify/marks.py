@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..inputs import Quantity, own_quantities
+from ..shown import ShownFields
 from .table_file import TableFile, read_table
 
 FloatArray = npt.NDArray[np.float64]
@@ -36,8 +37,8 @@ SPREADS: Final = tuple(each.name for each in _ROW[3:])
 FEWEST_FOR_SCATTER: Final = 3
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Marks:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Marks(ShownFields):
     """Places along a track, (n,) each, in m.
 
     Attributes

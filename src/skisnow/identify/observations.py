@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..inputs import nearest
+from ..shown import ShownFields
 from ..simulate.scenario.free_keys import EACH
 
 FloatArray = npt.NDArray[np.float64]
@@ -22,8 +23,8 @@ START: Final = "start."
 """Keys that every run has for itself."""
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Fit:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class Fit(ShownFields):
     """One run's data beside what the parameters give.
 
     Attributes

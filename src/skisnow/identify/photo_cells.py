@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..inputs import Quantity, own_quantities
+from ..shown import ShownFields
 from .table_file import TableFile, read_table
 
 FloatArray = npt.NDArray[np.float64]
@@ -30,8 +31,8 @@ _PASSAGE: Final = own_quantities(Passage)
 COLUMNS: Final = tuple(each.name for each in _PASSAGE if each.needed)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PhotoCellRun:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PhotoCellRun(ShownFields):
     """The passages of one run.
 
     Attributes
@@ -71,8 +72,8 @@ class PhotoCellRun:
             raise ParameterError(f"run {self.name}: time_sd_s must be above 0")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PhotoCells:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PhotoCells(ShownFields):
     """All runs of a file."""
 
     name: str

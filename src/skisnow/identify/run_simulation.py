@@ -64,11 +64,11 @@ class RunSimulation:
 
     def __call__(self, task: RunTask) -> Row:
         """Lists x_m, y_m, speed_m_per_s at the times, and how many of these the run reached; or why there is none."""
-        from ..simulate.simulated_run import simulated_run
+        from ..simulate.simulated_run import simulate
 
         try:
             scenario = self._scenario(task)
-            run = simulated_run(scenario)
+            run = simulate(scenario)
         except SkisnowError as error:
             return {"outcome": "error", "reason": str(error)}
         if run.outcome == "interrupted":  # half a run is none: the search is what was interrupted

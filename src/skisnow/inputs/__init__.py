@@ -1,6 +1,16 @@
 """A quantity, declared once on the dataclass that holds it: for files, checks, command line, schemas, docs, forms."""
 
-from .declared import Section, Word, made, own_quantities, quantities, require_declared, values_of
+from .declared import (
+    Section,
+    Word,
+    changed,
+    declared_text,
+    made,
+    own_quantities,
+    quantities,
+    require_declared,
+    values_of,
+)
 from .nearest import meant, nearest
 from .quantity import SMALLEST, InputValue, Kind, Quantity, Search
 from .table import checked_table
@@ -13,7 +23,9 @@ __all__ = [
     "Search",
     "Section",
     "Word",
+    "changed",
     "checked_table",
+    "declared_text",
     "made",
     "meant",
     "nearest",

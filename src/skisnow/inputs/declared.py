@@ -131,6 +131,36 @@ def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **part
     return owner(**parts)
 
 
+def changed(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
+    """The same dataclass with other values, by name, in the units that the names say; also in what it holds.
+
+    >>> @dataclass(frozen=True)
+    ... class Step:
+    ...     length: Annotated[float, Quantity("solver.step_ms", "time step")]
+    >>> changed(Step(0.5e-3), {"solver.step_ms": 2.0})
+    Step(length=0.002)
+    """
+    parts: dict[str, Any] = {}
+    for slot in _slots(type(thing)):
+        now = getattr(thing, slot.field.name)
+        for each in slot.own:
+            name = _full(section, each.name)
+            if isinstance(each, Word) or name not in values:
+                continue
+            value = each.in_si(each.in_range(values[name]))
+            if each.index is None:
+                parts[slot.field.name] = value
+            else:
+                several = list(parts.get(slot.field.name, now))
+                several[each.index] = value
+                parts[slot.field.name] = tuple(several)
+        if slot.parts and now is not None:
+            inside = changed(now, values, section=slot.section.name)
+            if inside is not now:
+                parts[slot.field.name] = inside
+    return replace(thing, **parts) if parts else thing  # type: ignore[type-var]
+
+
 def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
     """The values of a dataclass and of what it holds, by name, in the units that the names say."""
     found: dict[str, Any] = {}
@@ -142,6 +172,28 @@ def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
         if slot.parts and value is not None:
             found |= values_of(value, section=slot.section.name)
     return found
+
+
+def declared_text(thing: Any) -> str:
+    """A dataclass by the names of its quantities, which tell the units: what its ``__repr__`` gives.
+
+    >>> @dataclass(frozen=True, repr=False)
+    ... class Step:
+    ...     length: Annotated[float, Quantity("solver.step_ms", "time step")] = 0.5e-3
+    ...
+    ...     __repr__ = declared_text
+    >>> Step()
+    <Step: step_ms = 0.5>
+    """
+    told = ((name.rpartition(".")[2], value) for name, value in values_of(thing).items() if value is not None)
+    values = ", ".join(f"{name} = {_in_short(value)}" for name, value in told)
+    return f"<{type(thing).__name__}: {values}>"
+
+
+def _in_short(value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_in_short, value))}]"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _all(owner: type) -> Iterator[Quantity]:

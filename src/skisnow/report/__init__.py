@@ -1,6 +1,6 @@
 """Tables, figures and the self-contained report of an analysed campaign.
 
-``write_report`` is fetched on first use: the terminal's summary must not wait for the drawing library.
+What draws is fetched on first use: the terminal's summary must not wait for the drawing library.
 """
 
 from __future__ import annotations
@@ -8,9 +8,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .turn_report import TurnChain
     from .write import write_report
 
-__all__ = ["write_report"]
+__all__ = ["TurnChain", "write_report"]
 
 
 def __getattr__(name: str) -> Any:
@@ -18,4 +19,8 @@ def __getattr__(name: str) -> Any:
         from .write import write_report
 
         return write_report
+    if name == "TurnChain":
+        from .turn_report import TurnChain
+
+        return TurnChain
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from ..geometry import in_form
-from ..units import DEGREE, MM, N_PER_MM3
+from ..units import MM
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy.typing as npt
 
     from ..field.records import Campaign, PenetrationTests
@@ -39,24 +37,24 @@ class SeriesCurve:
 def law_of_series(
     tool: Tool,
     edge_angle: FloatArray | float,
-    snow_hardness_N_per_mm3: FloatArray | float,
+    snow_hardness: FloatArray | float,
     penetration_depth: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Depth (mm) and load F = H_V V (N) of a tool at edge angles (rad) and depths (m) that go together."""
+    """Depth (mm) and load F = H_V V (N) of a tool at edge angles (rad) and depths (m) in snow of H_V (N/m³)."""
     volume = tool.displaced_volume(penetration_depth, edge_angle)
-    return penetration_depth / MM, snow_hardness_N_per_mm3 * N_PER_MM3 * volume
+    return penetration_depth / MM, snow_hardness * volume
 
 
 def series_curves(
-    campaign: Campaign, rows: Sequence[dict[str, Any]], *, geometry: GeometryForm = "extended"
+    campaign: Campaign, snow_hardness: FloatArray, *, geometry: GeometryForm = "extended"
 ) -> tuple[SeriesCurve, ...]:
-    """The curve of each series of a campaign; ``rows``: its ``penetration.experiments`` of results.json."""
+    """The curve of each series of a campaign; its H_V (N/m³), NaN where there is none, one for each series."""
     tests = campaign.penetration
     if tests is None:
         return ()
-    laws = _laws(campaign, tests, rows, geometry)
+    laws = _laws(campaign, tests, snow_hardness, geometry)
     curves = []
-    for index in range(len(rows)):
+    for index in range(len(tests)):
         series = tests.series(index)
         numbers = (series.penetration_depth / MM, series.load, *laws.get(index, _NOTHING))
         curves.append(SeriesCurve(series.experiment, *(tuple(each.tolist()) for each in numbers)))
@@ -64,17 +62,15 @@ def series_curves(
 
 
 def _laws(
-    campaign: Campaign, tests: PenetrationTests, rows: Sequence[dict[str, Any]], geometry: GeometryForm
+    campaign: Campaign, tests: PenetrationTests, snow_hardness: FloatArray, geometry: GeometryForm
 ) -> dict[int, tuple[FloatArray, FloatArray]]:
     """The law by the index of its series: those of one tool together, for a site may have hundreds."""
     by_tool: dict[str, list[int]] = {}
-    for index, row in enumerate(rows):
-        if row["H_V_N_per_mm3"] is not None:
-            by_tool.setdefault(tests.tool[index], []).append(index)
+    for index in np.flatnonzero(np.isfinite(snow_hardness)).tolist():
+        by_tool.setdefault(tests.tool[index], []).append(index)
     laws: dict[int, tuple[FloatArray, FloatArray]] = {}
     for name, chosen in by_tool.items():
-        angle = np.array([rows[index]["edge_angle_deg"] * DEGREE for index in chosen])[:, None]
-        hardness = np.array([rows[index]["H_V_N_per_mm3"] for index in chosen])[:, None]
+        angle, hardness = tests.edge_angle[chosen][:, None], snow_hardness[chosen][:, None]
         deepest = np.array([tests.series(index).penetration_depth.max() for index in chosen])[:, None]
         depths = deepest * np.linspace(0.0, 1.0, POINTS)
         drawn = law_of_series(in_form(campaign.tools[name], geometry), angle, hardness, depths)

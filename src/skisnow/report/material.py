@@ -1,4 +1,4 @@
-"""What tables and figures are drawn from: the results with the campaign beside them, as columns."""
+"""What tables and figures are drawn from: an analysis as columns."""
 
 from __future__ import annotations
 
@@ -10,21 +10,17 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..estimate.observations import (
-    DENSITY_KEY,
-    HARDNESS_KEY,
-    STRESS_KEY,
-    Observations,
-    penetration_observations,
-    shear_observations,
-    spot_observations,
-)
+from ..estimate.observations import DENSITY_KEY
 from ..units import MM, N_PER_MM2, N_PER_MM3
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
+    from ..estimate import Analysis
+    from ..estimate.observations import Observations
+    from ..estimate.regressions import Source
     from ..field.records import Campaign
+    from ..geometry import GeometryForm
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -57,15 +53,32 @@ def texts(rows: Sequence[Json], key: str) -> TextArray:
 
 @dataclass(frozen=True)
 class Material:
-    """Results and campaign; columns of the *used* experiments in the units that the report prints."""
+    """An analysis with columns of its *used* experiments in the units that the report prints.
 
-    campaign: Campaign
-    results: Json
+    What is computed with comes from the analysis, in SI; what is printed as it stands comes from its results.
+    """
+
+    analysis: Analysis
+
+    @property
+    def campaign(self) -> Campaign:
+        """What was analysed."""
+        return self.analysis.campaign
+
+    @property
+    def results(self) -> Json:
+        """The contents of results.json."""
+        return self.analysis.results
+
+    @property
+    def geometry(self) -> GeometryForm:
+        """In which form the tools count."""
+        return self.analysis.geometry
 
     @property
     def synthetic(self) -> bool:
         """Whether the word *synthetic* must stand wherever the numbers do."""
-        return is_synthetic(self.results["campaign"]["name"])
+        return is_synthetic(self.campaign.name)
 
     @property
     def penetration(self) -> list[Json]:
@@ -82,27 +95,46 @@ class Material:
     @cached_property
     def penetration_used(self) -> BoolArray:
         """Mask over the penetration experiments."""
-        return np.array([row["used"] for row in self.penetration], dtype=bool)
+        found = self.analysis.penetration
+        return np.zeros(0, dtype=bool) if found is None else found.screened.used
 
     @cached_property
     def shear_used(self) -> BoolArray:
         """Mask over the shear experiments."""
-        return np.array([row["used"] for row in self.shear], dtype=bool)
+        found = self.analysis.shear
+        return np.zeros(0, dtype=bool) if found is None else found.screened.used
 
     @cached_property
     def hardness(self) -> FloatArray:
         """H_V of the used penetration experiments (N/mm³)."""
-        return numbers(self.penetration, HARDNESS_KEY)[self.penetration_used]
+        found = self.analysis.penetration
+        return np.zeros(0) if found is None else found.hardness["H_V"].value[self.penetration_used] / N_PER_MM3
 
     @cached_property
     def hardness_interval(self) -> FloatArray:
-        """(m, 2) N/mm³."""
-        return pairs(self.penetration, "H_V_interval_N_per_mm3")[self.penetration_used]
+        """(m, 2) N/mm³, NaN where it is not known at both ends."""
+        found = self.analysis.penetration
+        every = np.zeros((0, 2)) if found is None else found.hardness["H_V"].interval
+        return _known(every[self.penetration_used] / N_PER_MM3)
 
     @cached_property
     def stress(self) -> FloatArray:
         """S_f of the used shear experiments (N/mm²)."""
-        return numbers(self.shear, STRESS_KEY)[self.shear_used]
+        found = self.analysis.shear
+        return np.zeros(0) if found is None else found.stress.value[self.shear_used] / N_PER_MM2
+
+    @cached_property
+    def stress_interval(self) -> FloatArray:
+        """(n, 2) N/mm², NaN where it is not known at both ends."""
+        found = self.analysis.shear
+        every = np.zeros((0, 2)) if found is None else found.stress.interval
+        return _known(every[self.shear_used] / N_PER_MM2)
+
+    @cached_property
+    def shear_angle(self) -> FloatArray:
+        """Edge angle of the used shear experiments (rad)."""
+        tests = self.campaign.shear
+        return np.zeros(0) if tests is None else tests.edge_angle[self.shear_used]
 
     @cached_property
     def shear_depth(self) -> FloatArray:
@@ -126,14 +158,10 @@ class Material:
         rows = zip(self.penetration, self.results["penetration"]["seating"], strict=True)
         return [own | found for own, found in rows if own["used"] and found["depth_offset_mm"] is not None]
 
-    @cached_property
-    def observations(self) -> dict[str, Observations]:
+    @property
+    def observations(self) -> Mapping[Source, Observations]:
         """Used experiments with the snow they were made on, by penetration, shear and spots."""
-        every_H = numbers(self.penetration, HARDNESS_KEY) * N_PER_MM3
-        every_S = numbers(self.shear, STRESS_KEY) * N_PER_MM2
-        first = penetration_observations(self.campaign, every_H, self.penetration_used)
-        second = shear_observations(self.campaign, every_S, self.shear_used)
-        return {"penetration": first, "shear": second, "spots": spot_observations(first, second)}
+        return self.analysis.observations
 
     @property
     def penetration_density(self) -> FloatArray:
@@ -165,3 +193,8 @@ class Material:
             cells = set(table.further.get("time", ())) if table is not None else set()
             found |= {match[0] for cell in cells if (match := _DATE.match(cell.strip()))}
         return (min(found), max(found)) if found else None
+
+
+def _known(intervals: FloatArray) -> FloatArray:
+    whole = np.isfinite(intervals).all(axis=1, keepdims=True)
+    return np.where(whole, intervals, np.nan)

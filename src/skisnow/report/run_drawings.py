@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
+from ..errors import ParameterError
+from ..inputs import nearest
 from ..units import DEGREE
 from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
@@ -11,11 +13,14 @@ from .figures.run_energies import run_energies
 from .figures.run_grip import run_grip
 from .figures.run_motion import run_motion
 from .figures.run_track import CUTOUT, run_track
+from .figures.style import journal_style
 from .numerals import significant
 from .symbols import prose
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from matplotlib.figure import Figure
 
     from ..simulate.run import Run
 
@@ -78,3 +83,22 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         run_energies(run),
         wide=True,
     )
+
+
+_FIGURES: Final = {
+    "track": run_track,
+    "motion": run_motion,
+    "along_ski": run_along_ski,
+    "grip": run_grip,
+    "energies": run_energies,
+}
+
+
+def run_figure(run: Run, what: str) -> Figure:
+    """One figure of a run by its name, in the house style: see `Run.plot`."""
+    if what not in _FIGURES:
+        raise ParameterError(f"there is no figure {what!r} of a run. {nearest(what, _FIGURES)}")
+    if len(run.time) < 2:
+        raise ParameterError(f"the run ended before its first step ({run.outcome}); there is nothing to draw")
+    with journal_style():
+        return _FIGURES[what](run)

@@ -36,7 +36,7 @@ def write_run_file(
     Parameters
     ----------
     run
-        What `skisnow.simulate.simulated_run` gave.
+        What `skisnow.simulate` gave.
     values
         The scenario's keys with their values, as they stand in summary.json: the global attribute ``scenario``. What
         each key means, with its unit, stands in ``scenario_keys``.

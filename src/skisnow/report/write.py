@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
+from ..errors import ParameterError
+from ..estimate import Analysis
 from ..estimate.results_text import results_json
 from ..files import write_file
 from ..memory import paused_collector
@@ -20,16 +22,13 @@ from .tables import tables_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from ..field.records import Campaign
     from .figures import Picture
     from .table import Table
 
 RESULTS: Final = "results.json"
 
 
-def write_report(
-    campaign: Campaign, results: dict[str, Any], out: str | Path, *, progress: Callable[[str], None] | None = None
-) -> Path:
+def write_report(analysis: Analysis, out: str | Path, *, progress: Callable[[str], None] | None = None) -> Path:
     """Write report.html, figures/, tables/ and results.json of an analysed campaign.
 
     All is made in a folder of its own inside ``out`` and moved into place at the end: an error or interruption before
@@ -37,10 +36,8 @@ def write_report(
 
     Parameters
     ----------
-    campaign
-        The campaign that was analysed.
-    results
-        What `skisnow.estimate.results_dict` gave for it.
+    analysis
+        What `skisnow.analyse` gave.
     out
         The folder; made where it is missing. Other files in it stay. Of an earlier report's tables and figures those
         that this campaign has no data for are removed, so that the folder tells of one campaign.
@@ -54,15 +51,22 @@ def write_report(
 
     Raises
     ------
+    ParameterError
+        What is given is no analysis.
     OutputError
         A file cannot be written. results.json, moved last, says by its presence beside the others that all is there.
     """
+    if not isinstance(analysis, Analysis):
+        raise ParameterError(
+            "a report is written of an analysis, into a folder: write_report(analyse(campaign), folder); given is a "
+            f"{type(analysis).__name__}"
+        )
     say = progress or _silent
     out = Path(out)
     for sentence in tidied(out):
         say(sentence)
     with paused_collector(), staged(out, last=RESULTS) as stage:
-        stage.stale += _write(Material(campaign, results), stage.path, say)
+        stage.stale += _write(Material(analysis), stage.path, say)
     return out / "report.html"
 
 

@@ -15,9 +15,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..shown import Facts, Shown, amount
 from ..ski.beam.clamped import ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
+from ..units import MM
 from .equilibrium.edge_line import EdgeLine
 from .equilibrium.solve import RIGID_PLASTIC, Conditions, Solution, solved
 
@@ -53,8 +55,8 @@ REMEDIES: Final[dict[Outcome, str]] = {
 """What to do about an outcome, in words."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Equilibrium:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Equilibrium(Shown):
     """A ski in equilibrium with the snow. SI, radians; None where a number does not exist.
 
     Attributes
@@ -126,6 +128,20 @@ class Equilibrium:
     residual_moment: float | None
     warnings: tuple[str, ...]
     iterations: int
+
+    def _facts(self) -> Facts:
+        deepest = None if self.edge_depth is None else float(np.max(self.edge_depth)) / MM
+        holds = {True: "holds", False: "does not hold", None: "unknown"}[self.holds]
+        limit = f"of {amount(self.side_force_limit, 'N')}: {holds}"
+        rows = (
+            ("side force", f"{amount(self.side_force, 'N')} {limit}"),
+            ("turn radius", amount(self.turn_radius_boot, "m")),
+            ("contact", amount(self.contact_length, "m")),
+            ("edge depth", f"at most {amount(deepest, 'mm')}"),
+            ("afterbody", f"{amount(self.afterbody_depth_ratio)} of the forebody's depth"),
+            ("warnings", str(len(self.warnings))),
+        )
+        return Facts(self.outcome.replace("_", " "), rows)
 
 
 def carve(

@@ -71,6 +71,10 @@ class Sources:
             self._snows[named] = self._read_snow(*named)
         return self._snows[named]
 
+    def take_snow(self, snow: SnowProperties, *, results: str, site: str | None) -> None:
+        """Take a snow that is at hand for that of the words `results` and `site`, whose file is then not read."""
+        self._snows[None, results, site] = snow
+
     def path(self, word: str) -> Path:
         """The place of a file."""
         return (self.folder or Path()) / word

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from .scenario import Scenario
+from ..from_above import from_above
+from ..shown import Facts, Shown, amount, field_facts, span
+from ..track.track import Track
+from ..units import DEGREE, MM
+from .scenario import Plane, Scenario
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal[
@@ -33,8 +40,8 @@ STORED: Final = ("kinetic", "potential", "elastic_ski", "elastic_snow")
 LOST: Final = ("penetration", "shear", "friction", "drag", "damping")
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class SkiHistory:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class SkiHistory(Shown):
     """The skis over time: index 0 the time (n), 1 the ski (0 left, 1 right), 2 the station (m) or the coordinate.
 
     Attributes
@@ -62,9 +69,13 @@ class SkiHistory:
     bending: FloatArray
     twist: FloatArray
 
+    def _facts(self) -> Facts:
+        force = dict.fromkeys(("force_per_length", "shear_per_length"), "N/m")
+        return field_facts(self, dict.fromkeys(self.__slots__, "m") | force | {"twist": "rad"})
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Groove:
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Groove(Shown):
     """What the skis left in the snow, one entry for each piece of a line across the path.
 
     Attributes
@@ -87,9 +98,12 @@ class Groove:
     depth: FloatArray
     residual_depth: FloatArray
 
+    def _facts(self) -> Facts:
+        return field_facts(self, dict.fromkeys(self.__slots__, "m") | {"left": ""})
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Run:
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class Run(Shown):
     """What came out.
 
     Attributes
@@ -145,6 +159,102 @@ class Run:
     numbers: dict[str, float]
 
     @property
+    def track(self) -> Track:
+        """The path of the middle between the boots, as track.csv has it: what `skisnow.compare_tracks` takes."""
+        axes = ("x down the fall line", "z out of the snow")
+        if not isinstance(self.scenario.slope, Plane):
+            axes = ("x horizontal distance down the fall line", "z height")
+        return Track(
+            name="simulated run",
+            time=self.time,
+            place=self.place,
+            speed=self.speed,
+            velocity=self.velocity,
+            time_scale="local",
+            frame=f"{axes[0]}, y to the left, {axes[1]}, in m",
+            axes="slope",
+            speed_kind="along the path",
+        )
+
+    def plot(self, what: str = "track") -> Any:
+        """A figure of the run.
+
+        Parameters
+        ----------
+        what
+            "track": from above, with the grooves; "motion": speed, heading and turn radius; "along_ski": depth and
+            force along both skis over time; "grip": the share of the shear strength in use; "energies".
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            One of its own; no window is opened.
+
+        Raises
+        ------
+        ParameterError
+            There is no such figure, or the run ended before its first step.
+        """
+        return from_above("report.run_drawings", "run_figure")(self, what)
+
+    def report(self, folder: str | Path) -> Path:
+        """Write what ``skisnow simulate --out`` writes: summary.json, track.csv, run.nc, figures/ and report.html.
+
+        Returns
+        -------
+        Path
+            Of report.html.
+
+        Raises
+        ------
+        OutputError
+            A file cannot be written.
+        """
+        page: Path = from_above("report.run_folder", "write_run")(self, folder)
+        return page
+
+    def to_dataframe(self) -> Any:
+        """The rows of track.csv with its columns, units in their names; needs pandas (``skisnow[pandas]``).
+
+        Returns
+        -------
+        pandas.DataFrame
+
+        Raises
+        ------
+        ParameterError
+            pandas is not installed.
+        """
+        return from_above("report.run_frames", "run_dataframe")(self)
+
+    def to_xarray(self) -> Any:
+        """All that run.nc holds, over time and along the skis, SI; needs xarray (``skisnow[xarray]``).
+
+        Returns
+        -------
+        xarray.Dataset
+
+        Raises
+        ------
+        ParameterError
+            xarray is not installed.
+        """
+        return from_above("report.run_frames", "run_dataset")(self)
+
+    def _facts(self) -> Facts:
+        error, radius = self.energy_balance_error, self.turn_radius_quantile(0.5)
+        rows = (
+            ("run length", f"{amount(self.run_length, 'm')} in {amount(self.simulated_s, 's')}"),
+            ("speed", f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, at most {_most(self.speed)}"),
+            ("heading", span(float(self.heading[0]) / DEGREE, float(self.heading[-1]) / DEGREE, "°")),
+            ("turn radius", "straight" if radius is None else f"{amount(radius, 'm')} (median)"),
+            ("edge depth", f"at most {amount(float(np.nanmax(self.skis.edge_depth)) / MM, 'mm')}"),
+            ("energy balance", "nothing turned over" if error is None else f"open by {amount(100.0 * error)} %"),
+            ("computed in", f"{self.steps} steps, {amount(self.wall_s, 's')}"),
+        )
+        return Facts(self.outcome.replace("_", " "), rows)
+
+    @property
     def speed(self) -> FloatArray:
         """(n,) of the middle between the boots (m/s)."""
         return np.asarray(np.linalg.norm(self.velocity, axis=1))
@@ -184,3 +294,8 @@ class Run:
         steady = (self.speed > STEADY_SPEED) & (self.time - self.time[0] >= STEADY_FROM)
         radius = np.abs(self.turn_radius[steady & np.isfinite(self.turn_radius)])
         return float(np.quantile(radius, share)) if radius.size else None
+
+
+def _most(values: FloatArray) -> str:
+    known = values[np.isfinite(values)]
+    return amount(float(known.max()) if known.size else None, "m/s")

@@ -11,6 +11,7 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from ..errors import SolverError
+from ..former_names import formerly
 from .run import OPEN_SHARE, Groove, Outcome, Run
 from .run_record import Record
 from .run_setup import AT_REST, Setup, set_up
@@ -55,9 +56,7 @@ REMEDIES: Final[dict[Outcome, str]] = {
 }
 
 
-def simulated_run(
-    scenario: Scenario, *, progress: Progress | None = None, strength_along: Strength | None = None
-) -> Run:
+def simulate(scenario: Scenario, *, progress: Progress | None = None, strength_along: Strength | None = None) -> Run:
     """Simulate a scenario from static equilibrium.
 
     Parameters
@@ -96,6 +95,9 @@ def simulated_run(
     except KeyboardInterrupt:
         outcome = "interrupted"
     return computed_run(setup, record, outcome, time.perf_counter() - begin)
+
+
+simulated_run = formerly("simulated_run", simulate)
 
 
 def _loop(setup: Setup, record: Record, progress: Progress | None, strength_along: Strength | None) -> Outcome:

@@ -8,6 +8,8 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
+from ..former_names import formerly
+from ..shown import Facts, Shown, amount
 from ..units import CM
 from .carve_dict import finite
 from .run import Outcome, Run
@@ -19,8 +21,8 @@ FINER: Final = 2.0
 """By how much each choice is refined."""
 
 
-@dataclass(frozen=True, slots=True)
-class Refinement:
+@dataclass(frozen=True, slots=True, repr=False)
+class Refinement(Shown):
     """What one finer choice changed.
 
     Attributes
@@ -41,6 +43,10 @@ class Refinement:
     end_moves: float | None
     outcome: Outcome
 
+    def _facts(self) -> Facts:
+        moves = amount(None if self.end_moves is None else self.end_moves / CM, "cm")
+        return Facts(f"{self.key} {amount(self.was)} to {amount(self.now)}: the end moves by {moves}, {self.outcome}")
+
 
 def refined_solvers(run: Run) -> dict[str, Solver]:
     """Solvers that are finer in one choice each, by the scenario's key.
@@ -58,15 +64,15 @@ def refined_solvers(run: Run) -> dict[str, Solver]:
     }
 
 
-def verified(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
-    """Repeat a run, finer in one choice at a time.
+def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]:
+    """Repeat a run, finer in one choice at a time, and see how far its end moves.
 
     Parameters
     ----------
     run
         The run.
     simulate
-        `skisnow.simulated_run`; it is called in the order of `refined_solvers`.
+        What computes a scenario, called in the order of `refined_solvers`; left out: `skisnow.simulate`.
 
     Returns
     -------
@@ -74,12 +80,22 @@ def verified(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
         One entry for each choice. Where a repetition is interrupted, those before it.
     """
     found: list[Refinement] = []
+    again = simulate or _plainly()
     for key, solver in refined_solvers(run).items():
-        finer = simulate(replace(run.scenario, solver=solver))
+        finer = again(replace(run.scenario, solver=solver))
         if finer.outcome == "interrupted":
             break
         found.append(Refinement(key, _in_force(run, key), _chosen(solver, key), _distance(run, finer), finer.outcome))
     return tuple(found)
+
+
+def _plainly() -> Simulate:
+    from .simulated_run import simulate  # which loads the compiled core
+
+    return simulate
+
+
+verified = formerly("verified", verify)
 
 
 def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str, Any]]:

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..shown import Facts, Shown, ShownFields
 from . import checks
 from .edge_line import radius_of_least_squares_circle
 
@@ -16,8 +17,8 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 _EDGE_POINTS = 401  # of the circle through the edge line, evenly spaced whatever the spacing of the tables
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SkiSections:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SkiSections(ShownFields):
     """Cross sections of a ski at chosen stations; every array has the shape of ``station``.
 
     Attributes
@@ -37,7 +38,7 @@ class SkiSections:
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Ski:
+class Ski(Shown):
     """A ski as tables from tip to tail, dense enough for linear interpolation. Everything in SI.
 
     Attributes
@@ -124,11 +125,11 @@ class Ski:
             along(self.mass_per_length),
         )
 
-    def __repr__(self) -> str:
+    def _facts(self) -> Facts:
         """Name, length, widths, the radius of the side line in use, mass."""
         widths = "-".join(f"{width * 1e3:.4g}" for width in self.sidecut_widths)
         radius = f"radius of the side line {self.sidecut_radius_of_edge_line:.4g} m"
-        return f"<Ski {self.name!r}: {self.length:.4g} m, {widths} mm, {radius}, {self.mass:.4g} kg>"
+        return Facts(f"{self.name!r}: {self.length:.4g} m, {widths} mm, {radius}, {self.mass:.4g} kg")
 
     @property
     def length(self) -> float:

@@ -5,14 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, TypeAlias
 
+from ..errors import ParameterError
 from ..inputs import Quantity, Search, Word, require_declared
+from ..shown import Facts, Shown, amount, span
+from ..units import N_PER_MM2, N_PER_MM3
 
 Interval: TypeAlias = tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class SnowProperties:
-    """Contact parameters of one snow, in SI. Neither number has a default.
+@dataclass(frozen=True, slots=True, repr=False)
+class SnowProperties(Shown):
+    """Contact parameters of one snow, in SI. Neither hardness nor strength has a default.
 
     Attributes
     ----------
@@ -26,6 +29,8 @@ class SnowProperties:
         95 % intervals (low, high) of the two values where they are means over experiments: of the geometric mean of
         H_V and of the mean of S_f, not of a single place on the snow. None where there are fewer than two
         experiments or the source gives none.
+    unloading_ratio
+        k_u/H_V ≥ 1 where it is known, which `Scenario.with_` then takes over; 1 is elastic snow, which springs back.
 
     Examples
     --------
@@ -35,6 +40,8 @@ class SnowProperties:
     >>> snow = SnowProperties(0.2 * N_PER_MM3, 0.35 * N_PER_MM2, source="given as numbers")
     >>> snow.snow_hardness
     200000000.0
+    >>> snow
+    <SnowProperties H_V 0.2 N/mm³, S_f 0.35 N/mm²: given as numbers>
     """
 
     snow_hardness: Annotated[
@@ -71,6 +78,25 @@ class SnowProperties:
     ]
     snow_hardness_interval: Interval | None = None
     failure_shear_stress_interval: Interval | None = None
+    unloading_ratio: float | None = None
 
     def __post_init__(self) -> None:
         require_declared(self)
+        if self.unloading_ratio is not None and not self.unloading_ratio >= 1.0:
+            raise ParameterError(f"unloading_ratio is {self.unloading_ratio}; k_u/H_V must be 1 (elastic) or more")
+
+    @property
+    def in_words(self) -> str:
+        """Both values with their intervals, the unloading ratio where it is known, and the source."""
+        hardness = _told(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")
+        stress = _told(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")
+        ratio = "" if self.unloading_ratio is None else f", k_u/H_V {amount(self.unloading_ratio)}"
+        return f"H_V {hardness}, S_f {stress}{ratio}: {self.source}"
+
+    def _facts(self) -> Facts:
+        return Facts(self.in_words)
+
+
+def _told(value: float | None, interval: Interval | None, size: float, unit: str) -> str:
+    told = amount(None if value is None else value / size, unit)
+    return told if interval is None else f"{told} ({span(interval[0] / size, interval[1] / size)})"

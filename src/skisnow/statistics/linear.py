@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..shown import ShownFields
 from .combined_uncertainty import require_confidence
 from .least_squares import Columns, as_predictors, as_response, centre, factorise, spread, standardised
 from .nested import f_ratio, f_tail
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
     from .least_squares import FloatArray
 
 
-@dataclass(frozen=True)
-class LinearFit:
+@dataclass(frozen=True, repr=False)
+class LinearFit(ShownFields):
     """A linear least-squares fit.
 
     Attributes

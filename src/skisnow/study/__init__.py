@@ -1,8 +1,14 @@
-"""Studies: one question asked over a grid or a sample of its inputs, in parallel and resumable, as one table."""
+"""Studies: one question asked over a grid or a sample of its inputs, in parallel and resumable, as one table.
 
+The room can be called: `skisnow.study(…)` is `skisnow.study.run_study`.
+"""
+
+from ..callable_rooms import make_callable
 from .run import StudyState, run_study, study_state
 from .study import Study
 from .study_file import read_study
 from .table import StudyTable, read_table
 
 __all__ = ["Study", "StudyState", "StudyTable", "read_study", "read_table", "run_study", "study_state"]
+
+make_callable(__name__, ".run", "run_study")

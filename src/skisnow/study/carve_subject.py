@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import SkisnowError
 from ..inputs import Quantity
+from ..shown import ShownFields
 from ..simulate.batch_file import Row
 from ..simulate.carve import CLAMP_LENGTH
 from ..simulate.carve_answer import CarveAnswer, Sources, answered
@@ -43,8 +44,8 @@ RESULTS: Final = (
 """Columns behind the inputs; `outcome` is "error" where a point could not be asked, and `reason` says why."""
 
 
-@dataclass(slots=True)
-class CarveSubject:
+@dataclass(slots=True, repr=False)
+class CarveSubject(ShownFields):
     """Answers points with one row each. Relative paths start at `folder`."""
 
     folder: Path

@@ -10,6 +10,7 @@ from ..files import cannot_write, write_file
 from ..simulate.batch import Told, require_workers, run_batch
 from ..simulate.batch_file import KeptRows
 from .study import Study
+from .study_file import read_study
 from .table import StudyTable, read_table
 
 
@@ -40,14 +41,14 @@ def study_state(study: Study) -> StudyState:
     return StudyState.FINISHED if same else StudyState.ANOTHER
 
 
-def run_study(study: Study, *, workers: int | None = None, progress: Told | None = None) -> StudyTable:
-    """Compute the points that are missing and write the table.
+def run_study(study: Study | str | Path, *, workers: int | None = None, progress: Told | None = None) -> StudyTable:
+    """Ask one question over a grid or a sample of its inputs: compute the points that are missing, write the table.
 
     Parameters
     ----------
     study
-        What to do. A table of the same study is read and not computed again; one of another study is moved to
-        `Study.place_for_previous`. A table in which no point could be asked is not written.
+        What to do, or the path of its STUDY.toml. A table of the same study is read and not computed again; one of
+        another study is moved to `Study.place_for_previous`. A table in which no point could be asked is not written.
     workers
         Number of processes; None: one for each core. The table does not depend on it.
     progress
@@ -62,6 +63,7 @@ def run_study(study: Study, *, workers: int | None = None, progress: Told | None
         The table's place cannot be written.
     """
     require_workers(workers)
+    study = study if isinstance(study, Study) else read_study(study)
     fingerprint = study.fingerprint()
     state = study_state(study)
     if state is StudyState.FINISHED:

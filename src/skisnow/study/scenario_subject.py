@@ -11,6 +11,7 @@ import numpy as np
 
 from ..errors import ParameterError, SkisnowError
 from ..inputs import Quantity
+from ..shown import ShownFields
 from ..simulate.batch_file import Row
 from ..simulate.carve_answer import Sources
 from ..simulate.carve_dict import finite
@@ -60,8 +61,8 @@ MOST_TRIED: Final = 100
 """Points that are tried, before anything is computed, for one that can be asked (Choice: milliseconds each)."""
 
 
-@dataclass(slots=True)
-class ScenarioSubject:
+@dataclass(slots=True, repr=False)
+class ScenarioSubject(ShownFields):
     """Runs a scenario with the values of each point. Relative paths start at `folder`.
 
     Attributes
@@ -125,11 +126,11 @@ class ScenarioSubject:
 
     def __call__(self, point: Point) -> Row:
         """One row; whatever is wrong with a point stands in it."""
-        from ..simulate.simulated_run import simulated_run
+        from ..simulate.simulated_run import simulate
 
         try:
             asked = self._asked(point)
-            run = simulated_run(asked.scenario)
+            run = simulate(asked.scenario)
         except SkisnowError as error:
             return self._failure(point, str(error))
         except Exception as error:  # a study never stops for one point

@@ -12,6 +12,7 @@ from typing import Any, Protocol, TypeAlias
 
 from ..given import is_file
 from ..inputs import Quantity
+from ..shown import Facts, Shown
 from ..simulate.batch_file import Row
 
 Point: TypeAlias = dict[str, Any]
@@ -51,8 +52,8 @@ SubjectIn: TypeAlias = Callable[[Path], Subject]
 """Makes a subject whose relative paths start at a folder."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Study:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Study(Shown):
     """A study as its file says it.
 
     Attributes
@@ -74,6 +75,11 @@ class Study:
     subject: Subject
     varied: tuple[str, ...]
     points: list[Point]
+
+    def _facts(self) -> Facts:
+        subject = type(self.subject).__name__
+        rows = (("of", subject), ("varied", ", ".join(self.varied)), ("table", str(self.out)))
+        return Facts(f"of {len(self.points)} points, {self.file}", rows)
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -13,12 +13,13 @@ from typing import Any
 from ..errors import ParameterError
 from ..given import json_value
 from ..inputs import Quantity
+from ..shown import Facts, Shown
 from ..simulate.batch_file import Row
 from ..spreadsheet_text import guarded, unguarded
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class StudyTable:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class StudyTable(Shown):
     """Rows in the order of the points, each by the names of the columns; None where there is no value.
 
     Attributes
@@ -34,6 +35,11 @@ class StudyTable:
     columns: tuple[str, ...]
     rows: list[Row]
     varied: tuple[str, ...]
+
+    def _facts(self) -> Facts:
+        counts = ", ".join(f"{outcome} {count}" for outcome, count in self.counts().items())
+        rows = (("outcomes", counts), ("varied", ", ".join(self.varied)), ("columns", ", ".join(self.columns)))
+        return Facts(f"of {len(self.rows)} points", rows)
 
     def answers(self) -> list[Row]:
         """The rows whose point could be asked."""

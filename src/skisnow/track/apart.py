@@ -8,6 +8,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from ..shown import ShownFields
+
 FloatArray = npt.NDArray[np.float64]
 
 _SMOOTH: Final = 0.05
@@ -16,8 +18,8 @@ _GAUSS_AT: Final = 0.5 + np.sqrt(0.15) * np.array([-1.0, 0.0, 1.0])
 _GAUSS_WEIGHT: Final = np.array([5.0, 8.0, 5.0]) / 18.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Apart:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Apart(ShownFields):
     """Offsets at places along the measured track; between two of them the offset changes linearly.
 
     Attributes

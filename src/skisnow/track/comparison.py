@@ -9,6 +9,9 @@ from typing import Final, get_args
 import numpy as np
 
 from ..errors import ParameterError
+from ..former_names import formerly
+from ..shown import Facts, Shown, amount
+from ..units import DEGREE
 from .alignment import OFFSETS, fitted_motion, fitted_time, require_offsets
 from .apart import Apart, Numbers, numbers_of
 from .common_clock import FIRST_POINTS, Clock, TimeFrom, common_clock, lacking_time
@@ -36,8 +39,8 @@ MEANS: Final = (
 )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Distances:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Distances(Shown):
     """One of the three distances.
 
     Attributes
@@ -57,9 +60,20 @@ class Distances:
     numbers: Numbers | None
     reason: str | None = None
 
+    def _facts(self) -> Facts:
+        return Facts(self.in_words)
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Fitted:
+    @property
+    def in_words(self) -> str:
+        """Largest, mean and rms distance, or why there are none."""
+        if self.numbers is None:
+            return f"none: {self.reason}"
+        largest, mean, rms = (amount(each, "m") for each in (self.numbers.max, self.numbers.mean, self.numbers.rms))
+        return f"largest {largest}, mean {mean}, rms {rms}"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Fitted(Shown):
     """What was fitted, by how much the simulated track was moved, and the distances before.
 
     Attributes
@@ -85,9 +99,15 @@ class Fitted:
     undetermined: int
     before: Comparison
 
+    def _facts(self) -> Facts:
+        turned = f"{amount(self.turned / DEGREE, '°')} turned, {amount(self.later, 's')} later"
+        return Facts(
+            f"{', '.join(self.what)}: moved by {', '.join(amount(each, 'm') for each in self.moved)}, {turned}"
+        )
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Comparison:
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Comparison(Shown):
     """Two tracks held against each other.
 
     Attributes
@@ -123,13 +143,26 @@ class Comparison:
     fitted: Fitted | None = None
     warnings: tuple[str, ...] = ()
 
+    def _facts(self) -> Facts:
+        length = amount(self.measured.length, "m")
+        rows = (
+            ("seen", self.seen),
+            ("measured", f"{length} long"),
+            ("nearest", self.nearest.in_words),
+            ("arc length", self.arc_length.in_words),
+            ("time", self.time.in_words),
+            ("fitted", "nothing" if self.fitted is None else self.fitted._facts().title),
+            ("warnings", str(len(self.warnings))),
+        )
+        return Facts(f"of {self.names[0]!r} with {self.names[1]!r}", rows)
+
     @property
     def dimensions(self) -> int:
         """2: from above, 3: in space."""
         return self.measured.place.shape[1]
 
 
-def compared(
+def compare_tracks(
     simulated: Track,
     measured: Track,
     *,
@@ -176,6 +209,9 @@ def compared(
         plain = _with_fit(plain, set(fit), clock)
     _require_near(plain.simulated, plain.measured, names)
     return replace(plain, axes=measured.axes, warnings=(*told, *_short(plain)))
+
+
+compared = formerly("compared", compare_tracks)
 
 
 def _dimensions(simulated: Track, measured: Track, *, from_above: bool) -> tuple[int, str]:

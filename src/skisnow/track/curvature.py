@@ -10,6 +10,7 @@ import numpy.typing as npt
 from scipy.stats import norm
 
 from ..constants import CONFIDENCE
+from ..shown import ShownFields
 from .smoothing import SmoothedTrack, filled, smoothed_track
 from .track import Track
 
@@ -26,8 +27,8 @@ INTERVAL_FACTOR: Final = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
 """Standard errors on each side of a 95 % interval."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TrackMotion:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class TrackMotion(ShownFields):
     """A track's motion at each of its points, seen along the third axis of its frame.
 
     Attributes

@@ -8,13 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..shown import ShownFields
 from .track import Track
 
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Polyline:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Polyline(ShownFields):
     """Straight pieces in the order of time.
 
     Attributes

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..errors import ParameterError
+from ..shown import Facts, Shown
 from ..units import DEGREE
 
 if TYPE_CHECKING:
@@ -35,8 +36,8 @@ HIGHEST: Final = 1e5
 """Heights (m) beyond this are not of this earth's ski slopes."""
 
 
-@dataclass(frozen=True, slots=True)
-class GeodeticPoint:
+@dataclass(frozen=True, slots=True, repr=False)
+class GeodeticPoint(Shown):
     """A point on WGS84: latitude and longitude in degrees, height in m.
 
     Raises
@@ -53,6 +54,9 @@ class GeodeticPoint:
     latitude_deg: float
     longitude_deg: float
     height: float = 0.0
+
+    def _facts(self) -> Facts:
+        return Facts(str(self))
 
     def __post_init__(self) -> None:
         for name, limit in (("latitude_deg", 90.0), ("longitude_deg", 180.0), ("height", HIGHEST)):

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..constants import STANDARD_GRAVITY
+from ..shown import ShownFields
 from .curvature import TrackMotion, running_mean
 from .phases import turning_points
 from .track import Track
@@ -65,8 +66,8 @@ class Stretch:
     gaps: int
 
 
-@dataclass(frozen=True, slots=True)
-class Day:
+@dataclass(frozen=True, slots=True, repr=False)
+class Day(ShownFields):
     """Runs and lifts in the order of time; what they were told by; in words what could not be told."""
 
     runs: tuple[Stretch, ...]

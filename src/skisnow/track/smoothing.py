@@ -10,6 +10,7 @@ import numpy.typing as npt
 from scipy.stats import chi2
 
 from ..errors import ParameterError
+from ..shown import ShownFields
 from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, Observed, local_cubic
 from .marks import GAP_FACTOR
 from .resolution import Resolution
@@ -29,8 +30,8 @@ _LOWEST_PLACE_NOISE: Final = 1e-9
 """Noise (m) of a track without any: rounding must not be taken for a signal."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SmoothedTrack:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SmoothedTrack(ShownFields):
     """The track in the plane of its frame as locally fitted cubics, one about each point.
 
     Attributes

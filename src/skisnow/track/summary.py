@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..errors import ParameterError
+from ..shown import Facts, Shown, amount
 from ..units import DEGREE
 from .curvature import TrackMotion, integrated_way, places_way, track_motion
 from .runs import Day, Stretch, max_speed, split_day
@@ -24,8 +25,8 @@ _APART: Final = 0.03
 Json = dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TrackSummary:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class TrackSummary(Shown):
     """A track with everything that was found out about it.
 
     Attributes
@@ -49,6 +50,18 @@ class TrackSummary:
     distances: dict[str, float]
     max_speed: float | None
     remarks: tuple[str, ...]
+
+    def _facts(self) -> Facts:
+        distances = ", ".join(f"{amount(each, 'm')} by {name}" for name, each in self.distances.items())
+        rows = (
+            ("points", str(len(self.track))),
+            ("distance", distances or "unknown"),
+            ("top speed", amount(self.max_speed, "m/s")),
+            ("runs", str(len(self.day.runs))),
+            ("turns", str(len(self.turns))),
+            ("remarks", f"{len(self.remarks)}{f': {self.remarks[0]}' if self.remarks else ''}"),
+        )
+        return Facts(f"of {self.track.name!r}", rows)
 
 
 def track_summary(track: Track, *, window: float | None = None, place_noise: float | None = None) -> TrackSummary:

@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..shown import Facts, Shown, amount, ends
 from .marks import MARKS
 from .projection import GeodeticPoint
 from .solution import SolutionArray
@@ -18,8 +19,8 @@ FloatArray = npt.NDArray[np.float64]
 Axes: TypeAlias = Literal["file", "east_north_up", "slope"]
 
 
-@dataclass(frozen=True, eq=False)
-class Track:
+@dataclass(frozen=True, eq=False, repr=False)
+class Track(Shown):
     """Points in the order of their file; nothing is left out, what is doubtful is marked.
 
     Attributes
@@ -86,6 +87,18 @@ class Track:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def _facts(self) -> Facts:
+        marked = ", ".join(f"{count} {code}" for code, count in self.marked.items())
+        duration = float(self.time[-1] - self.time[0]) if len(self.time) else 0.0
+        rows = (
+            ("points", f"{len(self)} in {amount(duration, 's')}{f', marked: {marked}' if marked else ''}"),
+            *((f"{axis}", ends(self.place[:, k], "m")) for k, axis in enumerate("xyz")),
+            ("speed", f"{ends(self.speed, 'm/s')} ({self.speed_kind})"),
+            ("start", "no date" if self.start is None else f"{self.start} ({self.time_scale})"),
+            ("frame", self.frame),
+        )
+        return Facts(repr(self.name), rows)
 
     @property
     def marked(self) -> dict[str, int]:

@@ -8,6 +8,7 @@ import shutil
 import weakref
 from collections import OrderedDict
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Final
@@ -17,7 +18,7 @@ from nicegui import run
 from ..errors import StoreError
 from ..field.store import Journals
 from .analysing import N_FIGURES, Choice, Numbers, Refusal, figure, numbers_of
-from .transfer import write_entry, write_kept
+from .transfer import entry_files, kept_files
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -42,16 +43,31 @@ class Analysed:
 
 
 class Subject:
-    """A campaign as it stands: its folder, which goes when nobody holds it any more, and what was computed of it."""
+    """A campaign as it stands, in memory, and what was computed of it.
+
+    Reports that were asked for lie in a folder, which goes when nobody holds the subject any more.
+    """
 
     def __init__(self, lab: Lab, kind: str, id_: str) -> None:
-        place = mkdtemp(prefix="skisnow-analysis-")
-        weakref.finalize(self, shutil.rmtree, place, ignore_errors=True)
-        self.place = Path(place)
-        self.folder = self.place / "campaign"
+        self._lab, self._kind, self._id = lab, kind, id_
+        self.files = (kept_files if kind == "kept" else entry_files)(lab, id_)
         self._computed = OrderedDict[Choice, Analysed]()
         self._computing = asyncio.Lock()
-        (write_kept if kind == "kept" else write_entry)(lab, id_, self.folder)
+
+    @cached_property
+    def place(self) -> Path:
+        """The folder of its reports."""
+        place = mkdtemp(prefix="skisnow-analysis-")
+        weakref.finalize(self, shutil.rmtree, place, ignore_errors=True)
+        return Path(place)
+
+    def write_campaign(self, folder: Path) -> None:
+        """Write all files of the campaign into a new folder, as they were when it was looked at."""
+        if self._kind == "kept":
+            self._lab.store.export(self._id, folder)
+        folder.mkdir(exist_ok=True)
+        for name, content in self.files.contents.items():
+            (folder / name).write_bytes(content)
 
     def known(self, choice: Choice) -> Analysed | None:
         """What was computed of a choice before."""
@@ -62,7 +78,7 @@ class Subject:
         async with self._computing:
             if (known := self.known(choice)) is not None:
                 return known
-            found = await run.io_bound(numbers_of, str(self.folder), choice)
+            found = await run.io_bound(numbers_of, self.files, choice)
             if not isinstance(found, Numbers):
                 return found or Refusal("The lab is about to end.")
             self._computed[choice] = made = Analysed(secrets.token_hex(8), found)
@@ -129,7 +145,7 @@ class Analyses:
         for number in range(N_FIGURES):
             async with analysed.drawing:
                 if number == len(analysed.figures):
-                    analysed.figures.append(await self._worker.do(figure, numbers.campaign, numbers.results, number))
+                    analysed.figures.append(await self._worker.do(figure, numbers.analysis, number))
             shown = analysed.figures[number]
             if shown is not None:
                 yield shown

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ..errors import SkisnowError
-from ..estimate import analyse, results_dict
-from ..field import MARKS, read_campaign
+from ..estimate import analyse
+from ..field import MARKS, campaign_of_files
 from ..field.marks import ALWAYS_EXCLUDE
 from ..report import write_report
 from ..report.figures import DRAWERS
@@ -21,6 +21,8 @@ from ..report.table_html import table_html
 from ..report.tables import tables_of
 
 if TYPE_CHECKING:
+    from ..estimate import Analysis
+    from ..field.reading import FilesInMemory
     from ..field.records import Campaign, PenetrationTests, ShearTests
 
 LEFT_OUT: Final = "left out by choice in the lab"
@@ -46,16 +48,20 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """The campaign as chosen, results as results.json has them, the tables as HTML by name."""
+    """The campaign as chosen, analysed, and the tables as HTML by name."""
 
-    campaign: Campaign
-    results: dict[str, Any]
+    analysis: Analysis
     tables: dict[str, str]
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """The contents of results.json."""
+        return self.analysis.results
 
     @property
     def excluding(self) -> frozenset[str]:
         """Codes of the marks that leave an experiment out."""
-        return self.campaign.excluding
+        return self.analysis.campaign.excluding
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,22 +81,21 @@ class Refusal:
     said: str
 
 
-def numbers_of(folder: str, choice: Choice) -> Numbers | Refusal:
-    """Analyse a campaign's folder."""
+def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
+    """Analyse a campaign whose files are at hand."""
     try:
-        campaign = _chosen(read_campaign(folder), choice)
-        results = results_dict(analyse(campaign))
+        analysis = analyse(_chosen(campaign_of_files(files.contents, others=files.others), choice))
     except SkisnowError as error:
         return Refusal(str(error))
-    tables = tables_of(Material(campaign, results))
+    tables = tables_of(Material(analysis))
     present = [tables[name] for name in SHOWN_TABLES if name in tables and tables[name].rows]
     html = {table.name: str(table_html(table, number=number)) for number, table in enumerate(present, start=1)}
-    return Numbers(campaign, results, html)
+    return Numbers(analysis, html)
 
 
-def figure(campaign: Campaign, results: dict[str, Any], number: int) -> Shown | None:
+def figure(analysis: Analysis, number: int) -> Shown | None:
     """Draw one of the report's figures, counted from 0, of what `numbers_of` gave; None: there are no data for it."""
-    material = Material(campaign, results)
+    material = Material(analysis)
     with journal_style():
         drawn = DRAWERS[number](material, site_styles(material))
         if not isinstance(drawn, Drawing):
@@ -102,9 +107,9 @@ def ready() -> None:
     """Draw nothing: a process that was asked for this has what it needs to draw."""
 
 
-def write_whole_report(campaign: Campaign, results: dict[str, Any], out: str) -> None:
+def write_whole_report(analysis: Analysis, out: str) -> None:
     """Write the report with its tables, figures and results.json."""
-    write_report(campaign, results, Path(out))
+    write_report(analysis, Path(out))
 
 
 def choosable_marks() -> dict[str, str]:

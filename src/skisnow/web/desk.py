@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from ..estimate import marks_of
-from ..estimate.at_once import experiments_at_once
-from ..field import MARKS, read_campaign
+from ..estimate.at_once import experiments_at_once, hardness_at_once
+from ..estimate.screening import screened_both
+from ..field import MARKS, campaign_of_files
 from ..field.reading.campaign_file import read_campaign_file
-from ..field.store import Journals, grown, write_campaign
+from ..field.store import Journals, grown
 from ..report.curves import SeriesCurve, series_curves
+from .transfer import grown_in_memory
 
 if TYPE_CHECKING:
     from ..field import Campaign
@@ -82,24 +82,24 @@ class Desk:
 
     def at_once(self, site: str) -> AtOnce:
         """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
-        with TemporaryDirectory(prefix="skisnow-desk-") as folder:
-            write_campaign(self.campaign, Path(folder), of=self.tests_of_site(site))
-            return said_at_once(read_campaign(folder), site)
+        files = grown_in_memory(self.campaign, of=self.tests_of_site(site))
+        return said_at_once(campaign_of_files(files.contents), site)
 
 
 def said_at_once(campaign: Campaign, site: str) -> AtOnce:
     """What the tests of a site say, of a campaign that may have other sites too."""
-    found = experiments_at_once(campaign)
+    screened = screened_both(campaign, geometry="extended")
+    found = experiments_at_once(campaign, screened=screened)
     here = {
         kind: {row["experiment"]: row for row in found[kind]["experiments"] if row["site"] == site}
         for kind in ("penetration", "shear")
     }
-    curves = series_curves(campaign, found["penetration"]["experiments"])
+    curves = series_curves(campaign, hardness_at_once(campaign))
     return AtOnce(
         penetration=here["penetration"],
         shear=here["shear"],
         curves={curve.experiment: curve for curve in curves if curve.experiment in here["penetration"]},
-        marks=_in_words(marks_of(campaign)),
+        marks=_in_words(marks_of(campaign, screened=screened)),
     )
 
 

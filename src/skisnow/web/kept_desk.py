@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from ..errors import FieldDataError, StoreError
-from ..field import read_campaign
+from ..field import campaign_of_files
+from ..field.reading import CAMPAIGN_FILES, FilesInMemory
 from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
-from ..field.reading.table_forms import CORRECTIONS
 from ..field.reading.text import UnreadableTextError, decode
-from ..field.store import add_corrections, kept_tables
+from ..field.store import corrected_files, kept_tables
 from ..field.store.grown import GrownRow, GrownTest
 from ..field.store.journal import JournalEntry
 from ..field.store.kept_tables import cell_key
@@ -25,21 +23,13 @@ if TYPE_CHECKING:
 
 
 class KeptDesk(Desk):
-    """A kept campaign as one page sees it; its files lie in a folder of their own until `close`."""
+    """A kept campaign as one page sees it."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
-        self._temporary = TemporaryDirectory(prefix="skisnow-kept-", ignore_cleanup_errors=True)
-        self.folder = Path(self._temporary.name) / "campaign"
-        self.stored = lab.store.export(id_, self.folder)
-        corrections = self.folder / CORRECTIONS.file
-        self._before = corrections.read_bytes() if corrections.is_file() else b""
+        self.stored, self._files = lab.store.contents(id_, CAMPAIGN_FILES)
         self._entries: tuple[JournalEntry, ...] = ()
-        self.tables: dict[str, KeptTable] = kept_tables(self.folder)
+        self.tables: dict[str, KeptTable] = kept_tables(FilesInMemory(self._files))
         super().__init__(lab, self.stored.id)
-
-    def close(self) -> None:
-        """Let go of the folder."""
-        self._temporary.cleanup()
 
     @property
     def described(self) -> CampaignFile:
@@ -52,8 +42,8 @@ class KeptDesk(Desk):
         """
         found: list[Problem] = []
         try:
-            text = decode((self.folder / CAMPAIGN_FILE).read_bytes()).text
-        except (OSError, UnreadableTextError) as error:
+            text = decode(self._files[CAMPAIGN_FILE]).text
+        except (KeyError, UnreadableTextError) as error:
             raise StoreError(f"{CAMPAIGN_FILE} of this campaign cannot be read, so nothing in it can be.") from error
         described = read_campaign_file(text, found)
         if described is None:
@@ -87,5 +77,4 @@ class KeptDesk(Desk):
 
     def at_once(self, site: str) -> AtOnce:
         """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
-        add_corrections(self.folder, self._entries, before=self._before)
-        return said_at_once(read_campaign(self.folder), site)
+        return said_at_once(campaign_of_files(corrected_files(self._files, self._entries)), site)

@@ -2,36 +2,43 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from ..errors import ParameterError
 from ..estimate.results_text import results_json
-from ..files import write_file
+from ..report.write import RESULTS
 from .analysing import Choice, Refusal, numbers_of
-from .transfer import write_entry, write_kept
+from .transfer import entry_files, kept_files
 from .words import hardness_words, stress_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from ..simulate.carve_answer import Sources
     from ..simulate.scenario.reading import ScenarioFile
     from .settings import Lab
 
 
-def require_scenario(scenario: str, changes: Mapping[str, str]) -> ScenarioFile:
+def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources | None = None) -> ScenarioFile:
     """Read a scenario with changes as the command line would.
+
+    Parameters
+    ----------
+    scenario, changes
+        As on the command line.
+    sources
+        Of skis and snows that are at hand.
 
     Raises
     ------
     ParameterError
         A value cannot be read or is not allowed.
     """
-    from ..simulate.scenario import scenario_file
-    from ..simulate.scenario.given import change_of
+    from ..simulate.scenario.given import change_of, given_scenario
+    from ..simulate.scenario.reading import resolved
 
-    return scenario_file(scenario, changes=dict(change_of(f"{name}={text}") for name, text in changes.items()))
+    given = given_scenario(scenario).changed(dict(change_of(f"{name}={text}") for name, text in changes.items()))
+    return resolved(given, sources=sources)
 
 
 def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
@@ -51,22 +58,19 @@ def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, st
     ParameterError
         The campaign gives no snow, or the scenario cannot be read.
     """
+    from ..simulate.carve_answer import Sources
     from ..simulate.carve_dict import snow_dict
     from ..simulate.scenario import scenario_values
 
     kind, id_ = key.split("-", 1)
-    with TemporaryDirectory(prefix="skisnow-snow-") as name:
-        folder, place = Path(name) / "campaign", Path(name) / "results.json"
-        (write_kept if kind == "kept" else write_entry)(lab, id_, folder)
-        found = numbers_of(str(folder), Choice())
-        if isinstance(found, Refusal):
-            raise ParameterError(f"this campaign gives no snow yet. {found.said}")
-        results = results_json(found.results)
-        write_file(place, results)
-        asked = require_scenario(scenario, {**changes, "snow.results": str(place)}).scenario
-        values = scenario_values(asked)
-        snow = snow_dict(asked.contact.snow)
+    found = numbers_of((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
+    if isinstance(found, Refusal):
+        raise ParameterError(f"this campaign gives no snow yet. {found.said}")
+    sources, site = Sources(), changes.get("snow.site") or None
+    sources.take_snow(found.analysis.snow(site), results=RESULTS, site=site)
+    asked = require_scenario(scenario, {**changes, "snow.results": RESULTS}, sources).scenario
+    values, snow = scenario_values(asked), snow_dict(asked.contact.snow)
     hardness = {"H_V_N_per_mm3": values["snow.H_V_N_per_mm3"], **snow}
     stress = {"S_f_N_per_mm2": values["snow.S_f_N_per_mm2"], **snow}
     words = f"H_V = {hardness_words(hardness)}; S_f = {stress_words(stress)}"
-    return results, words
+    return results_json(found.results), words

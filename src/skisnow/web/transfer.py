@@ -15,7 +15,8 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from ..errors import ParameterError, SkisnowError, StoreError
-from ..field.store import Journals, export_corrected, grown, write_campaign
+from ..field.reading import CAMPAIGN_FILES, FilesInMemory
+from ..field.store import Journals, campaign_files, corrected_files, export_corrected, grown, write_campaign
 from .confined import BOUNDS, confined
 from .names import required_id
 from .trouble import plain_page, told
@@ -23,10 +24,11 @@ from .unpacking import files_below, write_zip
 from .uploaded import add_uploaded
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from fastapi import FastAPI
 
+    from ..field.store import GrownCampaign, GrownTest
     from .settings import Lab
 
 IMPORT: Final = "/import"
@@ -85,6 +87,27 @@ def _zip(write: Writing) -> bytes:
         write(folder)
         write_zip(files_below(folder, under=folder.name), packed)
     return packed.getvalue()
+
+
+def entry_files(lab: Lab, id_: str) -> FilesInMemory:
+    """The files of a campaign that is being entered, as they are now."""
+    return grown_in_memory(grown(Journals(lab.store).entries(required_id(id_))))
+
+
+def grown_in_memory(campaign: GrownCampaign, *, of: Iterable[GrownTest] | None = None) -> FilesInMemory:
+    """What `write_campaign` would write into a folder."""
+    return FilesInMemory({name: text.encode("utf-8") for name, text in campaign_files(campaign, of=of).items()})
+
+
+def kept_files(lab: Lab, id_: str) -> FilesInMemory:
+    """What a kept campaign is read from: its own files, and what was corrected since."""
+    stored, files = lab.store.contents(required_id(id_), CAMPAIGN_FILES)
+    corrected = corrected_files(files, Journals(lab.store).corrections(stored.id))
+    return FilesInMemory(corrected, tuple(file.path for file in stored.files if _is_other(file.path)))
+
+
+def _is_other(path: str) -> bool:
+    return "/" not in path and path not in CAMPAIGN_FILES
 
 
 def write_entry(lab: Lab, id_: str, folder: Path) -> None:

@@ -9,8 +9,9 @@ from typing import Final
 
 import numpy as np
 
-from skisnow import Run, read_scenario, simulated_run
-from skisnow.simulate.scenario import Scenario
+from skisnow import Run
+from skisnow.simulate.scenario import Scenario, read_scenario
+from skisnow.simulate.simulated_run import simulate
 from skisnow.track.track import Track
 
 SCENARIOS: Final = ("giant-slalom-67m", "carver-42m")
@@ -53,7 +54,7 @@ def true_run(scenario: str, truth: Truth) -> Run:
     if truth.error == "friction law":
         changes["friction.mu_1_s_per_m"] = MU_1
     asked = finer(read_scenario(scenario, changes=changes))
-    return simulated_run(asked, strength_along=_strength_along if truth.error == "varying S_f" else None)
+    return simulate(asked, strength_along=_strength_along if truth.error == "varying S_f" else None)
 
 
 def _strength_along(distance: float) -> float:
@@ -62,7 +63,7 @@ def _strength_along(distance: float) -> float:
 
 def finer(asked: Scenario) -> Scenario:
     """Half the tolerance and, against what would be chosen, twice the elements, half the other choices."""
-    chosen = simulated_run(replace(asked, stop=replace(asked.stop, duration=1e-3, length=None))).numbers
+    chosen = simulate(replace(asked, stop=replace(asked.stop, duration=1e-3, length=None))).numbers
     solver = replace(
         asked.solver,
         tolerance=asked.solver.tolerance / FINER,

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from skisnow import Run
 from skisnow.identify import Identification, identify
-from skisnow.track.comparison import compared
+from skisnow.track.comparison import compare_tracks
 from skisnow.track.track import Track
 
 from .interval_row import interval_row
@@ -76,7 +76,7 @@ def largest_deviations(found: Identification, run: Run) -> tuple[float, float]:
     true = track_as(time, run.place[within])
     computed = CubicSpline(fit.along, fit.fitted[:, :2])(time)
     simulated = track_as(time, np.column_stack([computed, np.full(len(time), np.nan)]))
-    held = compared(simulated, true, from_above=True)
+    held = compare_tracks(simulated, true, from_above=True)
     assert held.nearest.numbers is not None
     assert held.time.numbers is not None
     return held.nearest.numbers.max, held.time.numbers.max

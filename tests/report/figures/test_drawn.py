@@ -30,7 +30,7 @@ Draw = Callable[..., Drawing | LeftOut]
 
 @pytest.fixture(scope="module")
 def material(reference: Reported) -> Material:
-    return Material(reference.campaign, reference.results)
+    return Material(reference.analysis)
 
 
 def _axes(material: Material, draw: Draw) -> list[Axes]:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from skisnow.report.figures.style import journal_style
 from skisnow.report.figures.track_comparison import MOST_DRAWN, track_comparison
-from skisnow.track.comparison import Comparison, compared
+from skisnow.track.comparison import Comparison, compare_tracks
 from skisnow.track.track import Track
 
 FloatArray = npt.NDArray[np.float64]
@@ -33,7 +33,9 @@ def winding(count: int) -> FloatArray:
 
 def test_curves_begin_at_the_start_and_show_the_largest() -> None:
     place = winding(300)
-    found = compared(track_of(place), track_of(place + np.array([0.0, 0.01, 0.0]) * np.arange(300)[:, None] / 3.0))
+    found = compare_tracks(
+        track_of(place), track_of(place + np.array([0.0, 0.01, 0.0]) * np.arange(300)[:, None] / 3.0)
+    )
     plan, along = drawn(found)
     curves = [line for line in along.lines if len(np.asarray(line.get_xdata())) > 1]
     for curve, each in zip(curves, (found.nearest, found.arc_length, found.time), strict=True):
@@ -51,7 +53,7 @@ def test_long_curves_are_thinned_and_keep_their_largest() -> None:
     place = winding(50_000)
     other = place.copy()
     other[31_234, 1] += 2.0  # a single point
-    found = compared(track_of(other), track_of(place))
+    found = compare_tracks(track_of(other), track_of(place))
     assert found.time.numbers is not None
     _, along = drawn(found)
     curve = along.lines[4]
@@ -62,7 +64,7 @@ def test_long_curves_are_thinned_and_keep_their_largest() -> None:
 def test_a_fit_shows_the_track_before_it_and_a_missing_distance_is_none() -> None:
     place = winding(300)
     shifted = replace(track_of(place + np.array([0.0, 1.0, 0.0])), first_time=900.0)
-    found = compared(track_of(place), shifted, fit=["start"])
+    found = compare_tracks(track_of(place), shifted, fit=["start"])
     with journal_style():
         figure = track_comparison(found)
     labels = [text.get_text() for text in figure.legends[0].get_texts()]

@@ -11,9 +11,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from skisnow import Run, read_scenario, simulated_run
-from skisnow.simulate.scenario import Solver
-from skisnow.simulate.verification import verified
+from skisnow import Run
+from skisnow.simulate.scenario import Solver, read_scenario
+from skisnow.simulate.simulated_run import simulate
+from skisnow.simulate.verification import verify
 
 from ...dynamics.test_free_flight import DURATION, tumbling_drift
 from . import test_cross_slope, test_static_start, test_steady_circle, test_straight_run
@@ -36,7 +37,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], *, words: int) -> 
 
 
 def carved(**changes: Any) -> Run:
-    return simulated_run(read_scenario("carved-46m", changes=changes))
+    return simulate(read_scenario("carved-46m", changes=changes))
 
 
 def per_cent(share: float | None) -> str:
@@ -45,7 +46,7 @@ def per_cent(share: float | None) -> str:
 
 def _refined(snow: tuple[float, float]) -> list[str]:
     run = carved(**{"snow.H_V_N_per_mm3": snow[0], "snow.S_f_N_per_mm2": snow[1]})
-    moved = [refinement.end_moves for refinement in verified(run, simulated_run)]
+    moved = [refinement.end_moves for refinement in verify(run, simulate)]
     return [
         f"{snow[0]:g}", f"{snow[1]:g}", run.outcome, f"{run.run_length:.2f}", f"{run.energies['shear'][-1]:.0f}",
         per_cent(run.energy_balance_error), *("" if m is None else f"{100.0 * m:.2f}" for m in moved),
@@ -165,7 +166,7 @@ def symmetric() -> Iterable[Row]:
     yield (
         "the same with fixed steps of 0.5 ms",
         "there",
-        f"off by {_moved(simulated_run(fixed), simulated_run(nudged)):.1e} m",
+        f"off by {_moved(simulate(fixed), simulate(nudged)):.1e} m",
         "runs/test_symmetries",
     )
     same = np.array_equal(run.place, carved().place)

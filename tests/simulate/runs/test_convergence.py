@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
-from skisnow import read_scenario, simulated_run
-from skisnow.simulate.verification import verification_dict, verified
+from skisnow.simulate.scenario import read_scenario
+from skisnow.simulate.simulated_run import simulate
+from skisnow.simulate.verification import verification_dict, verify
 
 MOST = 2.0
 """(cm)"""
@@ -22,9 +23,9 @@ SKIDS = [(0.04, 0.04), (0.2, 0.1), (1.0, 0.25), (90.0, 0.3)]
 def moves(hardness: float, strength: float) -> dict[str, Any]:
     """How far the end moves (cm) under each refinement; every run reaches its end."""
     changes = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength}
-    run = simulated_run(read_scenario("carved-46m", changes=changes))
+    run = simulate(read_scenario("carved-46m", changes=changes))
     assert run.outcome == "finished"
-    found = verification_dict(verified(run, simulated_run))
+    found = verification_dict(verify(run, simulate))
     assert len(found) == 4
     assert {each["outcome"] for each in found.values()} == {"finished"}
     return {key: each["end_moves_cm"] for key, each in found.items()}
@@ -49,7 +50,7 @@ def test_skidding(hardness: float, strength: float) -> None:
 def test_skidding_on_ice() -> None:
     """H_V = 90 with a measured S_f: the account of energy tells whether the groove was kept."""
     changes = {"snow.H_V_N_per_mm3": 90.0, "snow.S_f_N_per_mm2": 0.3, "run.duration_s": 1.0}
-    run = simulated_run(read_scenario("carved-46m", changes=changes))
+    run = simulate(read_scenario("carved-46m", changes=changes))
     assert run.energy_balance_error is not None
     assert run.energy_balance_error < 0.005
 
@@ -60,6 +61,6 @@ def test_the_carving_snows_carve() -> None:
     for snows, lowest, highest in ((CARVES, 0.95, 1.05), (SKIDS, 1.25, math.inf)):
         for hardness, strength in snows:
             changes = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength}
-            run = simulated_run(read_scenario("carved-46m", changes=changes))
+            run = simulate(read_scenario("carved-46m", changes=changes))
             share = run.run_length / abs(run.heading[-1] - run.heading[0]) / 16.72
             assert lowest < share < highest, (hardness, strength, share)

@@ -7,9 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from skisnow import Run, simulated_run
+from skisnow import Run
 from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT as HOLDING
 from skisnow.simulate.scenario import Solver
+from skisnow.simulate.simulated_run import simulate
 
 from .sledges import GRAVITY, rigid_ski, scenario, total_mass
 
@@ -19,7 +20,7 @@ SLOPE_DEG, LENGTH, HARDNESS = 10.0, 1.6, 0.2
 def across(*, strength: float, duration: float, heading_deg: float = 90.0, edge_deg: float = 20.0) -> Run:
     """Facing left, the edges on the left, uphill, down."""
     solver = Solver(step=2e-3, fixed=True, output_interval=0.1)
-    return simulated_run(
+    return simulate(
         scenario(
             ski=rigid_ski(length=LENGTH),
             hardness=HARDNESS,

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from skisnow import Run, read_scenario, simulated_run
+from skisnow import Run
 from skisnow.simulate.run import LOST
+from skisnow.simulate.scenario import read_scenario
+from skisnow.simulate.simulated_run import simulate
 
 SHARE = 0.005
 
@@ -23,7 +25,7 @@ def closes(run: Run, changes: object) -> None:
 
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_two_seconds(contact: str) -> None:
-    run = simulated_run(read_scenario("carved-46m", changes={**CONTACTS[contact], "run.duration_s": 2.0}))
+    run = simulate(read_scenario("carved-46m", changes={**CONTACTS[contact], "run.duration_s": 2.0}))
     closes(run, contact)
 
 
@@ -38,7 +40,7 @@ def test_a_long_slip_sideways() -> None:
         "snow.S_f_N_per_mm2": 0.01,
         "run.duration_s": 2.0,
     }
-    run = simulated_run(read_scenario("carved-46m", changes=changes))
+    run = simulate(read_scenario("carved-46m", changes=changes))
     assert run.place[-1, 0] > 6.0
     closes(run, changes)
 
@@ -61,7 +63,7 @@ def drawn(seed: int, duration: float) -> dict[str, float]:
 
 
 def loses_everywhere(changes: dict[str, float]) -> None:
-    run = simulated_run(read_scenario("carved-46m", changes=changes))
+    run = simulate(read_scenario("carved-46m", changes=changes))
     for name in LOST:
         assert run.energies[name].min() > -1e-3 * run.energy_turned_over, (name, changes)
 
@@ -80,7 +82,7 @@ def test_a_ski_that_hardly_touches() -> None:
         "slope.angle_deg": 19.764378024404245,
         "run.duration_s": 1.5,
     }
-    closes(simulated_run(read_scenario("carved-46m", changes=changes)), changes)
+    closes(simulate(read_scenario("carved-46m", changes=changes)), changes)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -98,7 +100,7 @@ def test_no_account_gives_energy_in_longer_runs(seed: int) -> None:
 @pytest.mark.parametrize("name", ["carved-46m", "giant-slalom-67m", "carver-42m"])
 @pytest.mark.parametrize("contact", CONTACTS)
 def test_built_in_scenarios(name: str, contact: str) -> None:
-    run = simulated_run(read_scenario(name, changes=CONTACTS[contact]))
+    run = simulate(read_scenario(name, changes=CONTACTS[contact]))
     assert run.outcome in {"finished", "distance_reached"}
     closes(run, (name, contact))
 
@@ -119,4 +121,4 @@ def test_built_in_scenarios(name: str, contact: str) -> None:
 def test_every_snow(hardness: float, strength: float) -> None:
     """From powder to ice, with an S_f that carves and one that skids."""
     changes = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength}
-    closes(simulated_run(read_scenario("carved-46m", changes=changes)), changes)
+    closes(simulate(read_scenario("carved-46m", changes=changes)), changes)

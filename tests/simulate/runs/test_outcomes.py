@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow import Run, read_scenario, simulated_run
+from skisnow import Run
 from skisnow.dynamics import Dynamics, Ended, StepControl
 from skisnow.errors import ParameterError
 from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import set_up
-from skisnow.simulate.scenario import Plane, Profile, Scenario
-from skisnow.simulate.simulated_run import computed_run
+from skisnow.simulate.scenario import Plane, Profile, Scenario, read_scenario
+from skisnow.simulate.simulated_run import computed_run, simulate
 
 from ..equilibrium.synthetic import shovel
 from .sledges import rigid_ski, scenario
@@ -43,7 +43,7 @@ def flat_scenario(slope: Plane | Profile, *, speed: float, x: float) -> Scenario
 
 
 def test_finished() -> None:
-    run = simulated_run(read_scenario("carved-46m", changes={"run.duration_s": 0.3137}))
+    run = simulate(read_scenario("carved-46m", changes={"run.duration_s": 0.3137}))
     assert run.outcome == "finished"
     assert run.time[-1] == 0.3137
     assert run.time[:-1] == pytest.approx(np.arange(32) * 0.01, abs=1e-12)
@@ -53,7 +53,7 @@ def test_finished() -> None:
 @pytest.mark.parametrize("length", [0.005, 3.0])
 def test_distance_reached(length: float) -> None:
     """The last interval is aimed by the speed at its begin: 1 m/s² over 10 ms miss by less than 0.1 mm."""
-    run = simulated_run(read_scenario("carved-46m", changes={"run.length_m": length, "run.duration_s": 5.0}))
+    run = simulate(read_scenario("carved-46m", changes={"run.length_m": length, "run.duration_s": 5.0}))
     assert run.outcome == "distance_reached"
     assert run.run_length == pytest.approx(length, abs=2e-5)
     arc = np.linalg.norm(np.diff(run.place, axis=0), axis=1).sum()
@@ -69,7 +69,7 @@ def test_end_of_slope_of_a_measured_profile() -> None:
     assert isinstance(given.slope, Profile)
     end = given.slope.ends[1]
     straight = flat_scenario(given.slope, speed=2.0, x=end - 6.0)
-    run = simulated_run(straight)
+    run = simulate(straight)
     assert run.outcome == "end_of_slope"
     assert run.place[-1, 0] + run.attitude[-1, 0, 0] * 0.8 == pytest.approx(end, abs=0.2)  # an output at 10 m/s or so
     assert is_sound(run)
@@ -81,7 +81,7 @@ UNSET: dict[str, object] = {"slope.profile_gap": "interpolate"}
 def test_end_of_slope() -> None:
     """A straight ramp of 12 m: the tips, 0.8 m before the boots, reach its end within one output's way."""
     x = np.arange(0.0, 12.01, 0.5)
-    run = simulated_run(flat_scenario(Profile(x, -0.17 * x), speed=5.0, x=1.0))
+    run = simulate(flat_scenario(Profile(x, -0.17 * x), speed=5.0, x=1.0))
     assert run.outcome == "end_of_slope"
     tip = run.place[-1, 0] + 0.8 * run.attitude[-1, 0, 0]
     assert 12.0 < tip < 12.0 + 0.011 * run.speed[-1]
@@ -89,7 +89,7 @@ def test_end_of_slope() -> None:
 
 
 def test_tipped_over() -> None:
-    run = simulated_run(read_scenario("carved-46m", changes={"sledge.centre_of_mass_height_m": 0.6}))
+    run = simulate(read_scenario("carved-46m", changes={"sledge.centre_of_mass_height_m": 0.6}))
     assert run.outcome == "tipped_over"
     assert run.attitude[-1, 2, 2] == pytest.approx(0.5, abs=0.1)  # the cosine of 60°
     assert run.attitude[-1, 2, 1] > 0.5  # out of a left turn: to the right, the left side comes up
@@ -99,9 +99,7 @@ def test_tipped_over() -> None:
 def test_airborne_off_a_kicker() -> None:
     """A ramp that rises 5 % and breaks off at x = 8 m: the middle of mass goes on in a parabola for 0.3 s."""
     x = np.arange(0.0, 60.01, 0.25)
-    run = simulated_run(
-        flat_scenario(Profile(x, np.where(x < 8.0, 0.05 * (x - 8.0), -0.45 * (x - 8.0))), speed=14.0, x=2.0)
-    )
+    run = simulate(flat_scenario(Profile(x, np.where(x < 8.0, 0.05 * (x - 8.0), -0.45 * (x - 8.0))), speed=14.0, x=2.0))
     assert run.outcome == "airborne"
     assert is_sound(run)
     air = run.time > run.time[-1] - 0.25
@@ -114,7 +112,7 @@ def test_airborne_off_a_kicker() -> None:
 
 
 def test_sunk() -> None:
-    run = simulated_run(read_scenario("carved-46m", changes={"snow.H_V_N_per_mm3": 1e-6}))
+    run = simulate(read_scenario("carved-46m", changes={"snow.H_V_N_per_mm3": 1e-6}))
     assert run.outcome == "sunk"
     assert is_sound(run)
 
@@ -122,7 +120,7 @@ def test_sunk() -> None:
 def test_step_too_small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where steps below 2 ms are none, a tolerance of 1e-12 m is out of reach."""
     monkeypatch.setattr("skisnow.simulate.run_setup.StepControl", functools.partial(StepControl, shortest=2e-3))
-    run = simulated_run(read_scenario("carved-46m", changes={"solver.tolerance_mm": 1e-9, "solver.step_ms": 5.0}))
+    run = simulate(read_scenario("carved-46m", changes={"solver.tolerance_mm": 1e-9, "solver.step_ms": 5.0}))
     assert run.outcome == "step_too_small"
     assert len(run.time) >= 1
 
@@ -147,8 +145,8 @@ def test_long_fixed_steps_do_not_diverge(changes: dict[str, object], solver: dic
     How far they end from the controlled ones after 3 and 25 m.
     """
     shorter = {"run.duration_s": 0.5}
-    run = simulated_run(read_scenario("carved-46m", changes={**changes, **solver, **shorter}))
-    controlled = simulated_run(read_scenario("carved-46m", changes={**changes, **shorter}))
+    run = simulate(read_scenario("carved-46m", changes={**changes, **solver, **shorter}))
+    controlled = simulate(read_scenario("carved-46m", changes={**changes, **shorter}))
     assert run.outcome == controlled.outcome == "finished"
     assert run.steps < 510
     assert np.linalg.norm(run.place[-1] - controlled.place[-1]) < apart
@@ -162,7 +160,7 @@ def test_diverged_numbers_end_as_not_finite(monkeypatch: pytest.MonkeyPatch) -> 
         return advance(self, until) if until < 0.035 else Ended.NOT_FINITE
 
     monkeypatch.setattr(Dynamics, "advance", diverging)
-    run = simulated_run(read_scenario("carved-46m"))
+    run = simulate(read_scenario("carved-46m"))
     assert run.outcome == "not_finite"
     assert run.time == pytest.approx([0.0, 0.01, 0.02, 0.03])
     assert is_sound(run)
@@ -195,7 +193,9 @@ def test_fast_is_a_looser_tolerance() -> None:
     """A tenth of the tolerance makes up for it, but for the parts in which the history is marched."""
     ends = [
         simulated_run(
-            read_scenario("carved-46m", changes={"run.duration_s": 0.5, "solver.method": method, "solver.tolerance_mm": mm})
+            read_scenario(
+                "carved-46m", changes={"run.duration_s": 0.5, "solver.method": method, "solver.tolerance_mm": mm}
+            )
         )
         for method, mm in (("fast", 3e-5), ("default", 3e-4), ("fast", 3e-4))
     ]
@@ -214,9 +214,9 @@ def test_the_former_word_of_the_method_is_read() -> None:
 def test_pauses_change_no_bit(changes: dict[str, object], monkeypatch: pytest.MonkeyPatch) -> None:
     """The core comes back to Python after every seventh step, or never: the same steps."""
     given = read_scenario("carved-46m", changes={"run.duration_s": 0.2, **changes})
-    whole = simulated_run(given)
+    whole = simulate(given)
     monkeypatch.setattr("skisnow.dynamics.motion.STEPS_AT_ONCE", 7)
-    pieces = simulated_run(given)
+    pieces = simulate(given)
     assert whole.steps == pieces.steps > 70
     assert np.array_equal(whole.place, pieces.place)
 
@@ -228,7 +228,7 @@ def test_an_interrupt_is_heard_inside_of_an_output() -> None:
     )
     ctrl_c = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
     ctrl_c.start()
-    run = simulated_run(given)
+    run = simulate(given)
     ctrl_c.join()
     assert run.outcome == "interrupted"
     assert len(run.time) == 1

@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow import Run, Scenario, read_scenario, simulated_run
-from skisnow.simulate.scenario import Plane, Profile, Solver
+from skisnow import Run, Scenario
+from skisnow.simulate.scenario import Plane, Profile, Solver, read_scenario
+from skisnow.simulate.simulated_run import simulate
 
 from ..equilibrium.synthetic import shovel
 from .sledges import rigid_ski, scenario
@@ -21,8 +22,8 @@ def both(given: Scenario) -> tuple[Run, Run, npt.NDArray[np.float64]]:
     assert isinstance(given.slope, Plane)
     angle = given.slope.angle
     x = np.linspace(-20.0, 60.0, 81)
-    plane = simulated_run(given)
-    profile = simulated_run(replace(given, slope=Profile(x, -math.tan(angle) * x)))
+    plane = simulate(given)
+    profile = simulate(replace(given, slope=Profile(x, -math.tan(angle) * x)))
     c, s = math.cos(angle), math.sin(angle)
     turned = plane.place @ np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])
     return plane, profile, turned
@@ -70,7 +71,7 @@ def test_energy_closes_in_a_hollow(edge_deg: float, heading_deg: float) -> None:
     hollow = Profile(x, 20.0 - np.sqrt(400.0 - (x - 8.0) ** 2))
     changes = {"run.duration_s": 0.8, "snow.H_V_N_per_mm3": 1.0, "sledge.edge_angle_deg": edge_deg}
     given = read_scenario("carved-46m", changes=changes | {"start.heading_deg": heading_deg})
-    run = simulated_run(replace(given, slope=hollow))
+    run = simulate(replace(given, slope=hollow))
     assert run.outcome == "finished"
     assert run.place[-1, 0] > 4.0
     assert run.energies["penetration"][-1] > 1.0

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from skisnow import Run, simulated_run
+from skisnow import Run
 from skisnow.simulate.scenario import Solver
+from skisnow.simulate.simulated_run import simulate
 
 from ..equilibrium.synthetic import shovel
 from .sledges import GRAVITY, rigid_ski, scenario
@@ -19,7 +20,7 @@ SPEED, ANGLE_DEG = 3.0, 10.0
 def up_and_back(unloading_ratio: float, *, duration: float = 3.2) -> Run:
     """Up the fall line on flat rigid skis, without friction; backwards it meets the lines that it has left."""
     ski = rigid_ski(base_height=shovel(1.2, 0.03, 1.6), running_length=1.2)
-    return simulated_run(
+    return simulate(
         scenario(
             ski=ski,
             angle_deg=ANGLE_DEG,

@@ -11,11 +11,12 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import fsolve
 
-from skisnow import Run, Scenario, read_scenario, read_ski, rest, simulated_run
+from skisnow import Run, Scenario, read_ski, rest
 from skisnow.errors import SolverError
 from skisnow.simulate.run_record import at_nodes
 from skisnow.simulate.run_setup import set_up
-from skisnow.simulate.scenario import Solver
+from skisnow.simulate.scenario import Solver, read_scenario
+from skisnow.simulate.simulated_run import simulate
 from skisnow.simulate.standing import why_no_start
 
 from ..beyond_ranges import beyond
@@ -27,7 +28,7 @@ INSTANT = 1e-3
 
 
 def at_start(given: Scenario) -> Run:
-    run = simulated_run(replace(given, stop=replace(given.stop, duration=INSTANT)))
+    run = simulate(replace(given, stop=replace(given.stop, duration=INSTANT)))
     assert run.time[0] == 0.0
     return run
 
@@ -87,7 +88,7 @@ def test_every_edge_on_every_snow_finds_its_balance(edge_angle: float) -> None:
 def test_a_sledge_whose_weight_passes_beside_its_skis(changes: dict[str, object], words: list[str]) -> None:
     high = {"sledge.centre_of_mass_height_m": 0.8, **changes}
     with pytest.raises(SolverError) as told:
-        simulated_run(read_scenario("carved-46m", changes=high))
+        simulate(read_scenario("carved-46m", changes=high))
     assert all(word in str(told.value) for word in words)
 
 
@@ -101,7 +102,7 @@ def test_weight_over_the_skis_is_not_blamed() -> None:
 def test_steep_edges_that_hold_strongly(edge_angle: float) -> None:
     """Nothing moves faster than gravity lets it."""
     changes = {"sledge.edge_angle_deg": edge_angle, "snow.S_f_N_per_mm2": 2.0, "run.duration_s": INSTANT}
-    run = simulated_run(read_scenario("carved-46m", changes=changes))
+    run = simulate(read_scenario("carved-46m", changes=changes))
     assert run.outcome == "finished"
     assert abs(float(run.velocity[-1, 2] - run.velocity[0, 2])) < GRAVITY * INSTANT
 

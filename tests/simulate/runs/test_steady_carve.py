@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from skisnow import Run, carve, read_scenario, simulated_run
+from skisnow import Run, carve
+from skisnow.simulate.scenario import read_scenario
+from skisnow.simulate.simulated_run import simulate
 
 from ..equilibrium.synthetic import snow
 
@@ -26,7 +28,7 @@ LEVEL = {
 
 
 def steady(hardness: float, strength: float) -> Run:
-    return simulated_run(
+    return simulate(
         read_scenario("carved-46m", changes={**LEVEL, "snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength})
     )
 

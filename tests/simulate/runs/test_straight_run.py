@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow import Run, Scenario, simulated_run
+from skisnow import Run, Scenario
+from skisnow.simulate.simulated_run import simulate
 
 from ..equilibrium.synthetic import shovel
 from .sledges import GRAVITY, load, rigid_ski, scenario, total_mass
@@ -22,7 +23,7 @@ SOFT = 0.001
 def straight(*, compaction: bool, unloading_ratio: float = 10.0) -> Run:
     """Down the fall line, on skis with a shovel at either end: without one the base would meet the snow with a wall."""
     ski = rigid_ski(width=WIDTH, base_height=shovel(1.2, 0.03, 1.6), running_length=1.2)
-    return simulated_run(
+    return simulate(
         scenario(
             ski=ski,
             angle_deg=ANGLE_DEG,

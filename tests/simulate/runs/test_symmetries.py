@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from skisnow import Run, read_scenario, simulated_run
+from skisnow import Run
+from skisnow.simulate.scenario import read_scenario
+from skisnow.simulate.simulated_run import simulate
 
 FIXED = {"solver.fixed": True, "solver.step_ms": 0.5, "run.output_ms": 50.0}
 CARVES = {"sledge.edge_angle_deg": 30.0, "start.heading_deg": -30.0}
@@ -15,7 +17,7 @@ SKIDS = {**CARVES, "snow.S_f_N_per_mm2": 0.1}
 
 
 def simulated(**changes: object) -> Run:
-    return simulated_run(read_scenario("carved-46m", changes=changes))
+    return simulate(read_scenario("carved-46m", changes=changes))
 
 
 def mirrored(changes: dict[str, float]) -> dict[str, float]:

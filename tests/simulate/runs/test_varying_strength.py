@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from skisnow import read_scenario, simulated_run
+from skisnow.simulate.scenario import read_scenario
+from skisnow.simulate.simulated_run import simulate
 
 CHANGES = {"run.duration_s": 1.2, "solver.fixed": True}
 WEAKER = 4.0
@@ -13,7 +14,7 @@ WEAKER = 4.0
 
 def test_the_same_strength_everywhere_gives_the_same_bits() -> None:
     scenario = read_scenario("carved-46m", changes=CHANGES)
-    plain, asked = simulated_run(scenario), simulated_run(scenario, strength_along=lambda _: 1.0)
+    plain, asked = simulate(scenario), simulate(scenario, strength_along=lambda _: 1.0)
     assert np.array_equal(plain.place, asked.place)
 
 
@@ -26,7 +27,7 @@ def test_where_it_gets_weaker_the_edges_slip() -> None:
         distances.append(distance)
         return 0.1 if distance > WEAKER else 1.0
 
-    plain, run = simulated_run(scenario), simulated_run(scenario, strength_along=strength)
+    plain, run = simulate(scenario), simulate(scenario, strength_along=strength)
     assert np.all(np.diff(distances) > 0.0)
     steps = np.linalg.norm(np.diff(plain.place, axis=0), axis=1)
     before = np.concatenate([[0.0], np.cumsum(steps)]) <= WEAKER

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow import read_scenario
 from skisnow.errors import ParameterError
-from skisnow.simulate.scenario import Profile, Scenario
+from skisnow.simulate.scenario import Profile, Scenario, read_scenario
 
 
 def changed(part: str, **values: Any) -> Scenario:

@@ -9,12 +9,11 @@ from typing import Any
 import jsonschema
 import pytest
 
-import skisnow
 from skisnow.errors import ParameterError
 from skisnow.simulate.scenario import Solver, read_scenario, scenario_names, scenario_text
 from skisnow.simulate.scenario.keys import SCENARIO_KEYS
 
-SCHEMAS = files(skisnow.simulate) / "schemas"
+SCHEMAS = files("skisnow.simulate") / "schemas"
 SCHEMA = json.loads((SCHEMAS / "scenario.schema.json").read_text(encoding="utf-8"))
 
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from skisnow import read_scenario
 from skisnow.errors import ParameterError
+from skisnow.simulate.scenario import read_scenario
 from skisnow.snow import SnowProperties
 
 OUT_OF_RANGE: list[tuple[str, str, object, str, object]] = [

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from skisnow import read_scenario, scenario_names
+from skisnow import scenario_names
 from skisnow.errors import ParameterError
-from skisnow.simulate.scenario import Plane, Profile, scenario_file, scenario_text, scenario_values
+from skisnow.simulate.scenario import Plane, Profile, read_scenario, scenario_file, scenario_text, scenario_values
 from skisnow.simulate.scenario.given import change_of, given_scenario
 from skisnow.simulate.scenario.keys import SCENARIO_KEYS
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow import read_scenario, simulated_run
 from skisnow.simulate.run import Run
-from skisnow.simulate.scenario import Profile
+from skisnow.simulate.scenario import Profile, read_scenario
+from skisnow.simulate.simulated_run import simulate
 from skisnow.units import DEGREE
 from skisnow.web.replay import Replay, moving_replay_model, replay_of_run, ski_edges, write_moving_replay_model
 from skisnow.web.replay.binary import at_moments
@@ -35,7 +35,7 @@ def model(replay: Replay) -> GlbFile:
 @pytest.fixture(scope="module")
 def simulated() -> Run:
     """Half a second told every 2 ms, five times as fine as a model's keys."""
-    return simulated_run(read_scenario("carved-46m", changes={"run.duration_s": 0.5, "run.output_ms": 2.0}))
+    return simulate(read_scenario("carved-46m", changes={"run.duration_s": 0.5, "run.output_ms": 2.0}))
 
 
 def to_run(world: np.ndarray, tilt: float) -> np.ndarray:

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skisnow import read_scenario, simulated_run
+from skisnow.simulate.scenario import read_scenario
+from skisnow.simulate.simulated_run import simulate
 from skisnow.units import DEGREE
 from skisnow.web.replay import Replay, replay_of_run, ski_edges
 from skisnow.web.replay.shape import nearest_frame
@@ -81,7 +82,7 @@ def test_twist_adds_to_the_edge_angle() -> None:
 
 def test_the_edges_lie_as_deep_as_the_simulator_says() -> None:
     """On the plane z = 0 the depth of the left edge, down in a left turn, is minus its z."""
-    run = simulated_run(read_scenario("carved-46m", changes={"run.duration_s": 0.2}))
+    run = simulate(read_scenario("carved-46m", changes={"run.duration_s": 0.2}))
     replay = replay_of_run(run)
     frame = len(run.time) - 1
     depth = -ski_edges(replay, frame)[:, :, 0, 2]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ...errors import FieldDataError
 from ..problems import error
 from ..records import Campaign
 from .assembling import density_samples, drop_cone_tests, penetration_tests, shear_tests
 from .campaign_file import CAMPAIGN_FILE, read_campaign_file
+from .campaign_files import FilesInMemory, FilesOfFolder
 from .corrections import corrections_by_file, refuse_without_file
 from .raw_files import RawFiles
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, TABLES
@@ -24,11 +25,13 @@ if TYPE_CHECKING:
     from ..problems import Problem
     from ..records import AppliedCorrection
     from .campaign_file import CampaignFile
+    from .campaign_files import CampaignFiles
     from .corrections import RowCorrections
     from .table_forms import TableForm
     from .tables import Table
 
-_FILES = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
+CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
+"""Names of the files that a campaign reads, in their order."""
 
 
 def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None = None) -> Campaign:
@@ -50,15 +53,36 @@ def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None 
     FieldDataError
         With every problem, warnings too, where at least one is an error.
     """
-    contents = _read(Path(folder), progress)
-    if contents.described is None or any(problem.severity == "error" for problem in contents.problems):
-        raise FieldDataError(contents.problems)
-    return _campaign(contents, contents.described)
+    return _sound(_read_folder(Path(folder), progress))
+
+
+def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = ()) -> Campaign:
+    """Read and check a campaign whose files are at hand: nothing is looked for on the disk.
+
+    Parameters
+    ----------
+    files
+        Contents by name, as they would lie in the campaign's folder.
+    others
+        Names of further files, which a campaign does not read.
+
+    Raises
+    ------
+    FieldDataError
+        As `read_campaign`.
+    """
+    return _sound(_read(FilesInMemory(files, others), None))
 
 
 def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
     """List every error and warning of a campaign, in the order of its files and rows; a bad campaign does not raise."""
-    return _read(Path(folder), None).problems
+    return _read_folder(Path(folder), None).problems
+
+
+def _sound(contents: _Contents) -> Campaign:
+    if contents.described is None or any(problem.severity == "error" for problem in contents.problems):
+        raise FieldDataError(contents.problems)
+    return _campaign(contents, contents.described)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,13 +98,17 @@ class _Contents:
     unread: tuple[str, ...] = ()
 
 
-def _read(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
+def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
     if not folder.is_dir():
         action = "Name the folder that holds campaign.toml and the tables."
         value = "a file" if folder.exists() else "nothing"
         nowhere = error("unreadable_file", str(folder), value=value, allowed="a folder that exists", action=action)
         return _Contents(folder, None, {}, {}, (nowhere,))
-    files = RawFiles(folder)
+    return _read(FilesOfFolder(folder), progress)
+
+
+def _read(campaign: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
+    files = RawFiles(campaign)
     described = _described(files)
     corrections = _corrections(files)
     tables: dict[str, Table] = {}
@@ -89,46 +117,41 @@ def _read(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
         if table is not None:
             tables[form.file] = table
             files.found.extend(check_together(table, described))
-    files.found.extend(_misnamed(folder, files.absent))
+    there = campaign.names()
+    files.found.extend(_misnamed(there, files.absent))
     if {PENETRATION.file, SHEAR.file} <= files.absent:
         files.found.append(_no_measurements())
     applied = sorted(
         (each for rows in corrections.values() for row in rows.values() for each in row), key=lambda each: each.line
     )
     return _Contents(
-        folder,
+        campaign.folder,
         described,
         tables,
         files.hashes,
         _in_order(files.found),
         tuple(each.applied() for each in applied),
-        _unread(folder),
+        _unread(there),
     )
 
 
 def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
-    place = {name: index for index, name in enumerate(_FILES)}
+    place = {name: index for index, name in enumerate(CAMPAIGN_FILES)}
     return tuple(sorted(problems, key=lambda problem: (place.get(problem.file, len(place)), problem.row or 0)))
 
 
-def _unread(folder: Path) -> tuple[str, ...]:
+def _unread(there: Mapping[str, bool]) -> tuple[str, ...]:
     """Files that are no part of a campaign; hidden ones are not spoken of."""
-    return tuple(
-        sorted(
-            path.name
-            for path in folder.iterdir()
-            if path.is_file() and path.name not in _FILES and not path.name.startswith(".")
-        )
-    )
+    files = sorted(name for name, is_file in there.items() if is_file)
+    return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith("."))
 
 
-def _misnamed(folder: Path, absent: set[str]) -> list[Problem]:
+def _misnamed(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
     """Files whose names differ from the campaign's by capitals alone: they would be passed over without a word."""
-    names = sorted(path.name for path in folder.iterdir())
     return [
         error("unreadable_file", name, value=name, allowed=name.lower(), action=f"Rename it to {name.lower()}.")
-        for name in names
-        if name not in _FILES and name.lower() in absent
+        for name in sorted(there)
+        if name not in CAMPAIGN_FILES and name.lower() in absent
     ]
 
 

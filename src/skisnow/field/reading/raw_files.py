@@ -1,29 +1,27 @@
-"""The files of a campaign's folder as bytes, each read once and hashed."""
+"""The files of a campaign as bytes, each read once and hashed."""
 
 from __future__ import annotations
 
 import hashlib
-import stat
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from ..problems import error, warning
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from ..problems import Problem
+    from .campaign_files import CampaignFiles
     from .text import UnreadableTextError
 
 
 @dataclass(frozen=True, slots=True)
 class RawFiles:
-    """Reads files of one folder and remembers what it met.
+    """Reads files of one campaign and remembers what it met.
 
     Attributes
     ----------
-    folder
-        The campaign's folder.
+    files
+        Where they lie.
     found
         Takes the problems.
     hashes
@@ -32,17 +30,15 @@ class RawFiles:
         Names that were asked for and are not there.
     """
 
-    folder: Path
+    files: CampaignFiles
     found: list[Problem] = field(default_factory=list)
     hashes: dict[str, str] = field(default_factory=dict)
     absent: set[str] = field(default_factory=set)
 
     def read(self, name: str) -> bytes | None:
         """Give a file's bytes; None where it is absent, or cannot be read, which is said."""
-        path = self.folder / name
         try:
-            # a pipe would be waited for, a folder cannot be read
-            data = path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None
+            data = self.files.read(name)
         except FileNotFoundError:
             self.absent.add(name)
             return None

@@ -3,7 +3,7 @@
 from .grown import GrownCampaign, GrownRow, GrownTest, grown
 from .grown_files import campaign_files, write_campaign
 from .journal import JournalEntry, JournalHead, Journals, NewEntry, OvertakenError
-from .kept import ExportedCampaign, add_corrections, export_corrected
+from .kept import ExportedCampaign, add_corrections, corrected_files, export_corrected
 from .kept_tables import KeptTable, kept_tables
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
 
@@ -25,6 +25,7 @@ __all__ = [
     "StoredFile",
     "add_corrections",
     "campaign_files",
+    "corrected_files",
     "default_path",
     "export_corrected",
     "grown",

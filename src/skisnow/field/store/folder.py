@@ -216,6 +216,20 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
         raise StoreError(f"{file.path} is damaged in the store and was not written; `skisnow store verify` lists all.")
 
 
+def whole(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
+    """A file's bytes, which are checked to be what was stored.
+
+    Raises
+    ------
+    StoreError
+        Bytes that do not have the stored SHA-256.
+    """
+    data = b"".join(pieces)
+    if hashlib.sha256(data).hexdigest() != file.sha256:
+        raise StoreError(f"{file.path} is damaged in the store and was not read; `skisnow store verify` lists all.")
+    return data
+
+
 def _settle_folder(folder: Path) -> None:
     """Bring a folder's entries to the disk; Windows does so by itself and cannot be asked."""
     if os.name == "nt" or not folder.is_dir():

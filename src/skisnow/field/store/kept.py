@@ -17,7 +17,7 @@ from .journal import Journals
 from .kept_tables import cell_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
     from .folder import Progress
@@ -81,6 +81,20 @@ def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: by
     else:
         place.unlink(missing_ok=True)
     return len(rows)
+
+
+def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry]) -> dict[str, bytes]:
+    """The files of a campaign with the corrections.csv that `add_corrections` would write beside them.
+
+    Raises
+    ------
+    StoreError
+        The corrections.csv that came with the campaign cannot be read.
+    """
+    rows = list(_rows(entries))
+    if not rows:
+        return dict(files)
+    return {**files, CORRECTIONS.file: _together(files.get(CORRECTIONS.file, b""), rows).encode("utf-8")}
 
 
 def _together(before: bytes, rows: list[dict[str, str]]) -> str:

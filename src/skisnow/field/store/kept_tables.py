@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..reading.campaign_files import FilesOfFolder
 from ..reading.corrections import Corrector, corrections_by_file, header_with_status
 from ..reading.header import Header
 from ..reading.raw_files import RawFiles
@@ -14,8 +16,8 @@ from ..reading.text import UnreadableTextError, look_at_csv
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
+    from ..reading.campaign_files import CampaignFiles
     from ..reading.corrections import RowCorrections
     from ..reading.table_forms import TableForm
     from ..reading.text import CsvText
@@ -40,9 +42,9 @@ class KeptTable:
     tests: Mapping[str, Mapping[int, Mapping[str, str]]]
 
 
-def kept_tables(folder: Path) -> dict[str, KeptTable]:
-    """Every table in a campaign's folder that can be read, by its file."""
-    files = RawFiles(folder)
+def kept_tables(campaign: CampaignFiles | Path) -> dict[str, KeptTable]:
+    """Every table of a campaign that can be read, by its file; the campaign is a folder, or files that are at hand."""
+    files = RawFiles(FilesOfFolder(campaign) if isinstance(campaign, Path) else campaign)
     corrections = _corrections(files)
     found = {form.file: _kept_table(files, form, corrections.get(form.file, {})) for form in TABLES}
     return {file: table for file, table in found.items() if table is not None}

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from ...errors import StoreError
+from ...shown import Facts, Shown
 from .engine import database_told, files_told, open_engine, reading, writing
 from .finding import Finding
 from .folder import (
@@ -25,6 +26,7 @@ from .folder import (
     new_folder,
     no_progress,
     read_chunks,
+    whole,
     write_file,
 )
 from .rows import (
@@ -42,7 +44,7 @@ from .schema import CHUNK_BYTES
 from .verification import findings
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Mapping
     from types import TracebackType
 
     from sqlalchemy import Engine
@@ -89,7 +91,7 @@ class _Check:
     failure: str | None
 
 
-class Store:
+class Store(Shown):
     """An open store; made by `Store.open`, closed by leaving its ``with`` block.
 
     Every method raises `StoreError`, with what to do, where the disk is full, the store is read-only or locked for
@@ -127,6 +129,9 @@ class Store:
                     raise StoreError(f"There is no store at {place}; add a campaign first, or name another file.")
                 place.parent.mkdir(parents=True, exist_ok=True)
         return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
+
+    def _facts(self) -> Facts:
+        return Facts(f"at {self.path}")
 
     def close(self) -> None:
         """Let go of the file."""
@@ -237,6 +242,24 @@ class Store:
                 if complete is not None:
                     complete(filling)
         return stored
+
+    def contents(
+        self,
+        id: str,  # noqa: A002
+        names: Collection[str],
+    ) -> tuple[StoredCampaign, dict[str, bytes]]:
+        """Give some of a campaign's files as they came in, by their paths; those that it does not have are left out.
+
+        Raises
+        ------
+        StoreError
+            As in `show`; a file is damaged.
+        """
+        with database_told(self.path, "could not be read"), reading(self.engine) as connection:
+            stored = one_campaign(connection, id)
+            require_whole(stored)
+            chosen = [file for file in stored.files if file.path in names]
+            return stored, {file.path: whole(file, stored_chunks(connection, file.sha256)) for file in chosen}
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:
         """Look for damage: the database's own checks, the hash of every file, the id of every campaign; () if sound."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ...geometry import in_form
-from ...units import DEGREE, MM
+from ...units import MM
 from ..curves import law_of_series
 from ..numerals import whole
 from ..symbols import prose
@@ -119,12 +119,12 @@ def _panel(
 
 
 def _law(material: Material, tests: PenetrationTests, index: int, wide_range: bool) -> tuple[FloatArray, FloatArray]:
-    row, series = material.penetration[index], tests.series(index)
+    series, found = tests.series(index), material.analysis.penetration
+    assert found is not None  # there are tests
     deepest = float(series.penetration_depth.max())
     e = np.geomspace(deepest * 1e-3, deepest, 60) if wide_range else np.linspace(0.0, deepest, 60)
-    geometry = material.results["provenance"]["options"]["geometry"]
-    tool = in_form(material.campaign.tools[series.tool], geometry)
-    return law_of_series(tool, row["edge_angle_deg"] * DEGREE, row["H_V_N_per_mm3"], e)
+    tool = in_form(material.campaign.tools[series.tool], material.geometry)
+    return law_of_series(tool, series.edge_angle, float(found.hardness["H_V"].value[index]), e)
 
 
 def _caption(counts: list[tuple[float, int, int]], elsewhere: int, *, wide_range: bool) -> Markup:

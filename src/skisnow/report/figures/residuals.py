@@ -6,10 +6,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ...estimate.hardness import DEFINITIONS
-from ...estimate.readings import readings_of
-from ...units import DEGREE, MM2, MM3
-from ..material import numbers
 from ..numerals import significant, whole
 from ..symbols import html, prose
 from ..tables.models import law
@@ -21,8 +17,9 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from ...estimate.models import ModelFit
     from ...estimate.readings import Readings
-    from ..material import FloatArray, Json, Material
+    from ..material import FloatArray, Material
     from .style import SiteStyle
 
 NAME: Final = "residuals"
@@ -31,14 +28,12 @@ MOST_GROUPS: Final = 12
 
 def residuals(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
     """F of the law minus F applied, all used readings, with medians and 90 % ranges along the load."""
-    selected, tests = material.results["penetration"]["selected"], material.campaign.penetration
-    if selected is None or tests is None:
+    found = material.analysis.penetration
+    if found is None or found.selected is None:
         return LeftOut(NAME, "Residuals of the selected law", "no penetration experiment is used")
-    row = next(row for row in material.results["penetration"]["models"] if row["id"] == selected["id"])
-    geometry = material.results["provenance"]["options"]["geometry"]
-    every = readings_of(tests, material.campaign.tools, geometry=geometry)
-    used = every.of(material.penetration_used)
-    departure = _force(material, row, used) - used.load
+    used = found.readings.of(found.screened.used)
+    hardness = found.hardness[found.selected.model.hardness].value[found.screened.used]
+    departure = _force(found.selected, hardness[used.series], used) - used.load
     figure = new_figure(height_mm=62.0)
     axes = figure.add_subplot()
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
@@ -63,23 +58,22 @@ def residuals(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Left
         "Residuals of the selected law, F = {law}, against the load: {n} readings of {m} series. Blue: median and the "
         "range of 90 % of the readings along the load; red: mean. The last reading of each series defines its "
         "hardness. rmse {rmse} N.",
-        law=html(law(row["id"])),
+        law=html(law(found.selected.model.id)),
         n=whole(used.n),
         m=whole(used.n_series),
-        rmse=significant(row["rmse_N"], 4),
+        rmse=significant(found.selected.rmse, 4),
     )
     return Drawing(
         NAME, caption, "Residuals of the selected law in newtons against the load in newtons.", figure, points=used.n
     )
 
 
-def _force(material: Material, row: Json, used: Readings) -> FloatArray:
-    """F = H (a(ϑ) A + b(ϑ) V) in the units of the table."""
-    H = numbers(material.penetration, DEFINITIONS[row["hardness"]].key)[material.penetration_used][used.series]
-    angle = np.array([item["edge_angle_deg"] for item in material.penetration], dtype=float) * DEGREE
-    of_reading = angle[material.penetration_used][used.series]
-    a, b = (row[f"{letter}0"] + (row[f"{letter}1"] or 0.0) * of_reading for letter in "ab")
-    force: FloatArray = H * (a * used.contact_area / MM2 + b * used.displaced_volume / MM3)
+def _force(fit: ModelFit, hardness: FloatArray, used: Readings) -> FloatArray:
+    """F = H (a(ϑ) A + b(ϑ) V) of each reading, SI."""
+    angle = used.edge_angle[used.series]
+    # a slope that the angles do not tell is none
+    a, b = fit.a0 + np.nan_to_num(fit.a1) * angle, fit.b0 + np.nan_to_num(fit.b1) * angle
+    force: FloatArray = hardness * (a * used.contact_area + b * used.displaced_volume)
     return force
 
 

@@ -35,7 +35,7 @@ def varied_sites(material: Material) -> list[Json]:
 
 def shear_angles_deg(material: Material) -> FloatArray:
     """Edge angle of each used shear experiment (degrees)."""
-    return np.array([row["edge_angle_deg"] for row in material.shear], dtype=float)[material.shear_used]
+    return material.shear_angle / DEGREE
 
 
 def stress_angle(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
@@ -45,17 +45,17 @@ def stress_angle(material: Material, styles: Sequence[SiteStyle]) -> Drawing | L
         reason = "no site has five used shear experiments at three edge angles"
         return LeftOut(NAME, "Failure shear stress against edge angle", reason)
     chosen = np.isin(material.shear_site, [row["group"] for row in rows])
-    angle, stress, site = shear_angles_deg(material)[chosen], material.stress[chosen], material.shear_site[chosen]
+    theta, stress, site = material.shear_angle[chosen], material.stress[chosen], material.shear_site[chosen]
+    angle = theta / DEGREE
     figure = new_figure(height_mm=70.0)
     axes = figure.add_subplot()
-    ends = np.array([row["S_f_interval_N_per_mm2"] or (np.nan, np.nan) for row in material.shear], dtype=float)
-    error_bars(axes, angle, ends[material.shear_used][chosen], site, styles)
+    error_bars(axes, angle, material.stress_interval[chosen], site, styles)
     handles = scatter(axes, angle, stress, site, styles)
     for style, mask in masks(styles, site):
         for row in rows:
             if row["group"] in style.sites and _significant(row):
                 of_site = mask & (site == row["group"])
-                line = regression_line(row, angle[of_site] * DEGREE)
+                line = regression_line(row, theta[of_site])
                 draw_line(axes, line, colour=style.colour, x_unit=DEGREE)
     axes.set_xlim(0.0, 95.0)
     axes.set_xticks(range(0, 91, 15))

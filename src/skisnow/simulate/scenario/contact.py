@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias, get_args
 
 from ...forces.shear.displacement import SHEAR_DISPLACEMENT
-from ...inputs import Quantity, Search, Section, Word, require_declared
+from ...inputs import Quantity, Search, Section, Word, declared_text, require_declared
 from ...snow import SnowProperties
 
 Penetration: TypeAlias = Literal["hypoplastic", "elastic"]
@@ -19,7 +19,7 @@ def _penetration(unloading_ratio: float) -> Penetration:
     return "elastic" if unloading_ratio == ELASTIC else "hypoplastic"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Contact:
     """How snow and skis meet.
 
@@ -98,6 +98,8 @@ class Contact:
             search=Search(0.01, -0.05, 0.05),
         ),
     ] = 0.0
+
+    __repr__ = declared_text
 
     def __post_init__(self) -> None:
         require_declared(self)

@@ -10,6 +10,7 @@ from typing import Any, Final
 from ...errors import ParameterError
 from ...given import MOST_TOML_BYTES, GivenError, is_file, plain_text, toml_values
 from ...inputs import InputValue, Word, meant, nearest
+from ...shown import ShownFields
 from .built_in import scenario_names, scenario_text
 from .identify_section import require_known
 from .keys import SCENARIO_KEYS, SECTIONS
@@ -25,8 +26,8 @@ IDENTIFY: Final = "identify"
 _BARE: Final = {name.split(".")[1]: name for name in SCENARIO_KEYS}
 
 
-@dataclass(frozen=True, slots=True)
-class GivenScenario:
+@dataclass(frozen=True, slots=True, repr=False)
+class GivenScenario(ShownFields):
     """Values as given, in the units that the keys name.
 
     Attributes

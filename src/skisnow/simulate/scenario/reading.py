@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from ...errors import ParameterError, RangeWarning
+from ...shown import ShownFields
 from ..carve_answer import Sources
 from .building import built
 from .given import GivenScenario, given_scenario
@@ -21,8 +22,8 @@ from .values import scenario_values
 _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ScenarioFile:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ScenarioFile(ShownFields):
     """A scenario with the words that it was given in.
 
     Attributes

@@ -5,13 +5,15 @@ Each field declares what a file may say of it: its key with unit, range, origin 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Annotated
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any
 
 from ...constants import STANDARD_GRAVITY
 from ...errors import ParameterError
-from ...inputs import Quantity, Search, Word, require_declared
+from ...inputs import Quantity, Search, Word, declared_text, require_declared
+from ...shown import Facts, Shown, amount
 from ...ski import Ski, ski_names
+from ...units import DEGREE
 from ..sledge import RigidSledge
 from .checks import require_sound
 from .contact import Contact
@@ -31,7 +33,7 @@ def _ski_file(ski: Ski) -> str | None:
     return None if ski.name in ski_names() else ski.name
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Air:
     """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m)."""
 
@@ -70,11 +72,13 @@ class Air:
         ),
     ]
 
+    __repr__ = declared_text
+
     def __post_init__(self) -> None:
         require_declared(self)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Start:
     """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad)."""
 
@@ -114,11 +118,13 @@ class Start:
         ),
     ] = 0.0
 
+    __repr__ = declared_text
+
     def __post_init__(self) -> None:
         require_declared(self)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Stop:
     """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first."""
 
@@ -143,12 +149,14 @@ class Stop:
         ),
     ] = None
 
+    __repr__ = declared_text
+
     def __post_init__(self) -> None:
         require_declared(self)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Scenario:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Scenario(Shown):
     """What a run follows from.
 
     Attributes
@@ -229,3 +237,50 @@ class Scenario:
             raise ParameterError("the run has no end: give a duration or a length")
         require_declared(self)
         require_sound(self)
+
+    def with_(self, **changes: Any) -> Scenario:
+        """The same scenario with other parts or other values; this one stays as it is.
+
+        Parameters
+        ----------
+        **changes
+            Parts by the names of the attributes above, and ``snow``: a `SnowProperties`, whose unloading ratio is
+            taken over where it has one, or the name of a published snow. ``ski`` may be a name or a file, too. Numbers
+            by the keys of a scenario's file without their section, in the units that they name.
+
+        Raises
+        ------
+        ParameterError
+            A name is no part and no key (the nearest is named), a value is outside its range, or parts do not go
+            together.
+
+        Examples
+        --------
+        >>> from skisnow import scenario
+        >>> turn = scenario("carved-46m").with_(ski="slalom", snow="race-piste", edge_angle_deg=35, duration_s=2.0)
+        >>> turn.ski.name, round(turn.contact.snow.snow_hardness / 1e9, 2), turn.stop.duration
+        ('slalom', 0.21, 2.0)
+        """
+        from .changed import changed_scenario
+
+        return changed_scenario(self, changes)
+
+    def _facts(self) -> Facts:
+        contact, sledge, start, solver = self.contact, self.sledge, self.start, self.solver
+        slope = amount(self.slope.angle / DEGREE, "°") if isinstance(self.slope, Plane) else repr(self.slope)
+        end = [(self.stop.duration, "s"), (self.stop.length, "m")]
+        friction = f"μ = {amount(contact.friction)} + {amount(contact.friction_by_speed, 's/m')} v"
+        rows = (
+            ("slope", slope),
+            (
+                "snow",
+                replace(contact.snow, unloading_ratio=contact.unloading_ratio).in_words,
+            ),
+            ("friction", f"{friction}, drag area {amount(self.air.drag_area, 'm²')}"),
+            ("sledge", f"{amount(sledge.mass, 'kg')}, edge angle {amount(sledge.edge_angle / DEGREE, '°')}"),
+            ("ski", repr(self.ski).strip("<>")),
+            ("start", f"{amount(start.speed, 'm/s')}, heading {amount(start.heading / DEGREE, '°')}"),
+            ("end", " or ".join(amount(value, unit) for value, unit in end if value is not None)),
+            ("solver", f"{solver.method}, {'fixed steps of' if solver.fixed else 'from'} {solver.step * 1e3:.4g} ms"),
+        )
+        return Facts("of a sledge on two skis", rows)

@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import ParameterError
-from ...inputs import Quantity, Search, Word, require_declared
+from ...inputs import Quantity, Search, Word, declared_text, require_declared
+from ...shown import Facts, Shown, ends
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -28,7 +29,7 @@ STEEPEST_DEG: Final = 75.0
 """Slope angle (degrees) that a slope may have; steeper is a cliff (Choice)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Plane:
     """A plane with its inclination (rad)."""
 
@@ -44,12 +45,14 @@ class Plane:
         ),
     ]
 
+    __repr__ = declared_text
+
     def __post_init__(self) -> None:
         require_declared(self)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Profile:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Profile(Shown):
     """Heights over horizontal distance, joined by cubics that do not overshoot (PCHIP). The tables are read-only.
 
     Attributes
@@ -112,6 +115,9 @@ class Profile:
             _require_no_gap(self.x)
         object.__setattr__(self, "_curve", PchipInterpolator(self.x, self.height))
         _require_no_cliff(self.x, self.coefficients)
+
+    def _facts(self) -> Facts:
+        return Facts(f"of {len(self.x)} points: x {ends(self.x, 'm')}, height {ends(self.height, 'm')}; {self.source}")
 
     @property
     def ends(self) -> tuple[float, float]:

@@ -6,14 +6,14 @@ import warnings
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
-from ...inputs import Quantity, require_declared
+from ...inputs import Quantity, declared_text, require_declared
 from ..carve_keys import MOST_ELEMENTS
 
 FORMER_METHOD: Final = "ros2"
 Method: TypeAlias = Literal["default", "fast"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Solver:
     """How it is computed; lengths in m, times in s. What is None follows from ski and snow."""
 
@@ -100,6 +100,8 @@ class Solver:
             origin="choice: a tenth of a metre at 10 m/s",
         ),
     ] = 0.01
+
+    __repr__ = declared_text
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "method", present_method(self.method))

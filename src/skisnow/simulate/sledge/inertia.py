@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import ParameterError
-from ...inputs import Quantity, Search, require_declared
+from ...inputs import Quantity, Search, declared_text, require_declared
 from ...ski.beam.clamped import ClampedSki
 from ...ski.beam.elements import GAUSS_POINTS, GAUSS_WEIGHTS, deflection_shape, twist_shape
 from .frames import base_normal, cross_matrix
@@ -24,7 +24,7 @@ from .frames import base_normal, cross_matrix
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class RigidSledge:
     """The sledge without its skis, SI.
 
@@ -97,6 +97,8 @@ class RigidSledge:
             search=Search(30.0, -30.0, 30.0, about=True),
         ),
     ]
+
+    __repr__ = declared_text
 
     def __post_init__(self) -> None:
         require_declared(self)

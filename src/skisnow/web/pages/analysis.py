@@ -5,9 +5,11 @@ from __future__ import annotations
 import io
 import secrets
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from nicegui import app, background_tasks, ui
+from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 
 from ..analyses import Analyses
@@ -21,6 +23,7 @@ from ..unpacking import files_below, write_zip
 from ..worker import Worker
 
 if TYPE_CHECKING:
+    from ..analyses import Subject
     from ..settings import Lab
 
 HERE: Final = "/"
@@ -64,11 +67,19 @@ def add_page(lab: Lab) -> None:
         page = open_pages.get(key)
         if page is None or (folder := await _report(page, worker)) is None or page.subject is None:
             return _no_report(page)
-        packed = io.BytesIO()
-        both = [*files_below(page.subject.folder, under="campaign"), *files_below(folder, under="analysis")]
-        write_zip(both, packed)
         headers = {"content-disposition": 'attachment; filename="analysis.zip"'}
-        return Response(packed.getvalue(), media_type="application/zip", headers=headers)
+        content = await run_in_threadpool(_packed, page.subject, folder)
+        return Response(content, media_type="application/zip", headers=headers)
+
+
+def _packed(subject: Subject, report: Path) -> bytes:
+    """Campaign and report as one zip file."""
+    packed = io.BytesIO()
+    with TemporaryDirectory(prefix="skisnow-export-") as name:
+        folder = Path(name) / "campaign"
+        subject.write_campaign(folder)
+        write_zip([*files_below(folder, under="campaign"), *files_below(report, under="analysis")], packed)
+    return packed.getvalue()
 
 
 def _no_report(page: OpenAnalysis | None) -> Response:
@@ -85,7 +96,7 @@ async def _report(page: OpenAnalysis | None, worker: Worker) -> Path | None:
         return None
     out, numbers = page.subject.place / f"report-{page.analysed.key}", page.analysed.numbers
     if not (out / "results.json").is_file():  # written last
-        await worker.do(write_whole_report, numbers.campaign, numbers.results, str(out))
+        await worker.do(write_whole_report, numbers.analysis, str(out))
     return out
 
 

@@ -29,7 +29,6 @@ def add_page(lab: Lab) -> None:
         desk = await run.io_bound(KeptDesk, lab, required_id(id_))
         if desk is None:  # the lab is being closed
             return
-        ui.context.client.on_delete(desk.close)
         file = table or next(iter(desk.tables), "")
         if file not in desk.tables:
             raise ParameterError("this campaign has no such table")

@@ -56,7 +56,7 @@ def replay_of_run(run: Run, *, title: str = "A simulated run", track: ReplayTrac
     Parameters
     ----------
     run
-        What `skisnow.simulated_run` gave.
+        What `skisnow.simulate` gave.
     title
         What the reader sees.
     track

@@ -1,0 +1,133 @@
+"""The whole chain: a campaign, its snow with intervals, a turn with each contact, an ensemble over the uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..estimate import Analysis, analyse
+from ..estimate.site_snow import site_of_campaign
+from ..field import Campaign
+from ..report.figures.track_band import FEWEST
+from ..report.material import is_synthetic
+from ..report.turn_report import TurnChain
+from ..simulate import Run
+from ..simulate.batch import require_workers
+from ..simulate.scenario import Scenario, read_scenario
+from ..simulate.scenario.contact import ELASTIC
+from ..simulate.simulated_run import simulate
+from ..ski import Ski
+from ..snow.drawn import drawn_snows
+from ..snow.mean_snow import site_in_words
+from .ensemble import ensemble_of
+
+UNLOADING_RATIO: Final = 10.0
+"""k_u/H_V of snow that keeps its grooves (Choice: none is published)."""
+RUNS: Final = 32
+"""Of the ensemble (Choice: the band of 90 % then leaves three out)."""
+
+
+def chain(
+    campaign: Campaign | Analysis | str | Path,
+    site: str | None = None,
+    scenario: Scenario | str | Path = "carved-46m",
+    *,
+    ski: Ski | str | Path | None = None,
+    unloading_ratio: float = UNLOADING_RATIO,
+    runs: int = RUNS,
+    seed: int = 1,
+    workers: int | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> TurnChain:
+    """From a campaign to a turn: its snow, the turn on it with two contacts, and a band over the snow's uncertainty.
+
+    Parameters
+    ----------
+    campaign
+        A campaign, its folder, or its analysis.
+    site
+        Whose snow it is; "C" is also the campaign's "site C". Left out: that of all sites together.
+    scenario
+        The turn: its snow is replaced by the one that was found. A built-in name, a file, or a scenario.
+    ski
+        In place of the scenario's: a ski, a name of the catalogue, or a file.
+    unloading_ratio
+        k_u/H_V > 1 of the contact that keeps its groove; the other contact springs back.
+    runs
+        Of the ensemble, 3 or more: H_V and S_f are drawn from their intervals.
+    seed
+        Of those draws.
+    workers
+        Processes for the ensemble; None: one for each core.
+    progress
+        Called with a line of text now and then.
+
+    Returns
+    -------
+    TurnChain
+        With `TurnChain.report` for the page that shows it all.
+
+    Raises
+    ------
+    FieldDataError
+        The campaign holds errors.
+    ParameterError
+        The site has no used penetration experiment, or too few of either kind for intervals; a number is outside its
+        range; the scenario or the ski cannot be read.
+    SolverError
+        The sledge finds no equilibrium to start from on that snow.
+
+    Notes
+    -----
+    A script that calls this with several workers needs the usual ``if __name__ == "__main__":``.
+    """
+    _require(unloading_ratio, runs)
+    require_workers(workers)
+    say = progress or _silent
+    found = campaign if isinstance(campaign, Analysis) else analyse(campaign, progress=progress)
+    snow = found.snow(site, unloading_ratio=unloading_ratio)
+    snows = drawn_snows(snow, runs, np.random.default_rng(seed))
+    turn = (scenario if isinstance(scenario, Scenario) else read_scenario(scenario)).with_(snow=snow)
+    turn = turn if ski is None else turn.with_(ski=ski)
+    contacts = {
+        f"hypoplastic, k_u / H_V = {unloading_ratio:g}": turn,
+        "elastic": turn.with_(unloading_ratio=ELASTIC),
+    }
+    simulated = {name: _run(name, each, say) for name, each in contacts.items()}
+    ensemble, moved = ensemble_of(next(iter(simulated.values())), snows, workers=workers, progress=say)
+    return TurnChain(
+        campaign=found.campaign.name,
+        site=site_in_words(site_of_campaign(found.campaign, site)),
+        synthetic=is_synthetic(found.campaign.name),
+        snow=snow,
+        runs=simulated,
+        ensemble=ensemble,
+        seed=seed,
+        ensemble_error=moved,
+        analysis=found,
+    )
+
+
+def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
+    say(f"the turn with the contact “{contact}”")
+    run = simulate(turn)
+    if run.outcome == "interrupted":
+        raise KeyboardInterrupt
+    return run
+
+
+def _require(unloading_ratio: float, runs: int) -> None:
+    if not unloading_ratio > ELASTIC:
+        raise ParameterError(
+            f"unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
+        )
+    if runs < FEWEST:
+        raise ParameterError(f"runs is {runs}; a band needs {FEWEST} or more")
+
+
+def _silent(_text: str) -> None:
+    return

@@ -1,0 +1,76 @@
+"""``skisnow turn``: from a campaign to a turn on the snow of one of its sites."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from .announced import announced
+from .out_folder import ready
+from .progress import Progress
+from .words import MOST_WORKERS, number, seed_number, whole_number
+
+MOST_RUNS = 10_000
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "turn",
+        help="from a campaign to a turn: analysis, the snow of a site, a simulated turn, a band over the uncertainty",
+        description="Analyse a campaign and simulate a turn on the snow of a site, with a contact that keeps its "
+        "groove and one that springs back, and over the uncertainty of the snow.",
+    )
+    parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of the campaign")
+    parser.add_argument("--site", metavar="SITE", help='whose snow it is, "C" or "site C"; left out: all sites')
+    parser.add_argument(
+        "--scenario",
+        default="carved-46m",
+        metavar="NAME|FILE",
+        help="the turn on that snow; left out: carved-46m",
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        dest="changes",
+        metavar="section.key=value",
+        help="another value for one key of the scenario, several times for several; the section may be left out",
+    )
+    parser.add_argument(
+        "--unloading-ratio",
+        type=number("", lowest=1.0, highest=1000.0, above=True),
+        metavar="RATIO",
+        help="k_u/H_V of the contact that keeps its groove; left out: 10",
+    )
+    parser.add_argument(
+        "--runs", type=whole_number(3, MOST_RUNS), metavar="N", help="of the ensemble, 3 or more; left out: 32"
+    )
+    parser.add_argument("--seed", type=seed_number, help="seed of the ensemble's snows, a whole number from 0 on")
+    parser.add_argument(
+        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write report.html and figures of the whole chain here")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Compute the chain, print what the contacts do otherwise, write the report."""
+    with announced("loading"):
+        from ..chain.chaining import chain
+        from ..simulate.scenario import scenario_file
+        from ..simulate.scenario.given import change_of
+
+        asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
+    if options.out is not None:
+        ready(options.out)
+    names = ("unloading_ratio", "runs", "seed", "workers")
+    chosen = {name: getattr(options, name) for name in names if getattr(options, name) is not None}
+    with Progress() as progress:
+        found = chain(options.campaign, options.site, asked.scenario, progress=progress, **chosen)
+        page = None if options.out is None else found.report(options.out)
+    print(f"snow: {found.snow.in_words}", *found.sentences, sep="\n")
+    if page is not None:
+        print(f"The whole chain: {page}", file=sys.stderr)
+    return 0

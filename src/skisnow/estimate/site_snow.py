@@ -1,0 +1,67 @@
+"""The snow of one site of an analysed campaign, or of all of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from ..snow import SnowProperties
+from ..snow.mean_snow import known_sites, mean_snow, site_in_words, site_named
+from ..units import N_PER_MM2, N_PER_MM3
+
+if TYPE_CHECKING:
+    from ..field.records import Campaign
+    from .analysis import Analysis
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+TextArray = npt.NDArray[np.object_]
+
+
+def site_snow(analysis: Analysis, site: str | None, unloading_ratio: float | None) -> SnowProperties:
+    """The means over the used experiments of a site, as `skisnow.snow_from_results` reads them from results.json."""
+    pressed, sheared = _pressed(analysis), _sheared(analysis)
+    site = site_of_campaign(analysis.campaign, site)
+    hardness, stress = (_of(site, *known) for known in (pressed, sheared))
+    name = analysis.campaign.name
+    if not hardness.size:
+        sites = sorted({str(each) for each in pressed[1]})
+        raise ParameterError(f"{name} has no used penetration experiment{known_sites(site, sites)}")
+    source = f"{name}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
+    return mean_snow(
+        hardness / N_PER_MM3, stress / N_PER_MM2, source=source, where=name, unloading_ratio=unloading_ratio
+    )
+
+
+def _pressed(analysis: Analysis) -> tuple[FloatArray, TextArray]:
+    """H_V (N/m³) and site of each used penetration experiment that has one."""
+    found, tests = analysis.penetration, analysis.campaign.penetration
+    if found is None or tests is None:
+        return np.zeros(0), np.zeros(0, dtype=object)
+    return _used(found.hardness["H_V"].value, found.screened.used, tests.site)
+
+
+def _sheared(analysis: Analysis) -> tuple[FloatArray, TextArray]:
+    """S_f (N/m²) and site of each used shear experiment that has one."""
+    found, tests = analysis.shear, analysis.campaign.shear
+    if found is None or tests is None:
+        return np.zeros(0), np.zeros(0, dtype=object)
+    return _used(found.stress.value, found.screened.used, tests.site)
+
+
+def _used(value: FloatArray, used: BoolArray, site: tuple[str, ...]) -> tuple[FloatArray, TextArray]:
+    there = used & np.isfinite(value)
+    return value[there], np.array(site, dtype=object)[there]
+
+
+def _of(site: str | None, value: FloatArray, sites: TextArray) -> FloatArray:
+    return value if site is None else value[sites == site]
+
+
+def site_of_campaign(campaign: Campaign, site: str | None) -> str | None:
+    """The campaign's own name of a site, see `skisnow.snow.mean_snow.site_named`."""
+    tables = (tests for tests in (campaign.penetration, campaign.shear) if tests is not None)
+    return site_named(site, (name for tests in tables for name in tests.site))

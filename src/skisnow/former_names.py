@@ -1,0 +1,44 @@
+"""Functions under the names that they had before; such a name stays for one release."""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Given = ParamSpec("Given")
+Answer = TypeVar("Answer")
+
+
+def warn_of_former_name(former: str, name: str, *, stacklevel: int = 2) -> None:
+    """Say that something has another name now; `stacklevel` counts from the caller as for `warnings.warn`."""
+    warnings.warn(
+        f"{former} is called {name} now; the former name goes with the next release",
+        DeprecationWarning,
+        stacklevel=stacklevel + 1,
+    )
+
+
+def formerly(former: str, function: Callable[Given, Answer]) -> Callable[Given, Answer]:
+    """The function under its former name, which warns when it is called.
+
+    >>> import warnings
+    >>> twice = formerly("doubled", lambda number: 2 * number)
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     twice(4)
+    8
+    >>> print(caught[0].message)
+    doubled is called <lambda> now; the former name goes with the next release
+    """
+
+    @functools.wraps(function)
+    def called(*args: Given.args, **named: Given.kwargs) -> Answer:
+        warn_of_former_name(former, function.__name__)
+        return function(*args, **named)
+
+    called.__name__ = called.__qualname__ = former
+    return called

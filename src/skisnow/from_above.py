@@ -1,0 +1,22 @@
+"""The one way in which an object of a lower room reaches what an upper room does with it, such as `run.plot()`.
+
+Nothing is imported before it is called, so that a lower room works without the upper one. A test lists all such places.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+
+def from_above(room: str, name: str) -> Any:
+    """A function of an upper room, by name.
+
+    Parameters
+    ----------
+    room
+        The module inside the package, such as "report.run_folder".
+    name
+        The function.
+    """
+    return getattr(import_module(f"{__package__}.{room}"), name)

@@ -1,0 +1,75 @@
+"""The folder of a simulated run: summary.json, track.csv, run.nc, figures and report.html, all of one run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from ..files import write_file
+from ..simulate.run_summary import summary_dict
+from ..simulate.scenario.suspicions import suspicions
+from ..simulate.track_table import write_track
+from ..staging import staged, tidied
+from .pictures import picture_files
+from .run_report import FIGURES, write_run_report
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from ..simulate.run import Run
+
+SUMMARY, REPLAY = "summary.json", "replay.html"
+_STALE: Final = (*picture_files(FIGURES), REPLAY)
+
+
+def write_run(
+    run: Run,
+    folder: str | Path,
+    *,
+    summary: Mapping[str, Any] | None = None,
+    beside: Callable[[Path], None] | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
+    """Write all files beside the folder's own and move them into place: never those of two runs together.
+
+    Parameters
+    ----------
+    run
+        What came out.
+    folder
+        Made where it is missing. Other files in it stay.
+    summary
+        The contents of summary.json; left out: made from the run.
+    beside
+        Is given the folder in which all is made, for what else belongs to the run.
+    progress
+        Called with a line of text now and then.
+
+    Returns
+    -------
+    Path
+        Of report.html.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    """
+    folder, say = Path(folder), progress or _silent
+    for sentence in tidied(folder):
+        say(sentence)
+    told = summary_dict(run, warnings=suspicions(run.scenario)) if summary is None else summary
+    with staged(folder, last=SUMMARY) as stage:
+        stage.stale += _STALE
+        text = json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1)
+        write_file(stage.path / SUMMARY, f"{text}\n")
+        write_track(run, stage.path / "track.csv")
+        page = write_run_report(run, told, stage.path, progress=say)
+        if beside is not None:
+            beside(stage.path)
+    return folder / page.name
+
+
+def _silent(_text: str) -> None:
+    return

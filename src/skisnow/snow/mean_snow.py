@@ -1,0 +1,111 @@
+"""One snow out of many experiments: means with their intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from ..constants import CONFIDENCE
+from ..errors import ParameterError
+from ..units import N_PER_MM2, N_PER_MM3
+from .properties import Interval, SnowProperties
+
+FloatArray = npt.NDArray[np.float64]
+_LARGEST = 1e9
+
+
+def mean_snow(
+    hardness_N_per_mm3: FloatArray,
+    stress_N_per_mm2: FloatArray,
+    *,
+    source: str,
+    where: str,
+    unloading_ratio: float | None = None,
+) -> SnowProperties:
+    """The snow of experiments: the geometric mean of H_V, one value or more, and the mean of S_f, which may be missing.
+
+    With two experiments or more each mean has its 95 % interval by Student's t: that of H_V on logarithms, that of S_f
+    on the values themselves.
+
+    Parameters
+    ----------
+    hardness_N_per_mm3, stress_N_per_mm2
+        Of the used experiments, as results.json has them: both ways to a snow give the same bits.
+    source
+        Where the numbers come from, for `SnowProperties.source`.
+    where
+        The same for messages.
+    unloading_ratio
+        k_u/H_V, where it is known.
+
+    Raises
+    ------
+    ParameterError
+        A value cannot be that of a snow.
+    """
+    hardness, stress = hardness_N_per_mm3, stress_N_per_mm2
+    if not (np.all(hardness > 0) and np.all(stress >= 0) and (stress.size == 0 or np.any(stress > 0))):
+        raise ParameterError(f"{where}: H_V of a used experiment must be above 0, and S_f of one at least")
+    if not (np.all(hardness >= 1.0 / _LARGEST) and np.all(hardness <= _LARGEST) and np.all(stress <= _LARGEST)):
+        raise ParameterError(f"{where}: H_V and S_f of a used experiment must lie from 1e-9 to 1e9 N/mm³ and N/mm²")
+    H_V, H_V_interval = _mean(np.log(hardness))
+    S_f, S_f_interval = _mean(stress) if stress.size else (None, None)
+    return SnowProperties(
+        snow_hardness=math.exp(H_V) * N_PER_MM3,
+        failure_shear_stress=None if S_f is None else S_f * N_PER_MM2,
+        source=source,
+        snow_hardness_interval=_scaled(
+            H_V_interval and (math.exp(H_V_interval[0]), math.exp(H_V_interval[1])), N_PER_MM3
+        ),
+        failure_shear_stress_interval=_scaled(S_f_interval, N_PER_MM2),
+        unloading_ratio=unloading_ratio,
+    )
+
+
+def site_named(site: str | None, sites: Iterable[str]) -> str | None:
+    """A campaign's own name of a site: "C" is its "site C" where it has no "C".
+
+    >>> site_named("C", ["site A", "site C"]), site_named("site C", ["site C"]), site_named("Z", ["site C"])
+    ('site C', 'site C', 'Z')
+    """
+    known = set(sites)
+    if site is None or site in known:
+        return site
+    alike = [each for each in known if each.casefold() == f"site {site}".casefold()]
+    return alike[0] if len(alike) == 1 else site
+
+
+def site_in_words(site: str | None) -> str:
+    """A site that is called "site A" is not called "site site A".
+
+    >>> site_in_words("C"), site_in_words("site C"), site_in_words(None)
+    ('site C', 'site C', 'all sites')
+    """
+    if site is None:
+        return "all sites"
+    return site if site.casefold().startswith("site") else f"site {site}"
+
+
+def known_sites(site: str | None, sites: Sequence[str]) -> str:
+    """The end of a message that a site has no experiment: which sites have."""
+    asked = "" if site is None else f" of site {site!r}"
+    return f"{asked}; " + (f"it has some of {', '.join(map(repr, sites))}" if sites else "it has none at any site")
+
+
+def _scaled(interval: Interval | None, unit: float) -> Interval | None:
+    return interval and (interval[0] * unit, interval[1] * unit)
+
+
+def _mean(values: FloatArray) -> tuple[float, Interval | None]:
+    """The mean and its interval by Student's t; no interval for a single value."""
+    mean = math.fsum(values.tolist()) / values.size
+    if values.size < 2:
+        return mean, None
+    from scipy.special import stdtrit  # slow to load, and asked for with a campaign at hand only
+
+    quantile = float(stdtrit(values.size - 1, 0.5 + CONFIDENCE / 2.0))
+    half = quantile * float(np.std(values, ddof=1)) / math.sqrt(values.size)
+    return mean, (mean - half, mean + half)

@@ -1,0 +1,136 @@
+"""The chain from a campaign to a turn, in Python and by its command; runs are replaced by ones in closed form."""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import skisnow
+from skisnow import Analysis, Run, Scenario
+from skisnow.chain import chaining, ensemble
+from skisnow.cli import main
+from skisnow.errors import ParameterError
+from skisnow.field.reference import reference_campaign
+from skisnow.snow.drawn import drawn_snows
+
+from ..report.runs import circle_run
+
+Printed = pytest.CaptureFixture[str]
+TURN = {"slope.angle_deg": 5.0, "start.speed_m_per_s": 4.5, "sledge.edge_angle_deg": 40.0}
+
+
+@pytest.fixture(scope="module")
+def analysis() -> Analysis:
+    return skisnow.analyse(reference_campaign(1).campaign(), n_resamples=100)
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[Scenario]:
+    """The scenarios that were simulated; the softer the snow, the tighter the circle that comes out."""
+    scenarios: list[Scenario] = []
+
+    def circle(scenario: Scenario) -> Run:
+        scenarios.append(scenario)
+        contact = scenario.contact
+        radius = 10.0 * (contact.snow.snow_hardness / 4.42e8) ** 0.1 + (contact.unloading_ratio == 1.0)
+        return replace(circle_run(radius=radius, count=61, unloading_ratio=contact.unloading_ratio), scenario=scenario)
+
+    monkeypatch.setattr(chaining, "simulate", circle)
+    monkeypatch.setattr(ensemble, "simulate", circle)
+    return scenarios
+
+
+def test_the_chain_asks_for_the_turn_with_each_contact_and_on_each_snow(
+    analysis: Analysis, asked: list[Scenario]
+) -> None:
+    said: list[str] = []
+    turn = skisnow.scenario("carved-46m", changes=TURN)
+    found = skisnow.chain(analysis, "C", turn, ski="carver", runs=4, seed=3, workers=1, progress=said.append)
+    snow = analysis.snow("site C", unloading_ratio=10.0)
+    snows = drawn_snows(snow, 4, np.random.default_rng(3))
+    assert found.snow == snow
+    assert [each.contact.snow for each in asked] == [snow, snow, snow, *snows]
+    assert [each.contact.unloading_ratio for each in asked] == [10.0, 1.0, *[10.0] * 5]
+    assert [each.solver.fixed for each in asked] == [False] * 2 + [True] * 5
+    assert {each.solver.step for each in asked[2:]} == {1e-3}
+    assert {each.ski.name for each in asked} == {skisnow.read_ski("carver").name}
+    assert {each.sledge.edge_angle for each in asked} == {turn.sledge.edge_angle}
+    assert (found.site, found.synthetic, found.seed, found.ensemble_error) == ("site C", True, 3, 0.0)
+    assert list(found.runs) == ["hypoplastic, k_u / H_V = 10", "elastic"]
+    assert [each.snow for each in found.ensemble] == snows
+    assert found.analysis is analysis
+    assert said[-1] == "run 5 of 5"
+    assert "is wider than that with" in found.sentences[0]
+    assert "<" not in "".join(found.sentences)
+
+
+@pytest.mark.usefixtures("asked", "undrawn")
+def test_the_report_is_that_of_the_chain(analysis: Analysis, tmp_path: Path) -> None:
+    found = skisnow.chain(analysis, "C", runs=3, workers=1)
+    page = found.report(tmp_path / "turn")
+    text = page.read_text(encoding="utf-8")
+    assert "A turn on the snow of site C" in text
+    assert "Synthetic data." in text
+    assert {path.name for path in (tmp_path / "turn" / "figures").glob("*.png")} == {
+        "contacts.png", "along_ski.png", "grip.png", "band.png",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("named", "told"),
+    [
+        ({"site": "A"}, "has no interval of S_f"),
+        ({"site": "Z"}, "no used penetration experiment of site 'Z'"),
+        ({"unloading_ratio": 1.0}, "k_u/H_V must be above 1 here"),
+        ({"runs": 2}, "a band needs 3 or more"),
+        ({"workers": 0}, "workers is 0"),
+        ({"scenario": "carved-46"}, "carved-46m"),
+    ],
+)
+@pytest.mark.usefixtures("asked")
+def test_what_cannot_be_is_refused_in_words(analysis: Analysis, named: dict[str, Any], told: str) -> None:
+    with pytest.raises(ParameterError, match=told):
+        skisnow.chain(analysis, **{"site": "C", "workers": 1, **named})
+
+
+def test_an_interrupted_turn_ends_the_chain(analysis: Analysis, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(chaining, "simulate", lambda _: replace(circle_run(), outcome="interrupted"))
+    with pytest.raises(KeyboardInterrupt):
+        skisnow.chain(analysis, "C", workers=1)
+
+
+@pytest.mark.usefixtures("asked", "undrawn")
+def test_the_command_does_what_the_call_does(analysis: Analysis, tmp_path: Path, capsys: Printed) -> None:
+    skisnow.write_reference(tmp_path / "campaign", seed=1)
+    sets = [word for key, value in TURN.items() for word in ("--set", f"{key}={value}")]
+    words = ["turn", str(tmp_path / "campaign"), "--site", "C", "--runs", "3", "--workers", "1", *sets]
+    assert main([*words, "--out", str(tmp_path / "turn")]) == 0
+    printed = capsys.readouterr()
+    turn = skisnow.scenario("carved-46m", changes=TURN)
+    found = skisnow.chain(analysis, "C", turn, runs=3, workers=1)
+    assert printed.out.splitlines() == [f"snow: {found.snow.in_words}", *found.sentences]
+    assert printed.err.splitlines()[-1] == f"The whole chain: {tmp_path / 'turn' / 'report.html'}"
+    assert (tmp_path / "turn" / "report.html").is_file()
+
+
+def test_the_command_refuses_in_words(tmp_path: Path, capsys: Printed) -> None:
+    assert main(["turn", str(tmp_path / "nowhere"), "--site", "C"]) == 1
+    assert "a folder that exists" in capsys.readouterr().err
+    for words in (["--runs", "2"], ["--unloading-ratio", "1"], ["--set", "mas=3"]):
+        try:
+            status = main(["turn", str(tmp_path), *words])
+        except SystemExit as ended:
+            status = int(str(ended.code))
+        assert status in (1, 2)
+        assert words[0].lstrip("-").split("-")[0] in capsys.readouterr().err or words[0] == "--set"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_defaults_of_the_command_are_those_of_the_call() -> None:
+    defaults = {name: each.default for name, each in inspect.signature(skisnow.chain).parameters.items()}
+    assert (defaults["runs"], defaults["unloading_ratio"], defaults["scenario"]) == (32, 10.0, "carved-46m")

@@ -1,0 +1,156 @@
+"""What the lab analyses it has in memory: the same numbers as over the folder that is exported, and no folder made."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from skisnow.errors import ParameterError, StoreError
+from skisnow.estimate import analyse
+from skisnow.field import read_campaign
+from skisnow.field.store import Journals, NewEntry, Store, export_corrected
+from skisnow.report.numerals import significant
+from skisnow.snow import snow_from_results
+from skisnow.web.analyses import Subject
+from skisnow.web.analysing import Choice, Numbers, numbers_of
+from skisnow.web.desk import Desk
+from skisnow.web.kept_desk import KeptDesk
+from skisnow.web.settings import Lab
+from skisnow.web.snow_of_campaign import snow_of_campaign
+from skisnow.web.transfer import entry_files, kept_files, write_entry
+
+TOML = """name = "Desk"
+[[tool]]
+name = "ski piece"
+shape = "ski"
+length_mm = 200
+width_mm = 62
+"""
+ROWS = [("20", "1.5"), ("40", "2.1"), ("60", "2.6")]
+PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n" + "".join(
+    f"{name},A,ski piece,30,{load},{depth}\n" for name in ("1", "2") for load, depth in ROWS
+)
+
+
+@pytest.fixture
+def lab(tmp_path: Path) -> Lab:
+    return Lab(Store.open(tmp_path / "store.sqlite3"), tmp_path / "runs")
+
+
+@pytest.fixture
+def no_folder(monkeypatch: pytest.MonkeyPatch, lab: Lab) -> None:
+    """No temporary folder is made, from here on."""
+
+    def refused(*_: object, **__: object) -> None:
+        raise AssertionError("a temporary folder was made")
+
+    assert lab.store.list() == ()
+    monkeypatch.setattr(tempfile, "mkdtemp", refused)
+
+
+def kept_id(lab: Lab, folder: Path) -> str:
+    folder.mkdir()
+    (folder / "campaign.toml").write_text(TOML, encoding="utf-8")
+    (folder / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
+    (folder / "photo.jpg").write_bytes(b"\xff\xd8")
+    return lab.store.add(folder).id
+
+
+def entered(lab: Lab) -> str:
+    """The id of a campaign with one series that is being entered."""
+    journals = Journals(lab.store)
+    id_ = journals.begin(TOML)
+    for load, depth in ROWS:
+        cells = {"site": "A", "tool": "ski piece", "edge_angle_deg": "30", "load_N": load, "depth_mm": depth}
+        entry = NewEntry(action="add", file="penetration.csv", test="1", cells={"experiment": "1", **cells}, who="Ada")
+        journals.append(id_, entry, seen=journals.entries(id_)[-1].sequence)
+    return id_
+
+
+def correct(lab: Lab, id_: str) -> None:
+    entry = NewEntry(
+        action="correct", file="penetration.csv", test="2", cells={"7/depth_mm": "3.2"}, who="Ada", why="slip", about=0
+    )
+    desk = KeptDesk(lab, id_)
+    desk.write_down(entry, seen=0)
+
+
+def experiments(results: dict[str, Any]) -> Any:
+    return results["penetration"]["experiments"]
+
+
+@pytest.mark.usefixtures("no_folder")
+def test_tests_at_the_desk_say_at_once_what_the_analysis_says(lab: Lab) -> None:
+    id_ = entered(lab)
+    (row,) = Desk(lab, id_).at_once("A").penetration.values()
+    found = numbers_of(entry_files(lab, id_), Choice())
+    assert isinstance(found, Numbers)
+    assert experiments(found.results) == [row]
+    assert row["H_V_N_per_mm3"] is not None
+
+
+def test_a_campaign_being_entered_is_analysed_as_its_export(lab: Lab, tmp_path: Path) -> None:
+    id_ = entered(lab)
+    write_entry(lab, id_, tmp_path / "export")
+    found = numbers_of(entry_files(lab, id_), Choice())
+    assert isinstance(found, Numbers)
+    assert experiments(found.results) == experiments(analyse(read_campaign(tmp_path / "export")).results)
+
+
+def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: Lab, tmp_path: Path) -> None:
+    id_ = kept_id(lab, tmp_path / "kept")
+    before = kept_files(lab, id_)
+    correct(lab, id_)
+    export_corrected(lab.store, id_, tmp_path / "export")
+    found = numbers_of(kept_files(lab, id_), Choice())
+    assert isinstance(found, Numbers)
+    results = analyse(read_campaign(tmp_path / "export")).results
+    assert experiments(found.results) == experiments(results)
+    assert found.results["provenance"]["files"] == results["provenance"]["files"]
+    assert found.analysis.campaign.unread_files == ("photo.jpg",)
+    assert KeptDesk(lab, id_).at_once("A").penetration["2"] == experiments(results)[1]
+    unchanged = numbers_of(before, Choice())
+    assert isinstance(unchanged, Numbers)
+    assert experiments(unchanged.results)[1] != experiments(results)[1]
+
+
+@pytest.mark.usefixtures("no_folder")
+def test_the_snow_of_a_campaign_is_that_of_its_results(lab: Lab, tmp_path: Path) -> None:
+    """Two series by hand, the wedge at 30°: H_V = F/V with V = L e²/(2 tan ϑ), the geometric mean of equal ones."""
+    id_ = kept_id(lab, tmp_path / "kept")
+    changes = {"snow.site": "A", "snow.S_f_N_per_mm2": "0.3"}  # the campaign has no shear test
+    results, words = snow_of_campaign(lab, f"kept-{id_}", "carved-46m", changes)
+    by_hand = 60.0 / (200.0 * 2.6**2 / (2.0 * math.tan(math.radians(30.0))))
+    assert words.startswith(f"H_V = {significant(by_hand)} N/mm³, [")
+    assert words.endswith("; S_f = 0.300 N/mm², interval not known")
+    (tmp_path / "results.json").write_bytes(results)
+    assert snow_from_results(tmp_path / "results.json", site="A").snow_hardness == pytest.approx(
+        by_hand * 1e9, rel=1e-9
+    )
+    with pytest.raises(ParameterError, match="of site 'Z'; it has some of 'A'"):
+        snow_of_campaign(lab, f"kept-{id_}", "carved-46m", {"snow.site": "Z"})
+
+
+def test_what_is_downloaded_is_the_campaign_that_was_analysed(lab: Lab, tmp_path: Path) -> None:
+    """A correction that comes afterwards is not in it; the files that no analysis reads are."""
+    id_ = kept_id(lab, tmp_path / "kept")
+    subject = Subject(lab, "kept", id_)
+    correct(lab, id_)
+    subject.write_campaign(tmp_path / "first")
+    assert {path.name for path in (tmp_path / "first").iterdir()} == {"campaign.toml", "penetration.csv", "photo.jpg"}
+    Subject(lab, "kept", id_).write_campaign(tmp_path / "second")
+    assert (tmp_path / "second" / "corrections.csv").read_bytes() == (
+        export_corrected(lab.store, id_, tmp_path / "export") and (tmp_path / "export" / "corrections.csv").read_bytes()
+    )
+
+
+def test_a_damaged_file_is_not_analysed(lab: Lab, tmp_path: Path) -> None:
+    id_ = kept_id(lab, tmp_path / "kept")
+    with lab.store.engine.begin() as connection:
+        connection.exec_driver_sql("UPDATE chunk SET data = CAST(replace(CAST(data AS TEXT), '2.6', '9.9') AS BLOB)")
+    with pytest.raises(StoreError, match=r"penetration\.csv is damaged in the store"):
+        kept_files(lab, id_)
