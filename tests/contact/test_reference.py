@@ -38,8 +38,8 @@ def differences(seed: int, *, steps: int) -> list[float]:
     """Of wrench and beam loads over the largest force, along a short random walk."""
     rng = np.random.default_rng(seed)
     hardness, strength = (float(10.0 ** rng.uniform(*ends)) for ends in ((7.3, 11.0), (4.5, 6.5)))
-    ratio, at_once = float(rng.uniform(1.0, 50.0)), {"part_along": 1.0, "part_across": 1.0}
-    snow = SnowField(hardness, strength, ratio, FILM, knot_area=0.0, **at_once)
+    ratio = float(rng.uniform(1.0, 50.0))
+    snow = SnowField(hardness, strength, ratio, FILM, knot_area=0.0, part_along=1.0, part_across=1.0)
     runner = Runner.of(SKI, nodes=NODES)
     contact = SnowContact(snow, [runner], spacing=SPACING)
     pose = a_pose(rng)

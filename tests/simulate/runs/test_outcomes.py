@@ -14,7 +14,6 @@ import pytest
 
 from skisnow import Run
 from skisnow.dynamics import Dynamics, Ended, StepControl
-from skisnow.errors import ParameterError
 from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import set_up
 from skisnow.simulate.scenario import Plane, Profile, Scenario, read_scenario
@@ -192,7 +191,7 @@ def test_open_energy_is_no_finish(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_fast_is_a_looser_tolerance() -> None:
     """A tenth of the tolerance makes up for it, but for the parts in which the history is marched."""
     ends = [
-        simulated_run(
+        simulate(
             read_scenario(
                 "carved-46m", changes={"run.duration_s": 0.5, "solver.method": method, "solver.tolerance_mm": mm}
             )

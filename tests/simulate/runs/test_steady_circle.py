@@ -102,7 +102,7 @@ def test_holds_below_the_limit(share: float) -> None:
 
 
 def test_the_shear_displacement_is_a_parameter() -> None:
-    """At 80 % of the grip the edge drifts by a share of u_y: the circle is wide by that, and exact within 1 % at 0.02 mm."""
+    """At 80 % of the grip the edge drifts by a share of u_y; the circle is exact within 1 % at 0.02 mm."""
     wide = [circle(strength=sufficient_strength() / 0.8, displacement=u) for u in (0.125e-3, 0.02e-3)]
     more, less = (radius(run) / RADIUS - 1.0 for run in wide)
     assert 0.0 < less < 0.01
