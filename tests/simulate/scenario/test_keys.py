@@ -13,6 +13,7 @@ import skisnow
 from skisnow.errors import ParameterError
 from skisnow.simulate.scenario import Solver, read_scenario, scenario_names, scenario_text
 from skisnow.simulate.scenario.keys import SCENARIO_KEYS
+from skisnow.simulate.scenario.schema import scenario_schema
 
 SCHEMAS = files(skisnow.simulate) / "schemas"
 SCHEMA = json.loads((SCHEMAS / "scenario.schema.json").read_text(encoding="utf-8"))
@@ -75,6 +76,10 @@ def test_factors_lead_to_si() -> None:
     assert SCENARIO_KEYS["sledge.edge_angle_deg"].in_si(30.0) == pytest.approx(math.pi / 6.0, rel=1e-15)
     assert SCENARIO_KEYS["solver.cell_mm"].in_si(4.0) == 0.004
     assert SCENARIO_KEYS["run.output_ms"].in_si(10.0) == 0.01
+
+
+def test_the_written_schema_is_that_of_the_dataclasses() -> None:
+    assert scenario_schema() == SCHEMA
 
 
 @pytest.mark.parametrize("name", scenario_names())
