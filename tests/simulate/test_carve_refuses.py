@@ -1,4 +1,4 @@
-"""What no carve can be asked is refused before anything is computed."""
+"""What no carve can be asked is refused before anything is computed; what snow and ski ask of a run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ import pytest
 
 from skisnow import carve, published_snow, read_ski
 from skisnow.errors import ParameterError
-from skisnow.simulate.run_setup import Setup
+from skisnow.simulate import run_setup
+from skisnow.simulate.run_setup import Setup, laid_out
+from skisnow.simulate.scenario import read_scenario
 
 
 @pytest.mark.parametrize(
@@ -40,3 +42,13 @@ def test_snow_that_does_not_bear_a_ski_a_decimetre_deep(load: float, sinks: bool
     snow = SimpleNamespace(contact=SimpleNamespace(snow=SimpleNamespace(snow_hardness=1e5)), ski=ski)
     stub = cast("Any", SimpleNamespace(scenario=snow, numbers={"load_N": load}))
     assert cast("Any", Setup.sinks).fget(stub) is sinks
+
+
+def test_a_ski_that_bends_in_short_waves_has_five_elements_to_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1.8 m of giant-slalom ski and waves of 0.1 m: 90 elements, and a line of snow every centimetre."""
+    scenario, contact = read_scenario("carved-46m"), run_setup._contact
+    monkeypatch.setattr(run_setup, "_contact", lambda each: (*contact(each)[:2], 0.1))
+    found = laid_out(scenario).numbers
+    assert float(scenario.ski.station[0] - scenario.ski.station[-1]) == pytest.approx(1.8)
+    assert found["elements"] == 90.0
+    assert found["line_spacing_m"] == pytest.approx(0.01)
