@@ -85,7 +85,7 @@ def test_summary_says_in_words_what_came_out(capsys: Printed) -> None:
     assert "warning" not in err  # on a busy machine a line says that it is loading
 
 
-@pytest.mark.usefixtures("replaced")
+@pytest.mark.usefixtures("replaced", "svg_alone")
 def test_folder_holds_summary_track_file_and_report(tmp_path: Path, capsys: Printed) -> None:
     folder = tmp_path / "new" / "run"
     assert main(["simulate", *ASKED, "--verify", "--out", str(folder)]) == 0
@@ -216,6 +216,7 @@ def test_every_outcome_is_an_answer_with_its_remedy(outcome: Any, capsys: Printe
     assert second == "a longer breath"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_open_balance_is_told(tmp_path: Path, capsys: Printed, replaced: Replaced) -> None:
     """In the terminal, in summary.json and in the report."""
 

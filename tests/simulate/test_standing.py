@@ -4,22 +4,29 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
 
-from skisnow.simulate.standing import _carried_across
+from skisnow.simulate.standing import _carried_across, why_no_start
 
 
-def carried(hardness: float, edge_angle_deg: float) -> tuple[float, float]:
-    """Skis 1.7 m long and 70 mm wide, 0.5 m apart, under 425 N: to the right and to the left (m)."""
+def stood(hardness: float, edge_angle_deg: float) -> Any:
+    """Skis 1.7 m long and 70 mm wide, 0.5 m apart, under 425 N."""
     scenario = SimpleNamespace(
-        ski=SimpleNamespace(width=np.array([0.06, 0.07]), station=np.array([0.9, 0.0, -0.8])),
+        ski=SimpleNamespace(
+            width=np.array([0.06, 0.07]), station=np.array([0.9, 0.0, -0.8]), contact_points=(0.8, -0.7)
+        ),
         sledge=SimpleNamespace(edge_angle=math.radians(edge_angle_deg), stance_width=0.5),
         contact=SimpleNamespace(snow=SimpleNamespace(snow_hardness=hardness)),
     )
-    return _carried_across(cast("Any", SimpleNamespace(scenario=scenario, numbers={"load_N": 425.0})))
+    return SimpleNamespace(scenario=scenario, numbers={"load_N": 425.0})
+
+
+def carried(hardness: float, edge_angle_deg: float) -> tuple[float, float]:
+    """To the right and to the left (m)."""
+    return _carried_across(stood(hardness, edge_angle_deg))
 
 
 def test_edged_skis_carry_from_their_edge_to_the_waterline() -> None:
@@ -32,3 +39,18 @@ def test_edged_skis_carry_from_their_edge_to_the_waterline() -> None:
 def test_in_soft_snow_and_flat_the_whole_base_carries() -> None:
     for angle in (45.0, -45.0, 0.0):
         assert carried(1e5, angle) == pytest.approx((0.285, 0.285))
+
+
+@pytest.mark.parametrize(
+    ("ahead", "left", "told"),
+    [
+        (0.0, 0.29, "0.29 m to the left of the boots' middle, and the skis carry to 0.285 m there"),
+        (0.0, -0.24, "0.24 m to the right of the boots' middle, and the skis carry to 0.235 m there"),
+        (0.81, 0.28, "0.81 m before the boots, and the skis carry to 0.8 m there"),
+        (-0.71, -0.23, "0.71 m behind the boots, and the skis carry to 0.7 m there"),
+        (0.79, 0.28, "the search for the sledge at rest"),
+    ],
+)
+def test_where_the_weight_passes_is_told(ahead: float, left: float, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skisnow.simulate.standing.weight_meets_base", lambda _: (ahead, left))
+    assert told in why_no_start(stood(12.5e6, 45.0))

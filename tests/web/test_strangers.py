@@ -64,6 +64,13 @@ def test_what_is_not_there_is_not_found(lab: Served, path: str) -> None:
     assert "Traceback" not in text
 
 
+@pytest.mark.parametrize("file", ["report.html", "analysis.zip"])
+def test_a_report_of_no_open_page_says_how_to_get_one(lab: Served, file: str) -> None:
+    status, text = asked(lab, f"/report/nothing/{file}")
+    assert status == 404
+    assert "No such report" in text and "Open the analysis of the campaign again." in text
+
+
 MESSAGES = (
     '42["event"]',
     '42["event",{}]',

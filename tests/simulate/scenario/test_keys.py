@@ -10,8 +10,9 @@ import jsonschema
 import pytest
 
 from skisnow.errors import ParameterError
-from skisnow.simulate.scenario import Solver, read_scenario, scenario_names, scenario_text
+from skisnow.simulate.scenario import Solver, free_keys, read_scenario, scenario_names, scenario_text
 from skisnow.simulate.scenario.keys import SCENARIO_KEYS
+from skisnow.simulate.scenario.schema import scenario_schema
 
 SCHEMAS = files("skisnow.simulate") / "schemas"
 SCHEMA = json.loads((SCHEMAS / "scenario.schema.json").read_text(encoding="utf-8"))
@@ -74,6 +75,19 @@ def test_factors_lead_to_si() -> None:
     assert SCENARIO_KEYS["sledge.edge_angle_deg"].in_si(30.0) == pytest.approx(math.pi / 6.0, rel=1e-15)
     assert SCENARIO_KEYS["solver.cell_mm"].in_si(4.0) == 0.004
     assert SCENARIO_KEYS["run.output_ms"].in_si(10.0) == 0.01
+
+
+def test_a_word_that_may_mean_two_keys_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No two keys that can be looked for share a word now; a further one may."""
+    two = ("friction.mu_0", "snow.S_f_N_per_mm2")
+    monkeypatch.setattr(free_keys, "_KEYS_BY_WORD", {"both": two, "one": two[:1]})
+    assert free_keys.free_key("one") == "friction.mu_0"
+    with pytest.raises(ParameterError, match=r"both may mean friction\.mu_0 or snow\.S_f_N_per_mm2\. Write one"):
+        free_keys.free_key("both")
+
+
+def test_the_written_schema_is_that_of_the_dataclasses() -> None:
+    assert scenario_schema() == SCHEMA
 
 
 @pytest.mark.parametrize("name", scenario_names())
