@@ -84,7 +84,7 @@ def own(*, duration_s: float, repeats: int) -> Peer:
     starts = [own_flight.released(OWN_STEP_MS) for _ in range(repeats)]
     seconds = min(timed(partial(own_flight.flown, record, duration_s)) for record in starts)
     off = float(np.linalg.norm(ends[0] - ends[1], axis=1).max())
-    what = f"skisnow, the sledge of {SCENARIO} in free flight, ROS2, {OWN_STEP_MS:g} ms"
+    what = f"skisnow, the sledge of {SCENARIO} in free flight, steps of {OWN_STEP_MS:g} ms"
     return Peer(what, 1e3 * OWN_STEP_MS * seconds / duration_s, duration_s / seconds, off)
 
 
