@@ -25,7 +25,7 @@ from skisnow.field.store.schema import metadata
 if TYPE_CHECKING:
     from multiprocessing.process import BaseProcess
 
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Locator, Page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 MISSING = [name for name in ("nicegui", "playwright") if importlib.util.find_spec(name) is None]
@@ -242,6 +242,13 @@ def fill(page: Page, values: dict[str, Any]) -> None:
     ready(page)
     for label, value in values.items():
         page.get_by_label(label, exact=True).fill(str(value))
+
+
+def has_text(field: Locator, text: str) -> None:
+    """Wait until a field holds this text."""
+    from playwright.sync_api import expect
+
+    expect(field).to_have_value(text, timeout=PATIENCE_MS)
 
 
 def downloaded_results(page: Page) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from skisnow.report.figures.seating_offsets import seating_offsets
 from skisnow.report.figures.shear_force_depth import shear_force_depth
 from skisnow.report.figures.style import journal_style, site_styles
 from skisnow.report.material import Material
-from skisnow.track.comparison import compared
+from skisnow.track.comparison import compare_tracks
 
 from ..conftest import Reported, altered
 from ..runs import SPEED, circle_run
@@ -94,10 +94,12 @@ def test_of_one_input_the_share_of_the_grip_is_drawn() -> None:
 def test_distances_of_which_one_would_hide_another_are_drawn_by_their_logarithm() -> None:
     place = winding(300)
     beside = 0.01 * np.arange(300)[:, None] / 3.0
-    _, along = drawn(compared(track_of(place), track_of(place + np.array([0.0, 0.01, 0.0]) + beside * [0.0, 1.0, 0.0])))
+    _, along = drawn(
+        compare_tracks(track_of(place), track_of(place + np.array([0.0, 0.01, 0.0]) + beside * [0.0, 1.0, 0.0]))
+    )
     assert along.get_yscale() == "linear" and along.get_ylim()[0] == 0.0
     ahead = replace(track_of(place), time=np.arange(300) / 10.0 + 3.0 * np.linspace(0.0, 1.0, 300))
-    found = compared(track_of(place), replace(ahead, place=place + np.array([0.0, 0.01, 0.0])))
+    found = compare_tracks(track_of(place), replace(ahead, place=place + np.array([0.0, 0.01, 0.0])))
     _, along = drawn(found)
     largest = [each.numbers.max for each in (found.nearest, found.arc_length, found.time) if each.numbers]
     assert max(largest) > 20.0 * min(largest)
