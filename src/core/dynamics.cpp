@@ -1,6 +1,7 @@
 #include "dynamics.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -17,6 +18,7 @@ constexpr double SAME_REACH = 0.1;        // by which β may differ from that of
 constexpr double LEAST_SHARE = 1.0 / 64;  // of a fixed step, into which it is divided where it is not solved
 constexpr double FARTHEST = 1.0;          // way (m), turn (rad), bend beyond which a step has diverged
 constexpr double SAFETY = 0.85, UP = 1.35, DOWN = 0.93;  // of the step's choice
+constexpr std::chrono::milliseconds LONGEST_STAY(50);    // within the core, before it pauses to hear an interrupt
 constexpr double ROUNDING = 1e-9;                        // of a step's length
 constexpr double MILNE = 0.35;  // error of BDF2 over its distance from the predictor, at equal steps 8/23
 
@@ -298,8 +300,10 @@ void Dynamics::begin() {
 }
 
 Advance Dynamics::advance(double until, long most) {
+  const auto entered = std::chrono::steady_clock::now();
   for (long tries = 0; time < until; tries++) {
     if (tries == most) return Advance::PAUSED;
+    if (tries > 0 && std::chrono::steady_clock::now() - entered > LONGEST_STAY) return Advance::PAUSED;
     const double left = until - time;
     // equal steps on the way that is left: the matrix serves them all
     double h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));

@@ -51,7 +51,7 @@ class Dynamics {
   double settle();
   // The run begins at the present state: the snow remembers it.
   void begin();
-  // Steps until a time (s); paused after `most` steps.
+  // Steps until a time (s); paused after `most` steps, or after a while.
   Advance advance(double until, long most);
 
  private:
