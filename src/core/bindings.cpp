@@ -1,6 +1,5 @@
 // The core in Python: plain arrays in and out. The package skisnow.contact gives it names, checks and documentation.
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -10,21 +9,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "arrays.hpp"
 #include "contact.hpp"
 
 namespace nb = nanobind;
 
 namespace skisnow {
 namespace {
-
-using Array = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
-using Result = nb::ndarray<nb::numpy, double>;
-
-Result array(std::vector<double> values, std::initializer_list<std::size_t> shape) {
-  auto* kept = new std::vector<double>(std::move(values));
-  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-  return Result(kept->data(), shape, owner);
-}
 
 Grid grid(double x0, double dx, double y0, double dy, const Array& values, bool goes_on) {
   const int nx = int(values.shape(0)), ny = int(values.shape(1));

@@ -1,11 +1,11 @@
 // The steady carve in Python: plain arrays in and out. skisnow.simulate.equilibrium gives it names and documentation.
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 
 #include <algorithm>
 #include <chrono>
 
+#include "arrays.hpp"
 #include "banded.hpp"
 #include "carve.hpp"
 #include "carve_strip.hpp"
@@ -14,15 +14,6 @@ namespace nb = nanobind;
 
 namespace skisnow {
 namespace {
-
-using Array = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
-using Result = nb::ndarray<nb::numpy, double>;
-
-Result array(std::vector<double> values, std::initializer_list<std::size_t> shape) {
-  auto* kept = new std::vector<double>(std::move(values));
-  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-  return Result(kept->data(), shape, owner);
-}
 
 // Of each station (rows): place, weight, width, base height, first unknown, shapes of deflection (6) and twist (6).
 void set_stations(CarvedSki& ski, const Array& rows) {

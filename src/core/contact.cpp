@@ -8,55 +8,6 @@ namespace skisnow {
 
 namespace {
 
-// Keep the base that touches a line: the way of its edge since it was marked last, and all that lies under it.
-void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
-  const double edge = s[EDGE_PLACE][i], depth = s[EDGE_DEPTH][i], fall = s[DEPTH_FALL][i];
-  const double from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);
-  Ground ground = lines.ground(slot);
-  bool changed = false;
-  if (lines.values[MARKED][slot] > 0.5) {
-    const double before = lines.values[EDGE_MARKED][slot], depth_before = lines.values[DEPTH_MARKED][slot];
-    changed = before < edge ? ground.press(before, depth_before, edge, depth)
-                            : ground.press(edge, depth, before, depth_before);
-  }
-  if (ground.press(edge + from, depth + fall * from, edge + to, depth + fall * to)) changed = true;
-  if (!changed) return;
-  ground.simplify(snow.knot_area * s[DEEPEST][i] * (to - from), KNOTS);
-  lines.keep(slot, ground);
-}
-
-// Keep where the edge holds: where it came through the surface, not farther off than its full displacement.
-void keep_anchor(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
-  auto& v = lines.values;
-  const double edge = s[EDGE_PLACE][i], depth = s[DEEPEST][i], reach = snow.shear_displacement;
-  double anchor = edge;
-  if (v[ANCHORED][slot] > 0.5)
-    anchor = v[ANCHOR][slot];
-  else if (v[ABOVE][slot] > 0.5)
-    anchor = edge - depth / (depth - v[DEPTH_ABOVE][slot]) * (edge - v[EDGE_ABOVE][slot]);
-  v[ANCHOR][slot] = std::clamp(anchor, edge - reach, edge + reach);
-  v[ANCHORED][slot] = 1.0;
-}
-
-void remember_section(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
-  auto& v = lines.values;
-  if (!s.touches(i)) {
-    v[MARKED][slot] = 0.0;
-    if (!(s[SHARE][i] > 0.0)) return;
-    v[EDGE_ABOVE][slot] = s[EDGE_PLACE][i];
-    v[DEPTH_ABOVE][slot] = s[DEEPEST][i];
-    v[ANCHORED][slot] = 0.0;
-    v[ABOVE][slot] = 1.0;
-    return;
-  }
-  press_base(s, i, snow, lines, slot);
-  v[MARKED][slot] = 1.0;
-  v[EDGE_MARKED][slot] = s[EDGE_PLACE][i];
-  v[DEPTH_MARKED][slot] = s[EDGE_DEPTH][i];
-  keep_anchor(s, i, snow, lines, slot);
-  v[ABOVE][slot] = 0.0;
-}
-
 // Loads of the sections on the nodes of a beam, by Hermite's shapes.
 void load_beam(const Runner& runner, const Sections& s, std::vector<double>& beam) {
   beam.assign(std::size_t(3 * runner.nodes()), 0.0);
@@ -105,8 +56,6 @@ double interpolated(const std::vector<std::pair<double, double>>& table, double 
   return before->second + (at - before->first) / (after->first - before->first) * (after->second - before->second);
 }
 
-constexpr double MOST_PARTS = 1e4;     // of a way
-constexpr double SLIPPING = 0.999;     // share of the displacement from which on an edge slips
 constexpr double LEVEL = 1e-6;         // sine of the roll of a base that is level
 constexpr double TANGENT_STEP = 1e-8;  // m, rad
 constexpr double POSE_STEP = 1e-7;     // m, rad
@@ -173,84 +122,6 @@ void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double
   kernels_->add_stiffness(s, differences_, stiffness, bends, out);
   out.add_turning(wrenches_[std::size_t(k)], stiffness);
   if (damping > 0.0) kernels_->add_friction_damping(s, damping, bends, out);
-}
-
-void SnowContact::remember(int k, GrooveLines& lines) const {
-  const Sections& s = sections(k);
-  for (std::int64_t n = lines.first; n < lines.end; n++) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
-}
-
-// Into how many parts the way from the accepted pose is divided; one where the runner was put there in no time.
-int SnowContact::parts(int k, const Situation& at) const {
-  if (!(at.dt > 0.0)) return 1;
-  const Pose& to = at.poses[std::size_t(k)];
-  const Pose& from = state_.accepted[std::size_t(k)];
-  double most = 1.0;
-  for (const double station : {runner(k).tip, runner(k).tail}) {
-    double along = 0.0, square = 0.0;
-    for (std::size_t a = 0; a < 3; a++) {
-      const double way = to.position[a] - from.position[a] + station * (to.rotation[a][0] - from.rotation[a][0]);
-      along += way * from.rotation[a][0], square += way * way;
-    }
-    const double across = std::sqrt(std::max(square - along * along, 0.0));
-    most = std::max({most, std::fabs(along) / snow_->part_along, across / snow_->part_across});
-  }
-  return int(std::ceil(std::min(most, MOST_PARTS) - 1e-9));
-}
-
-// The history of all lines along the way, up to but without its end.
-void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
-  if (state_.accepted.empty()) return;
-  const int parts = this->parts(k, to);
-  for (int part = 1; part < parts; part++) {
-    const Pose pose = between(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts);
-    kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
-    remember(k, lines);
-  }
-}
-
-// The lines whose history hangs on the way between two poses and not on its ends alone: ahead, where the snow was not
-// touched yet, where the edge slips, and where the base passes its deepest place.
-void SnowContact::find_needed(const GrooveLines& lines, double way) {
-  const auto& v = lines.values;
-  const auto marked = [&](std::int64_t n) {
-    return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5;
-  };
-  const auto depth = [&](std::int64_t n) { return v[DEPTH_MARKED][lines.slot(n)]; };
-  const auto over = std::int64_t(std::ceil(way / lines.spacing()));
-  needed_.clear();
-  bool ahead = true;
-  std::int64_t deepest = lines.end + over + 1;
-  for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
-    const int slot = lines.slot(n);
-    if (marked(n - over) && marked(n - over - 1) && marked(n - over + 1) && depth(n - over) >= depth(n - over - 1) &&
-        depth(n - over) >= depth(n - over + 1))
-      deepest = n - over;
-    ahead = ahead && !marked(n);
-    const double held = std::fabs(v[ANCHOR][slot] - v[EDGE_MARKED][slot]);
-    const bool slips = v[ANCHORED][slot] > 0.5 && held > SLIPPING * snow_->shear_displacement;
-    if (ahead || slips || std::llabs(n - deepest) <= over) needed_.push_back(n);
-  }
-}
-
-// [march] As `march`, for the lines that need it.
-void SnowContact::march_where_needed(int k, const Situation& to) {
-  GrooveLines& lines = state_.lines[std::size_t(k)];
-  if (state_.accepted.empty()) return;
-  const Pose &from = state_.accepted[std::size_t(k)], &end = to.poses[std::size_t(k)];
-  const int parts = this->parts(k, to);
-  if (parts < 2) return;
-  double square = 0.0;
-  for (std::size_t a = 0; a < 3; a++)
-    square += (end.position[a] - from.position[a]) * (end.position[a] - from.position[a]);
-  find_needed(lines, std::sqrt(square));
-  if (needed_.empty()) return;
-  for (const std::int64_t n : needed_) before_[std::size_t(k)].lines.push_back(lines.line(lines.slot(n)));
-  Sections& s = sections_[std::size_t(k)];
-  for (int part = 1; part < parts; part++) {
-    kernels_->find_sections(runner(k), between(from, end, double(part) / parts), *snow_, lines, needed_.back(), s);
-    for (const std::int64_t n : needed_) remember_section(s, s.index(n), *snow_, lines, lines.slot(n));
-  }
 }
 
 // The lines at the end of a step, before its end is remembered: those that stand, or where that changes them a copy.

@@ -1,26 +1,17 @@
 // The dynamics in Python: plain arrays in and out. The package skisnow.dynamics gives it names, checks and
 // documentation.
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
 
+#include "arrays.hpp"
 #include "dynamics.hpp"
 
 namespace nb = nanobind;
 
 namespace skisnow {
 namespace {
-
-using Array = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
-using Result = nb::ndarray<nb::numpy, double>;
-
-Result array(std::vector<double> values, std::initializer_list<std::size_t> shape) {
-  auto* kept = new std::vector<double>(std::move(values));
-  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-  return Result(kept->data(), shape, owner);
-}
 
 std::vector<double> copied(const Array& a) { return {a.data(), a.data() + a.size()}; }
 
