@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from skisnow.simulate.batch import available_cores, run_batch
+from skisnow.parallel.batch import available_cores, run_batch
 
 from ..timing import timed
 from .cases import SCENARIO, Case, Runs

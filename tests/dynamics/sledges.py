@@ -11,8 +11,7 @@ from skisnow import Scenario
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.dynamics import Body, Dynamics, Ended, StepControl
 from skisnow.forces.friction import FrictionLaw
-from skisnow.simulate.scenario import Plane, read_scenario
-from skisnow.simulate.sledge import RigidSledge
+from skisnow.scenario import Plane, RigidSledge, read_scenario
 from skisnow.simulate.sledge.body import sledge_body
 from skisnow.ski.beam.clamped import ClampedSki, clamped
 

@@ -14,9 +14,9 @@ from types import TracebackType
 from typing import Self
 
 from ..errors import SkisnowError
-from ..simulate.batch import available_cores, require_workers
-from ..simulate.batch_file import KeptRows, Row, row_text
-from ..simulate.worker_process import begin_worker, interrupts_ignored
+from ..parallel.batch import available_cores, require_workers
+from ..parallel.kept_rows import KeptRows, Row, row_text
+from ..parallel.worker_process import begin_worker, interrupts_ignored
 from .run_simulation import RunSimulation, RunTask
 
 

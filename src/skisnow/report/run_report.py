@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
+from ..carve.answer_dict import finite
 from ..files import require_writable, write_file
-from ..simulate.carve_dict import finite
 from ..simulate.run_summary import run_warnings
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .numerals import counted, significant, whole

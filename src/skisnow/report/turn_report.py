@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 from ..errors import ParameterError
 from ..files import require_writable, write_file
+from ..scenario.values import scenario_values
 from ..shown import Facts, Shown, amount
-from ..simulate.scenario.values import scenario_values
 from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
 from .figures.run_grip import run_grip

@@ -12,10 +12,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..carve.answer_dict import finite, snow_dict
+from ..scenario.values import in_sections, scenario_values
 from ..units import DEGREE
-from .carve_dict import finite, snow_dict
 from .run import LEAST_OPEN, LOST, STORED, WARNED_SHARE, Run
-from .scenario.values import in_sections, scenario_values
 
 SCHEMA_VERSION: Final = 1
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from ..errors import SolverError
 from ..former_names import formerly
+from ..scenario import Scenario
 from .run import OPEN_SHARE, Groove, Outcome, Run
 from .run_record import Record
 from .run_setup import AT_REST, Setup, set_up
-from .scenario import Scenario
 from .standing import why_no_start
 
 Progress: TypeAlias = Callable[[float, float], None]

@@ -8,13 +8,13 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
+from ..carve.answer_dict import finite
 from ..former_names import formerly
+from ..scenario import Scenario, Solver
+from ..scenario.keys import SCENARIO_KEYS
 from ..shown import Facts, Shown, amount
 from ..units import CM
-from .carve_dict import finite
 from .run import Outcome, Run
-from .scenario import Scenario, Solver
-from .scenario.keys import SCENARIO_KEYS
 
 Simulate: TypeAlias = Callable[[Scenario], Run]
 FINER: Final = 2.0

@@ -9,16 +9,16 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..carve.answer import CarveAnswer, Sources, answered
+from ..carve.answer_dict import finite, inputs_dict, scalars_dict
+from ..carve.equilibrium import CLAMP_LENGTH
+from ..carve.keys import CARVE_KEYS
+from ..carve.limits import require_clamp, require_stress
+from ..carve.question import carve_question, require_complete
 from ..errors import SkisnowError
 from ..inputs import Quantity
+from ..parallel.kept_rows import Row
 from ..shown import ShownFields
-from ..simulate.batch_file import Row
-from ..simulate.carve import CLAMP_LENGTH
-from ..simulate.carve_answer import CarveAnswer, Sources, answered
-from ..simulate.carve_dict import finite, inputs_dict, scalars_dict
-from ..simulate.carve_keys import CARVE_KEYS
-from ..simulate.carve_limits import require_clamp, require_stress
-from ..simulate.carve_question import carve_question, require_complete
 from ..units import MM
 from .study import Point
 

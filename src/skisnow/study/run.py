@@ -7,8 +7,8 @@ from pathlib import Path
 
 from ..errors import ParameterError
 from ..files import cannot_write, write_file
-from ..simulate.batch import Told, require_workers, run_batch
-from ..simulate.batch_file import KeptRows
+from ..parallel.batch import Told, require_workers, run_batch
+from ..parallel.kept_rows import KeptRows
 from .study import Study
 from .study_file import read_study
 from .table import StudyTable, read_table

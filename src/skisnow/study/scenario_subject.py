@@ -9,19 +9,19 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..carve.answer import Sources
+from ..carve.answer_dict import finite
 from ..errors import ParameterError, SkisnowError
 from ..inputs import Quantity
+from ..parallel.kept_rows import Row
+from ..scenario import ScenarioFile
+from ..scenario.built_in import scenario_names, scenario_place
+from ..scenario.given import PATH_KEYS, GivenScenario, full_name, given_scenario
+from ..scenario.keys import SCENARIO_KEYS, SECTIONS
+from ..scenario.reading import files_of, resolved
 from ..shown import ShownFields
-from ..simulate.batch_file import Row
-from ..simulate.carve_answer import Sources
-from ..simulate.carve_dict import finite
 from ..simulate.run import Run
 from ..simulate.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
-from ..simulate.scenario import ScenarioFile
-from ..simulate.scenario.built_in import scenario_names, scenario_place
-from ..simulate.scenario.given import PATH_KEYS, GivenScenario, full_name, given_scenario
-from ..simulate.scenario.keys import SCENARIO_KEYS, SECTIONS
-from ..simulate.scenario.reading import files_of, resolved
 from ..units import MM
 from .study import Point
 
