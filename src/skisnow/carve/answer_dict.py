@@ -10,7 +10,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..snow import SnowProperties
+from ..json_number import json_number
+from ..snow.snow_dict import snow_dict
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .answer import CarveAnswer
 from .equilibrium import Equilibrium
@@ -31,8 +32,8 @@ def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
             "source": answer.ski.source,
             "length_m": answer.ski.length,
             "mass_kg": answer.ski.mass,
-            "sidecut_radius_of_three_widths_m": finite(answer.ski.sidecut_radius_of_three_widths),
-            "sidecut_radius_of_edge_line_m": finite(answer.ski.sidecut_radius_of_edge_line),
+            "sidecut_radius_of_three_widths_m": json_number(answer.ski.sidecut_radius_of_three_widths),
+            "sidecut_radius_of_edge_line_m": json_number(answer.ski.sidecut_radius_of_edge_line),
         },
         "warnings": list(answer.warnings),
         "provenance": {"skisnow": version("skisnow")},
@@ -64,16 +65,16 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
         "outcome": equilibrium.outcome,
         "remedy": equilibrium.remedy,
         "holds": None if equilibrium.holds is None else bool(equilibrium.holds),
-        "side_force_N": finite(equilibrium.side_force),
-        "side_force_limit_N": finite(equilibrium.side_force_limit),
-        "turn_radius_boot_m": finite(equilibrium.turn_radius_boot),
-        "turn_radius_chord_m": finite(equilibrium.turn_radius_chord),
-        "contact_length_m": finite(equilibrium.contact_length),
-        "bearing_length_m": finite(equilibrium.bearing_length),
-        "afterbody_depth_ratio": finite(equilibrium.afterbody_depth_ratio),
-        "boot_pitch_moment_Nm": finite(equilibrium.boot_pitch_moment),
-        "residual_force_N": finite(equilibrium.residual_force),
-        "residual_moment_Nm": finite(equilibrium.residual_moment),
+        "side_force_N": json_number(equilibrium.side_force),
+        "side_force_limit_N": json_number(equilibrium.side_force_limit),
+        "turn_radius_boot_m": json_number(equilibrium.turn_radius_boot),
+        "turn_radius_chord_m": json_number(equilibrium.turn_radius_chord),
+        "contact_length_m": json_number(equilibrium.contact_length),
+        "bearing_length_m": json_number(equilibrium.bearing_length),
+        "afterbody_depth_ratio": json_number(equilibrium.afterbody_depth_ratio),
+        "boot_pitch_moment_Nm": json_number(equilibrium.boot_pitch_moment),
+        "residual_force_N": json_number(equilibrium.residual_force),
+        "residual_moment_Nm": json_number(equilibrium.residual_moment),
         "iterations": int(equilibrium.iterations),
     }
 
@@ -94,26 +95,8 @@ def _in_unit(given: float | None, value: float | None, unit: float) -> float | N
     return given if given is not None or value is None else value / unit
 
 
-def snow_dict(snow: SnowProperties) -> dict[str, Any]:
-    """Where a snow comes from, and its intervals in the units of the contract."""
-
-    def interval(ends: tuple[float, float] | None, unit: float) -> list[float] | None:
-        return None if ends is None else [end / unit for end in ends]
-
-    return {
-        "source": snow.source,
-        "H_V_interval_N_per_mm3": interval(snow.snow_hardness_interval, N_PER_MM3),
-        "S_f_interval_N_per_mm2": interval(snow.failure_shear_stress_interval, N_PER_MM2),
-    }
-
-
-def finite(value: float | None) -> float | None:
-    """None in place of what JSON has no number for."""
-    return None if value is None or not math.isfinite(value) else float(value)
-
-
 def _numbers(values: npt.NDArray[np.float64] | None, unit: float) -> list[float | None] | None:
     if values is None:
         return None
     numbers: list[float | None] = (values / unit).tolist()
-    return numbers if np.isfinite(values).all() else [None if n is None else finite(n) for n in numbers]
+    return numbers if np.isfinite(values).all() else [None if n is None else json_number(n) for n in numbers]

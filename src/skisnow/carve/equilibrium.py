@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..shown import Facts, Shown, amount
-from ..ski.beam.clamped import ClampedSki, clamped
+from ..ski.beam.clamped import CLAMP_LENGTH, ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
 from ..units import MM
@@ -28,8 +28,6 @@ Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_co
 GrooveForm: TypeAlias = Literal["edge", "path"]
 MomentBalance: TypeAlias = Literal["boot", "free"]
 
-CLAMP_LENGTH: Final = 0.30
-"""Length of ski that boot and binding keep straight (m). Choice; limits are tested with 0."""
 ELEMENTS: Final = 160
 """Elements over the whole ski: 1 cm each, half of 1/λ on the hardest snow (Choice: see the convergence tests)."""
 SINKING_DEPTH: Final = 0.30

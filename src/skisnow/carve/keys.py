@@ -7,11 +7,9 @@ from dataclasses import asdict, dataclass, replace
 from typing import Annotated, Any, Final, Literal
 
 from ..inputs import Quantity, own_quantities, require_declared
+from ..ski.beam.clamped import CLAMP_LENGTH, MOST_ELEMENTS
 from ..snow import SnowProperties
-from .equilibrium import CLAMP_LENGTH, ELEMENTS, GREATEST_EDGE_ANGLE
-
-MOST_ELEMENTS: Final = 4000
-"""Elements of 0.4 mm: finer ones would only cost time (Choice)."""
+from .equilibrium import ELEMENTS, GREATEST_EDGE_ANGLE
 
 _SNOW: Final = {each.name: each for each in own_quantities(SnowProperties)}
 
@@ -136,15 +134,3 @@ class CarveQuestion:
 
 CARVE_KEYS: Final = {key.name: key for key in own_quantities(CarveQuestion)}
 """By name, in the order of tables."""
-
-SUSPICIOUS_EDGE_ANGLE_DEG: Final = 1.6
-"""Angles below it, but 0, look like radians: 1.6 is just above 90° in radians."""
-
-
-def in_degrees_if_radians(edge_angle_deg: float) -> float | None:
-    """The degrees that are meant where the number looks like radians, else None.
-
-    >>> round(in_degrees_if_radians(0.785), 1), in_degrees_if_radians(45.0), in_degrees_if_radians(0.0)
-    (45.0, None, None)
-    """
-    return math.degrees(edge_angle_deg) if 0.0 < edge_angle_deg < SUSPICIOUS_EDGE_ANGLE_DEG else None

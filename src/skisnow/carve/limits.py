@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 from ..errors import ParameterError
 from ..ski import Ski
-from ..snow import SnowProperties
-from ..units import MM, N_PER_MM3
-from .keys import CARVE_KEYS, CarveQuestion, in_degrees_if_radians
+from ..snow.properties import GREATEST_LIKELY_HARDNESS
+from ..units import MM, N_PER_MM3, in_degrees_if_radians
+from .keys import CARVE_KEYS, CarveQuestion
 
 USUAL_LOADS_N: Final = (20.0, 5000.0)
 """Loads beyond it look like another unit: 2 kg of ski, and six times the weight of a heavy skier (Choice)."""
-GREATEST_LIKELY_HARDNESS: Final = 1e4
-"""H_V (N/mm³) above which the number looks like N/m³: a hundred times the hardest that was measured (Choice)."""
 
 
 def require_clamp(ski: Ski, clamp_length_m: float) -> None:
@@ -34,34 +31,6 @@ def require_clamp(ski: Ski, clamp_length_m: float) -> None:
         f"clamp_length_m (--clamp-length-m) is {clamp_length_m:g}{default}; the ski {ski.name} allows less than "
         f"{most:.3g} m: write --clamp-length-m 0{in_mm if clamp_length_m >= 20.0 else ''}"
     )
-
-
-def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves: bool) -> None:
-    """Refuse a named snow that has no S_f where one is needed, or one of its own beside a given one.
-
-    Raises
-    ------
-    ParameterError
-        S_f comes from both sides, or from none although the ski carves.
-    """
-    if S_f_N_per_mm2 is not None and snow.failure_shear_stress is not None:
-        raise ParameterError(
-            f"S_f_N_per_mm2 cannot stand beside this snow ({snow.source}), which has its own S_f. Leave one out, or "
-            "give H_V_N_per_mm3 and S_f_N_per_mm2 as numbers"
-        )
-    if carves and S_f_N_per_mm2 is None and snow.failure_shear_stress is None:
-        raise ParameterError(
-            f"this snow ({snow.source}) has no failure shear stress S_f, which a carved turn needs. Give one beside "
-            "it, S_f_N_per_mm2 (--S-f-N-per-mm2), or ask for the ski at rest (--at-rest)"
-        )
-
-
-def with_stress(snow: SnowProperties, S_f_N_per_mm2: float | None) -> SnowProperties:
-    """The snow, with a given S_f where it has none."""
-    if S_f_N_per_mm2 is None:
-        return snow
-    stress = S_f_N_per_mm2 * CARVE_KEYS["S_f_N_per_mm2"].factor
-    return replace(snow, failure_shear_stress=stress, source=f"{snow.source}; S_f given as a number")
 
 
 def suspicions(question: CarveQuestion) -> tuple[str, ...]:

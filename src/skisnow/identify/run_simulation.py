@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
-from ..carve.answer import Sources
 from ..errors import SkisnowError
 from ..parallel.kept_rows import Row
 from ..scenario import Scenario, Solver, Stop
 from ..scenario.given import GivenScenario
 from ..scenario.reading import resolved
 from ..simulate.run import Run
+from ..sources import Sources
 
 FloatArray = npt.NDArray[np.float64]
 

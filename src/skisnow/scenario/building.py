@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..carve.answer import Sources
-from ..carve.limits import require_stress, with_stress
 from ..errors import ParameterError
 from ..inputs import made, meant
 from ..ski import Ski, ski_names
 from ..snow import SnowProperties
+from ..snow.given_stress import require_stress, with_stress
+from ..sources import Sources
 from .contact import ELASTIC, Contact
 from .given import GivenScenario
 from .keys import SCENARIO_KEYS

@@ -10,9 +10,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
-from ..carve.answer import Sources
 from ..errors import ParameterError, RangeWarning
 from ..shown import ShownFields
+from ..sources import Sources
 from .building import built
 from .given import GivenScenario, given_scenario
 from .scenario import Scenario

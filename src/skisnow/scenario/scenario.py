@@ -13,6 +13,7 @@ from ..errors import ParameterError
 from ..inputs import Quantity, Search, Word, declared_text, require_declared
 from ..shown import Facts, Shown, amount
 from ..ski import Ski, ski_names
+from ..ski.beam.clamped import CLAMP_LENGTH
 from ..units import DEGREE
 from .checks import require_sound
 from .contact import Contact
@@ -202,7 +203,7 @@ class Scenario(Shown):
             lowest=0.0,
             origin="choice: about a boot's sole",
         ),
-    ] = 0.3
+    ] = CLAMP_LENGTH
     damping_ratio: Annotated[
         float,
         Quantity(

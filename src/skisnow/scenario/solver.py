@@ -6,8 +6,8 @@ import warnings
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
-from ..carve.keys import MOST_ELEMENTS
 from ..inputs import Quantity, declared_text, require_declared
+from ..ski.beam.clamped import MOST_ELEMENTS
 
 FORMER_METHOD: Final = "ros2"
 Method: TypeAlias = Literal["default", "fast"]

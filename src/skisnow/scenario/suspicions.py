@@ -6,8 +6,6 @@ import math
 import warnings
 from typing import Final
 
-from ..carve.keys import in_degrees_if_radians
-from ..carve.limits import GREATEST_LIKELY_HARDNESS
 from ..errors import RangeWarning
 from ..forces.measured_ranges import (
     DRAG_AREA,
@@ -16,7 +14,8 @@ from ..forces.measured_ranges import (
     PENETRATION_EDGE_ANGLE,
     SNOW_HARDNESS,
 )
-from ..units import N_PER_MM3
+from ..snow.properties import GREATEST_LIKELY_HARDNESS
+from ..units import N_PER_MM3, in_degrees_if_radians
 from .scenario import Scenario
 from .slope import Plane
 

@@ -8,8 +8,8 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from ..carve.answer_dict import finite
 from ..former_names import formerly
+from ..json_number import json_number
 from ..scenario import Scenario, Solver
 from ..scenario.keys import SCENARIO_KEYS
 from ..shown import Facts, Shown, amount
@@ -128,4 +128,4 @@ def _chosen(solver: Solver, key: str) -> float:
 
 
 def _distance(run: Run, finer: Run) -> float | None:
-    return finite(float(np.linalg.norm(run.place[-1] - finer.place[-1])))
+    return json_number(float(np.linalg.norm(run.place[-1] - finer.place[-1])))

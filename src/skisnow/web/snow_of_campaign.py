@@ -14,8 +14,8 @@ from .words import hardness_words, stress_words
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ..carve.answer import Sources
     from ..scenario.reading import ScenarioFile
+    from ..sources import Sources
     from .settings import Lab
 
 
@@ -58,9 +58,9 @@ def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, st
     ParameterError
         The campaign gives no snow, or the scenario cannot be read.
     """
-    from ..carve.answer import Sources
-    from ..carve.answer_dict import snow_dict
     from ..scenario import scenario_values
+    from ..snow.snow_dict import snow_dict
+    from ..sources import Sources
 
     kind, id_ = key.split("-", 1)
     found = numbers_of((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
