@@ -12,7 +12,7 @@ from ..errors import ParameterError
 from ..estimate import Analysis, analyse
 from ..estimate.site_snow import site_of_campaign
 from ..field import Campaign
-from ..parallel.batch import require_workers
+from ..parallel.pool import workers_in_force
 from ..report.figures.track_band import FEWEST
 from ..report.material import is_synthetic
 from ..report.turn_report import TurnChain
@@ -86,7 +86,7 @@ def chain(
     A script that calls this with several workers needs the usual ``if __name__ == "__main__":``.
     """
     _require(unloading_ratio, runs)
-    require_workers(workers)
+    workers = workers_in_force(workers)
     say = progress or _silent
     found = campaign if isinstance(campaign, Analysis) else analyse(campaign, progress=progress)
     snow = found.snow(site, unloading_ratio=unloading_ratio)
