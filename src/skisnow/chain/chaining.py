@@ -15,7 +15,7 @@ from ..field import Campaign
 from ..parallel.pool import workers_in_force
 from ..report.figures.track_band import FEWEST
 from ..report.material import is_synthetic
-from ..report.turn_report import TurnChain
+from ..report.turn_chain import TurnChain
 from ..scenario import Scenario, read_scenario
 from ..scenario.contact import ELASTIC
 from ..simulate import Run

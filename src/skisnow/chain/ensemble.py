@@ -10,7 +10,7 @@ import numpy as np
 
 from ..parallel.batch import run_batch
 from ..report.figures.track_band import TimedTrack
-from ..report.turn_report import EnsembleRun
+from ..report.turn_chain import EnsembleRun
 from ..simulate.simulated_run import simulate
 
 if TYPE_CHECKING:

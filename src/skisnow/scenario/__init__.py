@@ -6,14 +6,16 @@ The room can be called: `skisnow.scenario("carved-46m")` is `skisnow.scenario.re
 from __future__ import annotations
 
 from ..callable_rooms import make_callable
+from .air import Air
 from .built_in import scenario_names, scenario_text
 from .contact import Contact
 from .profile_file import read_profile
 from .reading import ScenarioFile, read_scenario, scenario_file
-from .scenario import Air, Scenario, Start, Stop
+from .scenario import Scenario
 from .sledge import RigidSledge
 from .slope import Plane, Profile
 from .solver import Solver
+from .start import Start, Stop
 from .values import scenario_values
 
 __all__ = [

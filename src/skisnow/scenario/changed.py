@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import ParameterError
 from ..inputs import Word, changed, values_of
 from ..ski import read_ski
 from ..snow import SnowProperties, published_snow
 from .contact import Contact
-
-if TYPE_CHECKING:
-    from .scenario import Scenario
+from .given import full_name
+from .keys import SCENARIO_KEYS
+from .scenario import Scenario
 
 
 def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scenario:
     """See `Scenario.with_`."""
-    from .given import full_name
-
     own = {field.name for field in fields(scenario)} | {"snow"}
     parts: dict[str, Any] = {name: value for name, value in changes.items() if name in own}
     values = {full_name(name): value for name, value in changes.items() if name not in own}
@@ -70,8 +68,6 @@ def _require_part_of(scenario: Scenario, values: Mapping[str, object]) -> None:
 
 def _require_number(name: str) -> None:
     """What a file says in a word is a part in Python."""
-    from .keys import SCENARIO_KEYS
-
     if isinstance(SCENARIO_KEYS[name], Word):
         raise ParameterError(
             f"{name} is a word of a scenario's file; in Python give the part itself, such as snow=, ski= or slope=, or "

@@ -10,16 +10,19 @@ from typing import Annotated, Any
 
 from ..constants import STANDARD_GRAVITY
 from ..errors import ParameterError
-from ..inputs import Quantity, Search, Word, declared_text, require_declared
+from ..from_above import from_above
+from ..inputs import Quantity, Word, require_declared
 from ..shown import Facts, Shown, amount
 from ..ski import Ski, ski_names
 from ..ski.beam.clamped import CLAMP_LENGTH
 from ..units import DEGREE
+from .air import Air
 from .checks import require_sound
 from .contact import Contact
 from .sledge import RigidSledge
 from .slope import Plane, Profile
 from .solver import Solver
+from .start import Start, Stop
 
 
 def _slope_kind(slope: Plane | Profile) -> str:
@@ -32,128 +35,6 @@ def _ski_name(ski: Ski) -> str | None:
 
 def _ski_file(ski: Ski) -> str | None:
     return None if ski.name in ski_names() else ski.name
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Air:
-    """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m)."""
-
-    drag_area: Annotated[
-        float,
-        Quantity(
-            "drag.drag_area_m2",
-            "drag area C_dA; 0: no drag",
-            lowest=0.0,
-            highest=10.0,
-            origin="skiers 0.23 to 0.66; a warning beyond",
-            search=Search(1.0, 0.0, 3.0),
-        ),
-    ]
-    density: Annotated[
-        float,
-        Quantity(
-            "drag.air_density_kg_per_m3",
-            "density of the air",
-            lowest=0.0,
-            highest=2.0,
-            above=True,
-            origin="choice: 0 °C at 700 m above the sea",
-            search=Search(1.0, 0.5, 2.0),
-        ),
-    ] = 1.2
-    centre_of_pressure_height: Annotated[
-        float,
-        Quantity(
-            "drag.centre_of_pressure_height_m",
-            "height of the centre of pressure above the bases; left out: that of the centre of mass",
-            lowest=0.0,
-            highest=3.0,
-            search=Search(0.5, 0.0, 3.0),
-            needed=False,
-        ),
-    ]
-
-    __repr__ = declared_text
-
-    def __post_init__(self) -> None:
-        require_declared(self)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Start:
-    """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad)."""
-
-    x: Annotated[
-        float,
-        Quantity(
-            "start.x_m",
-            "place of the boots' middle down the slope; on a profile its horizontal distance",
-            origin="choice: where x begins",
-            search=Search(1.0, -20.0, 20.0, about=True),
-        ),
-    ] = 0.0
-    y: Annotated[
-        float,
-        Quantity(
-            "start.y_m",
-            "place to the left",
-            origin="choice: where y begins",
-            search=Search(1.0, -20.0, 20.0, about=True),
-        ),
-    ] = 0.0
-    speed: Annotated[
-        float,
-        Quantity(
-            "start.speed_m_per_s", "speed along the skis", lowest=0.0, highest=100.0, search=Search(10.0, 0.0, 60.0)
-        ),
-    ]
-    heading: Annotated[
-        float,
-        Quantity(
-            "start.heading_deg",
-            "heading of the skis from the fall line, positive left",
-            lowest=-180.0,
-            highest=180.0,
-            origin="choice: down the fall line",
-            search=Search(30.0, -45.0, 45.0, about=True),
-        ),
-    ] = 0.0
-
-    __repr__ = declared_text
-
-    def __post_init__(self) -> None:
-        require_declared(self)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Stop:
-    """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first."""
-
-    duration: Annotated[
-        float | None,
-        Quantity(
-            "run.duration_s",
-            "simulated time; with length_m beside it, whichever comes first",
-            lowest=0.0,
-            highest=3600.0,
-            above=True,
-        ),
-    ] = None
-    length: Annotated[
-        float | None,
-        Quantity(
-            "run.length_m",
-            "length of the path of the boots' middle after which the run is done",
-            lowest=0.0,
-            highest=100_000.0,
-            above=True,
-        ),
-    ] = None
-
-    __repr__ = declared_text
-
-    def __post_init__(self) -> None:
-        require_declared(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -237,7 +118,7 @@ class Scenario(Shown):
         if self.stop.duration is None and self.stop.length is None:
             raise ParameterError("the run has no end: give a duration or a length")
         require_declared(self)
-        require_sound(self)
+        require_sound(self.slope, self.contact, self.sledge, self.ski, clamp_length=self.clamp_length, start=self.start)
 
     def with_(self, **changes: Any) -> Scenario:
         """The same scenario with other parts or other values; this one stays as it is.
@@ -262,9 +143,8 @@ class Scenario(Shown):
         >>> turn.ski.name, round(turn.contact.snow.snow_hardness / 1e9, 2), turn.stop.duration
         ('slalom', 0.21, 2.0)
         """
-        from .changed import changed_scenario
-
-        return changed_scenario(self, changes)
+        changed: Scenario = from_above("scenario.changed", "changed_scenario")(self, changes)
+        return changed
 
     def _facts(self) -> Facts:
         contact, sledge, start, solver = self.contact, self.sledge, self.start, self.solver
