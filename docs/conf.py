@@ -35,6 +35,7 @@ html_theme = "furo"
 html_title = f"skisnow {release}"
 html_static_path = ["_static"]
 html_css_files = ["skisnow.css"]
+html_js_files = ["skisnow.js"]
 html_copy_source = False
 html_show_sourcelink = False
 html_math_renderer = "mathml"
