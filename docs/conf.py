@@ -23,7 +23,9 @@ myst_enable_extensions = ["dollarmath", "colon_fence", "attrs_block", "attrs_inl
 myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"  # the docstrings say types, shapes and units in words
+autodoc_typehints = "description"  # beside what the docstrings say of shapes and units
+autodoc_typehints_description_target = "documented"
+autodoc_typehints_format = "short"
 autodoc_class_signature = "separated"
 napoleon_google_docstring = False
 napoleon_use_ivar = True

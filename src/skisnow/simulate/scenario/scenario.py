@@ -35,7 +35,12 @@ def _ski_file(ski: Ski) -> str | None:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Air:
-    """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m)."""
+    """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m).
+
+    See Also
+    --------
+    skisnow.Scenario
+    """
 
     drag_area: Annotated[
         float,
@@ -80,7 +85,13 @@ class Air:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Start:
-    """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad)."""
+    """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad).
+
+    See Also
+    --------
+    skisnow.Scenario
+    skisnow.Stop
+    """
 
     x: Annotated[
         float,
@@ -126,7 +137,13 @@ class Start:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Stop:
-    """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first."""
+    """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first.
+
+    See Also
+    --------
+    skisnow.Scenario
+    skisnow.Start
+    """
 
     duration: Annotated[
         float | None,
@@ -173,6 +190,11 @@ class Scenario(Shown):
         Where it begins, when it ends, how it is computed.
     gravity
         (m/s²), > 0.
+
+    See Also
+    --------
+    skisnow.scenario
+    skisnow.simulate
     """
 
     slope: Annotated[
