@@ -79,9 +79,21 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strength_a
     SolverError
         The sledge finds no equilibrium to start from.
 
+    See Also
+    --------
+    skisnow.scenario : what a run is.
+    skisnow.verify : how exact it is.
+    skisnow.compare_tracks : the run beside a measured track.
+
     Notes
     -----
     One thread; the same scenario gives the same bits on the same machine.
+
+    References
+    ----------
+    * Mössner and others (2013), "Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic
+      force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
+    * The page docs/methods/simulated-turn.md.
     """
     setup = set_up(scenario)
     record = Record(setup)
