@@ -102,6 +102,26 @@ struct PythonLaws {
   }
 };
 
+// A law of a point in Python: `residual`, `bear` and `lost` of arrays, as in `PenetrationLaw`.
+PenetrationLaw python_penetration(const nb::object& law, const Array& bends, bool along_base_normal) {
+  const auto asked = [law](const char* name, std::size_t rows, const auto&... points) {
+    nb::gil_scoped_acquire held;
+    const auto found = nb::cast<Array>(law.attr(name)(array(points, {points.size()})...));
+    const std::size_t wanted = rows * std::max({points.size()...});
+    if (found.size() != wanted) throw std::invalid_argument("a penetration law must give one value for each point");
+    return Values(found.data(), found.data() + wanted);
+  };
+  PenetrationLaw out;
+  out.residual = [asked](const Values& deepest) { return asked("residual", 1, deepest); };
+  out.bear = [asked](const Values& depth, const Values& deepest, const Values& angle) {
+    return asked("bear", 2, depth, deepest, angle);
+  };
+  out.lost = [asked](const Values& deepest) { return asked("lost", 1, deepest); };
+  out.along_base_normal = along_base_normal;
+  out.bends.assign(bends.data(), bends.data() + bends.size());
+  return out;
+}
+
 nb::dict sections_of(const SnowContact& contact, int k) {
   const Sections& s = contact.sections(k);
   std::vector<int> rows;
@@ -269,7 +289,13 @@ NB_MODULE(_core, m) {
           [](SnowContact& self, nb::object friction, nb::object shear, double fade_speed) {
             self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
           },
-          nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"));
+          nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"))
+      .def(
+          "set_penetration",
+          [](SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
+            self.set_penetration(python_penetration(law, bends, along_base_normal));
+          },
+          nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
   bind_carve(m);
   bind_dynamics(m);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "archive.hpp"
@@ -74,6 +75,8 @@ class GrooveLines {
   bool is_uneven(const Pose& pose) const;
   void leave_all(Archive& archive, int strip);
 
+  // Of a ground, for each metre of ski (J/m); empty: that of the core's own law.
+  std::function<double(const Ground&)> lost;
   // Energy lost in the grooves under the ski (J), older tracks' share taken off.
   double groove_energy() const;
   double groove_energy(int slot) const;

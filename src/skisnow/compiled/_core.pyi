@@ -1,4 +1,5 @@
 from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -41,6 +42,11 @@ class Snow:
     part_along: float
     part_across: float
 
+class PenetrationLaw(Protocol):
+    def residual(self, deepest: FloatArray, /) -> FloatArray: ...
+    def bear(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray: ...
+    def lost(self, deepest: FloatArray, /) -> FloatArray: ...
+
 class Contact:
     instruction_set: str
     def __init__(
@@ -65,6 +71,7 @@ class Contact:
         shear: Callable[[FloatArray, FloatArray], FloatArray] | None,
         fade_speed: float,
     ) -> None: ...
+    def set_penetration(self, law: PenetrationLaw, bends: FloatArray, along_base_normal: bool) -> None: ...
 
 class FlexibleSki: ...
 class Body: ...
