@@ -96,7 +96,7 @@ sanitize: $(VENV)/.skisnow-dev
 		-DSKISNOW_SANITIZE=$(SANITIZE) -DCMAKE_BUILD_TYPE=Release
 	PATH="$(abspath $(BIN)):$$PATH" cmake --build $(SANITIZED)
 	rm -rf $(SANITIZED)/package && mkdir -p $(SANITIZED)/package && cp -r src/skisnow $(SANITIZED)/package
-	cp $(SANITIZED)/_core*.so $(SANITIZED)/package/skisnow/compiled
+	cp $(SANITIZED)/_core*.so $(SANITIZED)/libskisnow_contact* src/core/skisnow_contact.h $(SANITIZED)/package/skisnow/compiled
 # -S: the checkout's own core is not to be found
 	LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
 		PYTHONPATH=$(SANITIZED)/package:$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \

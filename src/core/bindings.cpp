@@ -22,20 +22,11 @@ Grid grid(double x0, double dx, double y0, double dy, const Array& values, bool 
   return Grid(x0, dx, nx, y0, dy, ny, {values.data(), values.data() + values.size()}, goes_on);
 }
 
-Runner runner(double tail, double tip, const Array& table, const Array& node) {
-  Runner out;
-  out.tail = tail;
-  out.tip = tip;
-  out.places = int(table.shape(0));
-  out.table.assign(table.data(), table.data() + table.size());
-  out.node.assign(node.data(), node.data() + node.size());
-  for (int i = 0; i < out.places; i++) {
-    const double at = tail + i / out.places_per_metre();
-    int e = 0;
-    while (e + 2 < out.nodes() && at <= out.node[std::size_t(e + 1)]) e++;
-    out.element.push_back(e);
-  }
-  return out;
+Runner runner(const Array& position, const Array& half_width, const Array& base_height, const Array& node) {
+  const auto numbers = [](const Array& given) {
+    return std::vector<double>(given.data(), given.data() + given.size());
+  };
+  return Runner::of(numbers(position), numbers(half_width), numbers(base_height), numbers(node));
 }
 
 using Beams = std::optional<std::vector<Array>>;

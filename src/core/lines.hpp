@@ -28,6 +28,8 @@ enum LineField {
 };
 // clang-format on
 
+constexpr double LINE_SPACING = 0.02;  // (m) unless said otherwise
+
 class GrooveLines {
  public:
   std::int64_t first = 0, end = 0;  // numbers of the lines that are laid: first <= n < end
@@ -83,7 +85,7 @@ class GrooveLines {
   std::vector<double> recalled_energy;  // (capacity,) that an older track had taken (J)
 
  private:
-  double spacing_ = 0.02;
+  double spacing_ = LINE_SPACING;
 
   void lay(std::int64_t number, const Pose& pose, double station, const Snow& snow);
   void leave(std::int64_t number, Archive* archive, int strip);
