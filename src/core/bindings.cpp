@@ -181,24 +181,7 @@ nb::tuple force(SnowContact& self, const Array& position, const Array& rotation,
   return nb::make_tuple(array(wrench, {found.size(), 6}), loads);
 }
 
-}  // namespace
-}  // namespace skisnow
-
-namespace skisnow {
-void bind_carve(nb::module_& m);
-void bind_dynamics(nb::module_& m);
-}  // namespace skisnow
-
-NB_MODULE(_core, m) {
-  using namespace skisnow;
-  m.attr("SOURCE_HASH") = SKISNOW_SOURCE_HASH;
-  m.def("instruction_sets", [] {
-    nb::list names;
-    for (const char* name : {"baseline", "avx2", "avx512"})
-      if (kernels_named(name) != nullptr) names.append(name);
-    return names;
-  });
-
+void bind_snow(nb::module_& m) {
   nb::class_<Grid>(m, "Grid").def(nb::init<double>()).def("at", [](const Grid& g, double x, double y) {
     const Grid::Value found = g.at(x, y);
     return nb::make_tuple(found.value, found.slope_x, found.slope_y);
@@ -230,7 +213,9 @@ NB_MODULE(_core, m) {
       .def_rw("knot_area", &Snow::knot_area)
       .def_rw("part_along", &Snow::part_along)
       .def_rw("part_across", &Snow::part_across);
+}
 
+void bind_contact(nb::module_& m) {
   nb::class_<SnowContact::State>(m, "State");
   nb::class_<SnowContact>(m, "Contact")
       .def(
@@ -287,6 +272,28 @@ NB_MODULE(_core, m) {
             self.set_penetration(python_penetration(law, bends, along_base_normal));
           },
           nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
+}
+
+}  // namespace
+}  // namespace skisnow
+
+namespace skisnow {
+void bind_carve(nb::module_& m);
+void bind_dynamics(nb::module_& m);
+}  // namespace skisnow
+
+NB_MODULE(_core, m) {
+  using namespace skisnow;
+  m.attr("SOURCE_HASH") = SKISNOW_SOURCE_HASH;
+  m.def("instruction_sets", [] {
+    nb::list names;
+    for (const char* name : {"baseline", "avx2", "avx512"})
+      if (kernels_named(name) != nullptr) names.append(name);
+    return names;
+  });
+
+  bind_snow(m);
+  bind_contact(m);
   bind_carve(m);
   bind_dynamics(m);
 }

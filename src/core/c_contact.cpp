@@ -4,6 +4,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -33,9 +34,9 @@ void require(bool good, const std::string& what) {
 }
 
 std::string told(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  std::ostringstream out;
+  out << value;
+  return out.str();
 }
 
 void require_above(double value, const char* name) {

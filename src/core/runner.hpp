@@ -43,6 +43,6 @@ struct Motion {
 // other.
 Pose between(const Pose& from, const Pose& to, double share);
 
-void rotation_matrix(const Vector3& rotation_vector, double (&out)[3][3]);
+void rotation_matrix(const Vector3& v, double (&out)[3][3]);  // of a rotation vector
 
 }  // namespace skisnow
