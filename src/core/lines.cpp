@@ -165,6 +165,7 @@ void GrooveLines::lay(std::int64_t number, const Pose& pose, double station, con
 }
 
 double GrooveLines::groove_energy(int slot) const {
+  if (lost) return lost(ground(slot)) * spacing_;
   const double hardness = values[HARDNESS][slot], excess = values[EXCESS][slot];
   return 0.5 * hardness * excess / (hardness + excess) * ground(slot).squared() * spacing_;
 }

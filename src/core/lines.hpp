@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "archive.hpp"
@@ -26,6 +27,8 @@ enum LineField {
   LINE_FIELDS
 };
 // clang-format on
+
+constexpr double LINE_SPACING = 0.02;  // (m) unless said otherwise
 
 class GrooveLines {
  public:
@@ -74,13 +77,15 @@ class GrooveLines {
   bool is_uneven(const Pose& pose) const;
   void leave_all(Archive& archive, int strip);
 
+  // Of a ground, for each metre of ski (J/m); empty: that of the core's own law.
+  std::function<double(const Ground&)> lost;
   // Energy lost in the grooves under the ski (J), older tracks' share taken off.
   double groove_energy() const;
   double groove_energy(int slot) const;
   std::vector<double> recalled_energy;  // (capacity,) that an older track had taken (J)
 
  private:
-  double spacing_ = 0.02;
+  double spacing_ = LINE_SPACING;
   std::vector<std::uint8_t> filled_;  // knots of each block's tile that are filled
 
   void fill(int slot, int from, int to);
