@@ -25,7 +25,7 @@ LONGEST_STEP: Final = 6e-3
 SHORTEST_STEP: Final = 1e-7
 """Step (s) below which a run ends."""
 CLOSENESS: Final = 0.1
-"""Share of a step's own error to which Newton's method solves it (Choice: 0.01 moves no end by a tenth of its error)."""
+"""Share of a step's own error to which Newton's method solves it (Choice: 0.01 moves ends by less than their error)."""
 MATRIX_KEPT: Final = 8
 """Steps over which Newton's matrix is kept while it serves (Choice)."""
 
