@@ -37,6 +37,11 @@ def run_batch(
     progress
         Is told the number of finished points and that of all.
 
+    Returns
+    -------
+    list of dict
+        One row for each point.
+
     Raises
     ------
     ParameterError
@@ -44,10 +49,18 @@ def run_batch(
     SkisnowError
         A worker ended unexpectedly; what was finished is kept.
 
+    See Also
+    --------
+    skisnow.study : points from a file.
+
     Notes
     -----
     Workers are started afresh ("spawn"), on every system alike. A script that calls this with several workers needs
     the usual ``if __name__ == "__main__":``.
+
+    References
+    ----------
+    The page docs/how-to/study.md.
     """
     kept = kept if kept is not None else KeptRows()
     wanted = workers_in_force(workers)

@@ -62,6 +62,10 @@ class TurnChain(Shown):
         both are computed alike.
     analysis
         Of the campaign, where it was made on the way.
+
+    See Also
+    --------
+    skisnow.chain
     """
 
     campaign: str

@@ -10,7 +10,12 @@ from ..inputs import Quantity, Search, declared_text, require_declared
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Air:
-    """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m)."""
+    """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m).
+
+    See Also
+    --------
+    skisnow.Scenario
+    """
 
     drag_area: Annotated[
         float,

@@ -26,6 +26,10 @@ class RigidSledge:
         Between the middles of the skis (m), > 0.
     edge_angle
         Of both skis' bases, positive: left edges down (rad).
+
+    See Also
+    --------
+    skisnow.Scenario
     """
 
     mass: Annotated[float, Quantity("sledge.mass_kg", "mass without the skis", lowest=0.0, highest=1000.0, above=True)]

@@ -10,7 +10,13 @@ from ..inputs import Quantity, Search, declared_text, require_declared
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Start:
-    """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad)."""
+    """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad).
+
+    See Also
+    --------
+    skisnow.Scenario
+    skisnow.Stop
+    """
 
     x: Annotated[
         float,
@@ -56,7 +62,13 @@ class Start:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Stop:
-    """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first."""
+    """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first.
+
+    See Also
+    --------
+    skisnow.Scenario
+    skisnow.Start
+    """
 
     duration: Annotated[
         float | None,
