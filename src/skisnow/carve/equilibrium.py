@@ -103,6 +103,11 @@ class Equilibrium(Shown):
         Where the answer is outside what the model can say, in words.
     iterations
         Of Newton's method.
+
+    See Also
+    --------
+    skisnow.carve
+    skisnow.rest
     """
 
     outcome: Outcome
@@ -188,16 +193,35 @@ def carve(
     elements
         Of the whole ski.
 
+    Returns
+    -------
+    Equilibrium
+        Whatever the outcome; numbers that do not exist are None.
+
     Raises
     ------
     ParameterError
         An argument is outside its range, or the snow has no S_f.
+
+    See Also
+    --------
+    skisnow.rest : a ski that is set down and does not turn.
+    skisnow.simulate : a whole turn in place of a steady one.
+    skisnow.study : many such answers in one table.
 
     Notes
     -----
     The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight
     is left out. The side force draws the same share of the shear strength everywhere along the edge (Choice): τ e per
     length.
+
+    References
+    ----------
+    * Mössner and others (2013), "Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic
+      force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
+    * Federolf, Roos, Lüthi and Dual (2010), "Finite element simulation of the ski-snow interaction of an alpine ski in
+      a carved turn", Sports Eng. 12, 123-133, doi 10.1007/s12283-010-0038-z.
+    * The page docs/methods/carved-turn.md.
     """
     _require_kinds(ski, snow)
     _require(edge_angle, load, unloading_ratio, moment)
@@ -239,7 +263,28 @@ def rest(
     twist: bool = True,
     elements: int = ELEMENTS,
 ) -> Equilibrium:
-    """Equilibrium of a ski set down on snow: virgin snow everywhere, no side force. Arguments as in `carve`."""
+    """Equilibrium of a ski set down on snow: virgin snow everywhere, no side force. Arguments as in `carve`.
+
+    Parameters
+    ----------
+    ski, snow, edge_angle, load, moment, clamp_length, twist, elements
+        As in `carve`; the snow needs no S_f.
+
+    Returns
+    -------
+    Equilibrium
+        Without side force and turn radius.
+
+    See Also
+    --------
+    skisnow.carve : a ski that turns.
+
+    References
+    ----------
+    * Hetényi (1946), Beams on Elastic Foundation, University of Michigan Press: what a flat ski of one stiffness is
+      held to.
+    * The page docs/methods/carved-turn.md.
+    """
     _require_kinds(ski, snow)
     _require(edge_angle, load, 1.0, moment)
     _require_within(ski, load, moment)

@@ -81,9 +81,20 @@ def chain(
     SolverError
         The sledge finds no equilibrium to start from on that snow.
 
+    See Also
+    --------
+    skisnow.analyse : its first step alone.
+    skisnow.simulate : one turn alone.
+
     Notes
     -----
     A script that calls this with several workers needs the usual ``if __name__ == "__main__":``.
+
+    References
+    ----------
+    * Mössner and others (2013), "Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic
+      force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
+    * The page docs/how-to/in-python.md.
     """
     _require(unloading_ratio, runs)
     workers = workers_in_force(workers)

@@ -74,6 +74,10 @@ class Analysis(Shown):
         The used experiments with the snow that they were made on.
     time
         When it was made.
+
+    See Also
+    --------
+    skisnow.analyse
     """
 
     campaign: Campaign
@@ -158,12 +162,29 @@ def analyse(
     progress
         Called with a line of text now and then.
 
+    Returns
+    -------
+    Analysis
+        With results, snow of a site, figures and tables.
+
     Raises
     ------
     FieldDataError
         The folder holds errors; its ``problems`` list every one.
     ParameterError
         ``n_resamples`` is too small for a 95 % interval.
+
+    See Also
+    --------
+    skisnow.read_campaign : the campaign to analyse.
+    skisnow.write_report : what was found, as a page.
+    skisnow.Analysis.snow : the snow of a site for a turn.
+
+    References
+    ----------
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+    * Efron (1979), "Bootstrap methods: another look at the jackknife", Ann. Stat. 7, 1-26, doi 10.1214/aos/1176344552.
     """
     if n_resamples < FEWEST_RESAMPLES:
         raise ParameterError(f"n_resamples is {n_resamples!r}; a 95 % interval needs {FEWEST_RESAMPLES} or more")

@@ -42,7 +42,27 @@ _SAME_PERCENT = 0.005
 
 
 def results_dict(analysis: Analysis) -> Json:
-    """Give the analysis as plain dictionaries and lists, ready for JSON."""
+    """Give the analysis as plain dictionaries and lists, ready for JSON.
+
+    Parameters
+    ----------
+    analysis
+        What `analyse` gave.
+
+    Returns
+    -------
+    dict
+        The contents of results.json, in the units that its keys name.
+
+    See Also
+    --------
+    skisnow.Analysis.results : the same, kept.
+    skisnow.write_report : writes it, too.
+
+    References
+    ----------
+    The page docs/files/results.md.
+    """
     results = {
         "schema_version": SCHEMA_VERSION,
         "campaign": _campaign(analysis),

@@ -140,6 +140,10 @@ class Identification(Shown):
         What it took.
     data
         The name of each file, and what it was taken for, in words.
+
+    See Also
+    --------
+    skisnow.identify
     """
 
     outcome: Outcome

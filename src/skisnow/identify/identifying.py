@@ -105,10 +105,21 @@ def identify(
     FitError
         Not even the start can be computed.
 
+    See Also
+    --------
+    skisnow.simulate : the run that is fitted.
+    skisnow.compare_tracks : how far two tracks are apart, without a fit.
+
     Notes
     -----
     Searches simulate with fixed steps of 1 ms; the last steps of the search and what is told of the answer are computed
     with the scenario's own solver.
+
+    References
+    ----------
+    * Kaps, Nachbauer and Mössner (1996), "Determination of kinetic friction and drag area in alpine skiing", ASTM STP
+      1266, 165-177.
+    * The page docs/methods/identification.md.
     """
     begun = time.monotonic()
     require_bootstrap(bootstrap, bootstrap_by)

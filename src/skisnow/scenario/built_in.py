@@ -23,6 +23,21 @@ _SECTION: Final = re.compile(r"^\[(\w+)\]\n", re.MULTILINE)
 def scenario_names() -> tuple[str, ...]:
     """Names of the built-in scenarios.
 
+    Returns
+    -------
+    tuple of str
+        What `skisnow.scenario` takes.
+
+    See Also
+    --------
+    skisnow.scenario : the scenario of a name.
+
+    References
+    ----------
+    The page docs/files/scenario.md.
+
+    Examples
+    --------
     >>> scenario_names()
     ('carved-46m', 'carver-42m', 'giant-slalom-67m')
     """

@@ -35,6 +35,11 @@ class Contact:
         u_y > 0 (m).
     friction, friction_by_speed
         μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m).
+
+    See Also
+    --------
+    skisnow.Scenario
+    skisnow.SnowField
     """
 
     snow: Annotated[SnowProperties, Section("snow", otherwise=True)]

@@ -60,6 +60,11 @@ def read_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
         Values by ``section.key``, or by ``key`` alone, in the units that the keys name. Relative paths among them start
         at the current folder.
 
+    Returns
+    -------
+    Scenario
+        Checked; `Scenario.with_` makes another of it.
+
     Raises
     ------
     ParameterError
@@ -70,6 +75,15 @@ def read_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
     -----
     RangeWarning
         A value of a ski file is beyond what skis usually have.
+
+    See Also
+    --------
+    skisnow.scenario_names : the built-in ones.
+    skisnow.simulate : the run that comes out.
+
+    References
+    ----------
+    The page docs/files/scenario.md.
 
     Examples
     --------

@@ -55,6 +55,11 @@ class Scenario(Shown):
         Where it begins, when it ends, how it is computed.
     gravity
         (m/s²), > 0.
+
+    See Also
+    --------
+    skisnow.scenario
+    skisnow.simulate
     """
 
     slope: Annotated[

@@ -31,7 +31,12 @@ STEEPEST_DEG: Final = 75.0
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Plane:
-    """A plane with its inclination (rad)."""
+    """A plane with its inclination (rad).
+
+    See Also
+    --------
+    skisnow.Profile
+    """
 
     angle: Annotated[
         float,
@@ -69,6 +74,10 @@ class Profile(Shown):
     ParameterError
         Fewer than four points, a number that is not finite, x that does not rise, a gap, or a cliff; the place is
         named.
+
+    See Also
+    --------
+    skisnow.Plane
 
     Notes
     -----

@@ -15,7 +15,13 @@ Method: TypeAlias = Literal["default", "fast"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Solver:
-    """How it is computed; lengths in m, times in s. What is None follows from ski and snow."""
+    """How it is computed; lengths in m, times in s. What is None follows from ski and snow.
+
+    See Also
+    --------
+    skisnow.Scenario
+    skisnow.verify
+    """
 
     method: Annotated[
         Method,

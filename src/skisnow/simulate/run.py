@@ -138,6 +138,11 @@ class Run(Shown):
         Time it took, without the start (s).
     numbers
         What the solver chose: elements, line_spacing_m.
+
+    See Also
+    --------
+    skisnow.simulate
+    skisnow.compare_tracks
     """
 
     scenario: Scenario

@@ -35,6 +35,10 @@ class Refinement(Shown):
         Distance between the ends of both runs (m); None where one of them is not finite.
     outcome
         Of the finer run.
+
+    See Also
+    --------
+    skisnow.verify
     """
 
     key: str
@@ -78,6 +82,14 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     -------
     tuple
         One entry for each choice. Where a repetition is interrupted, those before it.
+
+    See Also
+    --------
+    skisnow.simulate : the run.
+
+    References
+    ----------
+    The page docs/validation/simulated-turn.md.
     """
     found: list[Refinement] = []
     again = simulate or _plainly()

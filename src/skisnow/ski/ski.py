@@ -67,6 +67,11 @@ class Ski(Shown):
     ParameterError
         A table is not finite, not of the same length, not falling or not positive where it must be, the waist is wider
         than the tip or the tail, or the tables do not reach over the running and the sidecut length.
+
+    See Also
+    --------
+    skisnow.read_ski
+    skisnow.carve
     """
 
     name: str

@@ -35,6 +35,11 @@ class SnowProperties(Shown):
     unloading_ratio
         k_u/H_V ≥ 1 where it is known, which `Scenario.with_` then takes over; 1 is elastic snow, which springs back.
 
+    See Also
+    --------
+    skisnow.published_snow
+    skisnow.snow_from_results
+
     Examples
     --------
     A snow with numbers of one's own: 0.2 N/mm³ and 0.35 N/mm².

@@ -55,6 +55,11 @@ def run_study(study: Study | str | Path, *, workers: int | None = None, progress
     progress
         Is told the number of finished points and that of all.
 
+    Returns
+    -------
+    StudyTable
+        A row for each point, in their order; the table is written when it is complete.
+
     Raises
     ------
     ParameterError
@@ -62,6 +67,17 @@ def run_study(study: Study | str | Path, *, workers: int | None = None, progress
         or the number of workers is below 1.
     OutputError
         The table's place cannot be written.
+
+    See Also
+    --------
+    skisnow.read_study : the study of a file.
+    skisnow.run_batch : points and a function of your own.
+
+    References
+    ----------
+    * McKay, Beckman and Conover (1979), "A comparison of three methods for selecting values of input variables in the
+      analysis of output from a computer code", Technometrics 21, 239-245, doi 10.1080/00401706.1979.10489755.
+    * The page docs/how-to/study.md.
     """
     workers = workers_in_force(workers)
     study = study if isinstance(study, Study) else read_study(study)

@@ -68,6 +68,10 @@ class Study(Shown):
         Names of the inputs that vary, in the order of the file: the last varies fastest.
     points
         The inputs of every point.
+
+    See Also
+    --------
+    skisnow.read_study
     """
 
     file: Path

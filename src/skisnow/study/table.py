@@ -30,6 +30,10 @@ class StudyTable(Shown):
         Numbers, texts and switches.
     varied
         The inputs that vary.
+
+    See Also
+    --------
+    skisnow.study
     """
 
     columns: tuple[str, ...]

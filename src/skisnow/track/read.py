@@ -74,6 +74,16 @@ def read_track(
         backwards: with file, row, column, value, what is allowed and what to do.
     ParameterError
         ``fastest`` or ``gap_factor`` is not above zero, or ``kind`` is no format.
+
+    See Also
+    --------
+    skisnow.track_summary : what it says.
+    skisnow.in_slope_frame : onto the slope.
+    skisnow.compare_tracks : beside a simulated one.
+
+    References
+    ----------
+    The page docs/files/track.md.
     """
     for name, value in (("fastest", fastest), ("gap_factor", gap_factor)):
         if not value > 0.0:

@@ -41,6 +41,10 @@ class TrackSummary(Shown):
         Over the whole track (m/s): of the recorded speeds, or without any of the smoothed track's; None if unknown.
     remarks
         What could not be told, and what looks doubtful, in words.
+
+    See Also
+    --------
+    skisnow.track_summary
     """
 
     track: Track
@@ -76,10 +80,26 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     place_noise
         Standard deviation of a coordinate (m); None: from the scatter about the smoothed track.
 
+    Returns
+    -------
+    TrackSummary
+        Distance, speed, runs, lifts, turns, each with how sure it is.
+
     Raises
     ------
     ParameterError
         Too few points, or a window or a noise that is not above 0.
+
+    See Also
+    --------
+    skisnow.read_track : a track from a file.
+    skisnow.compare_tracks : two tracks.
+
+    References
+    ----------
+    * Savitzky and Golay (1964), "Smoothing and differentiation of data by simplified least squares procedures", Anal.
+      Chem. 36, 1627-1639, doi 10.1021/ac60214a047.
+    * The page docs/methods/tracks.md.
     """
     motion = track_motion(track, window=window, place_noise=place_noise)
     if not np.isfinite(motion.smoothed.velocity[:, 0]).any():
