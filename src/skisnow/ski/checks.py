@@ -34,7 +34,7 @@ def require_sound(ski: Ski) -> None:
     ParameterError
         The first rule broken.
     """
-    if not (isinstance(ski.name, str) and ski.name.strip()):
+    if not (isinstance(ski.name, str) and ski.name.strip()):  # type: ignore[redundant-expr] # callers without types
         _refuse(ski, "its name is blank", "Give it one")
     _require_tables(ski)
     _require_stations(ski)
