@@ -12,6 +12,7 @@ import numpy.typing as npt
 from ..compiled import core
 from ..errors import ParameterError
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
+from ..forces.penetration import PointLaw
 from ..forces.shear import ShearLaw
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..geometry.surfaces import Grid, Plane
@@ -39,15 +40,18 @@ class SnowField(Shown):
     Attributes
     ----------
     snow_hardness
-        H_V (N/m³), a number > 0 or a `Grid` over the place.
+        H_V (N/m³), a number > 0 or a `Grid` over the place; not used where ``penetration`` is given.
     failure_shear_stress
         S_f (N/m²), a number ≥ 0 or a `Grid` over the place; not used where ``shear`` is given.
     unloading_ratio
-        k_u/H_V ≥ 1; 1 is elastic snow, which keeps nothing.
+        k_u/H_V ≥ 1; 1 is elastic snow, which keeps nothing. Not used where ``penetration`` is given.
     friction
         A law for μ(v), or a constant μ ≥ 0.
     shear
         A law for the strength over depth and edge angle, with the thrust that comes with it; ``None``: S_f.
+    penetration
+        A law for the stress over depth and deepest depth, asked at three Gauss points of each straight piece; ``None``:
+        H_V and k_u, in closed form.
     surface
         ``Plane()`` or heights as a `Grid` (m).
     compaction_resistance
@@ -72,6 +76,7 @@ class SnowField(Shown):
     unloading_ratio: float
     friction: FrictionLaw | float = 0.0
     shear: ShearLaw | None = None
+    penetration: PointLaw | None = None
     surface: Plane | Grid = field(default_factory=Plane)
     compaction_resistance: bool = True
     shear_displacement: float = SHEAR_DISPLACEMENT
@@ -90,16 +95,29 @@ class SnowField(Shown):
         stress = told(self.failure_shear_stress, N_PER_MM2, "N/mm²")
         friction = self.friction if isinstance(self.friction, int | float) else type(self.friction).__name__
         laws = f"friction {friction}, shear {'S_f' if self.shear is None else type(self.shear).__name__}"
+        if self.penetration is not None:
+            laws += f", penetration {type(self.penetration).__name__}"
         return Facts(f"H_V {hardness}, S_f {stress}, k_u/H_V {amount(self.unloading_ratio)}, {laws}")
 
     def __post_init__(self) -> None:
         _require("snow_hardness", _least(self.snow_hardness), above=0.0)
         _require("failure_shear_stress", _least(self.failure_shear_stress), least=0.0)
         _require("unloading_ratio", self.unloading_ratio, least=1.0)
+        self._require_one_hold()
         for name in ("shear_displacement", "edge_blend_angle", "fade_speed", "part_along", "part_across"):
             _require(name, getattr(self, name), above=0.0)
         _require("knot_area", self.knot_area, least=0.0)
         object.__setattr__(self, "compiled", self._compiled())
+
+    def _require_one_hold(self) -> None:
+        law = self.penetration
+        if law is None or not law.along_base_normal:
+            return
+        if self.shear is not None or _most(self.failure_shear_stress) > 0.0:
+            raise ParameterError(
+                f"SnowField: {type(law).__name__} acts along the base's normal and so holds the edge across by itself; "
+                "give it failure_shear_stress 0 and no shear law"
+            )
 
     def _compiled(self) -> core.Snow:
         snow = core.Snow()
@@ -140,6 +158,10 @@ class SnowField(Shown):
 
 def _least(value: float | Grid) -> float:
     return float(value.values.min()) if isinstance(value, Grid) else value
+
+
+def _most(value: float | Grid) -> float:
+    return float(value.values.max()) if isinstance(value, Grid) else value
 
 
 def _require(name: str, value: float, *, least: float | None = None, above: float | None = None) -> None:

@@ -23,10 +23,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ..field.records import PenetrationTests, ShearTests
-    from .analysis import Analysis, ModelTable, PenetrationAnalysis, ShearAnalysis
+    from .analysis import Analysis
     from .hardness import Hardness
     from .model_choice import NestedRows
     from .models import Model, ModelFit
+    from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis
     from .regressions import Regression
     from .screening import Screened
     from .shear_stress import ShearStress

@@ -12,12 +12,12 @@ from typing import Final
 import numpy as np
 
 from ..errors import FitError, ParameterError
-from ..simulate.batch_file import KeptRows
-from ..simulate.scenario import ScenarioFile
-from ..simulate.scenario.free_keys import free_keys
-from ..simulate.scenario.given import GivenScenario, given_scenario
-from ..simulate.scenario.identify_section import given_parameters
-from ..simulate.scenario.reading import resolved
+from ..parallel.kept_rows import KeptRows
+from ..scenario import ScenarioFile
+from ..scenario.free_keys import free_keys
+from ..scenario.given import GivenScenario, given_scenario
+from ..scenario.identify_section import given_parameters
+from ..scenario.reading import resolved
 from .assembling import Collected, collected, values_to_begin_with
 from .bootstrap import BootstrapBy, require_bootstrap
 from .data import Data

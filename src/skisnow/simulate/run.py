@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..from_above import from_above
+from ..scenario import Plane, Scenario
 from ..shown import Facts, Shown, amount, field_facts, span
 from ..track.track import Track
 from ..units import DEGREE, MM
-from .scenario import Plane, Scenario
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,12 +9,12 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from ..former_names import formerly
+from ..json_number import json_number
+from ..scenario import Scenario, Solver
+from ..scenario.keys import SCENARIO_KEYS
 from ..shown import Facts, Shown, amount
 from ..units import CM
-from .carve_dict import finite
 from .run import Outcome, Run
-from .scenario import Scenario, Solver
-from .scenario.keys import SCENARIO_KEYS
 
 Simulate: TypeAlias = Callable[[Scenario], Run]
 FINER: Final = 2.0
@@ -140,4 +140,4 @@ def _chosen(solver: Solver, key: str) -> float:
 
 
 def _distance(run: Run, finer: Run) -> float | None:
-    return finite(float(np.linalg.norm(run.place[-1] - finer.place[-1])))
+    return json_number(float(np.linalg.norm(run.place[-1] - finer.place[-1])))

@@ -7,8 +7,9 @@ from pathlib import Path
 
 from ..errors import ParameterError
 from ..files import cannot_write, write_file
-from ..simulate.batch import Told, require_workers, run_batch
-from ..simulate.batch_file import KeptRows
+from ..parallel.batch import Told, run_batch
+from ..parallel.kept_rows import KeptRows
+from ..parallel.pool import workers_in_force
 from .study import Study
 from .study_file import read_study
 from .table import StudyTable, read_table
@@ -78,7 +79,7 @@ def run_study(study: Study | str | Path, *, workers: int | None = None, progress
       analysis of output from a computer code", Technometrics 21, 239-245, doi 10.1080/00401706.1979.10489755.
     * The page docs/how-to/study.md.
     """
-    require_workers(workers)
+    workers = workers_in_force(workers)
     study = study if isinstance(study, Study) else read_study(study)
     fingerprint = study.fingerprint()
     state = study_state(study)

@@ -12,8 +12,8 @@ from typing import Any, Protocol, TypeAlias
 
 from ..given import is_file
 from ..inputs import Quantity
+from ..parallel.kept_rows import Row
 from ..shown import Facts, Shown
-from ..simulate.batch_file import Row
 
 Point: TypeAlias = dict[str, Any]
 

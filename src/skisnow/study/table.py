@@ -13,8 +13,8 @@ from typing import Any
 from ..errors import ParameterError
 from ..given import json_value
 from ..inputs import Quantity
+from ..parallel.kept_rows import Row
 from ..shown import Facts, Shown
-from ..simulate.batch_file import Row
 from ..spreadsheet_text import guarded, unguarded
 
 

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from .campaign_file import CampaignFile
     from .campaign_files import CampaignFiles
     from .corrections import RowCorrections
+    from .table import Table
     from .table_forms import TableForm
-    from .tables import Table
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
 """Names of the files that a campaign reads, in their order."""
