@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -41,6 +42,12 @@ def _together(scenario: Scenario) -> Iterator[str]:
     friction = scenario.contact.friction + scenario.contact.friction_by_speed * start.speed
     if friction < 0.0:
         yield f"the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski"
+    if abs(sledge.edge_angle) < scenario.shear.least_edge_angle:
+        least = math.degrees(scenario.shear.least_edge_angle)
+        yield (
+            f"the edge angle is {math.degrees(abs(sledge.edge_angle)):.3g}°; machining needs {least:.3g}° or more, "
+            "β + 2 shear.least_shear_plane_deg: edge more, or take another shear.law"
+        )
     if isinstance(scenario.slope, Profile):
         first, last = scenario.slope.ends
         if not first <= start.x <= last:

@@ -17,6 +17,7 @@ from ...units import DEGREE
 from ..sledge import RigidSledge
 from .checks import require_sound
 from .contact import Contact
+from .shear import Shear
 from .slope import Plane, Profile
 from .solver import Solver
 
@@ -163,8 +164,8 @@ class Scenario(Shown):
     ----------
     slope
         A plane or a measured profile.
-    contact, air
-        Snow with friction; drag.
+    contact, shear, air
+        Snow with friction; the law of its shear strength; drag.
     sledge
         The rigid part with its edge angle, without the skis.
     ski, clamp_length, damping_ratio
@@ -215,6 +216,7 @@ class Scenario(Shown):
     ] = 0.02
     start: Start
     stop: Stop
+    shear: Shear = field(default_factory=Shear)
     solver: Solver = field(default_factory=Solver)
     gravity: Annotated[
         float,
