@@ -11,13 +11,14 @@ SBOM ?= dist/skisnow.cdx.json
 # the same examples every time (test-all seeks others); neighbours stay in one process, which has what they share
 QUICK := -n 2 --dist worksteal -q --hypothesis-profile=ci
 
-.PHONY: help demo test test-repeating test-all lint sanitize docs bench lock sbom clean
+.PHONY: help demo test test-repeating test-all lint tidy sanitize docs bench lock sbom clean
 
 help:
 	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, with reports in $(DEMO)/"
 	@echo "make test      the tests that take minutes, not hours"
 	@echo "make test-all  those and the long ones"
 	@echo "make lint      ruff, mypy, import-linter"
+	@echo "make tidy      clang-tidy over the compiled core"
 	@echo "make sanitize  the compiled core under sanitizers: tests of contact, motion and carve"
 	@echo "make docs      the documentation, into docs/_build/html"
 	@echo "make bench     what is measured, as ratios in one run"
@@ -85,10 +86,18 @@ lint: $(VENV)/.skisnow-dev
 	$(BIN)/lint-imports --no-cache
 	$(BIN)/clang-format --dry-run --Werror src/core/*
 
+# What clang-tidy says of the core; .clang-tidy tells what it looks for and what fails.
+TIDY := build/tidy
+tidy: $(VENV)/.skisnow-dev $(TOOLS)/.tools
+	PATH="$(abspath $(BIN)):$$PATH" cmake -S . -B $(TIDY) -G Ninja -DPython_EXECUTABLE=$(abspath $(BIN))/python \
+		-DCMAKE_BUILD_TYPE=Release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+	$(TOOLS)/bin/python $(TOOLS)/bin/run-clang-tidy.py -quiet -p $(TIDY) -clang-tidy-binary $(abspath $(TOOLS))/bin/clang-tidy \
+		'src/core/(?!kernels).*\.cpp$$'
+
 # The core built with sanitizers, and the tests of its own run under them: SANITIZE=thread finds races.
 SANITIZE ?= address,undefined
 SANITIZED := build/sanitize-$(SANITIZE)
-SANITIZED_TESTS ?= tests/compiled tests/contact tests/dynamics tests/ski/beam tests/simulate/equilibrium
+SANITIZED_TESTS ?= tests/compiled tests/contact tests/dynamics tests/ski/beam tests/carve
 RUNTIMES := $(if $(findstring thread,$(SANITIZE)),tsan,asan ubsan) stdc++
 PRELOAD = $(foreach each,$(RUNTIMES),$(shell c++ -print-file-name=lib$(each).so))
 sanitize: $(VENV)/.skisnow-dev
@@ -96,7 +105,7 @@ sanitize: $(VENV)/.skisnow-dev
 		-DSKISNOW_SANITIZE=$(SANITIZE) -DCMAKE_BUILD_TYPE=Release
 	PATH="$(abspath $(BIN)):$$PATH" cmake --build $(SANITIZED)
 	rm -rf $(SANITIZED)/package && mkdir -p $(SANITIZED)/package && cp -r src/skisnow $(SANITIZED)/package
-	cp $(SANITIZED)/_core*.so $(SANITIZED)/package/skisnow/compiled
+	cp $(SANITIZED)/_core*.so $(SANITIZED)/libskisnow_contact* src/core/skisnow_contact.h $(SANITIZED)/package/skisnow/compiled
 # -S: the checkout's own core is not to be found
 	LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1 \
 		PYTHONPATH=$(SANITIZED)/package:$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \

@@ -2,6 +2,7 @@
 
 ``python -m benchmarks turns`` runs those of simulated turns alone and prints them as Markdown, ``identify`` those of
 identifications, ``web`` those of the web lab in a browser, ``contact`` those of the contact in the compiled core.
+``scenarios`` runs random scenarios and counts how they end.
 """
 
 from __future__ import annotations
@@ -11,22 +12,24 @@ import os
 import platform
 import subprocess
 import sys
+from pathlib import Path
 
-TURNS, IDENTIFY, WEB, CONTACT = "turns", "identify", "web", "contact"
+TURNS, IDENTIFY, WEB, CONTACT, SCENARIOS = "turns", "identify", "web", "contact", "scenarios"
 PARTS = (TURNS, IDENTIFY, WEB, CONTACT)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument(
-        "part", nargs="?", choices=[TURNS, IDENTIFY, WEB, CONTACT], help="these alone; left out: everything"
-    )
+    parser.add_argument("part", nargs="?", choices=[*PARTS, SCENARIOS], help="these alone; left out: everything")
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
     parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds of a turn")
     parser.add_argument("--repeats", type=int, default=5, help="of each turn; the shortest time counts")
     parser.add_argument("--runs", type=int, default=64, help="turns at a time on all cores")
     parser.add_argument("--readings", type=int, default=10_000, help="in the store of the web lab")
     parser.add_argument("--tries", type=int, default=5, help="to open each page of the web lab")
+    parser.add_argument("--seed", type=int, default=0, help="of the first random scenario")
+    parser.add_argument("--count", type=int, default=200, help="random scenarios")
+    parser.add_argument("--out", type=Path, help="file of the random scenarios; what it holds is not computed again")
     options = parser.parse_args()
     if options.part == TURNS:
         _turns(options)
@@ -38,6 +41,10 @@ def main() -> None:
         from .contact.speed import print_table
 
         print_table(options.repeats)
+    elif options.part == SCENARIOS:
+        from .turns import scenarios
+
+        scenarios.print_table(options.seed, options.count, options.out)
     else:
         _everything_else(options.rows)
         print(flush=True)

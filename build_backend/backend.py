@@ -69,7 +69,7 @@ def build_editable(
         with zipfile.ZipFile(Path(folder) / name) as built:
             kept = {each: built.read(each) for each in built.namelist() if ".dist-info/" in each}
             for each in built.namelist():
-                if Path(each).name.startswith("_core."):
+                if Path(each).name.startswith(("_core.", "libskisnow_contact.", "skisnow_contact.dll")):
                     _put(SOURCES / each, built.read(each))
     kept["skisnow.pth"] = f"{SOURCES}\n".encode()
     (record,) = (each for each in kept if each.endswith("/RECORD"))

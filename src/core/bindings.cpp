@@ -22,20 +22,11 @@ Grid grid(double x0, double dx, double y0, double dy, const Array& values, bool 
   return Grid(x0, dx, nx, y0, dy, ny, {values.data(), values.data() + values.size()}, goes_on);
 }
 
-Runner runner(double tail, double tip, const Array& table, const Array& node) {
-  Runner out;
-  out.tail = tail;
-  out.tip = tip;
-  out.places = int(table.shape(0));
-  out.table.assign(table.data(), table.data() + table.size());
-  out.node.assign(node.data(), node.data() + node.size());
-  for (int i = 0; i < out.places; i++) {
-    const double at = tail + i / out.places_per_metre();
-    int e = 0;
-    while (e + 2 < out.nodes() && at <= out.node[std::size_t(e + 1)]) e++;
-    out.element.push_back(e);
-  }
-  return out;
+Runner runner(const Array& position, const Array& half_width, const Array& base_height, const Array& node) {
+  const auto numbers = [](const Array& given) {
+    return std::vector<double>(given.data(), given.data() + given.size());
+  };
+  return Runner::of(numbers(position), numbers(half_width), numbers(base_height), numbers(node));
 }
 
 using Beams = std::optional<std::vector<Array>>;
@@ -101,6 +92,26 @@ struct PythonLaws {
     }
   }
 };
+
+// A law of a point in Python: `residual`, `bear` and `lost` of arrays, as in `PenetrationLaw`.
+PenetrationLaw python_penetration(const nb::object& law, const Array& bends, bool along_base_normal) {
+  const auto asked = [law](const char* name, std::size_t rows, const auto&... points) {
+    nb::gil_scoped_acquire held;
+    const auto found = nb::cast<Array>(law.attr(name)(array(points, {points.size()})...));
+    const std::size_t wanted = rows * std::max({points.size()...});
+    if (found.size() != wanted) throw std::invalid_argument("a penetration law must give one value for each point");
+    return Values(found.data(), found.data() + wanted);
+  };
+  PenetrationLaw out;
+  out.residual = [asked](const Values& deepest) { return asked("residual", 1, deepest); };
+  out.bear = [asked](const Values& depth, const Values& deepest, const Values& angle) {
+    return asked("bear", 2, depth, deepest, angle);
+  };
+  out.lost = [asked](const Values& deepest) { return asked("lost", 1, deepest); };
+  out.along_base_normal = along_base_normal;
+  out.bends.assign(bends.data(), bends.data() + bends.size());
+  return out;
+}
 
 nb::dict sections_of(const SnowContact& contact, int k) {
   const Sections& s = contact.sections(k);
@@ -171,24 +182,7 @@ nb::tuple force(SnowContact& self, const Array& position, const Array& rotation,
   return nb::make_tuple(array(wrench, {found.size(), 6}), loads);
 }
 
-}  // namespace
-}  // namespace skisnow
-
-namespace skisnow {
-void bind_carve(nb::module_& m);
-void bind_dynamics(nb::module_& m);
-}  // namespace skisnow
-
-NB_MODULE(_core, m) {
-  using namespace skisnow;
-  m.attr("SOURCE_HASH") = SKISNOW_SOURCE_HASH;
-  m.def("instruction_sets", [] {
-    nb::list names;
-    for (const char* name : {"baseline", "avx2", "avx512"})
-      if (kernels_named(name) != nullptr) names.append(name);
-    return names;
-  });
-
+void bind_snow(nb::module_& m) {
   nb::class_<Grid>(m, "Grid").def(nb::init<double>()).def("at", [](const Grid& g, double x, double y) {
     const Grid::Value found = g.at(x, y);
     return nb::make_tuple(found.value, found.slope_x, found.slope_y);
@@ -231,7 +225,9 @@ NB_MODULE(_core, m) {
       .def_rw("knot_area", &Snow::knot_area)
       .def_rw("part_along", &Snow::part_along)
       .def_rw("part_across", &Snow::part_across);
+}
 
+void bind_contact(nb::module_& m) {
   nb::class_<SnowContact::State>(m, "State");
   nb::class_<SnowContact>(m, "Contact")
       .def(
@@ -281,7 +277,35 @@ NB_MODULE(_core, m) {
           [](SnowContact& self, nb::object friction, nb::object shear, double fade_speed) {
             self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
           },
-          nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"));
+          nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"))
+      .def(
+          "set_penetration",
+          [](SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
+            self.set_penetration(python_penetration(law, bends, along_base_normal));
+          },
+          nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
+}
+
+}  // namespace
+}  // namespace skisnow
+
+namespace skisnow {
+void bind_carve(nb::module_& m);
+void bind_dynamics(nb::module_& m);
+}  // namespace skisnow
+
+NB_MODULE(_core, m) {
+  using namespace skisnow;
+  m.attr("SOURCE_HASH") = SKISNOW_SOURCE_HASH;
+  m.def("instruction_sets", [] {
+    nb::list names;
+    for (const char* name : {"baseline", "avx2", "avx512"})
+      if (kernels_named(name) != nullptr) names.append(name);
+    return names;
+  });
+
+  bind_snow(m);
+  bind_contact(m);
   bind_carve(m);
   bind_dynamics(m);
 }

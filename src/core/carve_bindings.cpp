@@ -10,8 +10,6 @@
 #include "carve.hpp"
 #include "carve_strip.hpp"
 
-namespace nb = nanobind;
-
 namespace skisnow {
 namespace {
 

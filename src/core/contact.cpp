@@ -91,10 +91,17 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
   wrenches_.resize(runners_.size());
 }
 
+void SnowContact::set_penetration(PenetrationLaw law) {
+  bearing_ = std::make_shared<Bearing>(std::move(law));
+  for (GrooveLines& each : state_.lines)
+    each.lost = [bearing = bearing_](const Ground& ground) { return bearing->lost(ground); };
+}
+
 const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion,
                                     Sections& s) {
   kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
   kernels_->press(*snow_, lines, s);
+  if (bearing_) bearing_->press(lines, s);
   kernels_->slide(motion, pose, *snow_, s);
   if (snow_->shear.by_angle()) strengthen(snow_->shear, s);
   if (laws) laws(k, s);
@@ -123,15 +130,22 @@ const Wrench& SnowContact::look(int k, const Pose& pose, const Motion& motion) {
   return wrench;
 }
 
+void SnowContact::differ(int k, double sense) {
+  if (bearing_)
+    bearing_->differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
+  else
+    kernels_->differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
+}
+
 void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double damping, RunnerTangent& out) {
   const Sections& s = sections(k);
   out.clear(runner(k).nodes());
   differences_.resize(s.count());
   const double lean = pose.rotation[2][1], sense = lean < 0.0 ? -1.0 : 1.0;  // in the mirror the other way
-  kernels_->differ(*snow_, lines(k), s, TANGENT_STEP, sense, differences_);
+  differ(k, sense);
   if (std::fabs(lean) < LEVEL) {  // a level base has two tangents: between them
     const std::vector<double> one = differences_.values;
-    kernels_->differ(*snow_, lines(k), s, TANGENT_STEP, -sense, differences_);
+    differ(k, -sense);
     for (std::size_t i = 0; i < one.size(); i++) differences_.values[i] = 0.5 * (one[i] + differences_.values[i]);
   }
   const bool bends = runner(k).nodes() > 2;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "bearing.hpp"
 #include "tangent.hpp"
 
 namespace skisnow {
@@ -42,6 +43,7 @@ class SnowContact {
   int strip(int k) const { return state_.strips[std::size_t(k)]; }
   const Kernels& kernels() const { return *kernels_; }
   Laws laws;
+  void set_penetration(PenetrationLaw law);  // in place of H_V and k_u, before any snow is touched
 
   // Forces at a situation: the history advances from the last accepted pose on copies; the snow stays as it is.
   std::vector<Reaction> force(const Situation& at);
@@ -92,6 +94,7 @@ class SnowContact {
   std::vector<Sections> sections_;
   std::vector<Wrench> wrenches_;
   SectionDifferences differences_;
+  std::shared_ptr<Bearing> bearing_;  // null: the core's own law
   std::vector<std::int64_t> needed_;  // lines, the foremost first
   struct Before {                     // of one runner, what `begin` has changed
     std::int64_t first, end;
@@ -102,6 +105,7 @@ class SnowContact {
 
   GrooveLines& history(int k, const Situation& at);
   const Wrench& evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, Sections& s);
+  void differ(int k, double sense);
   Reaction reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion);
   void settle_history(int k, const Pose& pose);
   void lay_anew(int k, const Pose& pose);

@@ -8,8 +8,6 @@
 #include "arrays.hpp"
 #include "dynamics.hpp"
 
-namespace nb = nanobind;
-
 namespace skisnow {
 namespace {
 

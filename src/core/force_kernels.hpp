@@ -125,6 +125,16 @@ struct Pushed {
   }
 };
 
+// A section's base before it is cut, moved by a small way to the left, off the snow, or turned in twist.
+template <class V>
+Cut<V> displaced(const Cut<V>& base, int change, double way) {
+  Cut<V> c = base;
+  if (change == SectionDifferences::LEFT) c.aside = all<V>(way);
+  if (change == SectionDifferences::OFF) c.height += way;
+  if (change == SectionDifferences::TWIST) c.sp += way * base.cp, c.cp -= way * base.sp;
+  return c;
+}
+
 // [push] All forces of the sections, summed to the wrench on the boot and the loads of the beam.
 template <class V>
 void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out) {
@@ -157,10 +167,7 @@ void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, doubl
     const bool dry = !any((by.share > 0.0) & (load<V>(s[DEEPEST] + i) > 0.0));
     for (int change = 0; change < SectionDifferences::CHANGES; change++) {
       const double way = change == SectionDifferences::OFF ? step : sense * step;
-      Cut<V> c = base;
-      if (change == SectionDifferences::LEFT) c.aside = all<V>(way);
-      if (change == SectionDifferences::OFF) c.height += way;
-      if (change == SectionDifferences::TWIST) c.sp += way * base.cp, c.cp -= way * base.sp;
+      Cut<V> c = displaced(base, change, way);
       V parts[Pushed<V>::PARTS] = {};
       if (!dry) {
         c.cut(snow);

@@ -85,6 +85,10 @@ SKISNOW_INLINE V root(V value) {
   return value;
 }
 
+SKISNOW_INLINE double root(double value) { return __builtin_sqrt(value); }
+
+SKISNOW_INLINE bool any(bool mask) { return mask; }
+
 template <class M>
 SKISNOW_INLINE bool any(M mask) {
   std::int64_t found = 0;

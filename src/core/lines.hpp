@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "archive.hpp"
@@ -27,6 +28,8 @@ enum LineField {
   LINE_FIELDS
 };
 // clang-format on
+
+constexpr double LINE_SPACING = 0.02;  // (m) unless said otherwise
 
 class GrooveLines {
  public:
@@ -56,8 +59,8 @@ class GrooveLines {
   // All that is kept of a line, to put it back.
   struct Line {
     int slot;
-    double values[LINE_FIELDS], place[KNOTS], depth[KNOTS], slope[KNOTS];
-    std::uint8_t knots;
+    double values[LINE_FIELDS];
+    Ground ground;
   };
   Line line(int slot) const;
   void put_back(const Line& line);
@@ -75,14 +78,18 @@ class GrooveLines {
   bool is_uneven(const Pose& pose) const;
   void leave_all(Archive& archive, int strip);
 
+  // Of a ground, for each metre of ski (J/m); empty: that of the core's own law.
+  std::function<double(const Ground&)> lost;
   // Energy lost in the grooves under the ski (J), older tracks' share taken off.
   double groove_energy() const;
   double groove_energy(int slot) const;
   std::vector<double> recalled_energy;  // (capacity,) that an older track had taken (J)
 
  private:
-  double spacing_ = 0.02;
+  double spacing_ = LINE_SPACING;
+  std::vector<std::uint8_t> filled_;  // knots of each block's tile that are filled
 
+  void fill(int slot, int from, int to);
   void lay(std::int64_t number, const Pose& pose, double station, const Snow& snow);
   void leave(std::int64_t number, Archive* archive, int strip);
 };

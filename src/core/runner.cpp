@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace skisnow {
 
@@ -16,7 +17,40 @@ Vector3 rotation_vector(const double (&m)[3][3]) {
   return {factor * twice[0], factor * twice[1], factor * twice[2]};
 }
 
+constexpr double TABLE_STEP = 1e-3;  // (m) of the table, at most; between its rows it is linear
+
+// A column over falling positions, straight between them, at a place within.
+double between_rows(const std::vector<double>& position, const std::vector<double>& column, double place) {
+  std::size_t j = 0;
+  while (j + 2 < position.size() && position[j + 1] >= place) j++;
+  const double share = (position[j] - place) / (position[j] - position[j + 1]);
+  return column[j] + share * (column[j + 1] - column[j]);
+}
+
 }  // namespace
+
+Runner Runner::of(const std::vector<double>& position, const std::vector<double>& half_width,
+                  const std::vector<double>& base_height, std::vector<double> node) {
+  Runner out;
+  out.tip = position.front(), out.tail = position.back(), out.node = std::move(node);
+  const int steps = std::max(2, int(std::ceil((out.tip - out.tail) / TABLE_STEP)));
+  const double step = (out.tip - out.tail) / steps;
+  out.places = steps + 1;
+  out.table.resize(std::size_t(4 * out.places));
+  const auto at = [&](int row, int column) -> double& { return out.table[std::size_t(4 * row + column)]; };
+  for (int i = 0; i <= steps; i++) {
+    const double place = i < steps ? out.tail + i * step : out.tip;
+    at(i, 0) = between_rows(position, half_width, place), at(i, 2) = between_rows(position, base_height, place);
+    int e = 0;
+    while (e + 2 < out.nodes() && place <= out.node[std::size_t(e + 1)]) e++;
+    out.element.push_back(e);
+  }
+  for (int i = 0; i <= steps; i++) {  // slopes by central differences, at the ends one-sided
+    const int low = std::max(i - 1, 0), high = std::min(i + 1, steps);
+    for (const int column : {0, 2}) at(i, column + 1) = (at(high, column) - at(low, column)) / ((high - low) * step);
+  }
+  return out;
+}
 
 void rotation_matrix(const Vector3& v, double (&out)[3][3]) {
   const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], angle = std::sqrt(square);

@@ -17,6 +17,9 @@ struct Runner {
   std::vector<double> table;  // (places, 4): half width, its slope, height of the base, its slope
   std::vector<double> node;   // beam nodes, tip to tail; a rigid runner has the two ends
   std::vector<int> element;   // (places,) the beam element of each place of the table
+  // From positions that fall from tip to tail, half widths and heights there, and the beam's nodes.
+  static Runner of(const std::vector<double>& position, const std::vector<double>& half_width,
+                   const std::vector<double>& base_height, std::vector<double> node);
   double places_per_metre() const { return (places - 1) / (tip - tail); }
   int nodes() const { return int(node.size()); }
 };
@@ -40,6 +43,6 @@ struct Motion {
 // other.
 Pose between(const Pose& from, const Pose& to, double share);
 
-void rotation_matrix(const Vector3& rotation_vector, double (&out)[3][3]);
+void rotation_matrix(const Vector3& v, double (&out)[3][3]);  // of a rotation vector
 
 }  // namespace skisnow

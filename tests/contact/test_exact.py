@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from skisnow.contact import SnowContact, SnowField
-from skisnow.contact.snow_field import ActsOn
+from skisnow.forces.friction.load import ActsOn
 from skisnow.forces.shear import MachiningShear
 from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
 

@@ -1,13 +1,16 @@
 """Skis in snow that remembers: forces at a pose, and what a step leaves behind.
 
 ``SnowField`` is the snow, ``Runner`` the shape of what slides on it, ``SnowContact`` any number of runners in one snow,
-each with its own pose. Friction and shear follow any law of `skisnow.forces`, also one of your own.
+each with its own pose. Friction, shear and penetration follow any law of `skisnow.forces`, also one of your own;
+``Laws`` hands them to a simulated turn.
 """
 
 from __future__ import annotations
 
+from .c_library import c_header, c_library
+from .laws import Laws
 from .runner import Runner
 from .snow_contact import ContactForces, Sections, SnowContact
 from .snow_field import SnowField
 
-__all__ = ["ContactForces", "Runner", "Sections", "SnowContact", "SnowField"]
+__all__ = ["ContactForces", "Laws", "Runner", "Sections", "SnowContact", "SnowField", "c_header", "c_library"]

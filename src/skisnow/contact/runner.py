@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,9 +17,6 @@ if TYPE_CHECKING:
     from ..ski import Ski
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
-
-TABLE_STEP: Final = 1e-3
-"""Spacing (m) of the table in which the core looks up width and height; between its rows they are linear."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -42,6 +38,10 @@ class Runner(Shown):
     ------
     ParameterError
         Positions do not fall, a number is not finite, a width is not above 0, or nodes do not span the runner.
+
+    See Also
+    --------
+    skisnow.SnowContact
     """
 
     position: FloatArray
@@ -100,10 +100,7 @@ class Runner(Shown):
 
     def compiled(self) -> core.Runner:
         """What the core takes."""
-        places = np.linspace(self.tail, self.tip, max(2, math.ceil((self.tip - self.tail) / TABLE_STEP)) + 1)
-        half, height = (
-            np.interp(places, self.position[::-1], column[::-1]) for column in (self.half_width, self.base_height)
-        )
-        table = np.column_stack([half, np.gradient(half, places), height, np.gradient(height, places)])
         nodes = np.array([self.tip, self.tail]) if self.nodes is None else self.nodes
-        return core.runner(self.tail, self.tip, np.ascontiguousarray(table), np.ascontiguousarray(nodes))
+        return core.runner(
+            *(np.ascontiguousarray(each) for each in (self.position, self.half_width, self.base_height, nodes))
+        )

@@ -15,6 +15,7 @@ from ..shown import Facts, Shown, field_facts
 
 if TYPE_CHECKING:
     from ..forces.friction import FrictionLaw
+    from ..forces.penetration import PointLaw
     from ..forces.shear import ShearLaw
     from .runner import Runner
     from .snow_field import SnowField
@@ -39,6 +40,10 @@ class ContactForces(Shown):
         (k, 6): force (N) and moment (N m) about each boot, in the slope's axes.
     beam_loads
         For each runner (nodes, 3): force (N) and moments (N m) on deflection, its slope and twist; empty without beams.
+
+    See Also
+    --------
+    skisnow.SnowContact
     """
 
     wrench: FloatArray
@@ -105,6 +110,11 @@ class SnowContact(Shown):
     spacing
         Of the lines on which the contact is integrated (m), > 0.
 
+    See Also
+    --------
+    skisnow.SnowField
+    skisnow.Runner
+
     Notes
     -----
     Poses: ``position`` (k, 3) of the boots (m) and ``rotation`` (k, 3, 3) whose columns point ahead, left across the
@@ -134,6 +144,9 @@ class SnowContact(Shown):
         if friction is not None or shear is not None:
             called = None if friction is None else _coefficient(friction)
             self.compiled.set_laws(called, None if shear is None else _strength(shear), snow.fade_speed)
+        if snow.penetration is not None:
+            law = snow.penetration
+            self.compiled.set_penetration(_Pressed(law), np.array(law.bends, float), law.along_base_normal)
 
     def _facts(self) -> Facts:
         return Facts(f"of {len(self.runners)} runners, {self.compiled.instruction_set}: {self.snow._facts().title}")
@@ -270,6 +283,29 @@ class _strength:  # noqa: N801
         if not np.all(np.isfinite(found)):
             worst = float(np.degrees(angle[meets][~np.isfinite(found[:, meets]).all(axis=0)][0]))
             raise ParameterError(f"{self.law!r} gives no finite strength at an edge angle of {worst:.3g} degrees")
+        return found
+
+
+class _Pressed:
+    """A penetration law as the core asks it: arrays over points, finite numbers back."""
+
+    def __init__(self, law: PointLaw) -> None:
+        self.law = law
+
+    def residual(self, deepest: FloatArray, /) -> FloatArray:
+        return self._sound(self.law.residual_depth(deepest), deepest.shape, deepest)
+
+    def bear(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
+        return self._sound(self.law.stress_and_energy(depth, deepest, edge_angle), (2, len(depth)), depth)
+
+    def lost(self, deepest: FloatArray, /) -> FloatArray:
+        return self._sound(self.law.lost_energy(deepest), deepest.shape, deepest)
+
+    def _sound(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
+        found = np.ascontiguousarray(np.broadcast_to(found, shape), float)
+        bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
+        if bad.any():
+            raise ParameterError(f"{self.law!r} gives no finite answer at a depth of {1e3 * depth[bad][0]:.4g} mm")
         return found
 
 

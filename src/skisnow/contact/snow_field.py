@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Final, Literal, TypeAlias, get_args
+from typing import Final, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,8 @@ import numpy.typing as npt
 from ..compiled import core
 from ..errors import ParameterError
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
+from ..forces.friction.load import ActsOn
+from ..forces.penetration import PointLaw
 from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear, NaturalDensityShear, ShearLaw
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING
@@ -20,7 +22,6 @@ from ..shown import Facts, Shown, amount
 from ..units import N_PER_MM2, N_PER_MM3
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
-ActsOn: TypeAlias = Literal["snow-normal", "base-normal"]
 
 EDGE_BLEND: Final = math.radians(2.0)
 """Edge angle (rad) above which the shear acts at the edge alone; below it moves to the middle (Choice)."""
@@ -41,11 +42,11 @@ class SnowField(Shown):
     Attributes
     ----------
     snow_hardness
-        H_V (N/m³), a number > 0 or a `Grid` over the place.
+        H_V (N/m³), a number > 0 or a `Grid` over the place; not used where ``penetration`` is given.
     failure_shear_stress
         S_f (N/m²), a number ≥ 0 or a `Grid` over the place; not used where ``shear`` is given.
     unloading_ratio
-        k_u/H_V ≥ 1; 1 is elastic snow, which keeps nothing.
+        k_u/H_V ≥ 1; 1 is elastic snow, which keeps nothing. Not used where ``penetration`` is given.
     friction
         A law for μ(v), or a constant μ ≥ 0.
     shear
@@ -55,6 +56,9 @@ class SnowField(Shown):
         included.
     residual_ratio, slip_weakening
         Share of the strength that is left where an edge has slipped, 0 to 1, and the slip (m) over which it is reached.
+    penetration
+        A law for the stress over depth and deepest depth, asked at three Gauss points of each straight piece; ``None``:
+        H_V and k_u, in closed form.
     surface
         ``Plane()`` or heights as a `Grid` (m).
     compaction_resistance
@@ -68,6 +72,10 @@ class SnowField(Shown):
     ------
     ParameterError
         A number is outside its range.
+
+    See Also
+    --------
+    skisnow.SnowContact
     """
 
     snow_hardness: float | Grid
@@ -78,6 +86,7 @@ class SnowField(Shown):
     shear: ShearLaw | None = None
     residual_ratio: float = RESIDUAL_RATIO
     slip_weakening: float = SLIP_WEAKENING
+    penetration: PointLaw | None = None
     surface: Plane | Grid = field(default_factory=Plane)
     compaction_resistance: bool = True
     shear_displacement: float = SHEAR_DISPLACEMENT
@@ -96,12 +105,15 @@ class SnowField(Shown):
         stress = told(self.failure_shear_stress, N_PER_MM2, "N/mm²")
         friction = self.friction if isinstance(self.friction, int | float) else type(self.friction).__name__
         laws = f"friction {friction}, shear {'S_f' if self.shear is None else type(self.shear).__name__}"
+        if self.penetration is not None:
+            laws += f", penetration {type(self.penetration).__name__}"
         return Facts(f"H_V {hardness}, S_f {stress}, k_u/H_V {amount(self.unloading_ratio)}, {laws}")
 
     def __post_init__(self) -> None:
         _require("snow_hardness", _least(self.snow_hardness), above=0.0)
         _require("failure_shear_stress", _least(self.failure_shear_stress), least=0.0)
         _require("unloading_ratio", self.unloading_ratio, least=1.0)
+        self._require_one_hold()
         _require("residual_ratio", self.residual_ratio, least=0.0)
         if self.residual_ratio > 1.0:
             raise ParameterError(f"SnowField: residual_ratio is {self.residual_ratio!r}; it must be at most 1")
@@ -120,6 +132,16 @@ class SnowField(Shown):
             _require(name, getattr(self, name), above=0.0)
         _require("knot_area", self.knot_area, least=0.0)
         object.__setattr__(self, "compiled", self._compiled())
+
+    def _require_one_hold(self) -> None:
+        law = self.penetration
+        if law is None or not law.along_base_normal:
+            return
+        if self.shear is not None or _most(self.failure_shear_stress) > 0.0:
+            raise ParameterError(
+                f"SnowField: {type(law).__name__} acts along the base's normal and so holds the edge across by itself; "
+                "give it failure_shear_stress 0 and no shear law"
+            )
 
     def _compiled(self) -> core.Snow:
         snow = core.Snow()
@@ -188,6 +210,10 @@ class SnowField(Shown):
 
 def _least(value: float | Grid) -> float:
     return float(value.values.min()) if isinstance(value, Grid) else value
+
+
+def _most(value: float | Grid) -> float:
+    return float(value.values.max()) if isinstance(value, Grid) else value
 
 
 def _require(name: str, value: float, *, least: float | None = None, above: float | None = None) -> None:

@@ -10,14 +10,14 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..contact import Runner, SnowContact, SnowField
+from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, StepControl
 from ..errors import RangeWarning
 from ..forces.friction import LinearFriction
 from ..geometry import surfaces
+from ..scenario import Plane, Scenario
 from ..ski.beam.clamped import clamped
-from .scenario import Plane, Scenario
 from .sledge.body import sledge_body
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -89,6 +89,12 @@ class Setup:
         ahead = max(0.0, float(self.dynamics.rotation[0, 0])) * float(self.node[0])
         return bool(self.dynamics.position[0] + ahead > self.end)
 
+    def residual_depth(self, deepest: FloatArray) -> FloatArray:
+        """Depth (m) of the groove that is left where the snow was pressed to a deepest one."""
+        law = self.snow.penetration
+        ratio = 1.0 - 1.0 / self.scenario.contact.unloading_ratio
+        return deepest * ratio if law is None else law.residual_depth(deepest)
+
     def slope_normal(self, x: float) -> FloatArray:
         """Unit normal (3,) of the slope at x."""
         return _normal(self.scenario, x)
@@ -103,15 +109,15 @@ class Setup:
         return self.surface_height(x), self.slope_normal(x)
 
 
-def set_up(scenario: Scenario, snow: SnowField | None = None) -> Setup:
+def set_up(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | None = None) -> Setup:
     """Choose the solver's numbers, lay the snow out, or take this one, and set the sledge down on it."""
-    setup = laid_out(scenario, snow)
+    setup = laid_out(scenario, snow, laws=laws)
     setup.unrest = setup.dynamics.settle()
     setup.dynamics.begin(np.array([scenario.start.speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
     return setup
 
 
-def laid_out(scenario: Scenario, snow: SnowField | None = None) -> Setup:
+def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | None = None) -> Setup:
     """The sledge above the snow, before anything moves; above this one, with the tracks in it, where it is given."""
     load, depth, wavelength = _contact(scenario)
     solver, air = scenario.solver, scenario.air
@@ -123,7 +129,7 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None) -> Setup:
         scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity(scenario),
         drag=0.5 * air.density * air.drag_area, drag_height=air.centre_of_pressure_height,
     )  # fmt: skip
-    snow = snow or _snow(scenario)
+    snow = snow or _snow(scenario, laws or Laws())
     runner = Runner.of(scenario.ski, nodes=ski.node)
     contact = SnowContact(snow, [runner, runner], spacing=spacing)
     dynamics = Dynamics(body, contact, *_start(scenario, depth), _control(scenario))
@@ -157,20 +163,22 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
     return load, depth, wavelength
 
 
-def _snow(scenario: Scenario) -> SnowField:
+def _snow(scenario: Scenario, laws: Laws) -> SnowField:
     contact = scenario.contact
     with warnings.catch_warnings():  # a scenario has its own words for friction that is unlikely
         warnings.simplefilter("ignore", RangeWarning)
         friction = LinearFriction(friction_at_rest=contact.friction, friction_slope=contact.friction_by_speed)
+    holds = laws.penetration is not None and laws.penetration.along_base_normal
     return SnowField(
         snow_hardness=contact.snow.snow_hardness,
-        failure_shear_stress=contact.snow.failure_shear_stress or 0.0,
+        failure_shear_stress=0.0 if holds else contact.snow.failure_shear_stress or 0.0,
         unloading_ratio=contact.unloading_ratio,
-        friction=friction,
+        friction=laws.friction or friction,
         friction_acts_on=contact.friction_acts_on,
-        shear=scenario.shear.of(contact.snow.failure_shear_stress or 0.0),
+        shear=laws.shear or (None if holds else scenario.shear.of(contact.snow.failure_shear_stress or 0.0)),
         residual_ratio=scenario.shear.residual_ratio,
         slip_weakening=scenario.shear.slip_weakening,
+        penetration=laws.penetration,
         surface=_surface(scenario),
         compaction_resistance=contact.compaction_resistance,
         shear_displacement=contact.shear_displacement,

@@ -10,12 +10,13 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
+from ..contact import Laws
 from ..errors import SolverError
 from ..former_names import formerly
+from ..scenario import Scenario
 from .run import OPEN_SHARE, Groove, Outcome, Run
 from .run_record import Record
 from .run_setup import AT_REST, Setup, set_up
-from .scenario import Scenario
 from .standing import why_no_start
 
 Progress: TypeAlias = Callable[[float, float], None]
@@ -56,7 +57,13 @@ REMEDIES: Final[dict[Outcome, str]] = {
 }
 
 
-def simulate(scenario: Scenario, *, progress: Progress | None = None, strength_along: Strength | None = None) -> Run:
+def simulate(
+    scenario: Scenario,
+    *,
+    progress: Progress | None = None,
+    strength_along: Strength | None = None,
+    laws: Laws | None = None,
+) -> Run:
     """Simulate a scenario from static equilibrium.
 
     Parameters
@@ -68,6 +75,9 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strength_a
     strength_along
         S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places. Asked
         once for each output interval, for both skis and all along them.
+    laws
+        In place of the scenario's: laws of `skisnow.forces`, or of your own. The run knows the scenario alone, so its
+        report and files tell nothing of them.
 
     Returns
     -------
@@ -79,11 +89,23 @@ def simulate(scenario: Scenario, *, progress: Progress | None = None, strength_a
     SolverError
         The sledge finds no equilibrium to start from.
 
+    See Also
+    --------
+    skisnow.scenario : what a run is.
+    skisnow.verify : how exact it is.
+    skisnow.compare_tracks : the run beside a measured track.
+
     Notes
     -----
     One thread; the same scenario gives the same bits on the same machine.
+
+    References
+    ----------
+    * Mössner and others (2013), "Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic
+      force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
+    * The page docs/methods/simulated-turn.md.
     """
-    setup = set_up(scenario)
+    setup = set_up(scenario, laws=laws)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.unrest <= AT_REST and setup.sinks):
         return computed_run(setup, record, "sunk", 0.0)
@@ -177,5 +199,4 @@ def _groove(setup: Setup) -> Groove:
     kept = width > 0.0
     left = across[kept] / width[kept, None]
     middle = 0.5 * (rows[first, 2:5] + rows[last, 2:5])[kept]
-    ratio = 1.0 - 1.0 / setup.scenario.contact.unloading_ratio
-    return Groove(middle, left, width[kept], depth[kept], depth[kept] * ratio)
+    return Groove(middle, left, width[kept], depth[kept], setup.residual_depth(depth[kept]))

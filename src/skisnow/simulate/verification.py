@@ -11,12 +11,12 @@ import numpy as np
 
 from ..former_names import formerly
 from ..inputs import values_of
+from ..json_number import json_number
+from ..scenario import Scenario, Solver
+from ..scenario.keys import SCENARIO_KEYS
 from ..shown import Facts, Shown, amount
 from ..units import CM
-from .carve_dict import finite
 from .run import Outcome, Run
-from .scenario import Scenario, Solver
-from .scenario.keys import SCENARIO_KEYS
 
 Simulate: TypeAlias = Callable[[Scenario], Run]
 FINER: Final = 2.0
@@ -48,6 +48,10 @@ class Refinement(Shown):
         Distance between the ends of both runs (m); None where one of them is not finite.
     outcome
         Of the finer run.
+
+    See Also
+    --------
+    skisnow.verify
     """
 
     key: str
@@ -115,6 +119,14 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     tuple
         One entry for each choice of the solver, for half of u_y, and for each of start speed, edge angle, H_V and S_f
         with 0.1 % more and less: what moves the end farther. Where a repetition is interrupted, those before it.
+
+    See Also
+    --------
+    skisnow.simulate : the run.
+
+    References
+    ----------
+    The page docs/validation/simulated-turn.md.
     """
     again = simulate or _plainly()
     finer = refine(run, again)
@@ -200,4 +212,4 @@ def _chosen(solver: Solver, key: str) -> float:
 
 
 def _distance(run: Run, finer: Run) -> float | None:
-    return finite(float(np.linalg.norm(run.place[-1] - finer.place[-1])))
+    return json_number(float(np.linalg.norm(run.place[-1] - finer.place[-1])))

@@ -1,6 +1,7 @@
 """One set of physics checks over every law for a place on the snow, and the exact answers of the hypoplastic one."""
 
 import math
+import warnings
 from collections.abc import Callable
 from itertools import pairwise
 
@@ -10,24 +11,58 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from skisnow.errors import ParameterError, RangeWarning
-from skisnow.forces.penetration import POINT_LAWS, ElasticPoint, HypoplasticPoint, PointLaw
+from skisnow.forces.penetration import (
+    POINT_LAWS,
+    ElasticPoint,
+    HypoplasticPoint,
+    MeanPressurePoint,
+    PointLaw,
+    VolumeWithAnglePoint,
+)
 
 H_V = 0.2e9
 RATIOS = (1.0, 2.0, 5.0, 10.0, 50.0, math.inf)
-SAMPLES: tuple[PointLaw, ...] = (ElasticPoint(H_V), *(HypoplasticPoint(H_V, ratio) for ratio in RATIOS))
+A, B, RAMP = 0.034e9, 0.35e6, 1e-3
+SAMPLES: tuple[PointLaw, ...] = (
+    ElasticPoint(H_V),
+    *(HypoplasticPoint(H_V, ratio) for ratio in RATIOS),
+    VolumeWithAnglePoint(H_V, 10.0),
+    MeanPressurePoint(A, B, 2.0, RAMP),
+    MeanPressurePoint(A, B, 10.0, RAMP),
+    MeanPressurePoint(A / 4.0, B / 4.0, 5.0, RAMP),
+)
 EVERY_LAW = pytest.mark.parametrize("law", SAMPLES, ids=repr)
 
 
 def stronger(law: PointLaw) -> PointLaw:
-    return (
-        HypoplasticPoint(3 * H_V, law.unloading_ratio) if isinstance(law, HypoplasticPoint) else ElasticPoint(3 * H_V)
-    )
+    if isinstance(law, MeanPressurePoint):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RangeWarning)
+            return MeanPressurePoint(3 * law.pressure_slope, 3 * law.pressure_offset, law.unloading_ratio, RAMP)
+    if isinstance(law, HypoplasticPoint | VolumeWithAnglePoint):
+        return type(law)(3 * H_V, law.unloading_ratio)
+    return ElasticPoint(3 * H_V)
+
+
+def at_5_cm(law: PointLaw) -> float:
+    """Stress of first loading (N/m²)."""
+    if isinstance(law, MeanPressurePoint):
+        return 2.0 * law.pressure_slope * 0.05 + law.pressure_offset
+    return (0.99 if isinstance(law, VolumeWithAnglePoint) else 1.0) * H_V * 0.05
+
+
+def steepest(law: PointLaw) -> float:
+    """Growth of the stress with depth (N/m³) at most."""
+    if isinstance(law, MeanPressurePoint):
+        return law.unloading_ratio * (2.0 * law.pressure_slope + law.pressure_offset / RAMP)
+    ratio = getattr(law, "unloading_ratio", 1.0)
+    return float(ratio if ratio < 1e6 else 1.0) * H_V
 
 
 def zero_at_zero_depth(law: PointLaw) -> None:
     assert np.all(law.stress(np.array([-0.01, 0.0]), 0.0) == 0.0)
     assert np.all(law.stress(np.array([-0.01, 0.0]), 0.02) == 0.0)
-    assert float(law.stress(1e-12, 0.0)) <= 1e-9 * float(law.stress(0.01, 0.0))
+    assert float(law.stress(1e-12, 0.0)) <= 1e-9 * float(law.stress(0.01, 0.0))  # a ramp of 1 mm gives 6e-10
 
 
 def never_tension(law: PointLaw) -> None:
@@ -38,14 +73,13 @@ def never_tension(law: PointLaw) -> None:
 def growing_with_depth(law: PointLaw) -> None:
     for deepest in (0.0, 0.01, 0.04):
         stress = law.stress(np.linspace(-0.01, 0.05, 601), deepest)
-        assert np.all(np.diff(stress) >= 0.0) and stress[-1] == pytest.approx(H_V * 0.05)
+        assert np.all(np.diff(stress) >= 0.0) and stress[-1] == pytest.approx(at_5_cm(law))
 
 
 def continuous_in_depth(law: PointLaw) -> None:
-    steepest = law.unloading_ratio if isinstance(law, HypoplasticPoint) and law.unloading_ratio < 1e6 else 1.0
     for deepest in (0.0, 0.01, 0.04):
         depth = np.linspace(-0.01, 0.05, 6001)
-        assert np.abs(np.diff(law.stress(depth, deepest))).max() <= 1.001 * steepest * H_V * 1e-5
+        assert np.abs(np.diff(law.stress(depth, deepest))).max() <= 1.001 * steepest(law) * 1e-5
 
 
 CHECKS: dict[str, Callable[[PointLaw], None]] = {
@@ -79,7 +113,7 @@ def work(law: PointLaw, start: float, end: float, deepest: float) -> float:
     """∫ p dε on one leg from the stress alone: exact between kinks, where p is linear, by the middle of each piece."""
     residual = float(law.residual_depth(deepest))
     low, high = min(start, end), max(start, end)
-    edges = [low, *sorted({e for e in (0.0, residual, deepest) if low < e < high}), high]
+    edges = [low, *sorted({e for e in (0.0, residual, deepest, *law.bends) if low < e < high}), high]
     total = 0.0
     for left, right in pairwise(edges):
         total += float(law.stress((left + right) / 2, deepest)) * (right - left)
@@ -204,3 +238,25 @@ def test_a_warning_outside_the_measured_range(make: Callable[[], object]) -> Non
     with pytest.warns(RangeWarning, match="outside the 0.02189 to 90 N/mm³") as caught:
         make()
     assert caught[0].filename == __file__
+
+
+def test_the_factor_of_eqn_11() -> None:
+    """0.99, 1.063, 1.100 and 1.137 at 0, 30, 45 and 60°, as the paper's Eqn 11 gives them."""
+    depth, angle = np.full(4, 0.01), np.radians([0.0, 30.0, 45.0, 60.0])
+    stress, energy = VolumeWithAnglePoint(H_V, 10.0).stress_and_energy(depth, depth, angle)
+    assert stress / (H_V * depth) == pytest.approx([0.99, 1.063, 1.100, 1.137], abs=5e-4)
+    assert energy / stress == pytest.approx(stress[0] / (2.0 * 10.0 * 0.99 * H_V), rel=1e-12)
+
+
+def test_the_mean_over_a_wedge_is_that_of_federolf() -> None:
+    """∫ (2 A ε + B) dε/e = A e + B, less what the ramp takes: B ε_B/(2 e)."""
+    e = 0.01
+    depth = (np.arange(20000) + 0.5) * e / 20000
+    mean = float(np.mean(MeanPressurePoint(A, B, 10.0, RAMP).stress(depth, 0.0)))
+    assert mean == pytest.approx(A * e + B - B * RAMP / (2.0 * e), rel=1e-8)
+
+
+@pytest.mark.parametrize("ratio", [0.5, math.inf, math.nan])
+def test_a_mean_pressure_that_unloads_more_softly_is_refused(ratio: float) -> None:
+    with pytest.raises(ParameterError, match=r"MeanPressurePoint: unloading_ratio is .*at least 1"):
+        MeanPressurePoint(A, B, ratio)

@@ -10,11 +10,11 @@ import pytest
 
 from skisnow import Run
 from skisnow.contact import SnowContact, SnowField
-from skisnow.contact.snow_field import ActsOn
+from skisnow.forces.friction.load import ActsOn
 from skisnow.simulate.simulated_run import simulate
 
+from ...carve.synthetic import circular_sidecut
 from ...contact.conftest import edged, straight
-from ..equilibrium.synthetic import circular_sidecut
 from .sledges import GRAVITY, arc_base, rigid_ski, scenario
 from .test_steady_circle import EDGE_DEG, LENGTH, RADIUS, SIDECUT, SPEED, sufficient_strength
 

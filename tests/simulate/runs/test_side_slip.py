@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from skisnow import Run
-from skisnow.simulate.scenario import Solver
+from skisnow.scenario import Solver
 from skisnow.simulate.simulated_run import simulate
 
 from .sledges import GRAVITY, load, rigid_ski, scenario, total_mass

@@ -10,9 +10,11 @@ from .element_count import ElementCountLaw
 from .hypoplastic_point import HypoplasticPoint
 from .law import PenetrationLaw
 from .mean_pressure import MeanPressureLaw
+from .mean_pressure_point import MeanPressurePoint
 from .point_law import PointLaw
 from .volume import VolumeLaw
 from .volume_with_angle import VolumeWithAngleLaw
+from .volume_with_angle_point import VolumeWithAnglePoint
 
 LAWS: Final[tuple[type[PenetrationLaw], ...]] = (
     VolumeLaw,
@@ -25,7 +27,12 @@ LAWS: Final[tuple[type[PenetrationLaw], ...]] = (
 )
 """Every law for the force of a tool: one set of tests runs over all of them."""
 
-POINT_LAWS: Final[tuple[type[PointLaw], ...]] = (ElasticPoint, HypoplasticPoint)
+POINT_LAWS: Final[tuple[type[PointLaw], ...]] = (
+    ElasticPoint,
+    HypoplasticPoint,
+    VolumeWithAnglePoint,
+    MeanPressurePoint,
+)
 """Every law for one place on the snow."""
 
 __all__ = [
@@ -38,8 +45,10 @@ __all__ = [
     "ElementCountLaw",
     "HypoplasticPoint",
     "MeanPressureLaw",
+    "MeanPressurePoint",
     "PenetrationLaw",
     "PointLaw",
     "VolumeLaw",
     "VolumeWithAngleLaw",
+    "VolumeWithAnglePoint",
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -17,14 +18,25 @@ class PointLaw(abc.ABC):
     The place keeps one number, the deepest depth ε_max (m, ≥ 0; 0 for untouched snow). It belongs to the snow and not
     to the ski: what comes behind meets the groove that came before. Along any path the work done on the place is
     ``stored_energy`` plus ``lost_energy``, exactly.
+
+    A rival law is one frozen dataclass in a file of its own, entered in ``POINT_LAWS``. It runs in a contact and in a
+    turn as it is: `skisnow.contact.SnowField` takes it.
     """
 
     __slots__ = ()
+    along_base_normal: ClassVar[bool] = False
+    """Whether the snow's force is one along the normal of the base. Its part across, tan ϑ times the stress, is then
+    what an edge holds at most; it comes in with the displacement across, as every strength does in a contact."""
 
     @property
     def exceptions(self) -> Mapping[str, str]:
         """Shared checks of physics that this law fails, each with the reason."""
         return {}
+
+    @property
+    def bends(self) -> tuple[float, ...]:
+        """Depths (m) above 0 at which the stress of first loading bends: integrals over a base are divided there."""
+        return ()
 
     def deepest_after(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
         """The deepest depth (m) of a place at ε_max that is brought to depth ε, both in m."""
@@ -33,6 +45,13 @@ class PointLaw(abc.ABC):
     @abc.abstractmethod
     def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
         """Stress p (N/m², ≥ 0) at depth ε (m) of a place that has been at ε_max (m) before; the shapes broadcast."""
+
+    def stress_and_energy(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray) -> FloatArray:  # noqa: ARG002
+        """Stress (N/m²) and energy per area (J/m²), (2, n), under a base at an edge angle (rad). For loops.
+
+        The angle does not matter, unless a law says so.
+        """
+        return np.stack([self.stress(depth, deepest), self.stored_energy(depth, deepest)])
 
     @abc.abstractmethod
     def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:

@@ -1,0 +1,44 @@
+"""Where the contact lies as a library for programs in C."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from .. import compiled
+
+NAMES: Final = ("libskisnow_contact.so", "libskisnow_contact.dylib", "skisnow_contact.dll")
+"""Of the library, on Linux, on macOS and on Windows."""
+HEADER: Final = "skisnow_contact.h"
+
+
+def c_library() -> Path:
+    """The shared library, for a linker or for ``dlopen``.
+
+    Raises
+    ------
+    FileNotFoundError
+        The package was put together without it.
+    """
+    return _first(*(_FOLDER / name for name in NAMES))
+
+
+def c_header() -> Path:
+    """The C header of the library, which says what each function takes and gives.
+
+    Raises
+    ------
+    FileNotFoundError
+        The package was put together without it.
+    """
+    return _first(_FOLDER / HEADER, compiled.SOURCES / HEADER)
+
+
+_FOLDER: Final = Path(compiled.__file__).parent
+
+
+def _first(*paths: Path) -> Path:
+    for path in paths:
+        if path.is_file():
+            return path
+    raise FileNotFoundError(f"{paths[0].name} is not beside the compiled core; {compiled.REMEDY}")

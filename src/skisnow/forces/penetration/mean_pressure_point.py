@@ -1,0 +1,106 @@
+"""Snow at one place whose mean over a wedge is p = A e + B: the point form of the law of Federolf and others (2006)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ...errors import ParameterError
+from ..measured_ranges import PRESSURE_OFFSET, PRESSURE_SLOPE
+from ..parameter_checks import require_above_zero, require_not_below_zero
+from .point_law import FloatArray, PointLaw
+
+RAMP_DEPTH: Final = 0.5e-3
+"""Depth (m) over which B comes in (Choice: not measured; the law of the paper, all of it at once, is its limit 0)."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeanPressurePoint(PointLaw):
+    """p = 2 A ε + B min(1, ε/ε_B), of a force along the base's normal; unloading along a steeper line.
+
+    * Virgin loading, ε ≥ ε_max: p = q(ε) = 2 A ε + B min(1, ε/ε_B), and ε_max becomes ε.
+    * Below, ε < ε_max: p = max(0, q(ε_max) - k_u (ε_max - ε)), k_u = unloading_ratio · (2 A + B/ε_B).
+
+    The force on a wedge of depth e is the sum of q over its width: the mean pressure times area, (A e + B) e L/tan ϑ
+    along the snow normal, is the integral of 2 A ε + B. Its part along the surface, tan ϑ times as much, is the most
+    that an edge holds across: there is no shear strength beside it (S_f = 0).
+
+    Attributes
+    ----------
+    pressure_slope, pressure_offset
+        A (N/m³), > 0; B (N/m²), ≥ 0: as `MeanPressureLaw`'s.
+    unloading_ratio
+        Steepness of unloading over the steepest of loading, ≥ 1 and finite. Not published, so it has no default.
+    ramp_depth
+        ε_B (m), > 0: at the surface itself the law would jump to B.
+
+    Notes
+    -----
+    Range, source: as `MeanPressureLaw`; ramp and unloading are ours. On a wedge the ramp takes B ε_B/(2 e) off the mean
+    pressure. That the part across is a most and no force that always acts is ours too: a base that is pushed along the
+    surface at its own depth does no work on the snow, and would be given energy without end.
+
+    Examples
+    --------
+    A race piste, A = 0.034 N/mm³ and B = 0.35 N/mm²: 10 mm deep 0.68 + 0.35 N/mm².
+
+    >>> snow = MeanPressurePoint(pressure_slope=0.034e9, pressure_offset=0.35e6, unloading_ratio=10.0)
+    >>> [round(float(p)) for p in snow.stress([0.00025, 0.0005, 0.010], 0.0)]
+    [192000, 384000, 1030000]
+    """
+
+    pressure_slope: float
+    pressure_offset: float
+    unloading_ratio: float
+    ramp_depth: float = RAMP_DEPTH
+    along_base_normal: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        require_above_zero(self, pressure_slope=self.pressure_slope, ramp_depth=self.ramp_depth)
+        require_not_below_zero(self, pressure_offset=self.pressure_offset)
+        if not 1.0 <= self.unloading_ratio < np.inf:
+            raise ParameterError(
+                f"MeanPressurePoint: unloading_ratio is {self.unloading_ratio!r}; it must be finite and at least 1: "
+                "unloading softer than loading would give energy away"
+            )
+        PRESSURE_SLOPE.warn_outside(self.pressure_slope, "MeanPressurePoint", stacklevel=3)
+        PRESSURE_OFFSET.warn_outside(self.pressure_offset, "MeanPressurePoint", stacklevel=3)
+
+    @property
+    def bends(self) -> tuple[float, ...]:
+        """See `PointLaw.bends`: where the ramp ends."""
+        return (self.ramp_depth,)
+
+    @property
+    def _unloading(self) -> float:
+        """k_u (N/m³)."""
+        return self.unloading_ratio * (2.0 * self.pressure_slope + self.pressure_offset / self.ramp_depth)
+
+    def _virgin(self, depth: FloatArray) -> FloatArray:
+        return 2.0 * self.pressure_slope * depth + self.pressure_offset * np.minimum(1.0, depth / self.ramp_depth)
+
+    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stress`."""
+        reached = self.deepest_after(depth, deepest)
+        released = self._unloading * (reached - np.asarray(depth, float))
+        return np.asarray(np.maximum(self._virgin(reached) - released, 0.0))
+
+    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.residual_depth`: ε_max - q(ε_max)/k_u."""
+        reached = np.asarray(deepest, float)
+        return reached - self._virgin(reached) / self._unloading
+
+    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
+        return self.stress(depth, deepest) ** 2 / (2.0 * self._unloading)
+
+    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.lost_energy`: ∫q less q²/(2 k_u)."""
+        reached = np.asarray(deepest, float)
+        ramp = np.minimum(reached, self.ramp_depth)
+        by_offset = self.pressure_offset * (reached - ramp + 0.5 * ramp**2 / self.ramp_depth)
+        stored = self._virgin(reached) ** 2 / (2.0 * self._unloading)
+        return np.asarray(np.maximum(self.pressure_slope * reached**2 + by_offset - stored, 0.0))

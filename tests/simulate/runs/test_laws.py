@@ -1,0 +1,85 @@
+"""Turns on laws that are not the scenario's own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow import scenario, simulate
+from skisnow.contact import Laws
+from skisnow.forces.friction import FrictionLaw, WaterFilmFriction
+from skisnow.forces.penetration import HypoplasticPoint, MeanPressurePoint, PointLaw, VolumeWithAnglePoint
+from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear
+from skisnow.simulate.run import Run
+
+FloatArray = npt.NDArray[np.float64]
+H, S = 0.2e9, 0.5e6
+
+
+def carve(seconds: float, laws: Laws | None = None) -> Run:
+    return simulate(scenario("carved-46m", changes={"run.duration_s": seconds}), laws=laws)
+
+
+@dataclass(frozen=True)
+class Own(FrictionLaw):
+    """The scenario's friction, written here."""
+
+    def _coefficient(self, speed: FloatArray) -> FloatArray:
+        return np.full(speed.shape, 0.01)
+
+
+@dataclass(frozen=True)
+class Root(PointLaw):
+    """p = a √ε with steep unloading: soft snow over a hard crust turned round."""
+
+    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        reached = self.deepest_after(depth, deepest)
+        return np.asarray(np.maximum(3e7 * np.sqrt(reached) - 5e9 * (reached - np.asarray(depth, float)), 0.0))
+
+    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
+        reached = np.asarray(deepest, float)
+        return np.asarray(np.maximum(reached - 3e7 * np.sqrt(reached) / 5e9, 0.0))
+
+    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        return self.stress(depth, deepest) ** 2 / 1e10
+
+    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
+        reached = np.asarray(deepest, float)
+        return 2e7 * reached**1.5 - 9e14 * reached / 1e10
+
+
+def test_the_scenario_s_laws_from_python_give_its_run() -> None:
+    """Three points of Gauss are exact for straight pressure, and parts end where it bends: the same to rounding."""
+    first = carve(1.0)
+    for laws in (Laws(penetration=HypoplasticPoint(H, 10.0)), Laws(friction=Own(), shear=ConstantShear(S))):
+        again = carve(1.0, laws)
+        assert np.abs(again.place - first.place).max() < 1e-9
+        assert again.steps == first.steps
+        for name, energy in first.energies.items():
+            assert again.energies[name] == pytest.approx(energy, abs=1e-6)
+        assert again.groove.residual_depth == pytest.approx(first.groove.residual_depth, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "laws",
+    [
+        Laws(
+            friction=WaterFilmFriction(lubricated_friction=0.01, dry_friction=0.05, film_speed=3.0, viscous_slope=0.001)
+        ),
+        Laws(shear=AngleShear(3e5, 0.266)),
+        Laws(shear=MachiningShear(1e5, 0.1)),
+        Laws(penetration=VolumeWithAnglePoint(H, 10.0)),
+        Laws(penetration=MeanPressurePoint(0.034e9, 0.35e6, 10.0)),
+        Laws(penetration=Root()),
+    ],
+    ids=str,
+)
+def test_other_laws_run_in_a_turn(laws: Laws) -> None:
+    """To the end, elsewhere than the scenario's laws, and every joule is somewhere."""
+    run, usual = carve(0.5, laws), carve(0.5)
+    assert run.outcome == "finished"
+    assert not run.is_open_by(0.02)
+    assert 1e-4 < np.linalg.norm(run.place[-1] - usual.place[-1]) < 0.5
