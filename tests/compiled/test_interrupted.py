@@ -1,4 +1,4 @@
-"""A long call of compiled code hears a signal within 0.2 s, counted in the processor's time: the machine may be busy."""
+"""A long call of compiled code hears a signal within 0.2 s of the processor's time: the machine may be busy."""
 
 from __future__ import annotations
 
