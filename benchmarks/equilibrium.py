@@ -10,8 +10,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 
-from skisnow.simulate.batch import run_batch
-from skisnow.simulate.carve import carve, rest
+from skisnow.carve.equilibrium import carve, rest
+from skisnow.parallel.batch import run_batch
 from skisnow.ski import Ski, read_ski
 from skisnow.snow.properties import SnowProperties
 

@@ -14,12 +14,12 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from skisnow.simulate.scenario import read_scenario
+from skisnow.replay import replay_bytes, replay_of_run, write_replay
+from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
-from skisnow.web.replay import replay_bytes, replay_of_run, write_replay
 
 if TYPE_CHECKING:
-    from skisnow.web.replay import Replay
+    from skisnow.replay import Replay
 
 SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 SIZES = {"laptop, 1280 × 800": (1280, 800), "large, 1920 × 1080": (1920, 1080), "phone, 390 × 844": (390, 844)}

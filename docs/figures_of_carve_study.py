@@ -11,13 +11,13 @@ from pathlib import Path
 
 from PIL import Image
 
+from skisnow.carve.answer import answered
+from skisnow.carve.answer_dict import answers_dict
+from skisnow.carve.question import carve_question
 from skisnow.report.figures.carved_skis import carved_skis
 from skisnow.report.figures.figure_file import write_figure
 from skisnow.report.figures.grip_map import grip_map
 from skisnow.report.figures.radius_map import radius_map
-from skisnow.simulate.carve_answer import answered
-from skisnow.simulate.carve_dict import answers_dict
-from skisnow.simulate.carve_question import carve_question
 from skisnow.study import read_study, run_study
 
 DOCS = Path(__file__).resolve().parent

@@ -16,7 +16,7 @@ from typing import Any
 from PIL import Image
 
 from skisnow import scenario, simulate
-from skisnow.web.replay import moving_replay_model, replay_of_run
+from skisnow.replay import moving_replay_model, replay_of_run
 
 PLACE = Path(__file__).resolve().parent / "_static" / "replay" / "moving-model.png"
 MOMENTS = (0.5, 2.0, 3.5, 5.0)

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 
 from skisnow import scenario, simulate
-from skisnow.web.replay import replay_of_run, write_replay
+from skisnow.replay import replay_of_run, write_replay
 
 if TYPE_CHECKING:
-    from skisnow.web.replay import Replay
+    from skisnow.replay import Replay
 
 FOLDER = Path(__file__).resolve().parent / "_static" / "replay"
 SCENARIO = "carved-46m"

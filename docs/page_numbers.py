@@ -106,7 +106,7 @@ def _short(row: str) -> str:
     return re.sub(r"[:,]?[ab]=|:", " ", row).strip()
 
 
-def tutorial(folder: Path) -> dict[str, str]:
+def tutorials_campaign(folder: Path) -> dict[str, str]:
     """What the sentences about the report say."""
     results = json.loads((folder / "results" / "results.json").read_text(encoding="utf-8"))
     penetration = results["penetration"]

@@ -15,20 +15,20 @@ from functools import reduce
 from pathlib import Path
 
 import skisnow
+from skisnow.carve.keys import CARVE_KEYS
 from skisnow.field.reading import campaign_schema
 from skisnow.field.reading.campaign_file import CAMPAIGN_KEYS
 from skisnow.field.reading.table_forms import PENETRATION, SHEAR
 from skisnow.inputs.json_schema import Schema, schema_text, told_schema
 from skisnow.inputs.page_table import page_table
-from skisnow.simulate.carve_keys import CARVE_KEYS
-from skisnow.simulate.scenario import schema as scenario
-from skisnow.simulate.scenario.free_keys import FREE_KEYS
-from skisnow.simulate.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario import schema as scenario
+from skisnow.scenario.free_keys import FREE_KEYS
+from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 
 DOCS = Path(__file__).resolve().parent
 PACKAGE = Path(skisnow.__file__).resolve().parent
-SUMMARY, CARVE = "simulate/schemas/summary.schema.json", "simulate/schemas/carve.schema.json"
+SUMMARY, CARVE = "simulate/schemas/summary.schema.json", "carve/schemas/carve.schema.json"
 
 
 def with_inputs(file: str, place: Sequence[str], told: Schema) -> Schema:

@@ -12,7 +12,9 @@ from pathlib import Path
 import pytest
 
 import skisnow
+from skisnow.carve.equilibrium import carve
 from skisnow.identify.identifying import identify
+from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 from skisnow.study import run_study
 
@@ -21,22 +23,24 @@ PACKAGE = Path(skisnow.__file__).parent
 IMPORT_ALONE = """
 import sys
 import skisnow
-heavy = {"numpy", "scipy", "matplotlib", "pandas", "xarray", "skisnow.compiled", "skisnow.simulate"}
+heavy = {"numpy", "scipy", "matplotlib", "pandas", "xarray", "skisnow.compiled", "skisnow.simulate", "skisnow.scenario"}
 assert not heavy & set(sys.modules), heavy & set(sys.modules)
 """
 NAME_FIRST = """
 import skisnow
-for name in ("simulate", "identify", "study", "chain"):
+for name in ("simulate", "scenario", "carve", "identify", "study", "chain"):
     assert callable(getattr(skisnow, name)), name
-import skisnow.simulate.run, skisnow.identify.data, skisnow.study.axes, skisnow.chain.ensemble
-for name in ("simulate", "identify", "study", "chain"):
+import skisnow.simulate.run, skisnow.scenario.slope, skisnow.carve.answer
+import skisnow.identify.data, skisnow.study.axes, skisnow.chain.ensemble
+for name in ("simulate", "scenario", "carve", "identify", "study", "chain"):
     assert callable(getattr(skisnow, name)), name
 assert skisnow.simulate.run.Run is skisnow.Run
 """
 ROOM_FIRST = """
-import skisnow.simulate.run, skisnow.identify.data, skisnow.study.axes, skisnow.chain.ensemble
-from skisnow import chain, identify, simulate, study
-assert all(map(callable, (chain, identify, simulate, study)))
+import skisnow.simulate.run, skisnow.scenario.slope, skisnow.carve.answer
+import skisnow.identify.data, skisnow.study.axes, skisnow.chain.ensemble
+from skisnow import carve, chain, identify, scenario, simulate, study
+assert all(map(callable, (carve, chain, identify, scenario, simulate, study)))
 import skisnow
 assert skisnow.simulate is simulate and skisnow.simulate.run.Run is skisnow.Run
 """
@@ -61,7 +65,13 @@ def test_type_checkers_see_the_same_names() -> None:
 
 
 def test_a_room_that_is_a_verb_is_its_function() -> None:
-    for room, function in ((skisnow.simulate, simulate), (skisnow.identify, identify), (skisnow.study, run_study)):
+    for room, function in (
+        (skisnow.simulate, simulate),
+        (skisnow.scenario, read_scenario),
+        (skisnow.carve, carve),
+        (skisnow.identify, identify),
+        (skisnow.study, run_study),
+    ):
         assert inspect.signature(room) == inspect.signature(function)
     with pytest.raises(TypeError, match="scenario"):
         skisnow.simulate()  # type: ignore[call-arg]
@@ -72,6 +82,17 @@ def test_former_names_stay_and_say_what_they_are_called_now() -> None:
         assert skisnow.simulated_run is skisnow.simulate
     with pytest.warns(DeprecationWarning, match=r"skisnow\.read_scenario is called skisnow\.scenario now"):
         assert skisnow.read_scenario is skisnow.scenario
+
+
+@pytest.mark.parametrize(
+    ("former", "now", "name"),
+    [("simulate.scenario", "scenario", "Plane"), ("web.replay", "replay", "write_replay")],
+)
+def test_a_room_that_moved_is_found_where_it_was_with_a_warning(former: str, now: str, name: str) -> None:
+    with pytest.warns(DeprecationWarning, match=rf"skisnow\.{former}\.{name} is called skisnow\.{now}\.{name} now"):
+        assert getattr(import_module(f"skisnow.{former}"), name) is getattr(import_module(f"skisnow.{now}"), name)
+    with pytest.raises(AttributeError, match="Plain"):
+        _ = import_module(f"skisnow.{former}").Plain
 
 
 @pytest.mark.parametrize(
@@ -108,10 +129,14 @@ def test_only_these_places_reach_up() -> None:
             if node.func.id in ("import_module", "__import__") and not place.startswith("web/"):  # the topmost room
                 imports.add(place)
     assert found == {
+        "estimate.results.results_dict": "estimate/analysis.py",
         "report.run_drawings.run_figure": "simulate/run.py",
         "report.run_folder.write_run": "simulate/run.py",
         "report.run_frames.run_dataframe": "simulate/run.py",
         "report.run_frames.run_dataset": "simulate/run.py",
+        "report.turn_report.write_turn_report": "report/turn_chain.py",
+        "report.turn_sentences.contrast": "report/turn_chain.py",
+        "scenario.changed.changed_scenario": "scenario/scenario.py",
     }
     assert imports == {"__init__.py", "callable_rooms.py", "from_above.py", "report/run_frames.py"}
     for each in found:

@@ -13,7 +13,7 @@ from skisnow import SnowProperties, Track
 from skisnow.field.reference import reference_campaign
 from skisnow.identify import Identified, Parameter
 from skisnow.report.figures.track_band import TimedTrack
-from skisnow.report.turn_report import EnsembleRun
+from skisnow.report.turn_chain import EnsembleRun
 from skisnow.shown import Shown
 
 from .report.runs import circle_run

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import least_squares
 
-from skisnow.simulate.scenario import Stop, read_scenario, scenario_file
+from skisnow.scenario import Stop, read_scenario, scenario_file
 from skisnow.simulate.simulated_run import simulate
 from skisnow.track.track import Track
 

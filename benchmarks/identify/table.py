@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 import numpy as np
 
 from skisnow.identify import identify
-from skisnow.simulate.batch import available_cores
+from skisnow.parallel.pool import available_cores
 from skisnow.track.track import Track
 
 from .plain import plainly_identified

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 from skisnow.track.track import Track
 

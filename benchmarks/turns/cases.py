@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final
 
+from skisnow.scenario import read_scenario
 from skisnow.simulate.run import Run
-from skisnow.simulate.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 
 SCENARIO: Final = "carved-46m"

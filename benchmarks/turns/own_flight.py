@@ -7,9 +7,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from skisnow.scenario import read_scenario
 from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import laid_out
-from skisnow.simulate.scenario import read_scenario
 
 from .cases import SCENARIO, fixed
 

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from skisnow.simulate.batch import available_cores, run_batch
+from skisnow.parallel.batch import run_batch
+from skisnow.parallel.pool import available_cores
 
 from ..timing import timed
 from .cases import SCENARIO, Case, Runs

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace skisnow {
 
@@ -16,9 +15,34 @@ Vector3 along(const Vector3& origin, const Vector3& direction, double y) {
   return {origin[0] + y * direction[0], origin[1] + y * direction[1], origin[2] + y * direction[2]};
 }
 
-std::uint64_t square_of(double x, double y, double side) {
-  const auto cell = [side](double v) { return std::uint64_t(std::uint32_t(std::int32_t(std::floor(v / side)))); };
-  return cell(x) << 32 | cell(y);
+std::uint64_t key_of(int x, int y) { return std::uint64_t(std::uint32_t(x)) << 32 | std::uint32_t(y); }
+
+// Of a square: eight by eight of them are a region, of which it is known whether any track lies in it.
+std::uint64_t region_of(int x, int y) { return key_of(x >> 3, y >> 3); }
+
+int cell_of(double v, double side) { return int(std::floor(v / side)); }
+
+// All squares that a straight line passes, one after the other.
+template <class Visit>
+void walk_squares(const Vector3& from, const Vector3& to, double side, const Visit& visit) {
+  int cell[2], way[2], left = 0;
+  double next[2], step[2];  // share of the line to the next border, and from border to border
+  for (int a = 0; a < 2; a++) {
+    const double length = to[std::size_t(a)] - from[std::size_t(a)];
+    cell[a] = cell_of(from[std::size_t(a)], side);
+    way[a] = length < 0.0 ? -1 : 1;
+    const double border = side * (cell[a] + (length < 0.0 ? 0 : 1));
+    step[a] = std::fabs(length) > THIN ? side / std::fabs(length) : 1e300;
+    next[a] = std::fabs(length) > THIN ? (border - from[std::size_t(a)]) / length : 1e300;
+    left += std::abs(cell_of(to[std::size_t(a)], side) - cell[a]);
+  }
+  visit(cell[0], cell[1]);
+  for (; left > 0; left--) {
+    const int a = next[0] < next[1] ? 0 : 1;
+    cell[a] += way[a];
+    next[a] += step[a];
+    visit(cell[0], cell[1]);
+  }
 }
 
 // The groove between two tracks: straight from each share of one's width to the same share of the other's.
@@ -46,18 +70,27 @@ struct Strip {
   }
 };
 
-constexpr int BISECTIONS = 40;
+constexpr int MOST_TRIES = 60;
+constexpr double EXACT = 1e-14;  // (m)
 constexpr int PARTS = 4;  // between the places where either ground has a knot; a crossing groove is bilinear there
 
-// Where a rising or falling quantity passes a value between two places.
+// Where a rising or falling quantity passes a value between two places: false position, with half the weight of an end
+// that stays (the Illinois method, Dowell and Jarratt 1971).
 template <class Quantity>
 double crossing(const Quantity& quantity, double a, double b, double value) {
-  const bool rises = quantity(b) > quantity(a);
-  for (int i = 0; i < BISECTIONS; i++) {
-    const double middle = 0.5 * (a + b);
-    ((quantity(middle) < value) == rises ? a : b) = middle;
+  double at_a = quantity(a) - value, at_b = quantity(b) - value, last = a;
+  for (int i = 0; i < MOST_TRIES; i++) {
+    const double at = (a * at_b - b * at_a) / (at_b - at_a), here = quantity(at) - value;
+    if (here == 0.0 || !(std::fabs(at - last) > EXACT)) return at;
+    if ((here > 0.0) == (at_b > 0.0)) {
+      if (last == b) at_a *= 0.5;
+      b = last = at, at_b = here;
+    } else {
+      if (last == a) at_b *= 0.5;
+      a = last = at, at_a = here;
+    }
   }
-  return 0.5 * (a + b);
+  return last;
 }
 
 // Cut the part [a, b] of a line down to where a quantity lies between 0 and 1; whether anything is left.
@@ -78,15 +111,17 @@ void press_strip(const Strip& strip, const Vector3& origin, const Vector3& later
   const auto ahead = [&](double y) { return found(y).ahead; };
   const auto share = [&](double y) { return found(y).share; };
   if (!clip(ahead, a, b) || !clip(share, a, b)) return;
-  std::set<double> places{a, b};
+  double places[2 + 2 * KNOTS] = {a, b};
+  int count = 2;
   for (const Track* track : {&strip.before, &strip.after})
     for (int j = 1; j + 1 < track->count; j++) {
       const double at_knot = (track->place[j] - track->place[0]) / track->width();
-      if ((share(a) - at_knot) * (share(b) - at_knot) < 0.0) places.insert(crossing(share, a, b, at_knot));
+      if ((share(a) - at_knot) * (share(b) - at_knot) < 0.0) places[count++] = crossing(share, a, b, at_knot);
     }
+  std::sort(places, places + count);
   double previous = a, depth_before = strip.depth(found(a));
-  for (double next : places) {
-    const double start = previous;
+  for (int i = 1; i < count; i++) {
+    const double start = previous, next = places[i];
     for (int part = 1; part <= PARTS && next > start; part++) {
       const double y = part == PARTS ? next : start + (next - start) * part / PARTS;
       const double depth = strip.depth(found(y));
@@ -137,35 +172,25 @@ void Archive::enter_squares(int later) {
         high[a] = std::max(high[a], corner[a]);
       }
     }
-  for (double x = std::floor(low[0] / SQUARE) * SQUARE + 0.5 * SQUARE; x < high[0] + SQUARE; x += SQUARE)
-    for (double y = std::floor(low[1] / SQUARE) * SQUARE + 0.5 * SQUARE; y < high[1] + SQUARE; y += SQUARE) {
-      squares_[square_of(x, y, SQUARE)].push_back(later);
-      regions_.insert(square_of(x, y, REGION));
+  for (int x = cell_of(low[0], SQUARE); x <= cell_of(high[0], SQUARE); x++)
+    for (int y = cell_of(low[1], SQUARE); y <= cell_of(high[1], SQUARE); y++) {
+      squares_[key_of(x, y)].push_back(later);
+      regions_.insert(region_of(x, y));
     }
 }
 
 void Archive::recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground) const {
   if (tracks_.empty()) return;
   std::vector<int> near;
-  std::uint64_t empty = 0;  // the region met last without any track, if any
-  bool met_empty = false;
-  const auto nothing_in = [&](double x, double y) {
-    const std::uint64_t region = square_of(x, y, REGION);
-    if (met_empty && region == empty) return true;
-    if (regions_.count(region) > 0) return false;
-    empty = region, met_empty = true;
-    return true;
-  };
-  const int steps = int(std::ceil((to - from) / (0.5 * SQUARE)));
-  for (int i = 0; i <= steps; i++) {
-    const Vector3 point = along(origin, lateral, from + (to - from) * i / steps);
-    for (double dx : {-0.25 * SQUARE, 0.25 * SQUARE})
-      for (double dy : {-0.25 * SQUARE, 0.25 * SQUARE}) {
-        if (nothing_in(point[0] + dx, point[1] + dy)) continue;
-        const auto found = squares_.find(square_of(point[0] + dx, point[1] + dy, SQUARE));
-        if (found != squares_.end()) near.insert(near.end(), found->second.begin(), found->second.end());
-      }
-  }
+  std::uint64_t region = ~std::uint64_t(0);  // the one met last, and whether any track lies there
+  bool inhabited = false;
+  walk_squares(along(origin, lateral, from), along(origin, lateral, to), SQUARE, [&](int x, int y) {
+    const std::uint64_t here = region_of(x, y);
+    if (here != region) region = here, inhabited = regions_.count(here) > 0;
+    if (!inhabited) return;
+    const auto found = squares_.find(key_of(x, y));
+    if (found != squares_.end()) near.insert(near.end(), found->second.begin(), found->second.end());
+  });
   std::sort(near.begin(), near.end());  // in the order in which they were left
   near.erase(std::unique(near.begin(), near.end()), near.end());
   for (int later : near) press_strip({*before(later), tracks_[std::size_t(later)]}, origin, lateral, from, to, ground);

@@ -47,7 +47,6 @@ class Archive {
 
  private:
   static constexpr double SQUARE = 0.0625;  // side (m) of the squares in which tracks are looked up
-  static constexpr double REGION = 0.5;     // of those of which it is known whether there is any
 
   std::vector<Track> tracks_;
   std::unordered_map<std::uint64_t, std::vector<int>> squares_;  // later track of each pair, by square

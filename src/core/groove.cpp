@@ -7,82 +7,93 @@ namespace skisnow {
 
 namespace {
 
-struct Segment {
-  double a, depth_a, b, depth_b, slope;
+constexpr double BEYOND = 1e300;  // where there is no further knot
 
-  Segment(double from, double depth_from, double to, double depth_to)
-      : a(from), depth_a(depth_from), b(to), depth_b(depth_to), slope((depth_to - depth_from) / (to - from)) {}
+// A polyline read from left to right; outside its knots it has no depth.
+class Reader {
+ public:
+  Reader(const double* place, const double* depth, int count, int at)
+      : place_(place), depth_(depth), count_(count), at_(at) {}
 
-  double at(double where) const { return where == b ? depth_b : depth_a + slope * (where - a); }
+  int knot() const { return at_; }
+  double next() const { return at_ < count_ ? place_[at_] : BEYOND; }
+
+  // Depth at a place up to the next knot, there on its left side.
+  double before(double y) {
+    if (at_ == 0 || at_ == count_) return 0.0;
+    if (y == place_[at_]) return depth_[at_];
+    if (sloped_ != at_) {
+      slope_ = (depth_[at_] - depth_[at_ - 1]) / (place_[at_] - place_[at_ - 1]);
+      sloped_ = at_;
+    }
+    return depth_[at_ - 1] + slope_ * (y - place_[at_ - 1]);
+  }
+
+  // Go past a place; the depth on its right side.
+  double pass(double y) {
+    if (!(next() <= y)) return before(y);
+    while (next() <= y) at_++;
+    return at_ < count_ ? depth_[at_ - 1] : 0.0;
+  }
+
+ private:
+  const double *place_, *depth_;
+  int count_, at_, sloped_ = 0;  // knot up to which the slope is known
+  double slope_ = 0.0;
+};
+
+// Depths of the ground and of what is pressed into it, at one side of a place.
+struct Both {
+  double ground, pressed;
+
+  double over() const { return pressed - ground; }
+};
+
+// Writes the deeper of both from left to right.
+class Deeper {
+ public:
+  // `depth`: of the ground on the left of the place where it starts.
+  Deeper(Ground& out, double y, double depth) : out_(out), y_(y), depth_(depth) {}
+
+  bool changed() const { return changed_; }
+
+  // Up to a place where either has a knot; whether the ground and what is pressed have one at the place reached.
+  void advance(double y, const Both& from, const Both& to, bool knot, bool pressed_knot) {
+    const double over = from.over(), over_end = to.over();
+    const bool any = over > THIN || over_end > THIN, all = over >= -THIN && over_end >= -THIN;
+    const bool first = any && (all || over > 0.0), last = any && (all || over_end > 0.0);
+    turn(first ? from.pressed : from.ground, first, first ? pressed_knot : knot);
+    if (first != last) {
+      const double share = over / (over - over_end);
+      out_.append(y_ + share * (y - y_), from.pressed + share * (to.pressed - from.pressed));
+    }
+    changed_ = changed_ || (any && y - y_ > THIN);
+    is_pressed_ = last;
+    depth_ = last ? to.pressed : to.ground;
+    y_ = y;
+  }
+
+  // At the place reached: the depth on its right, whether that is of what is pressed, and whether it has a knot here.
+  void turn(double depth, bool is_pressed, bool knot) {
+    if (!knot && is_pressed == is_pressed_ && depth == depth_) return;
+    end();
+    out_.append(y_, depth);
+  }
+
+  void end() {
+    if (out_.count > 0) out_.append(y_, depth_);
+  }
+
+ private:
+  Ground& out_;
+  double y_, depth_;
+  bool is_pressed_ = false, changed_ = false;
 };
 
 double triangle(const Ground& ground, int i, int j, int k) {
   const double* y = ground.place;
   const double* g = ground.depth;
   return 0.5 * std::fabs((y[j] - y[i]) * (g[k] - g[i]) - (y[k] - y[i]) * (g[j] - g[i]));
-}
-
-// The deeper of both between two neighbouring knots of the old ground; whether that is the pressed one anywhere.
-bool merge_piece(const Ground& old, int j, const Segment& pressed, Ground& out) {
-  const double a = old.place[j], b = old.place[j + 1];
-  const double from = std::max(a, pressed.a), to = std::min(b, pressed.b);
-  if (b - a < 1e-15 || to <= from) return false;
-  const double slope = (old.depth[j + 1] - old.depth[j]) / (b - a);
-  const double old_from = old.depth[j] + slope * (from - a), old_to = old.depth[j] + slope * (to - a);
-  const double over_from = pressed.at(from) - old_from, over_to = pressed.at(to) - old_to;
-  if (over_from <= THIN && over_to <= THIN) return false;
-  if (from > a) out.append(from, old_from);
-  if (from > a && over_from > THIN) out.append(from, pressed.at(from));
-  if (over_from < -THIN || over_to < -THIN) {
-    const double cross = from + (to - from) * over_from / (over_from - over_to);
-    out.append(cross, pressed.at(cross));
-  }
-  if (to < b && over_to > THIN) out.append(to, pressed.at(to));
-  if (to < b) out.append(to, old_to);
-  return true;
-}
-
-// A segment apart from the ground: nothing has touched what lies between, no depth.
-void join_apart(const Ground& old, const Segment& pressed, Ground& out) {
-  const auto copy = [&] {
-    for (int j = 0; j < old.count; j++) out.append(old.place[j], old.depth[j]);
-  };
-  const bool before = pressed.b < old.first();
-  if (!before) copy(), out.append(old.last(), 0.0), out.append(pressed.a, 0.0);
-  out.append(pressed.a, pressed.depth_a), out.append(pressed.b, pressed.depth_b);
-  if (before) out.append(pressed.b, 0.0), out.append(old.first(), 0.0), copy();
-}
-
-// A segment over part of the ground, or beyond one of its ends; whether it is the deeper anywhere.
-bool join(const Ground& old, const Segment& pressed, Ground& out) {
-  bool deeper = false;
-  int j = 0;
-  while (j < old.count && old.place[j] < pressed.a) j++;
-  std::copy_n(old.place, j, out.place), std::copy_n(old.depth, j, out.depth);
-  out.count = j;
-  if (j > 0) {
-    deeper = j < old.count && merge_piece(old, j - 1, pressed, out);
-  } else if (pressed.a < old.first()) {
-    deeper = pressed.a < old.first() - THIN;
-    out.append(pressed.a, pressed.depth_a), out.append(old.first(), pressed.at(old.first()));
-  }
-  for (; j < old.count && old.place[j] <= pressed.b; j++) {
-    // at an end of the segment a knot keeps its own depth to the outside: there may be a wall
-    const double where = old.place[j], own = old.depth[j];
-    if (where == pressed.a) out.append(where, own);
-    out.append(where, std::max(own, pressed.at(where)));
-    if (where == pressed.b) out.append(where, own);
-    if (j + 1 < old.count && merge_piece(old, j, pressed, out)) deeper = true;
-  }
-  if (j < old.count) out.append(old.place[j], old.depth[j]), j++;
-  for (; j < old.count && out.count < Ground::ROOM; j++, out.count++)
-    out.place[out.count] = old.place[j], out.depth[out.count] = old.depth[j];
-  for (; j < old.count; j++) out.append(old.place[j], old.depth[j]);
-  if (pressed.b > old.last()) {
-    deeper = deeper || pressed.b > old.last() + THIN;
-    out.append(old.last(), pressed.at(old.last())), out.append(pressed.b, pressed.depth_b);
-  }
-  return deeper;
 }
 
 constexpr double ALIKE = 1.0 + 1e-4, TINY_AREA = 1e-24;  // (m²): of areas that are alike but for rounding
@@ -104,28 +115,38 @@ void Ground::append(double at, double deep) {
   count++;
 }
 
-double Ground::at(double where, bool from_right) const {
-  int j = 0;
-  while (j + 2 < count && (from_right ? place[j + 1] <= where : place[j + 1] < where)) j++;
-  const double width = place[j + 1] - place[j];
-  if (!(width > 0.0)) return from_right ? depth[j + 1] : depth[j];
-  return depth[j] + (depth[j + 1] - depth[j]) * (where - place[j]) / width;
+bool Ground::press(double a, double depth_a, double b, double depth_b) {
+  const double at[2] = {a, b}, deep[2] = {depth_a, depth_b};
+  return press(at, deep, 2);
 }
 
-bool Ground::press(double a, double depth_a, double b, double depth_b) {
-  if (!(b - a > THIN)) return false;
-  const Segment pressed(a, depth_a, b, depth_b);
-  if (empty()) {
-    clear();
-    append(a, depth_a), append(b, depth_b);
-    return true;
-  }
+bool Ground::press(const double* at, const double* deep, int knots) {
+  const double from = at[0], to = at[knots - 1];
+  if (!(to - from > THIN)) return false;
   Ground out;
-  if (b < first() || a > last()) {
-    join_apart(*this, pressed, out);
-  } else if (!join(*this, pressed, out)) {
-    return false;
+  int kept = 0;
+  for (; kept < count && place[kept] < from; kept++) out.place[kept] = place[kept], out.depth[kept] = depth[kept];
+  out.count = kept;
+  if (kept > 0 && kept == count) out.append(last(), 0.0);  // apart: what lies between has no depth
+  Reader ground(place, depth, count, kept), pressed(at, deep, knots, 0);
+  Deeper deeper(out, from, ground.before(from));
+  for (double y = from; y < to;) {
+    const bool knot = ground.next() == y, pressed_knot = pressed.next() == y;
+    const Both here{ground.pass(y), pressed.pass(y)};
+    y = std::min(ground.next(), pressed.next());
+    deeper.advance(y, here, {ground.before(y), pressed.before(y)}, knot, pressed_knot);
   }
+  if (!deeper.changed()) return false;
+  const bool knot = ground.next() == to;
+  const double right = ground.pass(to);
+  const int rest = ground.knot();
+  if (rest == count) {
+    deeper.end();
+  } else {
+    deeper.turn(right, false, knot || rest == 0);
+    if (rest == 0) out.append(first(), 0.0);
+  }
+  for (int j = rest; j < count; j++) out.append(place[j], depth[j]);
   *this = out;
   return true;
 }

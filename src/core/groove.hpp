@@ -27,11 +27,10 @@ struct Ground {
   // Append a knot, unless it repeats the last one.
   void append(double at, double deep);
 
-  // Depth at a place within the knots; at a wall that of the side asked for.
-  double at(double where, bool from_right) const;
-
   // Press the segment from (a, depth_a) to (b, depth_b), a < b: keep the deeper of both. Whether anything changed.
   bool press(double a, double depth_a, double b, double depth_b);
+  // The same with a polyline from left to right.
+  bool press(const double* at, const double* deep, int knots);
 
   // Drop knots whose triangle with their neighbours is below an area (m²), and the smallest ones above `most` knots.
   void simplify(double area, int most);

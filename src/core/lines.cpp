@@ -66,6 +66,7 @@ GrooveLines::GrooveLines(const Runner& runner, double spacing) : spacing_(spacin
   values.resize(size);
   for (Column* each : {&place, &depth, &slope}) each->assign(std::size_t(size) * KNOTS, 0.0);
   knots.assign(std::size_t(size), 0);
+  filled_.assign(std::size_t(size / BLOCK), 1);
   recalled_energy.assign(std::size_t(size), 0.0);
   for (int slot = 0; slot < size; slot++) {  // lanes beside the lines that are laid must hold numbers
     put(*this, AHEAD_X, slot, {1.0, 0.0, 0.0});
@@ -91,38 +92,45 @@ Ground GrooveLines::ground(int slot) const {
   return out;
 }
 
-// What lies beyond the last knot repeats it, so that a block's lines may be summed together.
 void GrooveLines::keep(int slot, const Ground& ground) {
+  const auto block = std::size_t(slot / BLOCK);
   knots[std::size_t(slot)] = std::uint8_t(ground.count);
-  for (int j = 0; j < KNOTS; j++) {
-    const int i = std::min(j, ground.count - 1);
+  for (int j = 0; j < ground.count; j++) {
     const auto at = std::size_t(tile(slot, j));
-    place[at] = ground.count > 0 ? ground.place[i] : 1e9;
-    depth[at] = ground.count > 0 ? ground.depth[i] : 0.0;
-    const double width = j + 1 < ground.count ? ground.place[i + 1] - ground.place[i] : 0.0;
-    slope[at] = width > THIN ? (ground.depth[i + 1] - ground.depth[i]) / width : 0.0;
+    place[at] = ground.place[j];
+    depth[at] = ground.depth[j];
+    const double width = j + 1 < ground.count ? ground.place[j + 1] - ground.place[j] : 0.0;
+    slope[at] = width > THIN ? (ground.depth[j + 1] - ground.depth[j]) / width : 0.0;
+  }
+  const int before = filled_[block];
+  if (ground.count > before) {
+    filled_[block] = std::uint8_t(ground.count);
+    for (int other = slot / BLOCK * BLOCK, end = other + BLOCK; other < end; other++)
+      if (other != slot) fill(other, before, ground.count);
+  }
+  fill(slot, ground.count, filled_[block]);
+}
+
+// What lies beyond the last knot repeats it, so that a block's lines may be summed together.
+void GrooveLines::fill(int slot, int from, int to) {
+  const int last = knots[std::size_t(slot)] - 1;
+  for (int j = from; j < to; j++) {
+    const auto at = std::size_t(tile(slot, j));
+    place[at] = last < 0 ? 1e9 : place[std::size_t(tile(slot, last))];
+    depth[at] = last < 0 ? 0.0 : depth[std::size_t(tile(slot, last))];
+    slope[at] = 0.0;
   }
 }
 
 GrooveLines::Line GrooveLines::line(int slot) const {
-  Line out;
-  out.slot = slot;
+  Line out{slot, {}, ground(slot)};
   for (int field = 0; field < LINE_FIELDS; field++) out.values[field] = values[LineField(field)][slot];
-  for (int j = 0; j < KNOTS; j++) {
-    const auto at = std::size_t(tile(slot, j));
-    out.place[j] = place[at], out.depth[j] = depth[at], out.slope[j] = slope[at];
-  }
-  out.knots = knots[std::size_t(slot)];
   return out;
 }
 
 void GrooveLines::put_back(const Line& line) {
   for (int field = 0; field < LINE_FIELDS; field++) values[LineField(field)][line.slot] = line.values[field];
-  for (int j = 0; j < KNOTS; j++) {
-    const auto at = std::size_t(tile(line.slot, j));
-    place[at] = line.place[j], depth[at] = line.depth[j], slope[at] = line.slope[j];
-  }
-  knots[std::size_t(line.slot)] = line.knots;
+  keep(line.slot, line.ground);
 }
 
 double GrooveLines::station(std::int64_t number, const Pose& pose) const {

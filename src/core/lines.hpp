@@ -58,8 +58,8 @@ class GrooveLines {
   // All that is kept of a line, to put it back.
   struct Line {
     int slot;
-    double values[LINE_FIELDS], place[KNOTS], depth[KNOTS], slope[KNOTS];
-    std::uint8_t knots;
+    double values[LINE_FIELDS];
+    Ground ground;
   };
   Line line(int slot) const;
   void put_back(const Line& line);
@@ -86,7 +86,9 @@ class GrooveLines {
 
  private:
   double spacing_ = LINE_SPACING;
+  std::vector<std::uint8_t> filled_;  // knots of each block's tile that are filled
 
+  void fill(int slot, int from, int to);
   void lay(std::int64_t number, const Pose& pose, double station, const Snow& snow);
   void leave(std::int64_t number, Archive* archive, int strip);
 };

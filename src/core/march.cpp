@@ -11,19 +11,56 @@ namespace {
 constexpr double MOST_PARTS = 1e4;  // of a way
 constexpr double SLIPPING = 0.999;  // share of the displacement from which on an edge slips
 
+// What a section presses into its line: the base where it is wet, and the way of its edge since it was marked last.
+// Both are straight and meet at the edge, so that one of them is the deeper wherever both are.
+struct Pressing {
+  double place[5], depth[5];
+  int count = 0;
+
+  // Numbers across are from the edge: the base from a to b, the way from the edge to `w`; depths are `fall` and
+  // `way_fall` times them deeper than the edge. A nearly level base may be wet beside its edge alone.
+  void fill(double a, double b, double fall, double w, double way_fall) {
+    if (a > 0.0 || b < 0.0) return add(a, fall * a), add(b, fall * b);
+    const bool way_is_deeper = w > 0.0 && way_fall > fall;
+    if (a < 0.0) add(a, fall * a);
+    if (a == 0.0 || way_is_deeper) add(0.0, 0.0);
+    if (way_is_deeper) {
+      add(w, way_fall * w);
+      if (b > w) add(w, fall * w), add(b, fall * b);
+    } else {
+      add(b, fall * b);
+      if (w > b) add(b, way_fall * b), add(w, way_fall * w);
+    }
+  }
+
+  // From numbers of the edge to those of the line; with `sense` -1 they counted to the right.
+  void put_at(double edge, double deep, double sense) {
+    for (int i = 0; i < count; i++) place[i] = edge + sense * place[i], depth[i] += deep;
+    if (sense < 0.0) std::reverse(place, place + count), std::reverse(depth, depth + count);
+  }
+
+ private:
+  void add(double at, double deeper) {
+    place[count] = at;
+    depth[count++] = deeper;
+  }
+};
+
 // Keep the base that touches a line: the way of its edge since it was marked last, and all that lies under it.
 void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
   const double edge = s[EDGE_PLACE][i], depth = s[EDGE_DEPTH][i], fall = s[DEPTH_FALL][i];
   const double from = s[WET_FROM][i], to = std::max(s[WET_TO][i], from);
+  const bool marked = lines.values[MARKED][slot] > 0.5;
+  const double way = marked ? lines.values[EDGE_MARKED][slot] - edge : 0.0, sense = way < 0.0 ? -1.0 : 1.0;
+  const double way_fall = std::fabs(way) > THIN ? (lines.values[DEPTH_MARKED][slot] - depth) / std::fabs(way) : 0.0;
+  Pressing pressing;
+  if (sense > 0.0)
+    pressing.fill(from, to, fall, way, way_fall);
+  else
+    pressing.fill(-to, -from, -fall, -way, way_fall);
+  pressing.put_at(edge, depth, sense);
   Ground ground = lines.ground(slot);
-  bool changed = false;
-  if (lines.values[MARKED][slot] > 0.5) {
-    const double before = lines.values[EDGE_MARKED][slot], depth_before = lines.values[DEPTH_MARKED][slot];
-    changed = before < edge ? ground.press(before, depth_before, edge, depth)
-                            : ground.press(edge, depth, before, depth_before);
-  }
-  if (ground.press(edge + from, depth + fall * from, edge + to, depth + fall * to)) changed = true;
-  if (!changed) return;
+  if (!ground.press(pressing.place, pressing.depth, pressing.count)) return;
   ground.simplify(snow.knot_area * s[DEEPEST][i] * (to - from), KNOTS);
   lines.keep(slot, ground);
 }

@@ -46,6 +46,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .carve import Equilibrium, rest
+    from .carve.equilibrium import carve
     from .chain.chaining import chain
     from .contact import ContactForces, Runner, SnowContact, SnowField
     from .estimate import Analysis, analyse, results_dict
@@ -53,13 +55,12 @@ if TYPE_CHECKING:
     from .field.store import Store
     from .identify import Identification
     from .identify.identifying import identify
+    from .parallel.batch import run_batch
     from .report import TurnChain, write_report
-    from .simulate import Equilibrium, Run, Scenario, carve, rest, scenario_names
-    from .simulate.batch import run_batch
-    from .simulate.scenario import Air, Contact, Plane, Profile, Solver, Start, Stop
-    from .simulate.scenario import read_scenario as scenario
+    from .scenario import Air, Contact, Plane, Profile, RigidSledge, Scenario, Solver, Start, Stop, scenario_names
+    from .scenario import read_scenario as scenario
+    from .simulate import Run
     from .simulate.simulated_run import simulate
-    from .simulate.sledge import RigidSledge
     from .simulate.verification import Refinement, verify
     from .ski import Ski, read_ski, ski_names
     from .snow import SnowProperties, published_names, published_snow, snow_from_results
@@ -133,16 +134,27 @@ __all__ = [
 ]
 
 _ROOMS = {
+    "carve": ("Equilibrium", "rest"),
     "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
     "estimate": ("Analysis", "analyse", "results_dict"),
     "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
     "field.store": ("Store",),
     "identify": ("Identification",),
+    "parallel.batch": ("run_batch",),
     "report": ("TurnChain", "write_report"),
-    "simulate": ("Equilibrium", "Run", "Scenario", "carve", "rest", "scenario_names"),
-    "simulate.batch": ("run_batch",),
-    "simulate.scenario": ("Air", "Contact", "Plane", "Profile", "Solver", "Start", "Stop"),
-    "simulate.sledge": ("RigidSledge",),
+    "scenario": (
+        "Air",
+        "Contact",
+        "Plane",
+        "Profile",
+        "RigidSledge",
+        "Scenario",
+        "Solver",
+        "Start",
+        "Stop",
+        "scenario_names",
+    ),
+    "simulate": ("Run",),
     "simulate.verification": ("Refinement", "verify"),
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),
@@ -156,8 +168,7 @@ _ROOMS = {
     "track.track": ("Track",),
 }
 _PLACES = {name: (room, name) for room, names in _ROOMS.items() for name in names}
-_PLACES["scenario"] = ("simulate.scenario", "read_scenario")
-_CALLABLE_ROOMS = ("chain", "identify", "simulate", "study")
+_CALLABLE_ROOMS = ("carve", "chain", "identify", "scenario", "simulate", "study")
 """Rooms whose name is a verb: they can be called, see `skisnow.callable_rooms`."""
 _FORMER_NAMES = {"read_scenario": "scenario", "simulated_run": "simulate"}
 

@@ -1,6 +1,6 @@
-"""The one way in which an object of a lower room reaches what an upper room does with it, such as `run.plot()`.
+"""The one way in which an object reaches what is done with it above, in an upper room or file, such as `run.plot()`.
 
-Nothing is imported before it is called, so that a lower room works without the upper one. A test lists all such places.
+Nothing is imported before it is called, so that the lower one works without the upper. A test lists all such places.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ The only place where 1 N/mm³ = 10⁹ N/m³ and its likes are written.
 200000000.0
 """
 
+import math
 from functools import cache
 from typing import Final, NamedTuple
 
@@ -27,6 +28,9 @@ DEGREE: Final = 0.017453292519943295
 """Radians in a degree."""
 MS: Final = 1e-3
 """Seconds in a millisecond."""
+
+_LIKE_RADIANS_DEG: Final = 1.6
+"""Angles below it, but 0, look like radians: 1.6 is just above 90° in radians."""
 
 
 class Unit(NamedTuple):
@@ -85,3 +89,12 @@ def without_unit(name: str) -> str:
 def _ending(name: str) -> str:
     name = name.partition("[")[0]  # of a list each
     return next((ending for ending in _BY_ENDING if name.endswith(f"_{ending}")), "")
+
+
+def in_degrees_if_radians(angle_deg: float) -> float | None:
+    """The degrees that are meant where the number looks like radians, else None.
+
+    >>> round(in_degrees_if_radians(0.785), 1), in_degrees_if_radians(45.0), in_degrees_if_radians(0.0)
+    (45.0, None, None)
+    """
+    return math.degrees(angle_deg) if 0.0 < angle_deg < _LIKE_RADIANS_DEG else None

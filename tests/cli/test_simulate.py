@@ -267,7 +267,7 @@ def test_warnings_go_to_stderr_and_into_the_summary(capsys: Printed) -> None:
 
 @pytest.mark.usefixtures("replaced")
 def test_file_and_its_hash(tmp_path: Path, capsys: Printed, monkeypatch: pytest.MonkeyPatch) -> None:
-    from skisnow.simulate.scenario import scenario_text
+    from skisnow.scenario import scenario_text
 
     monkeypatch.chdir(tmp_path)
     Path("mine.toml").write_text(scenario_text("carved-46m"), encoding="utf-8")

@@ -9,8 +9,8 @@ from typing import Any, get_args
 import pytest
 
 import skisnow
+from skisnow.scenario import read_scenario, scenario_file
 from skisnow.simulate.run import Outcome
-from skisnow.simulate.scenario import read_scenario, scenario_file
 from skisnow.simulate.track_table import COLUMNS
 from skisnow.study import read_study
 from skisnow.study.scenario_subject import RESULTS
@@ -49,7 +49,7 @@ def test_file_of_the_page_is_the_built_in_scenario(tmp_path: Path) -> None:
 
 
 def test_commands_of_the_how_to_change_what_can_be_changed() -> None:
-    from skisnow.simulate.scenario.given import change_of
+    from skisnow.scenario.given import change_of
 
     lines = [line for line in HOW_TO.splitlines() if line.startswith("skisnow simulate") and "--set" in line]
     assert len(lines) == 3

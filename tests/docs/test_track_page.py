@@ -1,14 +1,18 @@
-"""The page on tracks names every key of track.json."""
+"""The pages on tracks name every key of track.json, and every format."""
 
 import json
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
+
+import pytest
 
 import skisnow.track
+from skisnow.track.read import TrackFormat
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "track.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs" / "how-to" / "track.md").read_text(encoding="utf-8")
 
 
 def keys_of(schema: Any) -> Iterator[str]:
@@ -24,3 +28,18 @@ def keys_of(schema: Any) -> Iterator[str]:
 def test_every_key_is_told() -> None:
     schema = json.loads((files(skisnow.track) / "schemas" / "track.schema.json").read_text(encoding="utf-8"))
     assert [key for key in keys_of(schema) if f"`{key}`" not in PAGE] == []
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        "docs/files/track.md",
+        "src/skisnow/cli/track.py",
+        "src/skisnow/cli/identify.py",
+        "src/skisnow/web/pages/replay.py",
+    ],
+)
+def test_every_format_is_told(place: str) -> None:
+    text = (ROOT / place).read_text(encoding="utf-8")
+    named = {kind: [kind.upper()] for kind in get_args(TrackFormat)} | {"rtklib": ["RTKLIB", ".pos"]}
+    assert [kind for kind, words in named.items() if not any(word in text for word in words)] == []

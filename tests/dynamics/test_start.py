@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 
 from .balance import left_over
 from .sledges import advanced, given, sledge

@@ -22,9 +22,9 @@ from skisnow.identify.identifying import _clock
 from skisnow.identify.observations import keys_of_runs
 from skisnow.identify.parameter_table import parameter_table
 from skisnow.identify.track_frame import _site
-from skisnow.simulate.scenario import scenario_file, scenario_text
-from skisnow.simulate.scenario.given import change_of, given_scenario
-from skisnow.simulate.scenario.identify_section import given_parameters
+from skisnow.scenario import scenario_file, scenario_text
+from skisnow.scenario.given import change_of, given_scenario
+from skisnow.scenario.identify_section import given_parameters
 from skisnow.ski import read_ski
 from skisnow.ski.monkeycam import monkeycam_shape
 from skisnow.snow.from_results import snow_from_results

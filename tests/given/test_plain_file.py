@@ -9,7 +9,7 @@ import pytest
 
 from skisnow.errors import SkisnowError
 from skisnow.given import GivenError, plain_bytes, plain_text
-from skisnow.simulate.scenario import read_profile, read_scenario
+from skisnow.scenario import read_profile, read_scenario
 from skisnow.ski import read_ski
 from skisnow.snow.from_results import snow_from_results
 from skisnow.study.study_file import read_study

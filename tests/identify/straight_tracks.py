@@ -8,7 +8,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 from skisnow.track.track import Track
 
 from ..simulate.straight_run import ASIDE, acceleration, straight_run

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from skisnow.identify.glide import Glide, passage_times, slope_line
-from skisnow.simulate.scenario import Plane, Profile
+from skisnow.scenario import Plane, Profile
 
 from . import glide_in_closed_form as exact
 

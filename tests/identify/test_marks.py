@@ -14,7 +14,7 @@ import pytest
 from skisnow.errors import ParameterError
 from skisnow.identify import Marks, identification_dict, identify, read_marks
 from skisnow.identify.mark_grooves import MarkGrooves
-from skisnow.simulate.scenario import scenario_file
+from skisnow.scenario import scenario_file
 
 CHANGES: dict[str, object] = {"snow.H_V_N_per_mm3": 0.1, "start.heading_deg": 0.0}
 

@@ -10,10 +10,10 @@ import pytest
 from skisnow.errors import ParameterError
 from skisnow.identify.parameter import Parameter
 from skisnow.identify.parameter_table import parameter_table
-from skisnow.simulate.scenario import scenario_file, scenario_text
-from skisnow.simulate.scenario.free_keys import FREE_KEYS, free_key, free_keys, short_name
-from skisnow.simulate.scenario.given import given_scenario
-from skisnow.simulate.scenario.identify_section import given_parameters
+from skisnow.scenario import scenario_file, scenario_text
+from skisnow.scenario.free_keys import FREE_KEYS, free_key, free_keys, short_name
+from skisnow.scenario.given import given_scenario
+from skisnow.scenario.identify_section import given_parameters
 
 VALUES = scenario_file("carved-46m").values
 

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 from skisnow.errors import ParameterError
 from skisnow.identify import Identification, PhotoCellRun, PhotoCells, identify
-from skisnow.simulate.scenario import scenario_text
+from skisnow.scenario import scenario_text
 
 from . import glide_in_closed_form as exact
 from .test_photo_cell_times import ANGLE_DEG, AREA, CHANGES, MU, SD, SPEED, STATION, mass

@@ -11,7 +11,7 @@ import pytest
 from skisnow.errors import ParameterError
 from skisnow.identify import Identification, PhotoCellRun, PhotoCells, identify, read_photo_cells
 from skisnow.identify.data import read_data
-from skisnow.simulate.scenario import scenario_file
+from skisnow.scenario import scenario_file
 
 from . import glide_in_closed_form as exact
 from .test_glide import times_on_two_planes, two_planes
@@ -212,7 +212,7 @@ def test_what_is_being_done_is_told() -> None:
 def with_section(text: str) -> Path:
     import tempfile
 
-    from skisnow.simulate.scenario import scenario_text
+    from skisnow.scenario import scenario_text
 
     path = Path(tempfile.mkdtemp()) / "scenario.toml"
     path.write_text(scenario_text("carved-46m") + "\n" + text, encoding="utf-8")

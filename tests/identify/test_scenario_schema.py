@@ -11,10 +11,10 @@ import jsonschema
 import pytest
 
 from skisnow.errors import ParameterError
-from skisnow.simulate.scenario import scenario_text
-from skisnow.simulate.scenario.identify_section import GIVEN, SITE, given_parameters
+from skisnow.scenario import scenario_text
+from skisnow.scenario.identify_section import GIVEN, SITE, given_parameters
 
-SCHEMA: dict[str, Any] = json.loads((files("skisnow.simulate") / "schemas" / "scenario.schema.json").read_text("utf-8"))
+SCHEMA: dict[str, Any] = json.loads((files("skisnow.scenario") / "schemas" / "scenario.schema.json").read_text("utf-8"))
 SECTION = """
 [identify]
 clock = "free"

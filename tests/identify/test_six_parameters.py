@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from skisnow.identify import Identification, identify
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 from skisnow.track.track import Track
 

@@ -13,7 +13,7 @@ import pytest
 from skisnow.errors import FieldDataError, ParameterError
 from skisnow.identify import Identification, identification_dict, identify
 from skisnow.identify.track_positions import estimated_noise
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.track import Track
@@ -202,7 +202,7 @@ class TestStraight:
 
 def test_east_north_up_is_turned_into_the_slope(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Down a slope that falls to the east, x east counts cos α of the way."""
-    from skisnow.simulate.scenario import scenario_text
+    from skisnow.scenario import scenario_text
 
     straight_tracks.put(monkeypatch)
     one = track()

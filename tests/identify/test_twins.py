@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.simulate.scenario import Solver, read_scenario
+from skisnow.scenario import Solver, read_scenario
 from skisnow.simulate.simulated_run import simulate
 
 from .twins import grooves, tables

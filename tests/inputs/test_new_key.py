@@ -26,11 +26,11 @@ from dataclasses import replace
 
 from skisnow.errors import ParameterError
 from skisnow.inputs.page_table import page_table
-from skisnow.simulate.scenario import read_scenario, scenario_file, scenario_text
-from skisnow.simulate.scenario.free_keys import free_key
-from skisnow.simulate.scenario.given import change_of
-from skisnow.simulate.scenario.keys import SCENARIO_KEYS
-from skisnow.simulate.scenario.schema import scenario_schema, told_scenario_schema
+from skisnow.scenario import read_scenario, scenario_file, scenario_text
+from skisnow.scenario.free_keys import free_key
+from skisnow.scenario.given import change_of
+from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario.schema import scenario_schema, told_scenario_schema
 from skisnow.study.axes import Axis
 
 print(read_scenario("carved-46m", changes=dict([change_of("crust_mm=4")])).contact.crust)
@@ -54,7 +54,7 @@ def test_a_new_key_is_one_declaration(tmp_path: Path) -> None:
     """In a copy of the package one file is changed; the second would be the one that uses the value."""
     copy = tmp_path / "skisnow"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__", "static", "web", "field"))
-    place = copy / "simulate" / "scenario" / "contact.py"
+    place = copy / "scenario" / "contact.py"
     text = place.read_text(encoding="utf-8")
     assert text.count(BEFORE) == 1
     place.write_text(text.replace(BEFORE, DECLARED + BEFORE), encoding="utf-8")

@@ -76,11 +76,11 @@ def test_parts_that_are_left_out_have_no_tests_either() -> None:
     left = files_beside(["track/marks.py"], files)
     assert [path for path in files if path not in left] == [Path("src/skisnow/track/marks.py")]
     assert files_beside(["track"], files) == []
-    assert left_out_tests(["simulate/motion", "simulate/batch.py"]) == (
+    assert left_out_tests(["simulate/motion", "parallel/batch.py"]) == (
         "tests/simulate/motion",
-        "tests/simulate/test_batch.py",
+        "tests/parallel/test_batch.py",
         "src/skisnow/simulate/motion",
-        "src/skisnow/simulate/batch.py",
+        "src/skisnow/parallel/batch.py",
     )
 
 

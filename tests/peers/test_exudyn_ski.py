@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.simulate.carve import carve, rest
+from skisnow.carve.equilibrium import carve, rest
 from skisnow.ski import read_ski
 
-from ..simulate.equilibrium.synthetic import FloatArray, boot_pose, snow, weights
+from ..carve.synthetic import FloatArray, boot_pose, snow, weights
 
 pytest.importorskip("exudyn", reason="Exudyn is not installed: pip install 'skisnow[peers]'")
 

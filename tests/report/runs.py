@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 
+from skisnow.scenario import Air, Contact, Plane, RigidSledge, Scenario, Solver, Start, Stop
 from skisnow.simulate.run import Groove, Run, SkiHistory
-from skisnow.simulate.scenario import Air, Contact, Plane, Scenario, Solver, Start, Stop
-from skisnow.simulate.sledge import RigidSledge
 from skisnow.ski import ski_named
 from skisnow.snow import SnowProperties
 from skisnow.units import DEGREE, N_PER_MM2, N_PER_MM3

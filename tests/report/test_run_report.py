@@ -12,9 +12,9 @@ import pytest
 
 from skisnow.report.run_report import FIGURES, write_run_report
 from skisnow.report.tables.run import energies_table, scenario_table
+from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario.values import in_sections, scenario_values
 from skisnow.simulate.run import LOST, STORED, Run, SkiHistory
-from skisnow.simulate.scenario.keys import SCENARIO_KEYS
-from skisnow.simulate.scenario.values import in_sections, scenario_values
 
 from ..conftest import without_png
 from .runs import circle_run

@@ -13,6 +13,7 @@ import pytest
 from skisnow.errors import ParameterError
 from skisnow.report.figures.track_band import TimedTrack
 from skisnow.report.tables.turn import contacts_table, ensemble_table, parameters_table
+from skisnow.report.turn_chain import EnsembleRun, TurnChain
 from skisnow.report.turn_numbers import (
     afterbody_depth_ratio,
     band_width,
@@ -21,7 +22,7 @@ from skisnow.report.turn_numbers import (
     middle_track,
     used_grip,
 )
-from skisnow.report.turn_report import FIGURES, EnsembleRun, TurnChain, write_turn_report
+from skisnow.report.turn_report import FIGURES, write_turn_report
 from skisnow.report.turn_sentences import contrast, meaning
 from skisnow.simulate.run import Run
 from skisnow.snow import SnowProperties

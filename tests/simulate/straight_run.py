@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from skisnow.scenario import Plane, Scenario
 from skisnow.simulate.run import Groove, Outcome, Run, SkiHistory
-from skisnow.simulate.scenario import Plane, Scenario
 
 STATION = np.array([0.8, 0.0, -0.8])
 DEPTH = 0.004

@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.simulate.sledge import RigidSledge
+from skisnow.scenario import RigidSledge
 from skisnow.simulate.sledge.inertia import SledgeInertia, sledge_inertia
 from skisnow.ski.beam.banded import dense
 from skisnow.ski.beam.clamped import ClampedSki, beam_at, clamped
-from tests.simulate.equilibrium.synthetic import plain_ski, shovel
+from tests.carve.synthetic import plain_ski, shovel
 
 FloatArray = npt.NDArray[np.float64]
 EDGE = 0.5

@@ -11,9 +11,9 @@ import jsonschema
 import numpy as np
 import pytest
 
+from skisnow.scenario import scenario_file
 from skisnow.simulate.run import Run
 from skisnow.simulate.run_summary import run_warnings, summary_dict
-from skisnow.simulate.scenario import scenario_file
 from skisnow.simulate.simulated_run import REMEDIES
 
 from .straight_run import STRAIGHT, straight_run

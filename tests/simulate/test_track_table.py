@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 from skisnow.simulate.track_table import COLUMNS, track_csv, write_track
 
 from .straight_run import STRAIGHT, straight_run

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from skisnow import Run, Scenario
-from skisnow.simulate.scenario import Solver, read_scenario
+from skisnow.scenario import Solver, read_scenario
 from skisnow.simulate.verification import refined_solvers, verification_dict, verify
 
 from .straight_run import STRAIGHT, straight_run

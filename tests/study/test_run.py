@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from skisnow import carve, published_snow, read_ski
+from skisnow.carve.keys import CARVE_KEYS
 from skisnow.errors import OutputError, ParameterError
-from skisnow.simulate.batch_file import KeptRows
-from skisnow.simulate.carve_keys import CARVE_KEYS
+from skisnow.parallel.kept_rows import KeptRows
 from skisnow.study import StudyState, StudyTable, read_study, read_table, run_study, study_state
 
 TEXT = """

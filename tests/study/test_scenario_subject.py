@@ -9,8 +9,8 @@ import pytest
 
 from skisnow import Run, Scenario
 from skisnow.errors import ParameterError
-from skisnow.simulate.scenario import scenario_text
-from skisnow.simulate.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario import scenario_text
+from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.study import read_study, read_table, run_study
 from skisnow.study.scenario_subject import RESULTS
 

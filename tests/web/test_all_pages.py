@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from skisnow.web.lab_skis import LabSkis
+from skisnow.web.pages import PAGES
 
 from .conftest import Served, settled
 from .replay.test_lab_page import kept
@@ -23,6 +24,11 @@ READY = {
     "simulate": "summary",
     "replay": ".card",
 }
+
+
+def test_every_page_of_the_navigation_is_looked_at() -> None:
+    """The list of campaigns is, with what is entered there (`test_contrast`, `test_day`)."""
+    assert {*READY, "campaigns"} == set(PAGES)
 
 
 def opened(page: Page, served: Served, name: str) -> None:

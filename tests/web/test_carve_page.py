@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from skisnow.carve.answer import answered
+from skisnow.carve.answer_dict import answer_dict
+from skisnow.carve.keys import CARVE_KEYS
+from skisnow.carve.question import carve_question
 from skisnow.report.numerals import significant
-from skisnow.simulate.carve_answer import answered
-from skisnow.simulate.carve_dict import answer_dict
-from skisnow.simulate.carve_keys import CARVE_KEYS
-from skisnow.simulate.carve_question import carve_question
 from skisnow.web.pages.carve import RATIOS, SLIDERS
 
 from .conftest import Served

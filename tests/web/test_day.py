@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from skisnow.carve.answer import answered
+from skisnow.carve.answer_dict import answer_dict
+from skisnow.carve.question import carve_question
 from skisnow.cli import main
 from skisnow.field.store import Journals, Store, grown
 from skisnow.field.store.description import Description, description_text
 from skisnow.report.numerals import significant
-from skisnow.simulate.carve_answer import answered
-from skisnow.simulate.carve_dict import answer_dict
-from skisnow.simulate.carve_question import carve_question
 
 from .conftest import Served, downloaded_results, fill, follow, has_text, killed_and_started_again, ready
 

@@ -12,13 +12,13 @@ from ..errors import ParameterError
 from ..estimate import Analysis, analyse
 from ..estimate.site_snow import site_of_campaign
 from ..field import Campaign
+from ..parallel.pool import workers_in_force
 from ..report.figures.track_band import FEWEST
 from ..report.material import is_synthetic
-from ..report.turn_report import TurnChain
+from ..report.turn_chain import TurnChain
+from ..scenario import Scenario, read_scenario
+from ..scenario.contact import ELASTIC
 from ..simulate import Run
-from ..simulate.batch import require_workers
-from ..simulate.scenario import Scenario, read_scenario
-from ..simulate.scenario.contact import ELASTIC
 from ..simulate.simulated_run import simulate
 from ..ski import Ski
 from ..snow.drawn import drawn_snows
@@ -81,12 +81,23 @@ def chain(
     SolverError
         The sledge finds no equilibrium to start from on that snow.
 
+    See Also
+    --------
+    skisnow.analyse : its first step alone.
+    skisnow.simulate : one turn alone.
+
     Notes
     -----
     A script that calls this with several workers needs the usual ``if __name__ == "__main__":``.
+
+    References
+    ----------
+    * Mössner and others (2013), "Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic
+      force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
+    * The page docs/how-to/in-python.md.
     """
     _require(unloading_ratio, runs)
-    require_workers(workers)
+    workers = workers_in_force(workers)
     say = progress or _silent
     found = campaign if isinstance(campaign, Analysis) else analyse(campaign, progress=progress)
     snow = found.snow(site, unloading_ratio=unloading_ratio)

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ..parallel.batch import run_batch
 from ..report.figures.track_band import TimedTrack
-from ..report.turn_report import EnsembleRun
-from ..simulate.batch import run_batch
+from ..report.turn_chain import EnsembleRun
 from ..simulate.simulated_run import simulate
 
 if TYPE_CHECKING:
+    from ..scenario import Scenario
     from ..simulate.run import Run
-    from ..simulate.scenario import Scenario
     from ..snow import SnowProperties
 
 STEP: Final = 1e-3

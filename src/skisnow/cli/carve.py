@@ -12,7 +12,7 @@ from .announced import announced
 from .words import number, whole_number
 
 if TYPE_CHECKING:
-    from ..simulate.carve_answer import CarveAnswer
+    from ..carve.answer import CarveAnswer
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -76,7 +76,7 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Answer for each ski, print, draw; 0 with every outcome, which is said in words."""
-    from ..simulate.carve_dict import answers_dict
+    from ..carve.answer_dict import answers_dict
 
     if options.figure is not None:
         from ..report.figures.figure_file import require_drawable
@@ -102,9 +102,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _answers(options: argparse.Namespace) -> list[CarveAnswer]:
     with announced("loading"):
-        from ..simulate.carve_answer import answered
-        from ..simulate.carve_keys import CARVE_KEYS
-        from ..simulate.carve_question import carve_question
+        from ..carve.answer import answered
+        from ..carve.keys import CARVE_KEYS
+        from ..carve.question import carve_question
 
         given = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
         return [answered(carve_question(given | {"ski": ski})) for ski in options.ski]

@@ -18,7 +18,7 @@ MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
 
 if TYPE_CHECKING:
     from ..identify import Identification
-    from ..simulate.scenario import ScenarioFile
+    from ..scenario import ScenarioFile
 
 KEPT = "simulations.partial"
 
@@ -87,7 +87,7 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
     with announced("loading"):
         from ..identify.bootstrap import require_bootstrap
         from ..identify.posterior import require_emcee
-        from ..simulate.scenario import scenario_file
+        from ..scenario import scenario_file
 
         require_bootstrap(options.bootstrap, options.bootstrap_by)
         if options.posterior:
@@ -101,7 +101,7 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
 
 
 def _changes(options: argparse.Namespace) -> dict[str, object]:
-    from ..simulate.scenario.given import change_of
+    from ..scenario.given import change_of
 
     return dict(change_of(word) for word in options.changes)
 

@@ -18,8 +18,8 @@ from .progress import Progress
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from ..scenario import Scenario, ScenarioFile
     from ..simulate.run import Run
-    from ..simulate.scenario import Scenario, ScenarioFile
 
 LOADING = "loading"
 
@@ -59,8 +59,8 @@ def run(options: argparse.Namespace) -> int:
     if options.replay and options.out is None:
         options.parser.error("--replay writes into the folder of --out: name one")
     with announced(LOADING):
-        from ..simulate.scenario import scenario_file
-        from ..simulate.scenario.given import change_of
+        from ..scenario import scenario_file
+        from ..scenario.given import change_of
 
         asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
     _prepare(options, asked)
@@ -75,7 +75,7 @@ def _status(found: Run, ending: Ending) -> int:
 
 
 def _list(name: str | None) -> int:
-    from ..simulate.scenario import scenario_names, scenario_text
+    from ..scenario import scenario_names, scenario_text
 
     print("\n".join(scenario_names()) if name is None else scenario_text(name).rstrip())
     return 0
@@ -134,7 +134,7 @@ def _write(folder: Path, found: Run, summary: dict[str, Any], *, replay_title: s
 
     def replay(place: Path) -> None:
         if replay_title is not None:
-            from ..web.replay import write_replay
+            from ..replay import write_replay
 
             write_replay(found, place / REPLAY, title=replay_title)
 

@@ -59,8 +59,8 @@ def run(options: argparse.Namespace) -> int:
     """Compute the chain, print what the contacts do otherwise, write the report."""
     with announced("loading"):
         from ..chain.chaining import chain
-        from ..simulate.scenario import scenario_file
-        from ..simulate.scenario.given import change_of
+        from ..scenario import scenario_file
+        from ..scenario.given import change_of
 
         asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
     if options.out is not None:

@@ -38,6 +38,10 @@ class Runner(Shown):
     ------
     ParameterError
         Positions do not fall, a number is not finite, a width is not above 0, or nodes do not span the runner.
+
+    See Also
+    --------
+    skisnow.SnowContact
     """
 
     position: FloatArray

@@ -40,6 +40,10 @@ class ContactForces(Shown):
         (k, 6): force (N) and moment (N m) about each boot, in the slope's axes.
     beam_loads
         For each runner (nodes, 3): force (N) and moments (N m) on deflection, its slope and twist; empty without beams.
+
+    See Also
+    --------
+    skisnow.SnowContact
     """
 
     wrench: FloatArray
@@ -101,6 +105,11 @@ class SnowContact(Shown):
         One or more.
     spacing
         Of the lines on which the contact is integrated (m), > 0.
+
+    See Also
+    --------
+    skisnow.SnowField
+    skisnow.Runner
 
     Notes
     -----

@@ -65,6 +65,10 @@ class SnowField(Shown):
     ------
     ParameterError
         A number is outside its range.
+
+    See Also
+    --------
+    skisnow.SnowContact
     """
 
     snow_hardness: float | Grid

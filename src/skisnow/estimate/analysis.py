@@ -14,14 +14,15 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..field import read_campaign
 from ..field.records import Campaign
-from ..shown import Facts, Shown, amount, field_facts, span
+from ..from_above import from_above
+from ..shown import Facts, Shown, amount, span
 from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
-from .errors_in_depth import FittedHardness, fit_models_with_depth_errors, fitted_hardness
+from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
 from .fit_warnings import fit_warnings
-from .hardness import DEFINITIONS, Hardness, ReadingUncertainty, hardness
-from .model_choice import NestedRows, bootstrap_intervals, compare_nested_rows
-from .models import Model, ModelFit, fit_models, select_model
+from .hardness import DEFINITIONS, ReadingUncertainty, hardness
+from .model_choice import bootstrap_intervals, compare_nested_rows
+from .models import Model, fit_models, select_model
 from .observations import (
     DENSITY_KEY,
     HARDNESS_KEY,
@@ -31,11 +32,12 @@ from .observations import (
     shear_observations,
     spot_observations,
 )
-from .readings import Readings, readings_of
+from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, used_of
+from .readings import readings_of
 from .regressions import Regression, Source, regressions
-from .screening import Screened, screened_penetration, screened_shear
-from .seating import Seating, seating
-from .shear_stress import ShearStress, shear_stress
+from .screening import screened_penetration, screened_shear
+from .seating import seating
+from .shear_stress import shear_stress
 from .site_snow import site_snow
 from .sites import SiteComparison, SiteMean, compare_sites, site_means
 
@@ -50,52 +52,6 @@ DEFAULT_RESAMPLES: Final = 2000
 """Bootstrap resamples; the ends of a 95 % interval then move by a few percent of its width between seeds."""
 FEWEST_RESAMPLES: Final = 100
 DEFAULT_SEED: Final = 1
-
-
-@dataclass(frozen=True, repr=False)
-class ModelTable(Shown):
-    """The nine fitted rows with bootstrap intervals of a0, a1, b0, b1 by model ((4, 2) each); none where withheld."""
-
-    fits: tuple[ModelFit, ...]
-    intervals: dict[Model, FloatArray]
-
-    def _facts(self) -> Facts:
-        rows = tuple((fit.model.id, f"rmse {amount(fit.rmse, 'N')}") for fit in self.fits)
-        return Facts(f"of {len(rows)} rows", rows)
-
-
-@dataclass(frozen=True, repr=False)
-class PenetrationAnalysis(Shown):
-    """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
-
-    ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say. ``table``,
-    ``errors_in_depth`` and ``selected`` are None where no experiment is used; ``warnings`` are those of `fit_warnings`.
-    """
-
-    screened: Screened
-    readings: Readings
-    hardness: dict[str, Hardness]
-    seating: Seating
-    fitted: FittedHardness
-    table: ModelTable | None
-    nested: tuple[NestedRows, ...]
-    selected: ModelFit | None
-    errors_in_depth: ModelTable | None
-    warnings: tuple[str, ...] = ()
-
-    def _facts(self) -> Facts:
-        return field_facts(self, {}, title=_used_of(self.screened))
-
-
-@dataclass(frozen=True, repr=False)
-class ShearAnalysis(Shown):
-    """All that the shear experiments say, over all experiments."""
-
-    screened: Screened
-    stress: ShearStress
-
-    def _facts(self) -> Facts:
-        return Facts(_used_of(self.screened))
 
 
 @dataclass(frozen=True, repr=False)
@@ -118,6 +74,10 @@ class Analysis(Shown):
         The used experiments with the snow that they were made on.
     time
         When it was made.
+
+    See Also
+    --------
+    skisnow.analyse
     """
 
     campaign: Campaign
@@ -138,9 +98,8 @@ class Analysis(Shown):
     @cached_property
     def results(self) -> dict[str, Any]:
         """The contents of results.json, see `results_dict`; not to be changed."""
-        from .results import results_dict
-
-        return results_dict(self)
+        found: dict[str, Any] = from_above("estimate.results", "results_dict")(self)
+        return found
 
     def snow(self, site: str | None = None, *, unloading_ratio: float | None = None) -> SnowProperties:
         """The snow of a site: the geometric mean of H_V and the mean of S_f over the used experiments, with intervals.
@@ -160,23 +119,19 @@ class Analysis(Shown):
         ParameterError
             No used penetration experiment is of that site; the message names the sites that have some.
         """
-        return site_snow(self, site, unloading_ratio)
+        return site_snow(self.campaign, self.penetration, self.shear, site, unloading_ratio)
 
     def _facts(self) -> Facts:
         selected = self.penetration.selected if self.penetration is not None else None
         rows = [
-            ("penetration", "none" if self.penetration is None else _used_of(self.penetration.screened)),
-            ("shear", "none" if self.shear is None else _used_of(self.shear.screened)),
+            ("penetration", "none" if self.penetration is None else used_of(self.penetration.screened)),
+            ("shear", "none" if self.shear is None else used_of(self.shear.screened)),
             ("H_V", _own(self.own_hardness, "N/mm³")),
             ("S_f", _own(self.own_stress, "N/mm²")),
             ("model", "none" if selected is None else f"{selected.model.id}, rmse {amount(selected.rmse, 'N')}"),
             ("sites", ", ".join(dict.fromkeys(row.site for row in self.site_means)) or "none"),
         ]
         return Facts(f"of {self.campaign.name!r}", tuple(rows))
-
-
-def _used_of(screened: Screened) -> str:
-    return f"{int(screened.used.sum())} of {len(screened.used)} experiments used"
 
 
 def _own(mean: OwnValue, unit: str) -> str:
@@ -207,12 +162,29 @@ def analyse(
     progress
         Called with a line of text now and then.
 
+    Returns
+    -------
+    Analysis
+        With results, snow of a site, figures and tables.
+
     Raises
     ------
     FieldDataError
         The folder holds errors; its ``problems`` list every one.
     ParameterError
         ``n_resamples`` is too small for a 95 % interval.
+
+    See Also
+    --------
+    skisnow.read_campaign : the campaign to analyse.
+    skisnow.write_report : what was found, as a page.
+    skisnow.Analysis.snow : the snow of a site for a turn.
+
+    References
+    ----------
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+    * Efron (1979), "Bootstrap methods: another look at the jackknife", Ann. Stat. 7, 1-26, doi 10.1214/aos/1176344552.
     """
     if n_resamples < FEWEST_RESAMPLES:
         raise ParameterError(f"n_resamples is {n_resamples!r}; a 95 % interval needs {FEWEST_RESAMPLES} or more")

@@ -23,10 +23,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ..field.records import PenetrationTests, ShearTests
-    from .analysis import Analysis, ModelTable, PenetrationAnalysis, ShearAnalysis
+    from .analysis import Analysis
     from .hardness import Hardness
     from .model_choice import NestedRows
     from .models import Model, ModelFit
+    from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis
     from .regressions import Regression
     from .screening import Screened
     from .shear_stress import ShearStress
@@ -41,7 +42,27 @@ _SAME_PERCENT = 0.005
 
 
 def results_dict(analysis: Analysis) -> Json:
-    """Give the analysis as plain dictionaries and lists, ready for JSON."""
+    """Give the analysis as plain dictionaries and lists, ready for JSON.
+
+    Parameters
+    ----------
+    analysis
+        What `analyse` gave.
+
+    Returns
+    -------
+    dict
+        The contents of results.json, in the units that its keys name.
+
+    See Also
+    --------
+    skisnow.Analysis.results : the same, kept.
+    skisnow.write_report : writes it, too.
+
+    References
+    ----------
+    The page docs/files/results.md.
+    """
     results = {
         "schema_version": SCHEMA_VERSION,
         "campaign": _campaign(analysis),

@@ -14,19 +14,25 @@ from ..units import N_PER_MM2, N_PER_MM3
 
 if TYPE_CHECKING:
     from ..field.records import Campaign
-    from .analysis import Analysis
+    from .parts import PenetrationAnalysis, ShearAnalysis
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 TextArray = npt.NDArray[np.object_]
 
 
-def site_snow(analysis: Analysis, site: str | None, unloading_ratio: float | None) -> SnowProperties:
+def site_snow(
+    campaign: Campaign,
+    penetration: PenetrationAnalysis | None,
+    shear: ShearAnalysis | None,
+    site: str | None,
+    unloading_ratio: float | None,
+) -> SnowProperties:
     """The means over the used experiments of a site, as `skisnow.snow_from_results` reads them from results.json."""
-    pressed, sheared = _pressed(analysis), _sheared(analysis)
-    site = site_of_campaign(analysis.campaign, site)
+    pressed, sheared = _pressed(penetration, campaign), _sheared(shear, campaign)
+    site = site_of_campaign(campaign, site)
     hardness, stress = (_of(site, *known) for known in (pressed, sheared))
-    name = analysis.campaign.name
+    name = campaign.name
     if not hardness.size:
         sites = sorted({str(each) for each in pressed[1]})
         raise ParameterError(f"{name} has no used penetration experiment{known_sites(site, sites)}")
@@ -36,17 +42,17 @@ def site_snow(analysis: Analysis, site: str | None, unloading_ratio: float | Non
     )
 
 
-def _pressed(analysis: Analysis) -> tuple[FloatArray, TextArray]:
+def _pressed(found: PenetrationAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
     """H_V (N/m³) and site of each used penetration experiment that has one."""
-    found, tests = analysis.penetration, analysis.campaign.penetration
+    tests = campaign.penetration
     if found is None or tests is None:
         return np.zeros(0), np.zeros(0, dtype=object)
     return _used(found.hardness["H_V"].value, found.screened.used, tests.site)
 
 
-def _sheared(analysis: Analysis) -> tuple[FloatArray, TextArray]:
+def _sheared(found: ShearAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
     """S_f (N/m²) and site of each used shear experiment that has one."""
-    found, tests = analysis.shear, analysis.campaign.shear
+    tests = campaign.shear
     if found is None or tests is None:
         return np.zeros(0), np.zeros(0, dtype=object)
     return _used(found.stress.value, found.screened.used, tests.site)

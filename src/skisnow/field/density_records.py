@@ -25,7 +25,7 @@ from .reading.text import UnreadableTextError, look_at_csv
 
 if TYPE_CHECKING:
     from .problems import Problem
-    from .reading.tables import Table
+    from .reading.table import Table
     from .records import FloatArray, IntArray
 
 _NO_NOTE: Final = "-9999"

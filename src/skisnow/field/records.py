@@ -274,6 +274,10 @@ class Campaign(Shown):
         What corrections.csv changed, in its order.
     unread_files
         Names of files in the folder that are no part of a campaign.
+
+    See Also
+    --------
+    skisnow.read_campaign
     """
 
     name: str

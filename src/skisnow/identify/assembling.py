@@ -11,10 +11,10 @@ from typing import Any, Final
 from ..errors import ParameterError
 from ..given import is_file
 from ..inputs import nearest
-from ..simulate.scenario import ScenarioFile
-from ..simulate.scenario.free_keys import EACH, free_key
-from ..simulate.scenario.given import GivenScenario
-from ..simulate.scenario.keys import SCENARIO_KEYS
+from ..scenario import ScenarioFile
+from ..scenario.free_keys import EACH, free_key
+from ..scenario.given import GivenScenario
+from ..scenario.keys import SCENARIO_KEYS
 from ..track.track import Track
 from .data import Data, read_data, taken_for
 from .marks import Marks

@@ -8,7 +8,7 @@ from typing import Final, TypeAlias
 from ..errors import ParameterError
 from ..given import is_file
 from ..spreadsheet_text import encoding_of, most_frequent_separator, named_separator
-from ..track.table import GEODETIC, LOCAL, TIMES
+from ..track.readers.table import GEODETIC, LOCAL, TIMES
 from ..track.track import Track
 from .marks import COLUMNS as MARK_COLUMNS
 from .marks import Marks, marks_of

@@ -7,8 +7,8 @@ import json
 from collections.abc import Sequence
 from importlib.metadata import version
 
-from ..simulate.scenario.given import GivenScenario
-from ..simulate.scenario.reading import files_of
+from ..scenario.given import GivenScenario
+from ..scenario.reading import files_of
 from .track_positions import Measured
 
 

@@ -13,6 +13,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..json_number import json_number
 from ..shown import Facts, Shown, amount, ends, span
 from .observations import Fit
 from .parameter import Parameter
@@ -139,6 +140,10 @@ class Identification(Shown):
         What it took.
     data
         The name of each file, and what it was taken for, in words.
+
+    See Also
+    --------
+    skisnow.identify
     """
 
     outcome: Outcome
@@ -197,7 +202,8 @@ def identification_dict(found: Identification, *, files: Iterable[Path] = ()) ->
         "reason": found.reason,
         "parameters": {each.parameter.key: _parameter_dict(each) for each in found.parameters},
         "correlation": {
-            key: {other: _finite(found.correlation[i, j]) for j, other in enumerate(keys)} for i, key in enumerate(keys)
+            key: {other: json_number(found.correlation[i, j]) for j, other in enumerate(keys)}
+            for i, key in enumerate(keys)
         },
         "warnings": list(found.warnings),
         "methods": list(found.methods),
@@ -206,7 +212,7 @@ def identification_dict(found: Identification, *, files: Iterable[Path] = ()) ->
         "points": found.points,
         "degrees_of_freedom": found.degrees_of_freedom,
         "accuracy_is_stated": found.accuracy_is_stated,
-        "noise": [_finite(each) for each in found.noise],
+        "noise": [json_number(each) for each in found.noise],
         "runs": [{"name": fit.name, "kind": fit.kind, "rms": _rms(fit)} for fit in found.fits],
         "effort": {
             "simulations": found.effort.simulations,
@@ -244,10 +250,6 @@ def _parameter_dict(each: Identified) -> dict[str, Any]:
 
 def _pair(interval: Interval | None) -> list[float | None] | None:
     return None if interval is None else list(interval)
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def _rms(fit: Fit) -> dict[str, float | None]:

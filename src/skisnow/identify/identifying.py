@@ -12,12 +12,12 @@ from typing import Final
 import numpy as np
 
 from ..errors import FitError, ParameterError
-from ..simulate.batch_file import KeptRows
-from ..simulate.scenario import ScenarioFile
-from ..simulate.scenario.free_keys import free_keys
-from ..simulate.scenario.given import GivenScenario, given_scenario
-from ..simulate.scenario.identify_section import given_parameters
-from ..simulate.scenario.reading import resolved
+from ..parallel.kept_rows import KeptRows
+from ..scenario import ScenarioFile
+from ..scenario.free_keys import free_keys
+from ..scenario.given import GivenScenario, given_scenario
+from ..scenario.identify_section import given_parameters
+from ..scenario.reading import resolved
 from .assembling import Collected, collected, values_to_begin_with
 from .bootstrap import BootstrapBy, require_bootstrap
 from .data import Data
@@ -105,10 +105,21 @@ def identify(
     FitError
         Not even the start can be computed.
 
+    See Also
+    --------
+    skisnow.simulate : the run that is fitted.
+    skisnow.compare_tracks : how far two tracks are apart, without a fit.
+
     Notes
     -----
     Searches simulate with fixed steps of 1 ms; the last steps of the search and what is told of the answer are computed
     with the scenario's own solver.
+
+    References
+    ----------
+    * Kaps, Nachbauer and Mössner (1996), "Determination of kinetic friction and drag area in alpine skiing", ASTM STP
+      1266, 165-177.
+    * The page docs/methods/identification.md.
     """
     begun = time.monotonic()
     require_bootstrap(bootstrap, bootstrap_by)

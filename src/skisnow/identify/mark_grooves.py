@@ -18,9 +18,9 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from ..carve.equilibrium import Equilibrium, carve
 from ..errors import ParameterError, SkisnowError
-from ..simulate.carve import Equilibrium, carve
-from ..simulate.scenario import Plane, ScenarioFile
+from ..scenario import Plane, ScenarioFile
 from ..ski import Ski
 from ..snow import SnowProperties
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..inputs import nearest
+from ..scenario.free_keys import EACH
 from ..shown import ShownFields
-from ..simulate.scenario.free_keys import EACH
 
 FloatArray = npt.NDArray[np.float64]
 Values: TypeAlias = Mapping[str, float]

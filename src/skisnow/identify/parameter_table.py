@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..errors import ParameterError
-from ..simulate.scenario.free_keys import short_name
-from ..simulate.scenario.keys import SCENARIO_KEYS
+from ..scenario.free_keys import short_name
+from ..scenario.keys import SCENARIO_KEYS
 from .parameter import Parameter
 from .usual_sizes import usual
 

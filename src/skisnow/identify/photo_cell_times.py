@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..simulate.scenario import Plane, ScenarioFile
+from ..scenario import Plane, ScenarioFile
 from ..units import DEGREE
 from .glide import Glide, SlopeLine, passage_times, planes, slope_line
 from .observations import Fit, Kind, Values, values_of_run

@@ -11,12 +11,12 @@ import numpy.typing as npt
 from scipy.interpolate import CubicHermiteSpline
 
 from ..errors import SkisnowError
-from ..simulate.batch_file import Row
-from ..simulate.carve_answer import Sources
+from ..parallel.kept_rows import Row
+from ..scenario import Scenario, Solver, Stop
+from ..scenario.given import GivenScenario
+from ..scenario.reading import resolved
 from ..simulate.run import Run
-from ..simulate.scenario import Scenario, Solver, Stop
-from ..simulate.scenario.given import GivenScenario
-from ..simulate.scenario.reading import resolved
+from ..sources import Sources
 
 FloatArray = npt.NDArray[np.float64]
 

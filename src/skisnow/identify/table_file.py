@@ -13,7 +13,7 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..inputs import Quantity
 from ..spreadsheet_text import number
-from ..track.text import cells_of, mark_of, require_width, text_of
+from ..track.readers.text import cells_of, mark_of, require_width, text_of
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..inputs import checked_table, made
-from ..simulate.scenario import Plane, ScenarioFile
-from ..simulate.scenario.identify_section import SITE, Site
+from ..scenario import Plane, ScenarioFile
+from ..scenario.identify_section import SITE, Site
 from ..track.projection import GeodeticPoint, east_north_up
 from ..track.slope_frame import in_slope_frame
 from ..track.track import Track

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..simulate.batch_file import Row
+from ..parallel.kept_rows import Row
 from ..track.solution import inexact_sentence
 from ..track.track import Track
 from .observations import Fit, Kind, Values, values_of_run

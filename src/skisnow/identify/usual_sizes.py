@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from ..inputs import Search
-from ..simulate.scenario.keys import SCENARIO_KEYS
+from ..scenario.keys import SCENARIO_KEYS
 
 _TIMES_START: Final = 5.0
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .turn_report import TurnChain
+    from .turn_chain import TurnChain
     from .write import write_report
 
 __all__ = ["TurnChain", "write_report"]
@@ -20,7 +20,7 @@ def __getattr__(name: str) -> Any:
 
         return write_report
     if name == "TurnChain":
-        from .turn_report import TurnChain
+        from .turn_chain import TurnChain
 
         return TurnChain
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

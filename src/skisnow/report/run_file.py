@@ -11,7 +11,7 @@ import numpy as np
 from scipy.io import netcdf_file
 
 from ..files import write_file
-from ..simulate.scenario.keys import SCENARIO_KEYS
+from ..scenario.keys import SCENARIO_KEYS
 from .run_variables import PIECE, RUN_VARIABLES, SKI, STATION, TIME
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ..files import write_file
+from ..scenario.suspicions import suspicions
 from ..simulate.run_summary import summary_dict
-from ..simulate.scenario.suspicions import suspicions
 from ..simulate.track_table import write_track
 from ..staging import staged, tidied
 from .pictures import picture_files

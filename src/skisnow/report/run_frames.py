@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..simulate.scenario.values import in_sections, scenario_values
+from ..scenario.values import in_sections, scenario_values
 from ..simulate.track_table import COLUMNS, track_table
 from .run_file import SKI_NAMES
 from .run_variables import RUN_VARIABLES, SKI

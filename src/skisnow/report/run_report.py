@@ -10,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from ..files import require_writable, write_file
-from ..simulate.carve_dict import finite
+from ..json_number import json_number
 from ..simulate.run_summary import run_warnings
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .numerals import counted, significant, whole
@@ -137,7 +137,7 @@ def outcome_sentences(run: Run) -> list[Markup]:
 
 def _balance(run: Run) -> list[Markup]:
     error = run.energy_balance_error
-    if error is None or finite(error) is None:
+    if error is None or json_number(error) is None:
         return []
     if told := run_warnings(run):
         return [prose("Warning: {told}.", told=each) for each in told]
@@ -171,7 +171,7 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
 
 def _number(value: float | None, digits: int = 3) -> str:
     """To a few digits; a dash for what is not finite."""
-    return significant(None if value is None else finite(value), digits)
+    return significant(None if value is None else json_number(value), digits)
 
 
 def _silent(_text: str) -> None:

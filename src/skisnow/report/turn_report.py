@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ..errors import ParameterError
 from ..files import require_writable, write_file
-from ..shown import Facts, Shown, amount
-from ..simulate.scenario.values import scenario_values
+from ..scenario.values import scenario_values
 from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
 from .figures.run_grip import run_grip
 from .figures.runs_compared import runs_compared
-from .figures.track_band import FEWEST, TimedTrack, track_band
+from .figures.track_band import FEWEST, track_band
 from .numerals import significant
 from .pictures import write_pictures
 from .sheet import Header, Section, sheet
@@ -24,97 +22,18 @@ from .symbols import html, prose
 from .tables.run import scenario_table
 from .tables.turn import contacts_table, ensemble_table, parameters_table
 from .turn_numbers import middle_track
-from .turn_sentences import contrast, ensemble_accuracy, ensemble_sentence, key_sentences, meaning
+from .turn_sentences import ensemble_accuracy, ensemble_sentence, key_sentences, meaning
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from markupsafe import Markup
 
-    from ..estimate import Analysis
-    from ..simulate.run import Run
-    from ..snow import SnowProperties
     from .figures.drawing import Picture
+    from .turn_chain import TurnChain
 
 FIGURES: Final = ("contacts", "along_ski", "grip", "band")
 """Names of the figures of such a report, in figures/ as .png and .svg."""
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class EnsembleRun(Shown):
-    """One run of an ensemble.
-
-    Attributes
-    ----------
-    snow
-        That was drawn for it.
-    outcome
-        How it ended.
-    track
-        Of the middle between the boots.
-    """
-
-    snow: SnowProperties
-    outcome: str
-    track: TimedTrack
-
-    def _facts(self) -> Facts:
-        return Facts(f"{self.outcome.replace('_', ' ')} on {self.snow.in_words}")
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
-class TurnChain(Shown):
-    """From a campaign to a turn.
-
-    Attributes
-    ----------
-    campaign, site
-        Names.
-    synthetic
-        Whether nobody measured the campaign.
-    snow
-        H_V and S_f of that site with their intervals.
-    runs
-        By the name of the contact, two or more; the first is the nominal run of the ensemble.
-    ensemble
-        Runs over the intervals, three or more.
-    seed
-        Of the ensemble's draws.
-    ensemble_error
-        Distance between the ends of the nominal run and of the same run computed like the ensemble (m); None where
-        both are computed alike.
-    analysis
-        Of the campaign, where it was made on the way.
-    """
-
-    campaign: str
-    site: str
-    synthetic: bool
-    snow: SnowProperties
-    runs: Mapping[str, Run]
-    ensemble: Sequence[EnsembleRun]
-    seed: int
-    ensemble_error: float | None = None
-    analysis: Analysis | None = None
-
-    @property
-    def nominal(self) -> Run:
-        """The turn on the snow that was found, with the first contact."""
-        return next(iter(self.runs.values()))
-
-    @property
-    def sentences(self) -> list[str]:
-        """What the contacts do otherwise, in plain text."""
-        return [sentence.replace("<sub>", "_").striptags() for sentence in contrast(self)]
-
-    def report(self, folder: str | Path) -> Path:
-        """Write report.html and figures/ of the whole chain; see `write_turn_report`."""
-        return write_turn_report(self, folder)
-
-    def _facts(self) -> Facts:
-        runs = [(name, f"{run.outcome}, {amount(run.run_length, 'm')}") for name, run in self.runs.items()]
-        rows = (("snow", self.snow.in_words), *runs, ("ensemble", f"{len(self.ensemble)} runs"))
-        return Facts(f"from {self.campaign!r}, {self.site}", rows)
 
 
 def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
     from ..simulate.run import Run
-    from .turn_report import TurnChain
+    from .turn_chain import TurnChain
 
 ALIKE: Final = 0.002
 """Two numbers that differ by less of their size are called alike."""

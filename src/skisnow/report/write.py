@@ -55,6 +55,15 @@ def write_report(analysis: Analysis, out: str | Path, *, progress: Callable[[str
         What is given is no analysis.
     OutputError
         A file cannot be written. results.json, moved last, says by its presence beside the others that all is there.
+
+    See Also
+    --------
+    skisnow.analyse : what is written.
+    skisnow.results_dict : its numbers alone.
+
+    References
+    ----------
+    The page docs/files/results.md.
     """
     if not isinstance(analysis, Analysis):
         raise ParameterError(

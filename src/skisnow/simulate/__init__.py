@@ -1,4 +1,4 @@
-"""Skis in snow: the equilibrium of a ski at rest or carving, and the simulated run of a sledge on two skis.
+"""The simulated run of a sledge on two skis: what comes out of a scenario, and how exact it is.
 
 The room can be called: `skisnow.simulate(turn)` is `skisnow.simulate.simulated_run.simulate`.
 """
@@ -6,10 +6,8 @@ The room can be called: `skisnow.simulate(turn)` is `skisnow.simulate.simulated_
 from __future__ import annotations
 
 from ..callable_rooms import make_callable
-from .carve import Equilibrium, carve, rest
 from .run import Run
-from .scenario import Scenario, read_scenario, scenario_names
 
-__all__ = ["Equilibrium", "Run", "Scenario", "carve", "read_scenario", "rest", "scenario_names"]
+__all__ = ["Run"]
 
 make_callable(__name__, ".simulated_run", "simulate")

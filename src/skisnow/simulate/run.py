@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ..from_above import from_above
+from ..scenario import Plane, Scenario
 from ..shown import Facts, Shown, amount, field_facts, span
 from ..track.track import Track
 from ..units import DEGREE, MM
-from .scenario import Plane, Scenario
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -138,6 +138,11 @@ class Run(Shown):
         Time it took, without the start (s).
     numbers
         What the solver chose: elements, line_spacing_m.
+
+    See Also
+    --------
+    skisnow.simulate
+    skisnow.compare_tracks
     """
 
     scenario: Scenario

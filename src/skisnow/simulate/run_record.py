@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..dynamics import Ended
+from ..scenario import Plane
 from .run import LOST, STORED, Outcome, SkiHistory
 from .run_setup import Setup
-from .scenario import Plane
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

@@ -16,8 +16,8 @@ from ..dynamics import Dynamics, StepControl
 from ..errors import RangeWarning
 from ..forces.friction import LinearFriction
 from ..geometry import surfaces
+from ..scenario import Plane, Scenario
 from ..ski.beam.clamped import clamped
-from .scenario import Plane, Scenario
 from .sledge.body import sledge_body
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]

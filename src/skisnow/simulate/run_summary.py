@@ -12,10 +12,11 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..json_number import json_number
+from ..scenario.values import in_sections, scenario_values
+from ..snow.snow_dict import snow_dict
 from ..units import DEGREE
-from .carve_dict import finite, snow_dict
 from .run import LEAST_OPEN, LOST, STORED, WARNED_SHARE, Run
-from .scenario.values import in_sections, scenario_values
 
 SCHEMA_VERSION: Final = 1
 
@@ -48,15 +49,15 @@ def summary_dict(
         "schema_version": SCHEMA_VERSION,
         "outcome": run.outcome,
         "remedy": run.remedy,
-        "run_length_m": finite(run.run_length),
-        "simulated_s": finite(run.simulated_s),
-        "wall_s": finite(run.wall_s),
+        "run_length_m": json_number(run.run_length),
+        "simulated_s": json_number(run.simulated_s),
+        "wall_s": json_number(run.wall_s),
         "steps": int(run.steps),
         "rejected_steps": int(run.rejected_steps),
         **_moments(run),
         "energies": energies_dict(run),
-        "energy_balance_error": finite(run.energy_balance_error),
-        "numbers": {name: finite(value) for name, value in run.numbers.items()},
+        "energy_balance_error": json_number(run.energy_balance_error),
+        "numbers": {name: json_number(value) for name, value in run.numbers.items()},
         "scenario": in_sections(scenario_values(run.scenario) if values is None else values),
         "snow": snow_dict(run.scenario.contact.snow),
         "ski": {"name": run.scenario.ski.name, "source": run.scenario.ski.source},
@@ -68,21 +69,21 @@ def summary_dict(
 
 def energies_dict(run: Run) -> dict[str, float | None]:
     """Energies (J) at the end and at the start, and what was lost between."""
-    stored = {f"{name}_J": finite(run.energies[name][-1]) for name in STORED}
-    start = {f"{name}_start_J": finite(run.energies[name][0]) for name in STORED}
-    return stored | start | {f"lost_{name}_J": finite(run.energies[name][-1]) for name in LOST}
+    stored = {f"{name}_J": json_number(run.energies[name][-1]) for name in STORED}
+    start = {f"{name}_start_J": json_number(run.energies[name][0]) for name in STORED}
+    return stored | start | {f"lost_{name}_J": json_number(run.energies[name][-1]) for name in LOST}
 
 
 def end_dict(run: Run) -> dict[str, float | None]:
     """Where the middle between the boots is at the end, how fast, and where it heads."""
     x, y, z = run.place[-1]
     return {
-        "time_s": finite(run.simulated_s),
-        "x_m": finite(x),
-        "y_m": finite(y),
-        "z_m": finite(z),
-        "speed_m_per_s": finite(run.speed[-1]),
-        "heading_deg": finite(run.heading[-1] / DEGREE),
+        "time_s": json_number(run.simulated_s),
+        "x_m": json_number(x),
+        "y_m": json_number(y),
+        "z_m": json_number(z),
+        "speed_m_per_s": json_number(run.speed[-1]),
+        "heading_deg": json_number(run.heading[-1] / DEGREE),
     }
 
 

@@ -13,10 +13,10 @@ import numpy as np
 from ..contact import Laws
 from ..errors import SolverError
 from ..former_names import formerly
+from ..scenario import Scenario
 from .run import OPEN_SHARE, Groove, Outcome, Run
 from .run_record import Record
 from .run_setup import AT_REST, Setup, set_up
-from .scenario import Scenario
 from .standing import why_no_start
 
 Progress: TypeAlias = Callable[[float, float], None]
@@ -89,9 +89,21 @@ def simulate(
     SolverError
         The sledge finds no equilibrium to start from.
 
+    See Also
+    --------
+    skisnow.scenario : what a run is.
+    skisnow.verify : how exact it is.
+    skisnow.compare_tracks : the run beside a measured track.
+
     Notes
     -----
     One thread; the same scenario gives the same bits on the same machine.
+
+    References
+    ----------
+    * Mössner and others (2013), "Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic
+      force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
+    * The page docs/methods/simulated-turn.md.
     """
     setup = set_up(scenario, laws=laws)
     record = Record(setup)

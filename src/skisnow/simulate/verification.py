@@ -9,12 +9,12 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from ..former_names import formerly
+from ..json_number import json_number
+from ..scenario import Scenario, Solver
+from ..scenario.keys import SCENARIO_KEYS
 from ..shown import Facts, Shown, amount
 from ..units import CM
-from .carve_dict import finite
 from .run import Outcome, Run
-from .scenario import Scenario, Solver
-from .scenario.keys import SCENARIO_KEYS
 
 Simulate: TypeAlias = Callable[[Scenario], Run]
 FINER: Final = 2.0
@@ -35,6 +35,10 @@ class Refinement(Shown):
         Distance between the ends of both runs (m); None where one of them is not finite.
     outcome
         Of the finer run.
+
+    See Also
+    --------
+    skisnow.verify
     """
 
     key: str
@@ -78,6 +82,14 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     -------
     tuple
         One entry for each choice. Where a repetition is interrupted, those before it.
+
+    See Also
+    --------
+    skisnow.simulate : the run.
+
+    References
+    ----------
+    The page docs/validation/simulated-turn.md.
     """
     found: list[Refinement] = []
     again = simulate or _plainly()
@@ -128,4 +140,4 @@ def _chosen(solver: Solver, key: str) -> float:
 
 
 def _distance(run: Run, finer: Run) -> float | None:
-    return finite(float(np.linalg.norm(run.place[-1] - finer.place[-1])))
+    return json_number(float(np.linalg.norm(run.place[-1] - finer.place[-1])))

@@ -5,7 +5,8 @@ from .base_profile import BaseShape
 from .layout import Layout, layout_of_lengths
 from .monkeycam import read_monkeycam
 from .reading import read_ski, ski_named, ski_names
-from .ski import Ski, SkiSections
+from .sections import SkiSections
+from .ski import Ski
 from .writing import write_ski
 
 __all__ = [

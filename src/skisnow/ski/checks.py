@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import ParameterError
 
 if TYPE_CHECKING:
-    from .ski import FloatArray, Ski
+    from .sections import FloatArray, SkiSections
 
 GREATEST_SPACING: Final = 2.5e-3
 """Greatest distance of neighbouring stations (m): linear interpolation of a sidecut is then good to 0.1 micrometre."""
@@ -26,100 +26,123 @@ _ZERO_AT_BOOT = 1e-5  # m, a hundredth of a millimetre
 _POSITIVE = ("width", "bending_stiffness", "torsional_stiffness", "mass_per_length")
 
 
-def require_sound(ski: Ski) -> None:
-    """Check every rule that `Ski` states.
-
-    Raises
-    ------
-    ParameterError
-        The first rule broken.
-    """
-    if not (isinstance(ski.name, str) and ski.name.strip()):
-        _refuse(ski, "its name is blank", "Give it one")
-    _require_tables(ski)
-    _require_stations(ski)
-    _require_positive_tables(ski)
-    _require_lengths(ski)
-    _require_edge(ski)
-    _require_waist(ski)
-    at_boot = float(ski.at(0.0).base_height)
-    if abs(at_boot) > _ZERO_AT_BOOT:
-        _refuse(ski, f"base_height is {at_boot:.6g} m at the boot; it must be 0 there", "Subtract that height")
-
-
-def require_on_ski(ski: Ski, station: FloatArray) -> None:
-    """Check that stations (m) are between tip and tail.
+def require_on_ski(name: str, stations: FloatArray, station: FloatArray) -> None:
+    """Check that stations (m) are between tip and tail, the ends of the ski's own.
 
     Raises
     ------
     ParameterError
         One is not, or is no number.
     """
-    off = ~((station >= ski.station[-1] - _ROUNDING) & (station <= ski.station[0] + _ROUNDING))
+    off = ~((station >= stations[-1] - _ROUNDING) & (station <= stations[0] + _ROUNDING))
     if np.any(off):
-        reach = f"it reaches from {ski.station[0]:.4f} to {ski.station[-1]:.4f} m from the boot"
-        _refuse(ski, f"station {station[off].flat[0]:.6g} m is not on the ski: {reach}", "Choose stations on it")
+        reach = f"it reaches from {stations[0]:.4f} to {stations[-1]:.4f} m from the boot"
+        _refuse(name, f"station {station[off].flat[0]:.6g} m is not on the ski: {reach}", "Choose stations on it")
 
 
-def _refuse(ski: Ski, what: str, action: str) -> None:
-    raise ParameterError(f"ski {ski.name!r}: {what}. {action}.")
+def require_tables(name: str, tables: SkiSections) -> None:
+    """Check that a ski has a name, and tables that are equally long, finite, falling from tip to tail and above 0.
 
-
-def _require_tables(ski: Ski) -> None:
-    n = ski.station.size
-    for name in ("station", "base_height", *_POSITIVE):
-        table: FloatArray = getattr(ski, name)
-        if table.ndim != 1 or table.size < 2 or table.size != n:
-            _refuse(ski, f"{name} has shape {table.shape}, station {ski.station.shape}", "Give equally long tables")
+    Raises
+    ------
+    ParameterError
+        The first rule broken.
+    """
+    if not (isinstance(name, str) and name.strip()):
+        _refuse(name, "its name is blank", "Give it one")
+    for which in ("station", "base_height", *_POSITIVE):
+        table: FloatArray = getattr(tables, which)
+        if table.ndim != 1 or table.size < 2 or table.size != tables.station.size:
+            what = f"{which} has shape {table.shape}, station {tables.station.shape}"
+            _refuse(name, what, "Give equally long tables")
         if not np.all(np.isfinite(table)):
             place = int(np.argmin(np.isfinite(table)))
-            _refuse(ski, f"{name}[{place}] is {table[place]}; every value must be finite", "Correct it")
+            _refuse(name, f"{which}[{place}] is {table[place]}; every value must be finite", "Correct it")
+    _require_stations(name, tables.station)
+    _require_positive(name, tables)
 
 
-def _require_stations(ski: Ski) -> None:
-    steps = -np.diff(ski.station)
+def _refuse(name: str, what: str, action: str) -> None:
+    raise ParameterError(f"ski {name!r}: {what}. {action}.")
+
+
+def _require_stations(name: str, station: FloatArray) -> None:
+    steps = -np.diff(station)
     if np.any(steps <= 0):
         place = int(np.argmax(steps <= 0)) + 1
-        what = f"station[{place}] = {ski.station[place]:.6g} m is not below the one before it"
-        _refuse(ski, what, "List the stations from tip to tail, positive in front of the boot")
+        what = f"station[{place}] = {station[place]:.6g} m is not below the one before it"
+        _refuse(name, what, "List the stations from tip to tail, positive in front of the boot")
     if np.max(steps) > GREATEST_SPACING + _ROUNDING:
         what = f"stations are up to {np.max(steps) * 1e3:.3g} mm apart; at most 2.5 mm is allowed"
-        _refuse(ski, what, "Interpolate the tables first, as the reader of ski files does")
+        _refuse(name, what, "Interpolate the tables first, as the reader of ski files does")
 
 
-def _require_positive_tables(ski: Ski) -> None:
-    for name in _POSITIVE:
-        table: FloatArray = getattr(ski, name)
+def _require_positive(name: str, tables: SkiSections) -> None:
+    for which in _POSITIVE:
+        table: FloatArray = getattr(tables, which)
         if np.any(table <= 0):
             place = int(np.argmax(table <= 0))
-            what = f"{name} is {table[place]:.6g} at {ski.station[place]:.4f} m from the boot; it must be above 0"
-            _refuse(ski, what, "Correct it")
+            what = f"{which} is {table[place]:.6g} at {tables.station[place]:.4f} m from the boot; it must be above 0"
+            _refuse(name, what, "Correct it")
 
 
-def _require_lengths(ski: Ski) -> None:
-    for name in ("running_length", "sidecut_length"):
-        length = getattr(ski, name)
+def require_lengths(name: str, tables: SkiSections, *, running: float, sidecut: float, middle: float) -> None:
+    """Check that the tables reach over running length and sidecut length (m), and over the boot.
+
+    Raises
+    ------
+    ParameterError
+        They do not, or a length is none.
+    """
+    tip, tail = tables.station[0], tables.station[-1]
+    for which, length in (("running_length", running), ("sidecut_length", sidecut)):
         if not (math.isfinite(length) and length > 0):
-            _refuse(ski, f"{name} is {length!r} m; it must be a finite length above 0", "Correct it")
-        front, rear = ski.sidecut_middle + length / 2.0, ski.sidecut_middle - length / 2.0
-        if not (front <= ski.station[0] + _ROUNDING and rear >= ski.station[-1] - _ROUNDING):
-            reach = f"its tables reach from {ski.station[0]:.4f} to {ski.station[-1]:.4f} m from the boot"
-            what = f"{reach} and so are shorter than the {name}, from {front:.4f} to {rear:.4f} m"
-            _refuse(ski, what, f"Continue the tables to tip and tail or correct {name}")
-    require_on_ski(ski, np.zeros(1))
+            _refuse(name, f"{which} is {length!r} m; it must be a finite length above 0", "Correct it")
+        front, rear = middle + length / 2.0, middle - length / 2.0
+        if not (front <= tip + _ROUNDING and rear >= tail - _ROUNDING):
+            reach = f"its tables reach from {tip:.4f} to {tail:.4f} m from the boot"
+            what = f"{reach} and so are shorter than the {which}, from {front:.4f} to {rear:.4f} m"
+            _refuse(name, what, f"Continue the tables to tip and tail or correct {which}")
+    require_on_ski(name, tables.station, np.zeros(1))
 
 
-def _require_edge(ski: Ski) -> None:
-    if not 0.0 <= ski.base_bevel <= GREATEST_BEVEL:
-        _refuse(ski, f"base_bevel is {ski.base_bevel!r} rad; it must be 0 to {GREATEST_BEVEL}", "Give it in radians")
-    if not 0.0 <= ski.edge_width < ski.waist_width / 2.0:
-        what = f"edge_width is {ski.edge_width!r} m; it must be 0 to half the waist, {ski.waist_width / 2.0:.4f} m"
-        _refuse(ski, what, "Correct it")
+def require_edge(name: str, *, bevel: float, width: float, waist: float) -> None:
+    """Check base bevel (rad), and edge width against the waist (m).
+
+    Raises
+    ------
+    ParameterError
+        One is out of range.
+    """
+    if not 0.0 <= bevel <= GREATEST_BEVEL:
+        _refuse(name, f"base_bevel is {bevel!r} rad; it must be 0 to {GREATEST_BEVEL}", "Give it in radians")
+    if not 0.0 <= width < waist / 2.0:
+        what = f"edge_width is {width!r} m; it must be 0 to half the waist, {waist / 2.0:.4f} m"
+        _refuse(name, what, "Correct it")
 
 
-def _require_waist(ski: Ski) -> None:
-    front, middle, rear = ski.sidecut_widths
+def require_narrow_waist(name: str, widths: tuple[float, float, float]) -> None:
+    """Check that of the widths of tip, waist and tail (m) the middle one is the least.
+
+    Raises
+    ------
+    ParameterError
+        It is not.
+    """
+    front, middle, rear = widths
     for part, end in (("tip", front), ("tail", rear)):
         if middle > end + _ROUNDING:
             what = f"its waist, {middle * 1e3:.2f} mm, is wider than its {part}, {end * 1e3:.2f} mm"
-            _refuse(ski, what, f"The waist must be the narrowest of the three widths: correct waist or {part}")
+            _refuse(name, what, f"The waist must be the narrowest of the three widths: correct waist or {part}")
+
+
+def require_base_at_boot(name: str, base_height: float) -> None:
+    """Check that heights of the base (m) count from the boot.
+
+    Raises
+    ------
+    ParameterError
+        The height there is not 0.
+    """
+    if abs(base_height) > _ZERO_AT_BOOT:
+        _refuse(name, f"base_height is {base_height:.6g} m at the boot; it must be 0 there", "Subtract that height")

@@ -27,6 +27,11 @@ def read_ski(name_or_path: str | Path) -> Ski:
     name_or_path
         A name of `ski_names`, or the path of a file. A path is whatever ends in .toml, has a folder or is a `Path`.
 
+    Returns
+    -------
+    Ski
+        As dense tables from tip to tail.
+
     Raises
     ------
     ParameterError
@@ -38,6 +43,15 @@ def read_ski(name_or_path: str | Path) -> Ski:
     -----
     RangeWarning
         A value is beyond what skis usually have; a likely mistake of unit is named.
+
+    See Also
+    --------
+    skisnow.ski_names : the skis of the catalogue.
+    skisnow.carve : what the ski does in snow.
+
+    References
+    ----------
+    The page docs/files/ski.md.
     """
     path = Path(name_or_path)
     if str(name_or_path) in ski_names():
@@ -75,6 +89,21 @@ def ski_named(name: str) -> Ski:
 def ski_names() -> tuple[str, ...]:
     """Names of the skis of the catalogue.
 
+    Returns
+    -------
+    tuple of str
+        What `read_ski` takes.
+
+    See Also
+    --------
+    skisnow.read_ski : the ski of a name.
+
+    References
+    ----------
+    The page docs/ski/index.md.
+
+    Examples
+    --------
     >>> ski_names()
     ('carver', 'giant-slalom', 'paper-tool', 'slalom')
     """

@@ -8,33 +8,22 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..shown import Facts, Shown, ShownFields
-from . import checks
+from ..shown import Facts, Shown
+from .checks import (
+    STRAIGHT,
+    require_base_at_boot,
+    require_edge,
+    require_lengths,
+    require_narrow_waist,
+    require_on_ski,
+    require_tables,
+)
 from .edge_line import radius_of_least_squares_circle
+from .sections import SkiSections
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 _EDGE_POINTS = 401  # of the circle through the edge line, evenly spaced whatever the spacing of the tables
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class SkiSections(ShownFields):
-    """Cross sections of a ski at chosen stations; every array has the shape of ``station``.
-
-    Attributes
-    ----------
-    station
-        From the boot, positive forward (m).
-    width, base_height, bending_stiffness, torsional_stiffness, mass_per_length
-        As in `Ski`.
-    """
-
-    station: FloatArray
-    width: FloatArray
-    base_height: FloatArray
-    bending_stiffness: FloatArray
-    torsional_stiffness: FloatArray
-    mass_per_length: FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -78,6 +67,11 @@ class Ski(Shown):
     ParameterError
         A table is not finite, not of the same length, not falling or not positive where it must be, the waist is wider
         than the tip or the tail, or the tables do not reach over the running and the sidecut length.
+
+    See Also
+    --------
+    skisnow.read_ski
+    skisnow.carve
     """
 
     name: str
@@ -99,7 +93,18 @@ class Ski(Shown):
             table = np.array(getattr(self, field.name), dtype=float)
             table.flags.writeable = False
             object.__setattr__(self, field.name, table)
-        checks.require_sound(self)
+        tables = self._tables
+        require_tables(self.name, tables)
+        require_lengths(
+            self.name, tables, running=self.running_length, sidecut=self.sidecut_length, middle=self.sidecut_middle
+        )
+        require_edge(self.name, bevel=self.base_bevel, width=self.edge_width, waist=self.waist_width)
+        require_narrow_waist(self.name, self.sidecut_widths)
+        require_base_at_boot(self.name, float(self.at(0.0).base_height))
+
+    @property
+    def _tables(self) -> SkiSections:
+        return SkiSections(*(getattr(self, each.name) for each in fields(SkiSections)))
 
     def at(self, station: npt.ArrayLike) -> SkiSections:
         """Give the cross sections at stations (m, any shape), interpolated linearly.
@@ -110,20 +115,8 @@ class Ski(Shown):
             A station is beyond tip or tail.
         """
         where = np.asarray(station, dtype=float)
-        checks.require_on_ski(self, where)
-        rising = self.station[::-1]
-
-        def along(table: FloatArray) -> FloatArray:
-            return np.asarray(np.interp(where, rising, table[::-1]))
-
-        return SkiSections(
-            where,
-            along(self.width),
-            along(self.base_height),
-            along(self.bending_stiffness),
-            along(self.torsional_stiffness),
-            along(self.mass_per_length),
-        )
+        require_on_ski(self.name, self.station, where)
+        return self._tables.at(where)
 
     def _facts(self) -> Facts:
         """Name, length, widths, the radius of the side line in use, mass."""
@@ -189,7 +182,7 @@ class Ski(Shown):
     def sidecut_radius_of_three_widths(self) -> float:
         """R_sc = L_sc²/(8 δ), the arc through three widths (m); infinite for a straight edge."""
         depth = self.sidecut_depth
-        return self.sidecut_length**2 / (8.0 * depth) if depth > checks.STRAIGHT else float("inf")
+        return self.sidecut_length**2 / (8.0 * depth) if depth > STRAIGHT else float("inf")
 
     @property
     def sidecut_radius_of_edge_line(self) -> float:

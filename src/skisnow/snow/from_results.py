@@ -28,16 +28,32 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     site
         One site of the file, "C" is also its "site C"; left out: all sites together.
 
+    Returns
+    -------
+    SnowProperties
+        With intervals where there are two experiments or more, without an unloading ratio.
+
     Raises
     ------
     ParameterError
         The file cannot be read or is no results file; or it holds no used penetration experiment of that site: the
         message names the sites it has.
 
+    See Also
+    --------
+    skisnow.Analysis.snow : the same without a file.
+    skisnow.published_snow : the snow of a publication.
+
     Notes
     -----
     The interval takes the experiments for independent draws from one snow. Over several sites that is optimistic:
     experiments of one site resemble each other.
+
+    References
+    ----------
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+    * The page docs/files/results.md.
     """
     results = _results(Path(path))
     site = site_named(site, _sites(results))

@@ -6,12 +6,16 @@ Outside its range a relation is computed and the reader is warned; nothing is cl
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import RangeWarning
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,3 +76,14 @@ class MeasuredRange:
             RangeWarning,
             stacklevel=stacklevel + 1,
         )
+
+
+def with_range_warnings(act: Callable[[], T]) -> tuple[T, tuple[str, ...]]:
+    """What an act gives and its range warnings; any other warning is passed on."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        value = act()
+    for other in caught:
+        if not issubclass(other.category, RangeWarning):
+            warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)
+    return value, tuple(str(each.message) for each in caught if issubclass(each.category, RangeWarning))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, TypeAlias
+from typing import Annotated, Final, TypeAlias
 
 from ..errors import ParameterError
 from ..inputs import Quantity, Search, Word, require_declared
@@ -11,6 +11,9 @@ from ..shown import Facts, Shown, amount, span
 from ..units import N_PER_MM2, N_PER_MM3
 
 Interval: TypeAlias = tuple[float, float]
+
+GREATEST_LIKELY_HARDNESS: Final = 1e4
+"""H_V (N/mm³) above which the number looks like N/m³: a hundred times the hardest that was measured (Choice)."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -31,6 +34,11 @@ class SnowProperties(Shown):
         experiments or the source gives none.
     unloading_ratio
         k_u/H_V ≥ 1 where it is known, which `Scenario.with_` then takes over; 1 is elastic snow, which springs back.
+
+    See Also
+    --------
+    skisnow.published_snow
+    skisnow.snow_from_results
 
     Examples
     --------

@@ -12,6 +12,24 @@ from .published import federolf_2006, moessner_2013
 def published_names() -> tuple[str, ...]:
     """Names that `published_snow` knows, publication by publication.
 
+    Returns
+    -------
+    tuple of str
+        What `published_snow` takes.
+
+    See Also
+    --------
+    skisnow.published_snow : the snow of a name.
+
+    References
+    ----------
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+    * Federolf and others (2006), "Deformation of snow during a carved ski turn", Cold Reg. Sci. Technol. 46, 69-77,
+      doi 10.1016/j.coldregions.2006.06.006.
+
+    Examples
+    --------
     >>> published_names()
     ('race-piste', 'recreational-piste', 'spring-snow', 'fresh-snow', 'glacier')
     """
@@ -26,10 +44,27 @@ def published_snow(name: str) -> SnowProperties:
     name
         One of `published_names`.
 
+    Returns
+    -------
+    SnowProperties
+        With both numbers, and no unloading ratio: none is published.
+
     Raises
     ------
     ParameterError
         No such name; the message gives the nearest one and all.
+
+    See Also
+    --------
+    skisnow.published_names : all names.
+    skisnow.snow_from_results : the snow of an analysed campaign.
+
+    References
+    ----------
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+    * Federolf and others (2006), "Deformation of snow during a carved ski turn", Cold Reg. Sci. Technol. 46, 69-77,
+      doi 10.1016/j.coldregions.2006.06.006.
 
     Examples
     --------

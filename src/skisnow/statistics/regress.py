@@ -72,9 +72,18 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
         If no combination of the columns of X is constant: R², F and p are wrong then (R² can be negative).
         If the columns of X depend on each other: b is 0 for those left out.
 
+    See Also
+    --------
+    skisnow.analyse : the regressions of a campaign.
+
     Notes
     -----
     R² = 1 - SSE/SST and F = (Σ(ŷ - mean y)²/(p - 1))/(SSE/(n - p)) with p the rank, as MATLAB has them.
+
+    References
+    ----------
+    * The function ``regress`` of MATLAB's Statistics and Machine Learning Toolbox and of Octave's package statistics.
+    * The page docs/methods/regressions.md.
 
     Examples
     --------

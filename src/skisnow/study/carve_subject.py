@@ -9,16 +9,19 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..carve.answer import CarveAnswer, answered
+from ..carve.answer_dict import inputs_dict, scalars_dict
+from ..carve.keys import CARVE_KEYS
+from ..carve.limits import require_clamp
+from ..carve.question import carve_question, require_complete
 from ..errors import SkisnowError
 from ..inputs import Quantity
+from ..json_number import json_number
+from ..parallel.kept_rows import Row
 from ..shown import ShownFields
-from ..simulate.batch_file import Row
-from ..simulate.carve import CLAMP_LENGTH
-from ..simulate.carve_answer import CarveAnswer, Sources, answered
-from ..simulate.carve_dict import finite, inputs_dict, scalars_dict
-from ..simulate.carve_keys import CARVE_KEYS
-from ..simulate.carve_limits import require_clamp, require_stress
-from ..simulate.carve_question import carve_question, require_complete
+from ..ski.beam.clamped import CLAMP_LENGTH
+from ..snow.given_stress import require_stress
+from ..sources import Sources
 from ..units import MM
 from .study import Point
 
@@ -113,7 +116,7 @@ def _row(answer: CarveAnswer) -> Row:
         **{name: scalars[name] for name in RESULTS if name in scalars},
         "greatest_edge_depth_mm": None if depth is None else float(np.max(depth)) / MM,
         "greatest_force_per_length_N_per_m": None if force is None else float(np.max(force)),
-        "sidecut_radius_of_three_widths_m": finite(answer.ski.sidecut_radius_of_three_widths),
+        "sidecut_radius_of_three_widths_m": json_number(answer.ski.sidecut_radius_of_three_widths),
         "ski_name": answer.ski.name,
         "warnings": "; ".join(answer.warnings),
         "reason": equilibrium.remedy,

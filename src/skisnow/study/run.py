@@ -7,8 +7,9 @@ from pathlib import Path
 
 from ..errors import ParameterError
 from ..files import cannot_write, write_file
-from ..simulate.batch import Told, require_workers, run_batch
-from ..simulate.batch_file import KeptRows
+from ..parallel.batch import Told, run_batch
+from ..parallel.kept_rows import KeptRows
+from ..parallel.pool import workers_in_force
 from .study import Study
 from .study_file import read_study
 from .table import StudyTable, read_table
@@ -54,6 +55,11 @@ def run_study(study: Study | str | Path, *, workers: int | None = None, progress
     progress
         Is told the number of finished points and that of all.
 
+    Returns
+    -------
+    StudyTable
+        A row for each point, in their order; the table is written when it is complete.
+
     Raises
     ------
     ParameterError
@@ -61,8 +67,19 @@ def run_study(study: Study | str | Path, *, workers: int | None = None, progress
         or the number of workers is below 1.
     OutputError
         The table's place cannot be written.
+
+    See Also
+    --------
+    skisnow.read_study : the study of a file.
+    skisnow.run_batch : points and a function of your own.
+
+    References
+    ----------
+    * McKay, Beckman and Conover (1979), "A comparison of three methods for selecting values of input variables in the
+      analysis of output from a computer code", Technometrics 21, 239-245, doi 10.1080/00401706.1979.10489755.
+    * The page docs/how-to/study.md.
     """
-    require_workers(workers)
+    workers = workers_in_force(workers)
     study = study if isinstance(study, Study) else read_study(study)
     fingerprint = study.fingerprint()
     state = study_state(study)

@@ -11,17 +11,17 @@ import numpy as np
 
 from ..errors import ParameterError, SkisnowError
 from ..inputs import Quantity
+from ..json_number import json_number
+from ..parallel.kept_rows import Row
+from ..scenario import ScenarioFile
+from ..scenario.built_in import scenario_names, scenario_place
+from ..scenario.given import PATH_KEYS, GivenScenario, full_name, given_scenario
+from ..scenario.keys import SCENARIO_KEYS, SECTIONS
+from ..scenario.reading import files_of, resolved
 from ..shown import ShownFields
-from ..simulate.batch_file import Row
-from ..simulate.carve_answer import Sources
-from ..simulate.carve_dict import finite
 from ..simulate.run import Run
 from ..simulate.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
-from ..simulate.scenario import ScenarioFile
-from ..simulate.scenario.built_in import scenario_names, scenario_place
-from ..simulate.scenario.given import PATH_KEYS, GivenScenario, full_name, given_scenario
-from ..simulate.scenario.keys import SCENARIO_KEYS, SECTIONS
-from ..simulate.scenario.reading import files_of, resolved
+from ..sources import Sources
 from ..units import MM
 from .study import Point
 
@@ -154,15 +154,15 @@ def _row(asked: ScenarioFile, run: Run) -> Row:
     return {
         **asked.values,
         "outcome": run.outcome,
-        "run_length_m": finite(run.run_length),
+        "run_length_m": json_number(run.run_length),
         **{f"end_{name}": value for name, value in end_dict(run).items() if name != "time_s"},
-        "simulated_s": finite(run.simulated_s),
+        "simulated_s": json_number(run.simulated_s),
         "greatest_speed_m_per_s": float(known.max()) if known.size else None,
         "least_turn_radius_m": least_turn_radius(run),
         **radii_dict(run),
         "greatest_edge_depth_mm": float(depth.max()) / MM if depth.size else None,
         **energies,
-        "energy_balance_error": finite(run.energy_balance_error),
+        "energy_balance_error": json_number(run.energy_balance_error),
         "steps": int(run.steps),
         "rejected_steps": int(run.rejected_steps),
         "ski_name": run.scenario.ski.name,

@@ -12,8 +12,8 @@ from typing import Any, Protocol, TypeAlias
 
 from ..given import is_file
 from ..inputs import Quantity
+from ..parallel.kept_rows import Row
 from ..shown import Facts, Shown
-from ..simulate.batch_file import Row
 
 Point: TypeAlias = dict[str, Any]
 
@@ -68,6 +68,10 @@ class Study(Shown):
         Names of the inputs that vary, in the order of the file: the last varies fastest.
     points
         The inputs of every point.
+
+    See Also
+    --------
+    skisnow.read_study
     """
 
     file: Path

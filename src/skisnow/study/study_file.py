@@ -37,12 +37,27 @@ def read_study(path: str | Path, *, subject: SubjectIn = CarveSubject) -> Study:
     subject
         What is studied where the file names no scenario.
 
+    Returns
+    -------
+    Study
+        Its points, not yet computed.
+
     Raises
     ------
     ParameterError
         The file cannot be read, a key is unknown (the nearest is named), missing, said twice or of the wrong kind, or
         the inputs are not complete; or a value under [fixed] is outside its range, or names a ski or a snow that
         cannot be read. Such a value of what varies is no error of the study but of its points.
+
+    See Also
+    --------
+    skisnow.study : computes them.
+
+    References
+    ----------
+    * McKay, Beckman and Conover (1979), "A comparison of three methods for selecting values of input variables in the
+      analysis of output from a computer code", Technometrics 21, 239-245, doi 10.1080/00401706.1979.10489755.
+    * The page docs/files/carve.md.
     """
     path = Path(path)
     values = read_toml(path)

@@ -13,8 +13,8 @@ from typing import Any
 from ..errors import ParameterError
 from ..given import json_value
 from ..inputs import Quantity
+from ..parallel.kept_rows import Row
 from ..shown import Facts, Shown
-from ..simulate.batch_file import Row
 from ..spreadsheet_text import guarded, unguarded
 
 
@@ -30,6 +30,10 @@ class StudyTable(Shown):
         Numbers, texts and switches.
     varied
         The inputs that vary.
+
+    See Also
+    --------
+    skisnow.study
     """
 
     columns: tuple[str, ...]

@@ -129,6 +129,10 @@ class Comparison(Shown):
         None without a fit.
     warnings
         Sentences.
+
+    See Also
+    --------
+    skisnow.compare_tracks
     """
 
     simulated: Polyline
@@ -195,6 +199,15 @@ def compare_tracks(
         A track has no two places, the tracks are nowhere within 1 km, or a word is not one of those above.
     FitError
         The offsets cannot be fitted.
+
+    See Also
+    --------
+    skisnow.read_track : a measured track.
+    skisnow.track_summary : what one track says by itself.
+
+    References
+    ----------
+    The page docs/methods/track-distances.md.
     """
     require_offsets(fit)
     if time_from not in (None, *get_args(TimeFrom)):

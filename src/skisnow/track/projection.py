@@ -45,6 +45,10 @@ class GeodeticPoint(Shown):
     ParameterError
         Latitude beyond ±90°, longitude beyond ±180°, height beyond ±100 km, or not a finite number.
 
+    See Also
+    --------
+    skisnow.in_slope_frame
+
     Examples
     --------
     >>> str(GeodeticPoint(47.5, -11.25, height=1500.0))

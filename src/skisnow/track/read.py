@@ -8,17 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 from ..errors import ParameterError
-from .fit import read_fit
-from .gpx import read_gpx
 from .marks import FASTEST, GAP_FACTOR
-from .nmea import SENTENCE, read_nmea
-from .recording import Recording, track_of
-from .rtklib import read_rtklib
-from .rtklib_header import HEADER
-from .table import read_table
-from .text import text_of
-from .trouble import refusal
-from .ubx import SYNC, read_ubx
+from .readers.fit import read_fit
+from .readers.gpx import read_gpx
+from .readers.nmea import SENTENCE, read_nmea
+from .readers.recording import Recording, track_of
+from .readers.rtklib import read_rtklib
+from .readers.rtklib_header import HEADER
+from .readers.table import read_table
+from .readers.text import text_of
+from .readers.trouble import refusal
+from .readers.ubx import SYNC, read_ubx
 
 if TYPE_CHECKING:
     from .projection import GeodeticPoint
@@ -74,6 +74,16 @@ def read_track(
         backwards: with file, row, column, value, what is allowed and what to do.
     ParameterError
         ``fastest`` or ``gap_factor`` is not above zero, or ``kind`` is no format.
+
+    See Also
+    --------
+    skisnow.track_summary : what it says.
+    skisnow.in_slope_frame : onto the slope.
+    skisnow.compare_tracks : beside a simulated one.
+
+    References
+    ----------
+    The page docs/files/track.md.
     """
     for name, value in (("fastest", fastest), ("gap_factor", gap_factor)):
         if not value > 0.0:

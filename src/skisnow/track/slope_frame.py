@@ -79,6 +79,14 @@ def in_slope_frame(
     ------
     ParameterError
         The track is in a slope's frame already, or an argument is outside its range.
+
+    See Also
+    --------
+    skisnow.read_track : the track to turn.
+
+    References
+    ----------
+    The page docs/files/track.md.
     """
     _require(track, fall_line_azimuth, slope_angle, origin)
     angle = slope_angle or 0.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any, Final
@@ -10,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..errors import ParameterError
+from ..json_number import json_number
 from ..shown import Facts, Shown, amount
 from ..units import DEGREE
 from .curvature import TrackMotion, integrated_way, places_way, track_motion
@@ -41,6 +41,10 @@ class TrackSummary(Shown):
         Over the whole track (m/s): of the recorded speeds, or without any of the smoothed track's; None if unknown.
     remarks
         What could not be told, and what looks doubtful, in words.
+
+    See Also
+    --------
+    skisnow.track_summary
     """
 
     track: Track
@@ -76,10 +80,26 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     place_noise
         Standard deviation of a coordinate (m); None: from the scatter about the smoothed track.
 
+    Returns
+    -------
+    TrackSummary
+        Distance, speed, runs, lifts, turns, each with how sure it is.
+
     Raises
     ------
     ParameterError
         Too few points, or a window or a noise that is not above 0.
+
+    See Also
+    --------
+    skisnow.read_track : a track from a file.
+    skisnow.compare_tracks : two tracks.
+
+    References
+    ----------
+    * Savitzky and Golay (1964), "Smoothing and differentiation of data by simplified least squares procedures", Anal.
+      Chem. 36, 1627-1639, doi 10.1021/ac60214a047.
+    * The page docs/methods/tracks.md.
     """
     motion = track_motion(track, window=window, place_noise=place_noise)
     if not np.isfinite(motion.smoothed.velocity[:, 0]).any():
@@ -132,20 +152,20 @@ def summary_dict(summary: TrackSummary) -> Json:
         "points": len(summary.track),
         "marked": summary.track.marked,
         "solutions": solution_counts(summary.track.solution),
-        "duration_s": _finite(float(summary.track.time[-1] - summary.track.time[0])),
-        "distance_m": _finite(summary.distances[summary.motion.way_source]),
+        "duration_s": json_number(float(summary.track.time[-1] - summary.track.time[0])),
+        "distance_m": json_number(summary.distances[summary.motion.way_source]),
         "distance_source": summary.motion.way_source.replace(" ", "_"),
-        "distances_m": {name.replace(" ", "_"): _finite(value) for name, value in summary.distances.items()},
-        "max_speed_m_per_s": _finite(summary.max_speed),
+        "distances_m": {name.replace(" ", "_"): json_number(value) for name, value in summary.distances.items()},
+        "max_speed_m_per_s": json_number(summary.max_speed),
         "speed_source": summary.motion.speed_source,
         "smoothing": {
             "method": "local cubic least squares",
             "window_s": smoothed.resolution.window,
-            "half_amplitude_period_s": _finite(smoothed.resolution.half_period),
-            "ninety_percent_period_s": _finite(smoothed.resolution.faithful_period),
-            "half_amplitude_wavelength_m": _finite(half_wavelength(summary)),
-            "place_noise_m": _finite(smoothed.place_noise),
-            "velocity_noise_m_per_s": _finite(smoothed.speed_noise),
+            "half_amplitude_period_s": json_number(smoothed.resolution.half_period),
+            "ninety_percent_period_s": json_number(smoothed.resolution.faithful_period),
+            "half_amplitude_wavelength_m": json_number(half_wavelength(summary)),
+            "place_noise_m": json_number(smoothed.place_noise),
+            "velocity_noise_m_per_s": json_number(smoothed.speed_noise),
         },
         "runs": [_stretch_dict(run, "descent_m", 1.0) for run in summary.day.runs],
         "runs_by": summary.day.told_by,
@@ -169,31 +189,26 @@ def half_wavelength(summary: TrackSummary) -> float | None:
 
 def _stretch_dict(stretch: Stretch, height_key: str, sign: float) -> Json:
     return {
-        "start_s": _finite(stretch.start),
-        "end_s": _finite(stretch.end),
-        "distance_m": _finite(stretch.distance),
-        height_key: _finite(None if stretch.descent is None else sign * stretch.descent),
-        "max_speed_m_per_s": _finite(stretch.max_speed),
+        "start_s": json_number(stretch.start),
+        "end_s": json_number(stretch.end),
+        "distance_m": json_number(stretch.distance),
+        height_key: json_number(None if stretch.descent is None else sign * stretch.descent),
+        "max_speed_m_per_s": json_number(stretch.max_speed),
         "gaps": stretch.gaps,
     }
 
 
 def _turn_dict(turn: Turn) -> Json:
     return {
-        "start_s": _finite(turn.start),
-        "end_s": _finite(turn.end),
+        "start_s": json_number(turn.start),
+        "end_s": json_number(turn.end),
         "direction": turn.direction,
-        "turned_angle_deg": _finite(turn.turned_angle / DEGREE),
-        "turned_angle_sd_deg": _finite(turn.turned_angle_sd / DEGREE),
-        "least_radius_m": _finite(turn.least_radius),
-        "least_radius_interval_m": [_finite(end) for end in turn.least_radius_interval],
-        "least_radius_s": _finite(turn.least_radius_time),
-        "mean_radius_m": _finite(turn.mean_radius),
-        "length_m": _finite(turn.length),
-        "share_passed": _finite(turn.share_passed),
+        "turned_angle_deg": json_number(turn.turned_angle / DEGREE),
+        "turned_angle_sd_deg": json_number(turn.turned_angle_sd / DEGREE),
+        "least_radius_m": json_number(turn.least_radius),
+        "least_radius_interval_m": [json_number(end) for end in turn.least_radius_interval],
+        "least_radius_s": json_number(turn.least_radius_time),
+        "mean_radius_m": json_number(turn.mean_radius),
+        "length_m": json_number(turn.length),
+        "share_passed": json_number(turn.share_passed),
     }
-
-
-def _finite(value: float | None) -> float | None:
-    """None in place of what JSON has no number for."""
-    return None if value is None or not math.isfinite(value) else float(value)

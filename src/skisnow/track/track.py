@@ -63,6 +63,11 @@ class Track(Shown):
         Columns of the file that were not read, by name.
     left_out
         In words to a count: records of the file that hold no point, such as those with a wrong checksum.
+
+    See Also
+    --------
+    skisnow.read_track
+    skisnow.track_summary
     """
 
     name: str

@@ -11,7 +11,7 @@ from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..field.reading.text import UnreadableTextError, decode
 from ..field.store import corrected_files, kept_tables
 from ..field.store.grown import GrownRow, GrownTest
-from ..field.store.journal import JournalEntry
+from ..field.store.journal_entry import JournalEntry
 from ..field.store.kept_tables import cell_key
 from .desk import AtOnce, Desk, said_at_once
 

@@ -14,8 +14,8 @@ from .words import hardness_words, stress_words
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ..simulate.carve_answer import Sources
-    from ..simulate.scenario.reading import ScenarioFile
+    from ..scenario.reading import ScenarioFile
+    from ..sources import Sources
     from .settings import Lab
 
 
@@ -34,8 +34,8 @@ def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources
     ParameterError
         A value cannot be read or is not allowed.
     """
-    from ..simulate.scenario.given import change_of, given_scenario
-    from ..simulate.scenario.reading import resolved
+    from ..scenario.given import change_of, given_scenario
+    from ..scenario.reading import resolved
 
     given = given_scenario(scenario).changed(dict(change_of(f"{name}={text}") for name, text in changes.items()))
     return resolved(given, sources=sources)
@@ -58,9 +58,9 @@ def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, st
     ParameterError
         The campaign gives no snow, or the scenario cannot be read.
     """
-    from ..simulate.carve_answer import Sources
-    from ..simulate.carve_dict import snow_dict
-    from ..simulate.scenario import scenario_values
+    from ..scenario import scenario_values
+    from ..snow.snow_dict import snow_dict
+    from ..sources import Sources
 
     kind, id_ = key.split("-", 1)
     found = numbers_of((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())

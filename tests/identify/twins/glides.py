@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from skisnow.identify import Identification, PhotoCellRun, PhotoCells, identify
-from skisnow.simulate.scenario import scenario_file
+from skisnow.scenario import scenario_file
 
 from .. import glide_in_closed_form as exact
 from .interval_row import interval_row

@@ -10,7 +10,7 @@ import numpy as np
 
 from skisnow import SnowProperties, carve
 from skisnow.identify import Marks, identify
-from skisnow.simulate.scenario import scenario_file
+from skisnow.scenario import scenario_file
 from skisnow.units import MM, N_PER_MM2, N_PER_MM3
 
 from .interval_row import interval_row

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from skisnow import Run
-from skisnow.simulate.scenario import Scenario, read_scenario
+from skisnow.scenario import Scenario, read_scenario
 from skisnow.simulate.simulated_run import simulate
 from skisnow.track.track import Track
 

@@ -7,10 +7,9 @@ import math
 import numpy as np
 
 from skisnow import Scenario, Ski
-from skisnow.simulate.scenario import Air, Contact, Plane, Profile, Solver, Start, Stop
-from skisnow.simulate.sledge import RigidSledge
+from skisnow.scenario import Air, Contact, Plane, Profile, RigidSledge, Solver, Start, Stop
 
-from ..equilibrium.synthetic import Along, plain_ski, snow
+from ...carve.synthetic import Along, plain_ski, snow
 
 STIFF = 1e9
 """EI and GJ (N m²) of a rigid ski: under 1 kN it bends by less than 0.1 µm."""

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from skisnow import Run
-from skisnow.simulate.scenario import Solver, read_scenario
+from skisnow.scenario import Solver, read_scenario
 from skisnow.simulate.simulated_run import simulate
 from skisnow.simulate.verification import verify
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 from skisnow.simulate.verification import verification_dict, verify
 

@@ -9,7 +9,7 @@ import pytest
 
 from skisnow import Run
 from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT as HOLDING
-from skisnow.simulate.scenario import Solver
+from skisnow.scenario import Solver
 from skisnow.simulate.simulated_run import simulate
 
 from .sledges import GRAVITY, rigid_ski, scenario, total_mass

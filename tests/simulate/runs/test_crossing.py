@@ -12,7 +12,7 @@ from skisnow.contact import SnowField
 from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import Setup, set_up
 
-from ..equilibrium.synthetic import shovel
+from ...carve.synthetic import shovel
 from .sledges import rigid_ski, scenario
 
 MIDDLE = np.array([1.9, 0.0, 0.0])

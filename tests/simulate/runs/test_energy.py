@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from skisnow import Run
+from skisnow.scenario import read_scenario
 from skisnow.simulate.run import LOST
-from skisnow.simulate.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 
 SHARE = 0.005

@@ -14,12 +14,12 @@ import pytest
 
 from skisnow import Run
 from skisnow.dynamics import Dynamics, Ended, StepControl
+from skisnow.scenario import Plane, Profile, Scenario, read_scenario
 from skisnow.simulate.run_record import Record
 from skisnow.simulate.run_setup import set_up
-from skisnow.simulate.scenario import Plane, Profile, Scenario, read_scenario
 from skisnow.simulate.simulated_run import computed_run, simulate
 
-from ..equilibrium.synthetic import shovel
+from ...carve.synthetic import shovel
 from .sledges import rigid_ski, scenario
 
 PROFILES = Path(__file__).parents[4] / "shared" / "data" / "slope-profiles"

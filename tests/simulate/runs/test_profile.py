@@ -10,10 +10,10 @@ import numpy.typing as npt
 import pytest
 
 from skisnow import Run, Scenario
-from skisnow.simulate.scenario import Plane, Profile, Solver, read_scenario
+from skisnow.scenario import Plane, Profile, Solver, read_scenario
 from skisnow.simulate.simulated_run import simulate
 
-from ..equilibrium.synthetic import shovel
+from ...carve.synthetic import shovel
 from .sledges import rigid_ski, scenario
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from skisnow import Run
-from skisnow.simulate.scenario import Solver
+from skisnow.scenario import Solver
 from skisnow.simulate.simulated_run import simulate
 
-from ..equilibrium.synthetic import shovel
+from ...carve.synthetic import shovel
 from .sledges import GRAVITY, rigid_ski, scenario
 
 SPEED, ANGLE_DEG = 3.0, 10.0

@@ -13,14 +13,14 @@ from scipy.optimize import fsolve
 
 from skisnow import Run, Scenario, read_ski, rest
 from skisnow.errors import SolverError
+from skisnow.scenario import Solver, read_scenario
 from skisnow.simulate.run_record import at_nodes
 from skisnow.simulate.run_setup import set_up
-from skisnow.simulate.scenario import Solver, read_scenario
 from skisnow.simulate.simulated_run import simulate
 from skisnow.simulate.standing import why_no_start
 
+from ...carve.synthetic import snow
 from ..beyond_ranges import beyond
-from ..equilibrium.synthetic import snow
 from .sledges import GRAVITY, load, rigid_ski, scenario, total_mass
 
 LENGTH, WIDTH, HARDNESS = 1.6, 0.065, 0.2

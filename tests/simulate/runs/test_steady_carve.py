@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from skisnow import Run, carve
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 
-from ..equilibrium.synthetic import snow
+from ...carve.synthetic import snow
 
 EDGE_DEG = 30.0
 LEVEL = {

@@ -14,10 +14,10 @@ import pytest
 
 from skisnow import Run
 from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT as HOLDING
-from skisnow.simulate.scenario import Solver
+from skisnow.scenario import Solver
 from skisnow.simulate.simulated_run import simulate
 
-from ..equilibrium.synthetic import circular_sidecut
+from ...carve.synthetic import circular_sidecut
 from .sledges import GRAVITY, arc_base, rigid_ski, scenario, total_mass
 
 SIDECUT, EDGE_DEG, LENGTH, HARDNESS = 60.0, 20.0, 1.6, 0.2

@@ -11,7 +11,7 @@ import pytest
 from skisnow import Run, Scenario
 from skisnow.simulate.simulated_run import simulate
 
-from ..equilibrium.synthetic import shovel
+from ...carve.synthetic import shovel
 from .sledges import GRAVITY, load, rigid_ski, scenario, total_mass
 
 ANGLE_DEG, FRICTION, DRAG_AREA, SPEED = 10.0, 0.04, 2.0, 8.0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow import Run
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 
 FIXED = {"solver.fixed": True, "solver.step_ms": 0.5, "run.output_ms": 50.0}

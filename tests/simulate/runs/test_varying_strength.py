@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from skisnow.simulate.scenario import read_scenario
+from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
 
 CHANGES = {"run.duration_s": 1.2, "solver.fixed": True}

@@ -17,10 +17,10 @@ import httpx
 from fastapi import FastAPI
 
 from skisnow.errors import ParameterError
+from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file
 from skisnow.report.run_file import write_run_file
-from skisnow.simulate.scenario import scenario_values
-from skisnow.simulate.scenario.values import in_sections
-from skisnow.web.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file
+from skisnow.scenario import scenario_values
+from skisnow.scenario.values import in_sections
 from skisnow.web.replay.addresses import RunFolders, add_addresses, show_address
 from skisnow.web.replay.tracks import Placing, TrackFolders
 

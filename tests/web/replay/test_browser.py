@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.simulate.scenario import Profile
-from skisnow.web.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_replay
+from skisnow.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_replay
+from skisnow.scenario import Profile
 
 from ...report.runs import circle_run
 from .browsers import Watched, drawing_in_software, slowly

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow.replay import Replay, moving_replay_model, replay_of_run
 from skisnow.units import DEGREE
-from skisnow.web.replay import Replay, moving_replay_model, replay_of_run
 
+from ...replay.test_moving_model import SKIS, by_hand, to_run
 from ...report.runs import circle_run
 from .browsers import drawing_in_software
-from .test_moving_model import SKIS, by_hand, to_run
 
 SITE = "http://model.test/"  # answered by the test itself: nothing leaves the machine
 SIZE = {"width": 960, "height": 540}

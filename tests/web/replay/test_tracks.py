@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from skisnow.errors import SkisnowError
-from skisnow.web.replay import replay_of_run
+from skisnow.replay import replay_of_run
 from skisnow.web.replay.tracks import LARGEST_BYTES, LONGEST_WAIT_S, MOST_POINTS, Placing, TrackFolders, number_of
 
 from ...report.runs import circle_run

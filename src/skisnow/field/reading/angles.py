@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..problems import Problem
     from ..records import BoolArray
     from .experiments import Blocks
-    from .tables import Table
+    from .table import Table
 
 COLUMN: Final = "edge_angle_deg"
 STEEPEST_MEASURED_DEG: Final = 60.0

@@ -12,7 +12,7 @@ from .experiments import Blocks
 
 if TYPE_CHECKING:
     from .columns import NameColumn
-    from .tables import Table
+    from .table import Table
 
 
 def penetration_tests(table: Table) -> PenetrationTests:

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from .campaign_file import CampaignFile
     from .campaign_files import CampaignFiles
     from .corrections import RowCorrections
+    from .table import Table
     from .table_forms import TableForm
-    from .tables import Table
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
 """Names of the files that a campaign reads, in their order."""
@@ -52,6 +52,15 @@ def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None 
     ------
     FieldDataError
         With every problem, warnings too, where at least one is an error.
+
+    See Also
+    --------
+    skisnow.check_campaign : lists problems and does not raise.
+    skisnow.analyse : what the campaign says.
+
+    References
+    ----------
+    The page docs/files/campaign.md.
     """
     return _sound(_read_folder(Path(folder), progress))
 
@@ -75,7 +84,26 @@ def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = (
 
 
 def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
-    """List every error and warning of a campaign, in the order of its files and rows; a bad campaign does not raise."""
+    """List every error and warning of a campaign, in the order of its files and rows; a bad campaign does not raise.
+
+    Parameters
+    ----------
+    folder
+        Of the campaign, with campaign.toml and its tables.
+
+    Returns
+    -------
+    tuple of Problem
+        Each with file, row, column, value, what is allowed and what to do; empty where nothing is wrong.
+
+    See Also
+    --------
+    skisnow.read_campaign : raises in place of listing.
+
+    References
+    ----------
+    The page docs/files/campaign.md.
+    """
     return _read_folder(Path(folder), None).problems
 
 

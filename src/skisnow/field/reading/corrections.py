@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from ..problems import Problem
     from .header import Header
+    from .table import Table
     from .table_forms import TableForm
-    from .tables import Table
 
 STATUS = "status"
 

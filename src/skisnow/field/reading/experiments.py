@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ..problems import Problem
     from ..records import BoolArray, FloatArray, IntArray
     from .columns import NameColumn
-    from .tables import Table
+    from .table import Table
 
 from ..problems import error
 

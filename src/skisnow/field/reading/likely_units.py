@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ..problems import Problem
-    from .tables import Table
+    from .table import Table
 
 FAR: Final = 500.0
 """Factor from the median of its column beyond which a number is told: loads and moments of one campaign span less."""

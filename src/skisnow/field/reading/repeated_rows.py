@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ..problems import Problem
-    from .tables import Table
+    from .table import Table
 
 
 def check_repeated_rows(table: Table) -> Iterator[Problem]:

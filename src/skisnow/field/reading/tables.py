@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -13,50 +12,19 @@ from .columns import NameCollector, NumberCollector, Rows, TextCollector
 from .corrections import Corrector, header_with_status
 from .header import Header, check_header
 from .number_cells import decimal_mark
+from .table import Table
 from .text import SEPARATOR_NAMES, CsvText, UnreadableTextError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
 
     from ..problems import Problem
-    from ..records import FloatArray, IntArray
-    from .columns import Collector, NameColumn
+    from ..records import IntArray
+    from .columns import Collector
     from .corrections import RowCorrections
     from .raw_files import RawFiles
     from .table_forms import TableForm
     from .text import Records
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """A table as it was read: n rows in the order of the file, numbers in the file's own units.
-
-    Attributes
-    ----------
-    form
-        What the table must and may have.
-    row
-        File line of each row.
-    names
-        The required and the interpreted optional text columns, whether the file has them or not.
-    numbers
-        Every column of numbers of the form; NaN where blank, absent or refused.
-    further
-        The other columns of the file, unknown ones too, as text.
-    absent
-        Required columns that the file lacks.
-    """
-
-    form: TableForm
-    row: IntArray
-    names: Mapping[str, NameColumn]
-    numbers: Mapping[str, FloatArray]
-    further: Mapping[str, tuple[str, ...]]
-    absent: frozenset[str]
-
-    def __len__(self) -> int:
-        """Count the rows."""
-        return len(self.row)
 
 
 def read_table(

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ..problems import Problem
     from .campaign_file import CampaignFile
-    from .tables import Table
+    from .table import Table
 
 
 def check_together(table: Table, described: CampaignFile | None) -> Iterator[Problem]:

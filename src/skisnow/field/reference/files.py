@@ -35,12 +35,27 @@ def write_reference(folder: str | Path, *, seed: int) -> None:
     seed
         As for `skisnow.field.reference_campaign`. The same seed writes the same bytes.
 
+    Returns
+    -------
+    None
+        The files are written, or an error is raised.
+
     Raises
     ------
     OutputError
         Where the folder already holds a file of a campaign, or cannot be written; nothing is left half-written.
     ParameterError
         For a seed that is no integer of at least 0.
+
+    See Also
+    --------
+    skisnow.read_campaign : reads them.
+
+    References
+    ----------
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+    * The page docs/reference-campaign.md.
     """
     drawn = reference_campaign(seed)
     folder = Path(folder)

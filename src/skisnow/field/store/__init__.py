@@ -2,7 +2,8 @@
 
 from .grown import GrownCampaign, GrownRow, GrownTest, grown
 from .grown_files import campaign_files, write_campaign
-from .journal import JournalEntry, JournalHead, Journals, NewEntry, OvertakenError
+from .journal import JournalHead, Journals, OvertakenError
+from .journal_entry import JournalEntry, NewEntry
 from .kept import ExportedCampaign, add_corrections, corrected_files, export_corrected
 from .kept_tables import KeptTable, kept_tables
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path

@@ -11,7 +11,7 @@ from ...spreadsheet_text import guarded
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from .journal import JournalEntry
+    from .journal_entry import JournalEntry
 
 COLUMNS: Final = ("file", "experiment", "row", "column", "old", "new", "who", "when", "why")
 

@@ -10,7 +10,7 @@ from sqlalchemy.exc import DatabaseError
 from ...errors import StoreError
 from .entry_sums import cells_of, differing, entry_sha256
 from .finding import Finding
-from .journal import readable_entry
+from .journal_entry import readable_entry
 from .schema import journal_entry
 
 if TYPE_CHECKING:

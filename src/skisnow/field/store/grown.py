@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from .journal import DESCRIPTION
+from .journal_entry import DESCRIPTION
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from .journal import JournalEntry
+    from .journal_entry import JournalEntry
 
 
 @dataclass(slots=True)

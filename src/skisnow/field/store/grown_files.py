@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS, TABLES
 from .correction_rows import COLUMNS, correction_row, csv_text
-from .journal import DESCRIPTION
+from .journal_entry import DESCRIPTION
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -11,17 +11,17 @@ from __future__ import annotations
 
 import json
 import secrets
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from hashlib import sha256
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Final
 
-from sqlalchemy import ColumnElement, Connection, RowMapping, and_, func, insert, select
+from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
 
 from ...errors import StoreError
-from ...given import json_value
 from .engine import database_told, reading, writing
 from .entry_sums import entry_sha256, entry_sums
+from .journal_entry import DESCRIPTION, PLAIN, JournalEntry, NewEntry, entry_of
 from .rows import TIME, damaged, number_of, text_of
 from .schema import campaign, journal, journal_entry
 
@@ -30,65 +30,12 @@ if TYPE_CHECKING:
 
     from .store import Store
 
-Action: TypeAlias = Literal["describe", "add", "correct", "cancel", "undo"]
-
-DESCRIPTION: Final = "campaign.toml"
-"""The file, and the only cell, of an entry that describes the campaign."""
-
-
-_PLAIN: Final = ("action", "file", "test", "position", "about", "who", "why", "once")
 _IN_ENTRY: Final = journal.c.id.not_in(select(campaign.c.id))
 """Of a journal; that of a kept campaign says what is corrected in it."""
 
 
 class OvertakenError(StoreError):
     """Somebody else wrote about the same test since it was last looked at; nothing was stored."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NewEntry:
-    """What is to be written down.
-
-    Attributes
-    ----------
-    action
-        describe (the whole of campaign.toml), add (a row), correct (one cell of a row), cancel (a test), undo.
-    file, test
-        The table's file and the test's name; ``""`` for a description.
-    cells
-        Texts by column.
-    position
-        Place of an added row within its test; rows are given back in this order, however late one was filled in.
-    about
-        The sequence of the entry that is corrected or undone.
-    who, why
-        As corrections.csv has them; why a test was cancelled.
-    once
-        Any text that the writer gives to this entry alone: sent again, it is not written down a second time.
-    """
-
-    action: Action
-    file: str
-    test: str = ""
-    cells: Mapping[str, str] = field(default_factory=dict)
-    position: int | None = None
-    about: int | None = None
-    who: str = ""
-    why: str = ""
-    once: str | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JournalEntry(NewEntry):
-    """What was written down: with its number in the store, which rises, and the time in UTC (ISO 8601)."""
-
-    sequence: int
-    at: str
-
-    @property
-    def is_from_file(self) -> bool:
-        """Whether it says what a kept file says, and nobody entered it."""
-        return self.action == "add" and self.position is None
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,43 +240,10 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
 
 
 def _write(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry:
-    plain = {name: getattr(entry, name) for name in _PLAIN}
+    plain = {name: getattr(entry, name) for name in PLAIN}
     sequence = connection.execute(select(func.coalesce(func.max(journal_entry.c.sequence), 0) + 1)).scalar_one()
     at = _now()
     cells = json.dumps(dict(entry.cells), ensure_ascii=False)
     row = {**plain, "sequence": sequence, "at": at, "journal_id": id_, "cells": cells}
     connection.execute(insert(journal_entry).values(**row, sha256=entry_sha256(row), sums=entry_sums(row)))
     return JournalEntry(**plain, cells=dict(entry.cells), at=at, sequence=sequence)
-
-
-def entry_of(row: RowMapping) -> JournalEntry:
-    """An entry from its row.
-
-    Raises
-    ------
-    StoreError
-        It holds what was never written there.
-    """
-    entry = readable_entry(row)
-    if row["sha256"] != entry_sha256({str(name): value for name, value in row.items()}):
-        raise _damaged(row)
-    return entry
-
-
-def readable_entry(row: RowMapping) -> JournalEntry:
-    """An entry from its row, whether or not that is what was written down; errors as in `entry_of`."""
-    values: dict[str, Any] = {name: row[name] for name in (*_PLAIN, "sequence", "at")}
-    try:
-        for name in ("action", "file", "test", "at", "who", "why"):
-            text_of(values[name])
-        for name in ("sequence", "position", "about"):
-            if values[name] is not None or name == "sequence":
-                number_of(values[name])
-        cells = {text_of(column): text_of(cell) for column, cell in json_value(text_of(row["cells"])).items()}
-    except (TypeError, ValueError, AttributeError) as error:
-        raise _damaged(row) from error
-    return JournalEntry(**values, cells=cells)
-
-
-def _damaged(row: RowMapping) -> StoreError:
-    return damaged(f"The entry {row['sequence']} of the campaign in entry {row['journal_id']}")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from .folder import Progress
     from .grown import GrownTest
-    from .journal import JournalEntry
+    from .journal_entry import JournalEntry
     from .store import Store, StoredCampaign
 
 

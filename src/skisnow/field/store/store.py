@@ -96,6 +96,10 @@ class Store(Shown):
 
     Every method raises `StoreError`, with what to do, where the disk is full, the store is read-only or locked for
     longer than the timeout, or the file is damaged; the store then is as it was.
+
+    See Also
+    --------
+    skisnow.read_campaign
     """
 
     def __init__(self, path: Path, engine: Engine) -> None:

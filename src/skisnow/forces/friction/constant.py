@@ -19,9 +19,18 @@ class ConstantFriction(FrictionLaw):
     friction_coefficient
         μ_0, ≥ 0.
 
+    See Also
+    --------
+    skisnow.forces.friction.LinearFriction
+    skisnow.forces.friction.WaterFilmFriction
+
     Notes
     -----
     Range: 0.023-0.139 on skis. Source: Coulomb's law; the range from Wolfsperger and others (2021).
+
+    References
+    ----------
+    Wolfsperger and others (2021), Front. Mech. Eng. 7, doi 10.3389/fmech.2021.728722.
 
     Examples
     --------

@@ -19,11 +19,22 @@ class LinearFriction(FrictionLaw):
     friction_slope
         μ_1 (s/m). Below 0 the law is refused at speeds at which μ would be negative.
 
+    See Also
+    --------
+    skisnow.forces.friction.ConstantFriction
+    skisnow.forces.friction.QuadraticFriction
+
     Notes
     -----
     Range: μ from 0.023 to 0.139 on skis (Wolfsperger and others 2021); no range of μ_1 is known to us. Source: the form
     in which a friction that depends on the speed has been identified from runs (Mössner and others 2013 tell of such an
     identification and print no numbers).
+
+    References
+    ----------
+    * Wolfsperger and others (2021), Front. Mech. Eng. 7, doi 10.3389/fmech.2021.728722.
+    * Kaps, Nachbauer and Mössner (1996), "Determination of kinetic friction and drag area in alpine skiing", ASTM STP
+      1266, 165-177.
 
     Examples
     --------

@@ -21,11 +21,19 @@ class QuadraticFriction(FrictionLaw):
     friction_curvature
         μ_2 (s²/m²). Speeds at which μ would be negative are refused.
 
+    See Also
+    --------
+    skisnow.forces.friction.LinearFriction
+
     Notes
     -----
     Range: μ from 0.023 to 0.139 on skis (Wolfsperger and others 2021); none is known to us of μ_1 and μ_2. Source: the
     next term of a Taylor series (Choice). Under a constant normal force μ_2 v² cannot be told from air drag:
     μ_2 F_n = ½ ρ C_dA.
+
+    References
+    ----------
+    Wolfsperger and others (2021), Front. Mech. Eng. 7, doi 10.3389/fmech.2021.728722.
 
     Examples
     --------

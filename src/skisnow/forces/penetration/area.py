@@ -19,11 +19,21 @@ class AreaLaw(PenetrationLaw):
     hardness_by_area
         H_A (N/m²).
 
+    See Also
+    --------
+    skisnow.forces.penetration.VolumeLaw
+    skisnow.forces.penetration.DepthLaw
+
     Notes
     -----
     Range: edge angles 0-60°; no range of H_A was published.
     Source: Mössner and others (2013), rejected there: rmse 75.2 N (58.4 N with every coefficient free).
     It cannot describe a flat base: that would feel H_A L W at any depth, and none at all until it touches.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

@@ -27,9 +27,19 @@ class BilinearLaw(PenetrationLaw):
         Coefficients in SI: H a is a stress (N/m²), H b a stress per depth (N/m³), a₁ and b₁ per rad. With H = H_V, a is
         in m and b a pure number.
 
+    See Also
+    --------
+    skisnow.forces.penetration.VolumeLaw
+    skisnow.forces.penetration.AreaLaw
+
     Notes
     -----
     Range: edge angles 0-60°. Source: Mössner and others (2013), where the term in A is dropped as not needed.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

@@ -18,10 +18,20 @@ class DepthLaw(PenetrationLaw):
     hardness_by_depth
         H_e (N/m). It belongs to one tool at one edge angle: a spring knows no area.
 
+    See Also
+    --------
+    skisnow.forces.penetration.VolumeLaw
+    skisnow.forces.penetration.AreaLaw
+
     Notes
     -----
     Range: edge angles 0-60°; no range of H_e was published.
     Source: Mössner and others (2013), rejected there: rmse 207 N (140 N with every coefficient free).
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

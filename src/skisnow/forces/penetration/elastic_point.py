@@ -21,10 +21,19 @@ class ElasticPoint(PointLaw):
     snow_hardness
         H_V (N/m³).
 
+    See Also
+    --------
+    skisnow.forces.penetration.HypoplasticPoint
+
     Notes
     -----
     Range: that of `VolumeLaw`. Source: Mössner and others (2013), who measured loading alone. No groove is left and no
     energy is lost: snow does not behave so, but most simulations of skiing do.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

@@ -25,12 +25,23 @@ class ElementCountLaw(PenetrationLaw):
     force_per_element
         f (N).
 
+    See Also
+    --------
+    skisnow.forces.penetration.VolumeLaw
+
     Notes
     -----
     With n f = H_V this is the volume law: so Mössner and others (2013) argue in their discussion that the count of
     elements supports a force proportional to the volume. Only the product n f can be told from a penetration test.
     Range: that of `VolumeLaw` for n f. Source: Johnson and Schneebeli (1999), as quoted in the paper of 2013. Their own
     count is of the elements in contact with the tip of a penetrometer at one time.
+
+    References
+    ----------
+    * Johnson and Schneebeli (1999), "Characterizing the microstructural and micromechanical properties of snow", Cold
+      Reg. Sci. Technol. 30, 91-100, doi 10.1016/S0165-232X(99)00013-0.
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

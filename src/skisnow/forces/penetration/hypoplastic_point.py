@@ -31,10 +31,20 @@ class HypoplasticPoint(PointLaw):
         k_u/H_V ≥ 1: 1 is elastic snow, `math.inf` rigid-plastic snow. It was measured but not published, so it has no
         default.
 
+    See Also
+    --------
+    skisnow.forces.penetration.ElasticPoint
+    skisnow.forces.penetration.VolumeLaw
+
     Notes
     -----
     Range: that of `VolumeLaw` for H_V; none is known for k_u/H_V. Source: Mössner and others (2013, Scand. J. Med. Sci.
     Sports, doi 10.1111/sms.12035) for the kind of law; the energies are exact.
+
+    References
+    ----------
+    Mössner and others (2013), "Modeling the ski-snow contact in skiing turns using a hypoplastic vs an elastic
+    force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
 
     Examples
     --------

@@ -31,6 +31,10 @@ class MeanPressureLaw(PenetrationLaw):
     pressure_offset
         B (N/m²), ≥ 0.
 
+    See Also
+    --------
+    skisnow.forces.penetration.VolumeLaw
+
     Notes
     -----
     Range: A = 0.0036-0.034 N/mm³ and B = 0.058-0.35 N/mm² on three snows; no range of edge angles is known to us.
@@ -40,6 +44,13 @@ class MeanPressureLaw(PenetrationLaw):
     The pressure at zero depth is B, not 0; the force is 0 all the same as long as the edge is inclined, because the
     area is. Flat, the formula with sin ϑ is singular: the whole base touches at once, and the force starts at B L W.
     Deeper than the upper edge of the base, e > W sin ϑ, the whole base is taken as loaded (Choice).
+
+    References
+    ----------
+    * Federolf and others (2006), "Deformation of snow during a carved ski turn", Cold Reg. Sci. Technol. 46, 69-77,
+      doi 10.1016/j.coldregions.2006.06.006.
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

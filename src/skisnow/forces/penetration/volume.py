@@ -19,10 +19,21 @@ class VolumeLaw(PenetrationLaw):
     snow_hardness
         H_V (N/m³).
 
+    See Also
+    --------
+    skisnow.forces.penetration.VolumeWithAngleLaw
+    skisnow.forces.penetration.BilinearLaw
+    skisnow.forces.penetration.HypoplasticPoint
+
     Notes
     -----
     Range: 0.022-90 N/mm³ on groomed ski slopes, edge angles 0-60°, loads of 12-492 N on a piece of ski of 200 × 62 mm.
     Source: Mössner and others (2013); rmse 56.1 N over 236 experiments.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

@@ -20,11 +20,20 @@ class VolumeWithAngleLaw(PenetrationLaw):
     snow_hardness
         H_V (N/m³).
 
+    See Also
+    --------
+    skisnow.forces.penetration.VolumeLaw
+
     Notes
     -----
     Range: that of `VolumeLaw`. The factor is 0.99, 1.063, 1.100 and 1.137 at 0, 30, 45 and 60°.
     Source: Mössner and others (2013); rmse 53.8 N. The paper doubts that the term is real and proposes Eqn 12; its
     discussion prints Eqn 11 with 1 for 0.99.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

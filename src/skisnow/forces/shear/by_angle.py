@@ -23,11 +23,21 @@ class AngleShear(ShearLaw):
     relative_decrease
         k (1/rad), at most 2/π: the stress must not turn negative before the edge is upright.
 
+    See Also
+    --------
+    skisnow.forces.shear.ConstantShear
+    skisnow.forces.shear.MachiningShear
+
     Notes
     -----
     Range: one soft snow, S_f0 = 0.059 N/mm² and k = 0.266, n = 30, rmse 0.006 N/mm²: `AngleShear.soft_snow`. On the
     hard snow of the paper no dependence on ϑ was found (n = 20, p = 0.50). Source: Mössner and others (2013).
     At 90° the printed digits give 0.0343 N/mm²; with unrounded ones 0.0344 has been stated.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

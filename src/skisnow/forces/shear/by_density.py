@@ -22,10 +22,19 @@ class DensityShear(ShearLaw):
     snow_density
         ρ (kg/m³). Below 151.6 kg/m³ the stress would be negative: refused.
 
+    See Also
+    --------
+    skisnow.forces.shear.NaturalDensityShear
+
     Notes
     -----
     Range: 420-740 kg/m³, groomed snow. Source: Mössner and others (2013); the rmse of 0.059 N/mm² is half of the value
     at 500 kg/m³, so this is a rough guess where S_f was not measured.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

@@ -23,10 +23,21 @@ class NaturalDensityShear(ShearLaw):
         ρ (kg/m³). Refused at and below 112.3 kg/m³, where the square is 0 and below which it rises again: lighter snow
         is not stronger.
 
+    See Also
+    --------
+    skisnow.forces.shear.DensityShear
+
     Notes
     -----
     Range: naturally packed snow, to 500 kg/m³. Source: Domine and others (2011), as Mössner and others (2013) quote it.
     Not for groomed slopes: at 500 kg/m³ it gives 1585 Pa, seventy times less than Eqn 14.
+
+    References
+    ----------
+    * Domine, Bock, Morin and Giraud (2011), "Linking the effective thermal conductivity of snow to its shear strength
+      and density", J. Geophys. Res. 116, F04027, doi 10.1029/2011JF002000.
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

@@ -20,11 +20,23 @@ class ConstantShear(ShearLaw):
     failure_shear_stress
         S_f (N/m²).
 
+    See Also
+    --------
+    skisnow.forces.shear.AngleShear
+    skisnow.forces.shear.DensityShear
+
     Notes
     -----
     Range: 0.04-0.52 N/mm² on groomed ski slopes. Source: Mössner and others (2013), 108 experiments; the upper end is
     the race piste of Federolf and others (2006) as converted there.
     S_f is where shearing starts. Sliding that goes on may meet less: that was not measured.
+
+    References
+    ----------
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
+    * Federolf and others (2006), "Deformation of snow during a carved ski turn", Cold Reg. Sci. Technol. 46, 69-77,
+      doi 10.1016/j.coldregions.2006.06.006.
 
     Examples
     --------

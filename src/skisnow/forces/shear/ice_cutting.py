@@ -28,6 +28,10 @@ class IceCuttingShear(ShearLaw):
     snow_over_ice
         c, force on snow over force on ice; 0.02 is what Lieu and Mote proposed.
 
+    See Also
+    --------
+    skisnow.forces.shear.MachiningShear
+
     Notes
     -----
     Range: cuts in ice less than 1 mm deep, rake angles -60° to -15°, that is edge angles 30-75°; 0.01-1 m/s, the force
@@ -35,6 +39,10 @@ class IceCuttingShear(ShearLaw):
     have not seen it printed. The polynomial is ours (Choice); it starts with the first power of the depth because an
     edge that is not in the snow feels no force. They found the force about normal to the cutting face, so the thrust is
     F_t cot ϑ, as in machining without friction.
+
+    References
+    ----------
+    Lieu and Mote (1984), "Experiments in the machining of ice at negative rake angles", J. Glaciol. 30(104), 77-81.
 
     Examples
     --------

@@ -25,11 +25,21 @@ class MachiningShear(ShearLaw):
     transverse_friction
         μ_t ≥ 0, the friction across the ski.
 
+    See Also
+    --------
+    skisnow.forces.shear.AngleShear
+    skisnow.forces.shear.IceCuttingShear
+
     Notes
     -----
     Range: none was measured on groomed snow; an upright edge without friction fails at 2 S, and the warning compares
     that with the range of S_f. Source: Merchant's theory as in Mössner and others (2013), who did not find its
     dependence on ϑ. At and below ϑ = β there is no shear plane: NaN.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

@@ -40,7 +40,7 @@ def carved_skis(found: Json) -> Figure:
     Parameters
     ----------
     found
-        What `skisnow.simulate.carve_dict.answers_dict` gives.
+        What `skisnow.carve.answer_dict.answers_dict` gives.
     """
     answers = answers_of(found)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=150.0)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from ...carve.keys import CARVE_KEYS
 from ...errors import ParameterError
-from ...simulate.carve_keys import CARVE_KEYS
 from ...study import StudyTable
 from ..symbols import figure_text
 

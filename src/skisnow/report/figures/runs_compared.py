@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
-from ...simulate.scenario import Profile
+from ...scenario import Profile
 from ...track.nearest_place import distance_beside
 from ...track.polyline import way_along
 from ...units import MM

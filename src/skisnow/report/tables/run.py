@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from ...scenario.keys import SCENARIO_KEYS
 from ...simulate.run import WARNED_SHARE
-from ...simulate.scenario.keys import SCENARIO_KEYS
 from ..numerals import significant
 from ..table import Column, Table
 

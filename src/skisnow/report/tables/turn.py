@@ -15,7 +15,7 @@ from ..turn_numbers import afterbody_depth_ratio, median_radius, used_grip
 if TYPE_CHECKING:
     from ...simulate.run import Run
     from ...snow import SnowProperties
-    from ..turn_report import EnsembleRun
+    from ..turn_chain import EnsembleRun
 
 
 def parameters_table(snow: SnowProperties) -> Table:

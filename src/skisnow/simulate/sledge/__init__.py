@@ -1,5 +1,1 @@
-"""The rigid part of a sledge, its frames, and its mass matrix with two flexible skis."""
-
-from .inertia import RigidSledge
-
-__all__ = ["RigidSledge"]
+"""The sledge on two flexible skis as a body: its frames, and its mass matrix."""

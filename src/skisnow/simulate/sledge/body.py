@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ...dynamics import Body, FlexibleSki
+from ...scenario.sledge import RigidSledge
 from ...ski.beam.banded import dense
 from ...ski.beam.clamped import ClampedSki
 from .frames import base_lateral, base_normal
-from .inertia import RigidSledge, sledge_inertia
+from .inertia import sledge_inertia
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

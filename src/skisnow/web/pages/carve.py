@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from nicegui.events import GenericEventArguments
 
-    from ...simulate.carve_answer import Sources
+    from ...sources import Sources
     from ..settings import Lab
 
 PATH: Final = "/carve"
@@ -86,9 +86,10 @@ class _Solver:
 
     def answers(self, questions: Sequence[dict[str, object]]) -> list[dict[str, Any]] | str:
         """The JSON of `skisnow carve` for each question, or why there is none, in a sentence."""
-        from ...simulate.carve_answer import Sources, answered
-        from ...simulate.carve_dict import answer_dict
-        from ...simulate.carve_question import carve_question
+        from ...carve.answer import answered
+        from ...carve.answer_dict import answer_dict
+        from ...carve.question import carve_question
+        from ...sources import Sources
 
         with self._lock:
             self._sources = self._sources or Sources()

@@ -10,7 +10,7 @@ from ...errors import ParameterError, SkisnowError
 from ...field.reading.tool_shapes import SHAPES
 from ...field.store import Journals, NewEntry
 from ...field.store.description import Description, description_text
-from ...field.store.journal import DESCRIPTION
+from ...field.store.journal_entry import DESCRIPTION
 from ...given import toml_values
 from ..answering import asked, asking_button, form, go_on, row_button
 from ..desk import Desk

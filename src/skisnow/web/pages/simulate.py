@@ -9,12 +9,12 @@ from nicegui import app, background_tasks, run, ui
 
 from ...errors import ParameterError, SkisnowError
 from ...field.store import Journals
+from ...replay.of_file import RUN_FILE
 from ..desk import Desk
 from ..fields import button, choice, field, link
 from ..lab_skis import LabSkis
 from ..layout import framed, heading, sentence
 from ..replay.addresses import show_address
-from ..replay.of_file import RUN_FILE
 from ..runs import Job, Runs
 from ..snow_of_campaign import require_scenario, snow_of_campaign
 from ..trouble import told
@@ -54,7 +54,7 @@ class _Form:
     """The keys of a scenario by their sections; what differs from the scenario's own value is handed on."""
 
     def __init__(self, lab: Lab, runs: Runs, status: ui.label) -> None:
-        from ...simulate.scenario import scenario_names
+        from ...scenario import scenario_names
 
         self._lab, self._runs, self._status = lab, runs, status
         self._skis = LabSkis(lab.runs)
@@ -73,8 +73,8 @@ class _Form:
         self._draw()
 
     def _draw(self) -> None:
-        from ...simulate.scenario import scenario_file
-        from ...simulate.scenario.keys import SCENARIO_KEYS, SECTIONS
+        from ...scenario import scenario_file
+        from ...scenario.keys import SCENARIO_KEYS, SECTIONS
 
         values = scenario_file(str(self._scenario.value)).values
         kept = self._changed()

@@ -1,27 +1,16 @@
-"""The replay of a simulated run: its arrays, their compact binary, and what a browser needs to show them."""
+"""The replay in the lab: its addresses, and the measured tracks beside a run. The replay itself is `skisnow.replay`."""
 
-from .binary import replay_bytes, replay_of_bytes
-from .model import replay_model, write_replay_model
-from .moving_model import moving_replay_model, write_moving_replay_model
-from .of_file import replay_of_file
-from .of_run import replay_of_run
-from .page import replay_page, write_replay
-from .replay import Replay, ReplayTrack, measured_track
-from .shape import ski_edges
+from __future__ import annotations
 
-__all__ = [
-    "Replay",
-    "ReplayTrack",
-    "measured_track",
-    "moving_replay_model",
-    "replay_bytes",
-    "replay_model",
-    "replay_of_bytes",
-    "replay_of_file",
-    "replay_of_run",
-    "replay_page",
-    "ski_edges",
-    "write_moving_replay_model",
-    "write_replay",
-    "write_replay_model",
-]
+from typing import Any
+
+from ... import replay
+from ...former_names import warn_of_former_name
+
+
+def __getattr__(name: str) -> Any:
+    """What moved to `skisnow.replay` stays here for one release."""
+    if name not in replay.__all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    warn_of_former_name(f"{__name__}.{name}", f"skisnow.replay.{name}")
+    return getattr(replay, name)

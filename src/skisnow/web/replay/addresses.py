@@ -12,21 +12,21 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from ...errors import ParameterError
 from ...given import read_json
+from ...replay.binary import replay_bytes
+from ...replay.model import replay_model
+from ...replay.moving_model import moving_replay_model
+from ...replay.of_file import RUN_FILE, replay_of_file
+from ...replay.page import MODULES, STYLE, static_text
 from ...ski import read_ski
 from ..confined import BOUNDS, confined
 from ..runs import JOB
-from .binary import replay_bytes
-from .model import replay_model
-from .moving_model import moving_replay_model
-from .of_file import RUN_FILE, replay_of_file
-from .page import MODULES, STYLE, static_text
 from .tracks import TrackFolders, track_on_slope
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
 
+    from ...replay.replay import Replay
     from ...ski import Ski
-    from .replay import Replay
 
 LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"
@@ -153,7 +153,7 @@ def program_file(name: str) -> Response:
 def show_page(run: str, ghost: str | None, track: str = "") -> str:
     """The HTML that fetches a run, a second one to lay over it and a track beside it, by their names."""
     environment = Environment(
-        loader=PackageLoader("skisnow.web.replay", "static"), autoescape=True, undefined=StrictUndefined
+        loader=PackageLoader("skisnow.replay", "static"), autoescape=True, undefined=StrictUndefined
     )
     return environment.get_template("show.html").render(
         title=run,

@@ -14,18 +14,18 @@ from typing import IO, TYPE_CHECKING, Final
 from ...errors import FieldDataError, ParameterError
 from ...files import cannot_write, write_file
 from ...given import read_json
+from ...replay.replay import measured_track
 from ...track.read import SUFFIXES, read_track
 from ...track.slope_frame import in_slope_frame
 from ...units import DEGREE
 from ..typed import typed_number
-from .replay import measured_track
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import TypeAlias
 
+    from ...replay.replay import Replay, ReplayTrack
     from ...track.track import Track
-    from .replay import Replay, ReplayTrack
 
     Count: TypeAlias = Callable[[Path, "Placing"], int]
     Read: TypeAlias = Callable[[Path, "Placing", float | None], ReplayTrack]

@@ -1,0 +1,42 @@
+// Blocks of code: a button that copies them, and a place in the tab order, so that long lines can be scrolled by key.
+"use strict";
+
+const COMMAND = /^(\$ )?(skisnow|make|python|pip|\.venv\/bin\/|git|kill)\b|^ +/;
+
+/** What a reader wants to paste: without prompts, and of a session only what was typed. */
+function typed(text) {
+  const lines = text.replace(/\n$/, "").split("\n");
+  if (!lines.some((line) => line.startsWith(">>> "))) return lines.join("\n");
+  return lines.filter((line) => /^(>>>|\.\.\.)( |$)/.test(line)).map((line) => line.slice(4)).join("\n");
+}
+
+/** Copy even where the page is a file and the browser gives it no clipboard. */
+async function copy(text) {
+  if (navigator.clipboard) return navigator.clipboard.writeText(text);
+  const area = Object.assign(document.createElement("textarea"), { value: text });
+  document.body.append(area);
+  area.select();
+  document.execCommand("copy");
+  area.remove();
+}
+
+function furnished(block) {
+  const pre = block.querySelector("pre");
+  const text = pre.textContent;
+  pre.tabIndex = 0;
+  pre.setAttribute("role", "region");
+  pre.setAttribute("aria-label", "code");
+  if (text.split("\n").every((line) => !line || COMMAND.test(line))) block.classList.add("commands");
+  const button = Object.assign(document.createElement("button"), { className: "copy", type: "button", textContent: "Copy" });
+  button.setAttribute("aria-label", "Copy this code");
+  button.addEventListener("click", async () => {
+    await copy(typed(text));
+    button.textContent = "Copied";
+    setTimeout(() => { button.textContent = "Copy"; }, 1500);
+  });
+  block.append(button);
+}
+
+document.addEventListener("DOMContentLoaded", () => {
+  document.querySelectorAll("article div.highlight").forEach(furnished);
+});

@@ -1,0 +1,111 @@
+"""The edge line of a ski in snow, and the circles through it."""
+
+from __future__ import annotations
+
+import math
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..ski.beam.clamped import ClampedSki, beam_at, beam_at_stations
+from .solve import Solution
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+BOOT_REACH: Final = 0.40
+"""Distance (m) before and behind the boot at which the circle of the boot's turn radius meets the edge line."""
+_STRAIGHT: Final = 1e-9  # m, sagitta below which a line has no radius
+
+
+class EdgeLine:
+    """Edge of a bent and twisted ski, seen along the snow normal; x along the ski, y towards the inside of the turn.
+
+    The edge at a station lies W/2 cos(ϑ + φ) + (h + w) sin ϑ towards the inside.
+    """
+
+    def __init__(self, model: ClampedSki, edge_angle: float, solution: Solution) -> None:
+        self._model = model
+        self._edge_angle = edge_angle
+        self._u = solution.u
+        stations = model.stations
+        self.station = stations.station
+        self.deflection, self.twist = beam_at_stations(model, solution.u)
+        self.position = self._across(stations.width, stations.base_height, self.deflection, self.twist)
+
+    def at(self, station: npt.ArrayLike) -> FloatArray:
+        """Position (m) of the edge at stations (m)."""
+        where = np.atleast_1d(np.asarray(station, float))
+        ski = self._model.ski
+        width, height = (np.interp(where, ski.station[::-1], each[::-1]) for each in (ski.width, ski.base_height))
+        return self._across(width, height, *beam_at(self._model, self._u, where))
+
+    def _across(
+        self, width: FloatArray, base_height: FloatArray, deflection: FloatArray, twist: FloatArray
+    ) -> FloatArray:
+        across = width / 2.0 * np.cos(self._edge_angle + twist)
+        return np.asarray(across + (base_height + deflection) * math.sin(self._edge_angle))
+
+    def radius_over(self, front: float, rear: float) -> float | None:
+        """Radius (m) of the circle through the edge at `front`, the boot and `rear`; positive: the ends lead inwards.
+
+        None where the boot is not between them, a station is beyond the ski, or the three lie on a line.
+        """
+        tip, tail = float(self._model.ski.station[0]), float(self._model.ski.station[-1])
+        if not tail <= rear < 0.0 < front <= tip:
+            return None
+        y_front, y_boot, y_rear = self.at([front, 0.0, rear])
+        return circle_radius((front, float(y_front)), (0.0, float(y_boot)), (rear, float(y_rear)))
+
+    def radius_at_boot(self) -> float | None:
+        """Radius (m) of the circle through the edge at the boot and 0.4 m before and behind it."""
+        return self.radius_over(BOOT_REACH, -BOOT_REACH)
+
+    def offset_from_circle(self) -> FloatArray:
+        """How far the edge lies inside of the circle of `radius_at_boot` at each station (m)."""
+        radius = self.radius_at_boot()
+        if radius is None:
+            raise ValueError("a straight edge line has no circle")
+        y_front, y_rear = (float(y) for y in self.at([BOOT_REACH, -BOOT_REACH]))
+        heading = math.atan2(y_front - y_rear, 2.0 * BOOT_REACH)
+        middle_x, middle_y = 0.0, (y_front + y_rear) / 2.0
+        # the centre lies on the chord's normal, on the inner side
+        chord = math.hypot(2.0 * BOOT_REACH, y_front - y_rear)
+        away = math.copysign(math.sqrt(radius**2 - chord**2 / 4.0), radius)
+        centre_x, centre_y = middle_x - away * math.sin(heading), middle_y + away * math.cos(heading)
+        distance = np.hypot(self.station - centre_x, self.position - centre_y)
+        return np.asarray(math.copysign(1.0, radius) * (abs(radius) - distance))
+
+    def contact_ends(self, depth: FloatArray) -> tuple[float, float]:
+        """Stations (m) of both ends of the contact, front first: where the edge depth passes zero, or tip and tail."""
+        below = np.flatnonzero(depth > 0.0)
+        return self._end(depth, int(below[0]), -1), self._end(depth, int(below[-1]), 1)
+
+    def _end(self, depth: FloatArray, last: int, outwards: int) -> float:
+        beyond = last + outwards
+        if not 0 <= beyond < len(depth):
+            return float(self._model.ski.station[0 if outwards < 0 else -1])
+        share = depth[last] / (depth[last] - depth[beyond])
+        return float(self.station[last] + share * (self.station[beyond] - self.station[last]))
+
+    def greatest_slope(self) -> float:
+        """Greatest slope of the bent ski against the boot, over the running length."""
+        front, rear = self._model.ski.contact_points
+        inside = (self.station <= front) & (self.station >= rear)
+        return float(np.max(np.abs(np.gradient(self.deflection[inside], self.station[inside]))))
+
+
+def circle_radius(front: tuple[float, float], middle: tuple[float, float], rear: tuple[float, float]) -> float | None:
+    """Radius of the circle through three points, positive where the middle lies below the chord (y); None if straight.
+
+    >>> import math
+    >>> round(circle_radius((3.0, 1.0), (0.0, 0.0), (-3.0, 1.0)), 12)
+    5.0
+    """
+    a = math.dist(middle, front)
+    b = math.dist(middle, rear)
+    c = math.dist(front, rear)
+    twice_area = (front[0] - rear[0]) * (middle[1] - rear[1]) - (middle[0] - rear[0]) * (front[1] - rear[1])
+    if abs(twice_area) <= _STRAIGHT * c:
+        return None
+    return -a * b * c / (2.0 * twice_area)

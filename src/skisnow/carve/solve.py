@@ -1,0 +1,150 @@
+"""Equilibrium of a clamped ski in snow, found by the compiled core: elastic snow first, then the snow's memory."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Final, NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..compiled import core
+from ..ski.beam.clamped import ClampedSki
+from ..ski.ski import Ski
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+RIGID_PLASTIC: Final = 1000.0
+"""Unloading ratio that stands for rigid-plastic snow: the groove springs back by a thousandth of its depth."""
+_CONFORMING_SHARE: Final = 0.9  # of the running length that the first guess bends onto the snow
+_NEAR: Final = 1e-4  # m, over which the first guess takes the slope of the base
+
+
+class Conditions(NamedTuple):
+    """Snow, load and modelling choices, in SI."""
+
+    edge_angle: float
+    hardness: float
+    excess: float  # k_u - H_V
+    load: float
+    moment: float
+    side_force: float
+    side_force_bending: bool
+    twists: bool
+    bevel: float
+    bevel_width: float
+    pitch_of_force: float  # share with which the snow's force takes part in the balance of moments about the boot
+    pitch_of_shear: float  # share of the side force
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solution:
+    """State of the ski in equilibrium, all in SI.
+
+    Attributes
+    ----------
+    converged, iterations
+        Whether Newton's method came to an end, and its iterations in all.
+    u
+        Unknowns of the beam, relative to the boot.
+    boot_depth, boot_slope
+        b₀ (m) and b₁: depth of the base's middle under the boot, and its growth along the ski.
+    shear_stress
+        τ, drawn from the snow along the edge (N/m²).
+    edge_depth, force_per_length
+        At the stations: e (m), and the snow's force per length along the snow normal (N/m).
+    """
+
+    converged: bool
+    iterations: int
+    u: FloatArray
+    boot_depth: float
+    boot_slope: float
+    shear_stress: float
+    edge_depth: FloatArray
+    force_per_length: FloatArray
+
+
+def solved(
+    model: ClampedSki, conditions: Conditions, *, offset: FloatArray | None = None, near: Solution | None = None
+) -> Solution:
+    """Find the equilibrium of a ski under the conditions.
+
+    Elastic snow first, from there to the steeper unloading; where that fails, all of it on softer snow that hardens.
+
+    Parameters
+    ----------
+    model
+        The clamped ski.
+    conditions
+        Snow, load and choices.
+    offset
+        Where the groove follows a path, of the edge from that at each station (m); None: the groove follows the edge.
+    near
+        A solution that this one is thought to be close to; tried first.
+    """
+    from_there = None
+    if near is not None:
+        border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
+        from_there = (near.u, border, near.edge_depth)
+    found = core.find_carve(_core_ski(model), core.CarveConditions(*conditions), offset, from_there)
+    converged, iterations, u, (depth, slope, stress), edge_depth, force = found
+    return Solution(converged, iterations, u, depth, slope, stress, edge_depth, force)
+
+
+@functools.lru_cache(maxsize=32)
+def _core_ski(model: ClampedSki) -> core.CarvedSki:
+    stations = model.stations
+    held = stations.dof < 0
+    front = int(stations.dof[np.argmax(held.any(axis=1)), 2]) + 1
+    rows = np.column_stack(
+        [
+            stations.station,
+            stations.weight,
+            stations.width,
+            stations.base_height,
+            _first_unknown(stations.dof, front),
+            np.where(held, 0.0, stations.deflection),
+            np.where(held, 0.0, stations.twist),
+        ]
+    )
+    waist = float(model.ski.at(0.0).width)
+    return core.carved_ski(rows, front, model.stiffness, waist, model.ski.running_length, *_bent_onto_snow(model))
+
+
+def _first_unknown(dof: npt.NDArray[np.int64], front: int) -> FloatArray:
+    """Of each station's element, where six that are held stand between the unknowns before and behind the clamp."""
+    before, behind = dof[:, 0], dof[:, 3]
+    first = np.where(before >= front, before + 6, np.where(behind >= front, behind + 3, front))
+    return np.where((before >= 0) & (before < front), before, first).astype(float)
+
+
+def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
+    """Unknowns of a ski bent onto the snow over most of its running length, and straight beyond.
+
+    By half its width, to be taken times tan ϑ, and by the height of its base, which is to be taken off.
+    """
+    ski, node = model.ski, model.node
+    dof = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
+    free = dof[:, 0] >= 0
+    front, rear = (_CONFORMING_SHARE * end for end in _ends(ski))
+    inside = np.clip(node, rear, front)
+    before, behind, here, boot = (ski.at(place) for place in (inside + _NEAR, inside - _NEAR, inside, np.zeros(1)))
+
+    def bent(before: FloatArray, behind: FloatArray, here: FloatArray, boot: FloatArray) -> FloatArray:
+        slope = (before - behind) / (2.0 * _NEAR)
+        u = np.zeros(model.size)
+        u[dof[free, 0]] = (here - boot + slope * (node - inside))[free]
+        u[dof[free, 1]] = -slope[free]  # the elements run from tip to tail
+        return u
+
+    return (
+        bent(before.width / 2.0, behind.width / 2.0, here.width / 2.0, boot.width / 2.0),
+        bent(before.base_height, behind.base_height, here.base_height, boot.base_height),
+    )
+
+
+def _ends(ski: Ski) -> tuple[float, float]:
+    front, rear = ski.contact_points
+    return min(front, float(ski.station[0])), max(rear, float(ski.station[-1]))

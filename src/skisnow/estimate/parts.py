@@ -1,0 +1,71 @@
+"""What the experiments of each kind say: the parts of an `Analysis`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ..shown import Facts, Shown, amount, field_facts
+from .errors_in_depth import FittedHardness
+from .hardness import Hardness
+from .model_choice import NestedRows
+from .models import Model, ModelFit
+from .readings import Readings
+from .screening import Screened
+from .seating import Seating
+from .shear_stress import ShearStress
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, repr=False)
+class ModelTable(Shown):
+    """The nine fitted rows with bootstrap intervals of a0, a1, b0, b1 by model ((4, 2) each); none where withheld."""
+
+    fits: tuple[ModelFit, ...]
+    intervals: dict[Model, FloatArray]
+
+    def _facts(self) -> Facts:
+        rows = tuple((fit.model.id, f"rmse {amount(fit.rmse, 'N')}") for fit in self.fits)
+        return Facts(f"of {len(rows)} rows", rows)
+
+
+@dataclass(frozen=True, repr=False)
+class PenetrationAnalysis(Shown):
+    """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
+
+    ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say. ``table``,
+    ``errors_in_depth`` and ``selected`` are None where no experiment is used; ``warnings`` are those of `fit_warnings`.
+    """
+
+    screened: Screened
+    readings: Readings
+    hardness: dict[str, Hardness]
+    seating: Seating
+    fitted: FittedHardness
+    table: ModelTable | None
+    nested: tuple[NestedRows, ...]
+    selected: ModelFit | None
+    errors_in_depth: ModelTable | None
+    warnings: tuple[str, ...] = ()
+
+    def _facts(self) -> Facts:
+        return field_facts(self, {}, title=used_of(self.screened))
+
+
+@dataclass(frozen=True, repr=False)
+class ShearAnalysis(Shown):
+    """All that the shear experiments say, over all experiments."""
+
+    screened: Screened
+    stress: ShearStress
+
+    def _facts(self) -> Facts:
+        return Facts(used_of(self.screened))
+
+
+def used_of(screened: Screened) -> str:
+    """How many of the experiments take part, in words."""
+    return f"{int(screened.used.sum())} of {len(screened.used)} experiments used"

@@ -1,0 +1,1 @@
+"""Many computations at once: worker processes, and rows that are kept as they come."""

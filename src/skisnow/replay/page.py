@@ -1,0 +1,109 @@
+"""A replay as one HTML file that needs nothing else: program, picture and numbers are inside it."""
+
+from __future__ import annotations
+
+import base64
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from ..errors import ParameterError
+from ..files import write_file
+from ..simulate.run import Run
+from .binary import replay_bytes
+from .of_file import replay_of_file
+from .of_run import replay_of_run
+from .replay import Replay
+
+if TYPE_CHECKING:
+    from .replay import ReplayTrack
+
+MODULES: Final = (
+    "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow.js", "grid.js",
+    "groove.js",
+    "skis.js", "cameras.js", "controls.js", "sharpness.js", "takeaway.js", "stage.js",
+    "replay.js",
+)  # fmt: skip
+"""The program, each file before those that import it."""
+STYLE: Final = "replay.css"
+_PACKAGE: Final = "skisnow.replay"
+_ENDS_A_SCRIPT: Final = ("</script", "<!--")
+
+
+def write_replay(
+    run: Run | Replay | str | Path,
+    path: str | Path,
+    *,
+    ghost: Run | Replay | str | Path | None = None,
+    title: str | None = None,
+    track: ReplayTrack | None = None,
+) -> Path:
+    """Write a replay as one HTML file that opens without a server and without network.
+
+    Parameters
+    ----------
+    run
+        A run, its replay, or the folder or file that it was written to.
+    path
+        Of the HTML file, which is replaced where it exists.
+    ghost
+        A second run, shown translucent over the first at the same times.
+    title
+        What the reader sees; left out: the folder's name, or "A simulated run".
+    track
+        A measured track in the run's axes, shown beside; not with a replay, which has its own.
+
+    Returns
+    -------
+    Path
+        Of the file.
+
+    Raises
+    ------
+    ParameterError
+        A folder holds no run that can be shown.
+    OutputError
+        The file cannot be written.
+    """
+    shown = [_replay(run, title, track)]
+    if ghost is not None:
+        shown.append(_replay(ghost, None, None))
+    write_file(path, replay_page(*shown))
+    return Path(path)
+
+
+def _replay(run: Run | Replay | str | Path, title: str | None, track: ReplayTrack | None) -> Replay:
+    if isinstance(run, Replay):
+        if track is not None or title is not None:
+            raise ParameterError("a replay has its own title and track: give them to replay_of_run or replay_of_file")
+        return run
+    if isinstance(run, Run):
+        return replay_of_run(run, track=track) if title is None else replay_of_run(run, title=title, track=track)
+    return replay_of_file(run, title=title, track=track)
+
+
+def replay_page(run: Replay, ghost: Replay | None = None) -> str:
+    """The HTML of a replay, a second run over it where there is one."""
+    environment = Environment(loader=PackageLoader(_PACKAGE, "static"), autoescape=True, undefined=StrictUndefined)
+    named = [("run", run), *([("ghost", ghost)] if ghost is not None else [])]
+    return environment.get_template("replay.html").render(
+        title=run.title,
+        css=Markup(static_text(STYLE)),
+        runs=[{"id": name, "base64": base64.b64encode(replay_bytes(each)).decode()} for name, each in named],
+        modules=[{"name": name, "text": _module(name)} for name in MODULES],
+    )
+
+
+def static_text(name: str) -> str:
+    """A file of the program as text."""
+    return files(_PACKAGE).joinpath("static", name).read_text(encoding="utf-8")
+
+
+def _module(name: str) -> Any:
+    text = static_text(name)
+    if any(words in text for words in _ENDS_A_SCRIPT):
+        raise RuntimeError(f"{name} cannot stand in a page: it has {' or '.join(_ENDS_A_SCRIPT)} in it")
+    return Markup(text)

@@ -1,0 +1,100 @@
+// Where the sledge and its skis are at any time: the moments that were kept, and straight between them.
+
+/** The moment before a time, and the share of the way to the next: [index, share]. */
+export function between(times, time) {
+  const last = times.length - 1;
+  if (last === 0 || time <= times[0]) return [0, 0];
+  if (time >= times[last]) return [last - 1, 1];
+  let low = 0;
+  let high = last;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= time) low = middle;
+    else high = middle;
+  }
+  return [low, (time - times[low]) / (times[high] - times[low])];
+}
+
+/** Row of a history at a place between two moments; `size` numbers in each row. */
+export function row(values, [index, share], size) {
+  const found = new Float64Array(size);
+  const next = Math.min((index + 1) * size, values.length - size);
+  for (let i = 0; i < size; i++) found[i] = (1 - share) * values[index * size + i] + share * values[next + i];
+  return found;
+}
+
+/** Rotation matrix, nine numbers row by row, of a quaternion w, x, y, z of any length. */
+export function rotation(quaternion) {
+  const size = Math.hypot(...quaternion);
+  const [w, x, y, z] = quaternion.map((part) => part / size);
+  return [
+    1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
+    2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+    2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y),
+  ];
+}
+
+/** Pose at a time: place, and the sledge's axes forward, left and up, each in space. */
+export function poseAt(run, time) {
+  const at = between(run.arrays.time.values, time);
+  const r = rotation(row(run.arrays.attitude.values, at, 4));
+  return {
+    at,
+    place: row(run.arrays.place.values, at, 3),
+    forward: [r[0], r[3], r[6]],
+    left: [r[1], r[4], r[7]],
+    up: [r[2], r[5], r[8]],
+  };
+}
+
+/**
+ * Cross sections of a ski: at each station the middle of the base, and unit vectors across it to the left and away from
+ * the snow, as skisnow.replay.shape has them. Nine numbers each, in space.
+ */
+export function sections(run, pose, ski, exaggeration) {
+  const { station, base_height: base, middle, bending, twist } = run.arrays;
+  const count = station.values.length;
+  const bent = row(bending.values, pose.at, 2 * count);
+  const twisted = row(twist.values, pose.at, 2 * count);
+  const cosine = Math.cos(run.edge_angle);
+  const sine = Math.sin(run.edge_angle);
+  const found = new Float64Array(9 * count);
+  for (let j = 0; j < count; j++) {
+    const height = base.values[j] + exaggeration * bent[ski * count + j];
+    const angle = exaggeration * twisted[ski * count + j];
+    const [c, s] = [Math.cos(angle), Math.sin(angle)];
+    for (let axis = 0; axis < 3; axis++) {
+      const across = cosine * pose.left[axis] - sine * pose.up[axis];
+      const away = sine * pose.left[axis] + cosine * pose.up[axis];
+      found[9 * j + axis] =
+        pose.place[axis] +
+        (middle.values[3 * ski] + station.values[j]) * pose.forward[axis] +
+        middle.values[3 * ski + 1] * pose.left[axis] +
+        middle.values[3 * ski + 2] * pose.up[axis] +
+        height * away;
+      found[9 * j + 3 + axis] = c * across - s * away;
+      found[9 * j + 6 + axis] = s * across + c * away;
+    }
+  }
+  return found;
+}
+
+/** Both edges of a ski's base: [left, right], each three numbers a station. */
+export function edges(run, time, ski, exaggeration) {
+  const found = sections(run, poseAt(run, time), ski, exaggeration);
+  const half = run.arrays.half_width.values;
+  return [1, -1].map((side) =>
+    Array.from(half, (width, j) => [0, 1, 2].map((axis) => found[9 * j + axis] + side * width * found[9 * j + 3 + axis])),
+  );
+}
+
+const distances = new WeakMap(); // the profile's x alone, found once
+
+/** Height of the snow's surface at x. */
+export function surfaceHeight(run, x) {
+  const profile = run.arrays.profile?.values;
+  if (!profile) return 0;
+  if (!distances.has(run)) distances.set(run, profile.filter((_, i) => i % 2 === 0));
+  const [index, share] = between(distances.get(run), x);
+  return (1 - share) * profile[2 * index + 1] + share * profile[2 * index + 3];
+}

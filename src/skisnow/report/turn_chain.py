@@ -1,0 +1,100 @@
+"""What the chain from a campaign to a turn gives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..from_above import from_above
+from ..shown import Facts, Shown, amount
+
+if TYPE_CHECKING:
+    from ..estimate import Analysis
+    from ..simulate.run import Run
+    from ..snow import SnowProperties
+    from .figures.track_band import TimedTrack
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class EnsembleRun(Shown):
+    """One run of an ensemble.
+
+    Attributes
+    ----------
+    snow
+        That was drawn for it.
+    outcome
+        How it ended.
+    track
+        Of the middle between the boots.
+    """
+
+    snow: SnowProperties
+    outcome: str
+    track: TimedTrack
+
+    def _facts(self) -> Facts:
+        return Facts(f"{self.outcome.replace('_', ' ')} on {self.snow.in_words}")
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class TurnChain(Shown):
+    """From a campaign to a turn.
+
+    Attributes
+    ----------
+    campaign, site
+        Names.
+    synthetic
+        Whether nobody measured the campaign.
+    snow
+        H_V and S_f of that site with their intervals.
+    runs
+        By the name of the contact, two or more; the first is the nominal run of the ensemble.
+    ensemble
+        Runs over the intervals, three or more.
+    seed
+        Of the ensemble's draws.
+    ensemble_error
+        Distance between the ends of the nominal run and of the same run computed like the ensemble (m); None where
+        both are computed alike.
+    analysis
+        Of the campaign, where it was made on the way.
+
+    See Also
+    --------
+    skisnow.chain
+    """
+
+    campaign: str
+    site: str
+    synthetic: bool
+    snow: SnowProperties
+    runs: Mapping[str, Run]
+    ensemble: Sequence[EnsembleRun]
+    seed: int
+    ensemble_error: float | None = None
+    analysis: Analysis | None = None
+
+    @property
+    def nominal(self) -> Run:
+        """The turn on the snow that was found, with the first contact."""
+        return next(iter(self.runs.values()))
+
+    @property
+    def sentences(self) -> list[str]:
+        """What the contacts do otherwise, in plain text."""
+        contrast = from_above("report.turn_sentences", "contrast")
+        return [sentence.replace("<sub>", "_").striptags() for sentence in contrast(self)]
+
+    def report(self, folder: str | Path) -> Path:
+        """Write report.html and figures/ of the whole chain; see `report.turn_report.write_turn_report`."""
+        page: Path = from_above("report.turn_report", "write_turn_report")(self, folder)
+        return page
+
+    def _facts(self) -> Facts:
+        runs = [(name, f"{run.outcome}, {amount(run.run_length, 'm')}") for name, run in self.runs.items()]
+        rows = (("snow", self.snow.in_words), *runs, ("ensemble", f"{len(self.ensemble)} runs"))
+        return Facts(f"from {self.campaign!r}, {self.site}", rows)

@@ -1,0 +1,40 @@
+"""What a run starts from: slope, snow, sledge, skis, start, and how it is computed.
+
+The room can be called: `skisnow.scenario("carved-46m")` is `skisnow.scenario.reading.read_scenario`.
+"""
+
+from __future__ import annotations
+
+from ..callable_rooms import make_callable
+from .air import Air
+from .built_in import scenario_names, scenario_text
+from .contact import Contact
+from .profile_file import read_profile
+from .reading import ScenarioFile, read_scenario, scenario_file
+from .scenario import Scenario
+from .sledge import RigidSledge
+from .slope import Plane, Profile
+from .solver import Solver
+from .start import Start, Stop
+from .values import scenario_values
+
+__all__ = [
+    "Air",
+    "Contact",
+    "Plane",
+    "Profile",
+    "RigidSledge",
+    "Scenario",
+    "ScenarioFile",
+    "Solver",
+    "Start",
+    "Stop",
+    "read_profile",
+    "read_scenario",
+    "scenario_file",
+    "scenario_names",
+    "scenario_text",
+    "scenario_values",
+]
+
+make_callable(__name__, ".reading", "read_scenario")

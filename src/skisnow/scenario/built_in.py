@@ -1,0 +1,83 @@
+"""The built-in scenarios: files of the package, with the defaults that they do not name."""
+
+from __future__ import annotations
+
+import json
+import re
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Final
+
+from ..errors import ParameterError
+from ..given import toml_values
+from ..inputs import nearest
+from .keys import SCENARIO_KEYS, SECTIONS
+from .replaced import replaced
+
+_FOLDER: Final = files(__package__) / "catalogue"
+_COMMENTS_FROM: Final = 40
+_SECTION: Final = re.compile(r"^\[(\w+)\]\n", re.MULTILINE)
+
+
+def scenario_names() -> tuple[str, ...]:
+    """Names of the built-in scenarios.
+
+    Returns
+    -------
+    tuple of str
+        What `skisnow.scenario` takes.
+
+    See Also
+    --------
+    skisnow.scenario : the scenario of a name.
+
+    References
+    ----------
+    The page docs/files/scenario.md.
+
+    Examples
+    --------
+    >>> scenario_names()
+    ('carved-46m', 'carver-42m', 'giant-slalom-67m')
+    """
+    there = (entry.name for entry in _FOLDER.iterdir())
+    return tuple(sorted(name.removesuffix(".toml") for name in there if name.endswith(".toml")))
+
+
+def scenario_place(name: str) -> Path:
+    """Where a built-in scenario lies."""
+    return Path(str(_FOLDER / f"{name}.toml"))
+
+
+@cache
+def scenario_text(name: str) -> str:
+    """The text of a built-in scenario, every key with where its value comes from, defaults behind what the file names.
+
+    Raises
+    ------
+    ParameterError
+        There is no such scenario; the nearest is named.
+    """
+    if name not in scenario_names():
+        raise ParameterError(f"there is no built-in scenario {name!r}. {nearest(name, scenario_names())}")
+    text = (_FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+    head, *parts = _SECTION.split(text)
+    written = dict(zip(parts[::2], parts[1::2], strict=True))
+    defaults = _defaults(text)
+    sections = (f"[{each}]\n{written.get(each, '').rstrip()}\n{defaults[each]}" for each in SECTIONS)
+    return head + "\n".join(section.replace("]\n\n", "]\n") for section in sections)
+
+
+def _defaults(text: str) -> dict[str, str]:
+    """By section, the lines of the keys that the text does not name and that have a default."""
+    given = {f"{section}.{key}": value for section, table in toml_values(text).items() for key, value in table.items()}
+    every = {name: key.default for name, key in SCENARIO_KEYS.items()} | given
+    gone = {other for name, value in every.items() if value is not None for other in replaced(name, value)}
+    lines = dict.fromkeys(SECTIONS, "")
+    for name, key in SCENARIO_KEYS.items():
+        if key.default is not None and name not in given and name not in gone - given.keys():
+            section, own = name.split(".")
+            line = f"{own} = {json.dumps(key.default)}"
+            lines[section] += f"{line:<{_COMMENTS_FROM}}# default, {key.origin}\n"
+    return lines

@@ -1,0 +1,54 @@
+"""What the parts of a scenario must hold to together; each number's own range stands where it is declared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ..errors import ParameterError
+from .slope import Profile
+
+if TYPE_CHECKING:
+    from ..ski import Ski
+    from .contact import Contact
+    from .sledge import RigidSledge
+    from .slope import Plane
+    from .start import Start
+
+
+def require_sound(
+    slope: Plane | Profile, contact: Contact, sledge: RigidSledge, ski: Ski, *, clamp_length: float, start: Start
+) -> None:
+    """Refuse parts that do not go together.
+
+    Raises
+    ------
+    ParameterError
+        The first thing that is wrong: what it is, what is allowed, what to do.
+    """
+    for complaint in _together(slope, contact, sledge, ski, clamp_length, start):
+        raise ParameterError(complaint)
+
+
+def _together(
+    slope: Plane | Profile, contact: Contact, sledge: RigidSledge, ski: Ski, clamp_length: float, start: Start
+) -> Iterator[str]:
+    width = float(ski.width.max())
+    if sledge.stance_width < width * (1.0 - 1e-9):  # the width of a ski file is rounded on its way to metres
+        yield (
+            f"the stance width is {sledge.stance_width:g} m; the ski {ski.name} is {width:.3g} m wide, and two "
+            f"must have room side by side: {width:.3g} m or more"
+        )
+    most = 2.0 * min(float(ski.station[0]), -float(ski.station[-1]))
+    if clamp_length >= most:
+        yield (
+            f"the clamp length is {clamp_length:g} m; the ski {ski.name} allows less than {most:.3g} m. Write "
+            "0 for a binding that bends with the ski"
+        )
+    friction = contact.friction + contact.friction_by_speed * start.speed
+    if friction < 0.0:
+        yield f"the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski"
+    if isinstance(slope, Profile):
+        first, last = slope.ends
+        if not first <= start.x <= last:
+            yield f"the start, x = {start.x:g} m, is off the profile, which reaches from {first:g} to {last:g} m"

@@ -1,0 +1,110 @@
+"""How snow and skis of a scenario meet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Final, Literal, TypeAlias, get_args
+
+from ..forces.shear.displacement import SHEAR_DISPLACEMENT
+from ..inputs import Quantity, Search, Section, Word, declared_text, require_declared
+from ..snow import SnowProperties
+
+Penetration: TypeAlias = Literal["hypoplastic", "elastic"]
+
+ELASTIC: Final = 1.0
+"""k_u/H_V of snow that springs back."""
+
+
+def _penetration(unloading_ratio: float) -> Penetration:
+    return "elastic" if unloading_ratio == ELASTIC else "hypoplastic"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Contact:
+    """How snow and skis meet.
+
+    Attributes
+    ----------
+    snow
+        With H_V and S_f.
+    unloading_ratio
+        k_u/H_V ≥ 1; 1: elastic.
+    compaction_resistance
+        Whether the base's slope along the ski counts as resistance.
+    shear_displacement
+        u_y > 0 (m).
+    friction, friction_by_speed
+        μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m).
+
+    See Also
+    --------
+    skisnow.Scenario
+    skisnow.SnowField
+    """
+
+    snow: Annotated[SnowProperties, Section("snow", otherwise=True)]
+    unloading_ratio: Annotated[
+        float,
+        Quantity(
+            "snow.unloading_ratio",
+            'k_u/H_V: 1 is elastic snow, 1000 all but rigid-plastic; left out or 1 with penetration = "elastic"',
+            lowest=1.0,
+            highest=1000.0,
+            origin="not published: a parameter",
+            search=Search(3.0, 1.0, 1000.0, logarithmic=True),
+        ),
+        Word(
+            "snow.penetration",
+            "whether the snow keeps the groove, or springs back",
+            choices=get_args(Penetration),
+            default="hypoplastic",
+            origin="snow keeps its tracks",
+            told=_penetration,
+        ),
+    ]
+    compaction_resistance: Annotated[
+        bool,
+        Quantity(
+            "snow.compaction_resistance",
+            "whether pushing the groove brakes the ski",
+            origin="exact: else a gliding ski would cut its groove for nothing",
+        ),
+    ] = True
+    shear_displacement: Annotated[
+        float,
+        Quantity(
+            "snow.shear_displacement_mm",
+            "u_y, the way of an edge across until the snow holds it with all of S_f",
+            lowest=0.01,  # below, a step's corrections are as large
+            highest=10.0,
+            origin="not measured: a choice. The law of the paper is its limit 0",
+            search=Search(0.2e-3, 0.01e-3, 5e-3, logarithmic=True),
+        ),
+    ] = SHEAR_DISPLACEMENT
+    friction: Annotated[
+        float,
+        Quantity(
+            "friction.mu_0",
+            "μ_0 of the glide friction μ = μ_0 + μ_1 v",
+            lowest=0.0,
+            highest=1.0,
+            origin="measured μ 0.023 to 0.139; a warning beyond",
+            search=Search(0.1, 0.0, 0.5),
+        ),
+    ]
+    friction_by_speed: Annotated[
+        float,
+        Quantity(
+            "friction.mu_1_s_per_m",
+            "μ_1 of it, with the speed v",
+            lowest=-0.1,
+            highest=0.1,
+            origin="choice: friction that does not depend on speed",
+            search=Search(0.01, -0.05, 0.05),
+        ),
+    ] = 0.0
+
+    __repr__ = declared_text
+
+    def __post_init__(self) -> None:
+        require_declared(self)

@@ -1,0 +1,172 @@
+"""A scenario: everything that a simulated turn follows from, SI, radians.
+
+Each field declares what a file may say of it: its key with unit, range, origin of the default, size for a search.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any
+
+from ..constants import STANDARD_GRAVITY
+from ..errors import ParameterError
+from ..from_above import from_above
+from ..inputs import Quantity, Word, require_declared
+from ..shown import Facts, Shown, amount
+from ..ski import Ski, ski_names
+from ..ski.beam.clamped import CLAMP_LENGTH
+from ..units import DEGREE
+from .air import Air
+from .checks import require_sound
+from .contact import Contact
+from .sledge import RigidSledge
+from .slope import Plane, Profile
+from .solver import Solver
+from .start import Start, Stop
+
+
+def _slope_kind(slope: Plane | Profile) -> str:
+    return "plane" if isinstance(slope, Plane) else "profile"
+
+
+def _ski_name(ski: Ski) -> str | None:
+    return ski.name if ski.name in ski_names() else None
+
+
+def _ski_file(ski: Ski) -> str | None:
+    return None if ski.name in ski_names() else ski.name
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Scenario(Shown):
+    """What a run follows from.
+
+    Attributes
+    ----------
+    slope
+        A plane or a measured profile.
+    contact, air
+        Snow with friction; drag.
+    sledge
+        The rigid part with its edge angle, without the skis.
+    ski, clamp_length, damping_ratio
+        The ski of both sides, the length that its binding keeps straight (m), damping of its first bending mode.
+    start, stop, solver
+        Where it begins, when it ends, how it is computed.
+    gravity
+        (m/s²), > 0.
+
+    See Also
+    --------
+    skisnow.scenario
+    skisnow.simulate
+    """
+
+    slope: Annotated[
+        Plane | Profile,
+        Word(
+            "slope.kind",
+            "a plane, or a measured profile of heights",
+            choices=("plane", "profile"),
+            default="plane",
+            origin="choice: the simpler one",
+            told=_slope_kind,
+        ),
+    ]
+    contact: Contact
+    air: Air
+    sledge: RigidSledge
+    ski: Annotated[
+        Ski,
+        Word("ski.name", "a ski of the catalogue", told=_ski_name),
+        Word("ski.file", "the path of a ski file, in place of a name", told=_ski_file, names_file=True),
+    ]
+    clamp_length: Annotated[
+        float,
+        Quantity(
+            "ski.clamp_length_m",
+            "length of ski that boot and binding keep straight",
+            lowest=0.0,
+            origin="choice: about a boot's sole",
+        ),
+    ] = CLAMP_LENGTH
+    damping_ratio: Annotated[
+        float,
+        Quantity(
+            "ski.damping_ratio",
+            "damping ratio of the ski's first bending mode",
+            lowest=0.0,
+            highest=1.0,
+            origin="choice: a lightly damped beam",
+        ),
+    ] = 0.02
+    start: Start
+    stop: Stop
+    solver: Solver = field(default_factory=Solver)
+    gravity: Annotated[
+        float,
+        Quantity(
+            "slope.gravity_m_per_s2",
+            "acceleration of gravity",
+            lowest=0.0,
+            highest=100.0,
+            above=True,
+            origin="the value that the skiing literature computes with",
+        ),
+    ] = STANDARD_GRAVITY
+
+    def __post_init__(self) -> None:
+        if self.contact.snow.failure_shear_stress is None:
+            raise ParameterError(
+                f"the snow ({self.contact.snow.source}) has no failure shear stress S_f; a turn needs it: give one"
+            )
+        if self.stop.duration is None and self.stop.length is None:
+            raise ParameterError("the run has no end: give a duration or a length")
+        require_declared(self)
+        require_sound(self.slope, self.contact, self.sledge, self.ski, clamp_length=self.clamp_length, start=self.start)
+
+    def with_(self, **changes: Any) -> Scenario:
+        """The same scenario with other parts or other values; this one stays as it is.
+
+        Parameters
+        ----------
+        **changes
+            Parts by the names of the attributes above, and ``snow``: a `SnowProperties`, whose unloading ratio is
+            taken over where it has one, or the name of a published snow. ``ski`` may be a name or a file, too. Numbers
+            by the keys of a scenario's file without their section, in the units that they name.
+
+        Raises
+        ------
+        ParameterError
+            A name is no part and no key (the nearest is named), a value is outside its range, or parts do not go
+            together.
+
+        Examples
+        --------
+        >>> from skisnow import scenario
+        >>> turn = scenario("carved-46m").with_(ski="slalom", snow="race-piste", edge_angle_deg=35, duration_s=2.0)
+        >>> turn.ski.name, round(turn.contact.snow.snow_hardness / 1e9, 2), turn.stop.duration
+        ('slalom', 0.21, 2.0)
+        """
+        changed: Scenario = from_above("scenario.changed", "changed_scenario")(self, changes)
+        return changed
+
+    def _facts(self) -> Facts:
+        contact, sledge, start, solver = self.contact, self.sledge, self.start, self.solver
+        slope = amount(self.slope.angle / DEGREE, "°") if isinstance(self.slope, Plane) else repr(self.slope)
+        end = [(self.stop.duration, "s"), (self.stop.length, "m")]
+        friction = f"μ = {amount(contact.friction)} + {amount(contact.friction_by_speed, 's/m')} v"
+        rows = (
+            ("slope", slope),
+            (
+                "snow",
+                replace(contact.snow, unloading_ratio=contact.unloading_ratio).in_words,
+            ),
+            ("friction", f"{friction}, drag area {amount(self.air.drag_area, 'm²')}"),
+            ("sledge", f"{amount(sledge.mass, 'kg')}, edge angle {amount(sledge.edge_angle / DEGREE, '°')}"),
+            ("ski", repr(self.ski).strip("<>")),
+            ("start", f"{amount(start.speed, 'm/s')}, heading {amount(start.heading / DEGREE, '°')}"),
+            ("end", " or ".join(amount(value, unit) for value, unit in end if value is not None)),
+            ("solver", f"{solver.method}, {'fixed steps of' if solver.fixed else 'from'} {solver.step * 1e3:.4g} ms"),
+        )
+        return Facts("of a sledge on two skis", rows)

@@ -1,0 +1,101 @@
+"""The JSON Schema of a scenario's file: what its dataclasses declare, and what goes together."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from ..inputs import Quantity, quantities
+from ..inputs.json_schema import DRAFT, Schema, table_schema, told_schema
+from .identify_section import CLOCKS, Site, Sought
+from .keys import SCENARIO_KEYS, SECTIONS
+
+FILE: Final = "scenario/schemas/scenario.schema.json"
+
+
+def _one_of(*names: str) -> list[Schema]:
+    return [{"required": [name]} for name in names]
+
+
+_PLANE: Final[Schema] = {
+    "required": ["angle_deg"],
+    "properties": {"kind": {"const": "plane"}, "profile": False, "profile_gap": False},
+}
+_PROFILE: Final[Schema] = {
+    "required": ["kind", "profile"],
+    "properties": {"kind": {"const": "profile"}, "angle_deg": False},
+}
+_ELASTIC: Final[Schema] = {"properties": {"penetration": {"const": "elastic"}}, "required": ["penetration"]}
+_TOGETHER: Final[dict[str, Schema]] = {
+    "slope": {"oneOf": [_PLANE, _PROFILE]},
+    "snow": {
+        "oneOf": [{"required": ["H_V_N_per_mm3", "S_f_N_per_mm2"]}, *_one_of("results", "published")],
+        "dependentRequired": {"site": ["results"]},
+        "anyOf": [*_one_of("unloading_ratio"), _ELASTIC],
+    },
+    "ski": {"oneOf": _one_of("name", "file")},
+    "run": {"anyOf": _one_of("duration_s", "length_m")},
+}
+"""What the keys of a section must be to each other."""
+
+
+def scenario_schema() -> Schema:
+    """The schema that stands in the package as `FILE`."""
+    sections = {name: {**table_schema(_keys(name)), **_TOGETHER.get(name, {})} for name in SECTIONS}
+    return {
+        "$schema": DRAFT,
+        "$id": "urn:skisnow:schema:scenario:1",
+        "title": "A scenario for skisnow simulate",
+        "description": "Units stand in the keys. Slope, snow, ski and the end of the run are given in one way each.",
+        "type": "object",
+        "additionalProperties": False,
+        "required": [name for name, part in sections.items() if "required" in part or name in _TOGETHER],
+        "properties": {**sections, "identify": _identify()},
+    }
+
+
+def told_scenario_schema() -> Schema:
+    """The schema of a scenario as summary.json says it: every key with the value in force."""
+    sections = {name: told_schema(_keys(name), every_null=True) for name in SECTIONS}
+    return {"type": "object", "additionalProperties": False, "required": list(sections), "properties": sections}
+
+
+def _keys(section: str) -> list[Quantity]:
+    return [key for full, key in SCENARIO_KEYS.items() if full.startswith(f"{section}.")]
+
+
+def _identify() -> Schema:
+    clock: dict[str, Any] = {
+        "type": "string",
+        "description": "whether photo cells count from the start, or each run's clock has an offset of its own",
+        "enum": list(CLOCKS),
+        "default": CLOCKS[0],
+    }
+    runs = {
+        "type": "object",
+        "description": "values that are known of one run and differ from the scenario's, by the name of the run",
+        "additionalProperties": {
+            "type": "object",
+            "description": "keys of slope, snow, friction, drag, sledge, ski or start",
+            "additionalProperties": {"type": "number"},
+        },
+    }
+    place = "how the slope lies, for tracks in latitude and longitude"
+    parameter = "one parameter, by its full key in quotes; numbers in the key's unit"
+    return {
+        "type": "object",
+        "description": "what skisnow identify looks for; a simulated run does not heed it",
+        "properties": {
+            "clock": clock,
+            "runs": runs,
+            "site": {
+                **table_schema(quantities(Site)),
+                "description": place,
+                "dependentRequired": {"latitude_deg": ["longitude_deg"], "longitude_deg": ["latitude_deg"]},
+            },
+        },
+        "additionalProperties": {
+            **table_schema(quantities(Sought)),
+            "description": parameter,
+            "dependentRequired": {"prior_mean": ["prior_sd"], "prior_sd": ["prior_mean"]},
+        },
+    }

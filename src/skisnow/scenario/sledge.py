@@ -1,0 +1,98 @@
+"""The sledge of a run: what is rigid about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from ..errors import ParameterError
+from ..inputs import Quantity, Search, declared_text, require_declared
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class RigidSledge:
+    """The sledge without its skis, SI.
+
+    Attributes
+    ----------
+    mass
+        (kg), > 0.
+    inertia
+        Roll, pitch and yaw moments of inertia at its centre of mass (kg m²), each > 0, none above the sum of the
+        others.
+    centre_of_mass
+        Forward of the boots, and above the bases (m).
+    stance_width
+        Between the middles of the skis (m), > 0.
+    edge_angle
+        Of both skis' bases, positive: left edges down (rad).
+
+    See Also
+    --------
+    skisnow.Scenario
+    """
+
+    mass: Annotated[float, Quantity("sledge.mass_kg", "mass without the skis", lowest=0.0, highest=1000.0, above=True)]
+    inertia: Annotated[
+        tuple[float, float, float],
+        Quantity(
+            "sledge.inertia_kg_m2",
+            "roll, pitch and yaw moments of inertia at the centre of mass, without the skis",
+            lowest=0.0,
+            above=True,
+            origin="none is more than the sum of the others",
+        ),
+    ]
+    centre_of_mass: Annotated[
+        tuple[float, float],
+        Quantity(
+            "sledge.centre_of_mass_height_m",
+            "height of the centre of mass above the bases",
+            lowest=0.0,
+            highest=3.0,
+            search=Search(0.5, 0.0, 3.0),
+            index=1,
+        ),
+        Quantity(
+            "sledge.centre_of_mass_forward_m",
+            "how far the centre of mass lies before the boots",
+            lowest=-1.0,
+            highest=1.0,
+            default=0.0,
+            origin="choice: over the boots",
+            search=Search(0.5, -1.0, 1.0),
+            index=0,
+        ),
+    ]
+    stance_width: Annotated[
+        float,
+        Quantity(
+            "sledge.stance_width_m",
+            "between the middles of the skis; at least a ski's greatest width",
+            lowest=0.0,
+            highest=3.0,
+            above=True,
+            search=Search(0.5, 0.0, 3.0),
+        ),
+    ]
+    edge_angle: Annotated[
+        float,
+        Quantity(
+            "sledge.edge_angle_deg",
+            "angle of both skis' bases to the sledge; positive: left edges down, a turn to the left",
+            lowest=-85.0,
+            highest=85.0,
+            origin="at 90° an edge bears nothing",
+            search=Search(30.0, -30.0, 30.0, about=True),
+        ),
+    ]
+
+    __repr__ = declared_text
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+        roll, pitch, yaw = self.inertia
+        if 2.0 * max(self.inertia) > roll + pitch + yaw:
+            raise ParameterError(
+                f"inertia is {self.inertia} kg m²; each moment must be above 0 and none more than the sum of the others"
+            )

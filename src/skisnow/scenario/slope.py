@@ -1,0 +1,196 @@
+"""Slopes: a plane, and a profile of heights over horizontal distance; both the same at every y.
+
+Coordinates of a plane: x down the fall line, y left, z out of the snow. Of a profile: x horizontal, y left, z up.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from ..inputs import Quantity, Search, Word, declared_text, require_declared
+from ..shown import Facts, Shown, ends
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Gap: TypeAlias = Literal["error", "interpolate"]
+
+FEWEST_POINTS: Final = 4
+LONGEST_GAP: Final = 5.0
+"""Distance (m) between points of a profile beyond which it is not joined unasked (Choice)."""
+STEEPEST_DEG: Final = 75.0
+"""Slope angle (degrees) that a slope may have; steeper is a cliff (Choice)."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Plane:
+    """A plane with its inclination (rad).
+
+    See Also
+    --------
+    skisnow.Profile
+    """
+
+    angle: Annotated[
+        float,
+        Quantity(
+            "slope.angle_deg",
+            'inclination of the plane; only with kind = "plane"',
+            lowest=0.0,
+            highest=STEEPEST_DEG,
+            origin="choice: steeper is a cliff",
+            search=Search(10.0, -15.0, 15.0, about=True),
+        ),
+    ]
+
+    __repr__ = declared_text
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Profile(Shown):
+    """Heights over horizontal distance, joined by cubics that do not overshoot (PCHIP). The tables are read-only.
+
+    Attributes
+    ----------
+    x, height
+        Horizontal distance, strictly rising, and height (m), (n,), n ≥ 4.
+    source
+        Where it comes from, in words.
+    gap
+        What to do where neighbouring points are more than 5 m apart: "error", or "interpolate" over it.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than four points, a number that is not finite, x that does not rise, a gap, or a cliff; the place is
+        named.
+
+    See Also
+    --------
+    skisnow.Plane
+
+    Notes
+    -----
+    Fritsch and Carlson's monotone cubics (1980) keep slope continuous; curvature jumps at the points.
+
+    Examples
+    --------
+    >>> profile = Profile([0.0, 1.0, 2.0, 3.0], [0.0, -0.5, -1.0, -1.5])
+    >>> profile.ends, float(profile.heights(1.5)), float(profile.gradients(1.5))
+    ((0.0, 3.0), -0.75, -0.5)
+    """
+
+    x: FloatArray
+    height: FloatArray
+    source: Annotated[
+        str,
+        Word(
+            "slope.profile",
+            'CSV file with the columns x and y, horizontal distance and height in m; only with kind = "profile"',
+            told=str,
+            names_file=True,
+        ),
+    ] = field(default="given as numbers", kw_only=True)
+    gap: Annotated[
+        Gap,
+        Quantity(
+            "slope.profile_gap",
+            "what to do where points of the profile are more than 5 m apart",
+            origin="choice: nobody measured what lies between",
+        ),
+    ] = field(default="error", kw_only=True)
+    _curve: PchipInterpolator = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+        from scipy.interpolate import PchipInterpolator  # slow to load, and no plane asks for it
+
+        for name in ("x", "height"):
+            table = np.array(getattr(self, name), dtype=float)
+            table.flags.writeable = False
+            object.__setattr__(self, name, table)
+        _require_points(self.x, self.height)
+        if self.gap != "interpolate":
+            _require_no_gap(self.x)
+        object.__setattr__(self, "_curve", PchipInterpolator(self.x, self.height))
+        _require_no_cliff(self.x, self.coefficients)
+
+    def _facts(self) -> Facts:
+        return Facts(f"of {len(self.x)} points: x {ends(self.x, 'm')}, height {ends(self.height, 'm')}; {self.source}")
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The first and the last x (m)."""
+        return float(self.x[0]), float(self.x[-1])
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """Of the cubic in x - x[i] on each piece i, highest power first, (4, n - 1)."""
+        return np.asarray(self._curve.c)
+
+    def heights(self, x: npt.ArrayLike) -> FloatArray:
+        """Heights (m) at x (m, any shape); beyond the ends the slope there goes on."""
+        at = np.asarray(x, float)
+        within = np.clip(at, *self.ends)
+        return np.asarray(self._curve(within) + self._curve(within, 1) * (at - within))
+
+    def gradients(self, x: npt.ArrayLike) -> FloatArray:
+        """dz/dx at x (m, any shape): below 0 where it falls; beyond the ends that of the end."""
+        return np.asarray(self._curve(np.clip(np.asarray(x, float), *self.ends), 1))
+
+
+def _require_points(x: FloatArray, height: FloatArray) -> None:
+    if x.ndim != 1 or x.shape != height.shape or len(x) < FEWEST_POINTS:
+        raise ParameterError(
+            f"a profile needs {FEWEST_POINTS} points or more, each with x and height; there are x of shape {x.shape} "
+            f"and heights of shape {height.shape}"
+        )
+    for name, table in (("x", x), ("the height", height)):
+        if not np.isfinite(table).all():
+            place = int(np.argmin(np.isfinite(table)))
+            raise ParameterError(f"{name} of point {place + 1} of the profile is {table[place]}; correct it")
+    rises = np.diff(x) > 0.0
+    if not rises.all():
+        place = int(np.argmin(rises))
+        raise ParameterError(
+            f"x of the profile's point {place + 2} is {x[place + 1]:g} m after {x[place]:g} m; x must rise from point "
+            "to point. Sort the points, and keep one of those at the same place"
+        )
+
+
+def _require_no_gap(x: FloatArray) -> None:
+    widths = np.diff(x)
+    place = int(np.argmax(widths))
+    if widths[place] > LONGEST_GAP:
+        raise ParameterError(
+            f"the profile has no point between x = {x[place]:g} m and {x[place + 1]:g} m, a gap of {widths[place]:.3g} "
+            f'm; at most {LONGEST_GAP:g} m are joined unasked. Add points, or write slope.profile_gap = "interpolate"'
+        )
+
+
+def _require_no_cliff(x: FloatArray, coefficients: FloatArray) -> None:
+    """The slope of a cubic is greatest at an end of its piece or where its curvature vanishes."""
+    a, b, c, _ = coefficients
+    width = np.diff(x)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turning = np.nan_to_num(-b / (3.0 * a), posinf=0.0, neginf=0.0)
+    at = np.stack([np.zeros_like(width), np.clip(turning, 0.0, width), width])
+    steepness = np.abs((3.0 * a * at + 2.0 * b) * at + c)
+    worst, piece = np.unravel_index(int(np.argmax(steepness)), steepness.shape)
+    if steepness[worst, piece] > math.tan(math.radians(STEEPEST_DEG)):
+        degrees = math.degrees(math.atan(steepness[worst, piece]))
+        raise ParameterError(
+            f"the profile has a cliff of {degrees:.3g} degrees between x = {x[piece]:g} m and {x[piece + 1]:g} m; at "
+            f"most {STEEPEST_DEG:g} degrees are allowed, a ski cannot follow more. Correct its heights or "
+            "end it there"
+        )

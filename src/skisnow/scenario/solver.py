@@ -1,0 +1,128 @@
+"""How a run is computed."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import Annotated, Final, Literal, TypeAlias
+
+from ..inputs import Quantity, declared_text, require_declared
+from ..ski.beam.clamped import MOST_ELEMENTS
+
+FORMER_METHOD: Final = "ros2"
+Method: TypeAlias = Literal["default", "fast"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Solver:
+    """How it is computed; lengths in m, times in s. What is None follows from ski and snow.
+
+    See Also
+    --------
+    skisnow.Scenario
+    skisnow.verify
+    """
+
+    method: Annotated[
+        Method,
+        Quantity(
+            "solver.method",
+            "how exact: fast holds the error of a step to ten times the tolerance",
+            origin="choice: the more exact one",
+        ),
+    ] = "default"
+    step: Annotated[
+        float,
+        Quantity(
+            "solver.step_ms",
+            "the first time step; with fixed = true every step",
+            lowest=0.001,  # below, rounding counts
+            highest=5.0,  # above, a ski's first bending mode is not resolved
+            origin="choice: near what a start takes",
+        ),
+    ] = 0.5e-3
+    tolerance: Annotated[
+        float,
+        Quantity(
+            "solver.tolerance_mm",
+            "largest error of place that one step may make by its own estimate; with method = fast ten times as large",
+            lowest=1e-9,
+            highest=10.0,
+            origin="choice: see the tests of convergence",
+        ),
+    ] = 3e-7
+    fixed: Annotated[
+        bool,
+        Quantity(
+            "solver.fixed",
+            "whether the step stays as it is, without control of the error",
+            origin="choice: a step that is too long is wrong without a sign",
+        ),
+    ] = False
+    elements: Annotated[
+        int | None,
+        Quantity(
+            "solver.elements",
+            "finite elements over a ski; left out: from ski and snow",
+            lowest=4,
+            highest=MOST_ELEMENTS,
+        ),
+    ] = None
+    line_spacing: Annotated[
+        float | None,
+        Quantity(
+            "solver.line_spacing_mm",
+            "distance along the path between the lines that keep the snow's groove; left out: from ski and snow",
+            lowest=0.1,
+            highest=200.0,
+        ),
+    ] = None
+    groove_tolerance: Annotated[
+        float,
+        Quantity(
+            "solver.groove_tolerance",
+            "share of a contact's depth times width by which the groove on a line may be simplified",
+            lowest=1e-9,
+            highest=0.1,
+            origin="choice: see the tests of convergence",
+        ),
+    ] = 1e-4
+    cell: Annotated[
+        float | None,
+        Quantity(
+            "solver.cell_mm",
+            "has no effect since the groove is kept as straight pieces; read so that older files stay good",
+            lowest=0.01,
+            highest=100.0,
+        ),
+    ] = None
+    output_interval: Annotated[
+        float,
+        Quantity(
+            "run.output_ms",
+            "time between the rows that are kept",
+            lowest=0.1,
+            highest=1000.0,
+            origin="choice: a tenth of a metre at 10 m/s",
+        ),
+    ] = 0.01
+
+    __repr__ = declared_text
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "method", present_method(self.method))
+        require_declared(self)
+
+
+def present_method(word: object) -> object:
+    """The word of today for a method that has had another.
+
+    Warns
+    -----
+    DeprecationWarning
+        For that other.
+    """
+    if word != FORMER_METHOD:
+        return word
+    warnings.warn(f'solver.method = "{FORMER_METHOD}" is now called "default"', DeprecationWarning, stacklevel=3)
+    return "default"

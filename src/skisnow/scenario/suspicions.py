@@ -1,0 +1,63 @@
+"""What about a scenario looks like a slip, or lies beyond what was measured, in users' words."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from typing import Final
+
+from ..errors import RangeWarning
+from ..forces.measured_ranges import (
+    DRAG_AREA,
+    FAILURE_SHEAR_STRESS,
+    GLIDE_FRICTION,
+    PENETRATION_EDGE_ANGLE,
+    SNOW_HARDNESS,
+)
+from ..snow.properties import GREATEST_LIKELY_HARDNESS
+from ..units import N_PER_MM3, in_degrees_if_radians
+from .scenario import Scenario
+from .slope import Plane
+
+
+def suspicions(scenario: Scenario) -> tuple[str, ...]:
+    """Warnings about a scenario, none of which stops it."""
+    return (*_like_radians(scenario), *_like_another_unit(scenario), *_outside_ranges(scenario))
+
+
+def _like_radians(scenario: Scenario) -> list[str]:
+    angles = {"sledge.edge_angle_deg": scenario.sledge.edge_angle}
+    if isinstance(scenario.slope, Plane):
+        angles["slope.angle_deg"] = scenario.slope.angle
+    found = []
+    for name, angle in angles.items():
+        given = math.degrees(angle)
+        meant = in_degrees_if_radians(abs(given))
+        if meant is not None:
+            degrees = math.copysign(meant, given)
+            found.append(f"{name} is {given:.4g}: that looks like radians. If it is, write {degrees:.4g}")
+    return found
+
+
+def _like_another_unit(scenario: Scenario) -> list[str]:
+    hardness = scenario.contact.snow.snow_hardness / N_PER_MM3
+    if hardness <= GREATEST_LIKELY_HARDNESS:
+        return []
+    return [f"snow.H_V_N_per_mm3 is {hardness:.4g}: is it in N/m³? If it is, write {hardness / N_PER_MM3:.4g}"]
+
+
+ABOUT: Final = "a simulated run"
+
+
+def _outside_ranges(scenario: Scenario) -> list[str]:
+    contact = scenario.contact
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        SNOW_HARDNESS.warn_outside(contact.snow.snow_hardness, ABOUT)
+        FAILURE_SHEAR_STRESS.warn_outside(contact.snow.failure_shear_stress or math.nan, ABOUT)
+        PENETRATION_EDGE_ANGLE.warn_outside(abs(scenario.sledge.edge_angle), ABOUT)
+        if contact.friction > 0.0:  # 0 is friction switched off
+            GLIDE_FRICTION.warn_outside(contact.friction + contact.friction_by_speed * scenario.start.speed, ABOUT)
+        if scenario.air.drag_area > 0.0:
+            DRAG_AREA.warn_outside(scenario.air.drag_area, ABOUT)
+    return [" ".join(str(each.message).split()) for each in caught if issubclass(each.category, RangeWarning)]

@@ -1,0 +1,21 @@
+"""A snow as JSON values: SI numbers become the units that the keys name."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..units import N_PER_MM2, N_PER_MM3
+from .properties import SnowProperties
+
+
+def snow_dict(snow: SnowProperties) -> dict[str, Any]:
+    """Where a snow comes from, and its intervals in the units of the contract."""
+
+    def interval(ends: tuple[float, float] | None, unit: float) -> list[float] | None:
+        return None if ends is None else [end / unit for end in ends]
+
+    return {
+        "source": snow.source,
+        "H_V_interval_N_per_mm3": interval(snow.snow_hardness_interval, N_PER_MM3),
+        "S_f_interval_N_per_mm2": interval(snow.failure_shear_stress_interval, N_PER_MM2),
+    }

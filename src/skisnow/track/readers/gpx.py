@@ -1,0 +1,208 @@
+"""Tracks in GPX 1.0 and 1.1; speed as GPX 1.0 has it, or in an extension named ``speed``.
+
+One pass with expat, without a tree: nesting and number of elements are limited, and a file that declares entities is
+refused. Heights of GPX are above mean sea level. Routes and waypoints are not read.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta, timezone
+from typing import TYPE_CHECKING, Final
+from xml.parsers import expat
+
+import numpy as np
+
+from ...spreadsheet_text import number
+from .recording import Recording
+from .trouble import refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+DEEPEST: Final = 100
+"""Elements within each other; a point with extensions has about seven."""
+MOST_ELEMENTS: Final = 20_000_000
+"""A week of points ten times a second, three elements each."""
+_POINT: Final = ("gpx", "trk", "trkseg", "trkpt")
+_TEXTS: Final = ("ele", "time", "speed", "fix")
+_TIME: Final = re.compile(
+    r"([0-9]{4})-([0-9]{1,2})-([0-9]{1,2})[T ]([0-9]{1,2}):([0-9]{1,2}):([0-9]{1,2})(\.[0-9]{1,15})?"
+    r"(Z|[+-][0-9]{2}(?::?[0-9]{2})?)?"
+)
+
+
+class _TooMuchError(Exception):
+    """What no recorded track has: ``value`` was found, ``allowed`` says what may be."""
+
+    def __init__(self, value: str, allowed: str) -> None:
+        super().__init__(value)
+        self.value, self.allowed = value, allowed
+
+
+@dataclass(slots=True)
+class _Point:
+    """Texts of a point, as they stand in the file."""
+
+    lat: str | None
+    lon: str | None
+    texts: dict[str, str] = field(default_factory=dict)
+
+
+class _Reader:
+    """Takes the elements in as expat meets them, and keeps the points."""
+
+    def __init__(self) -> None:
+        self.points: list[_Point] = []
+        self._path: list[str] = []
+        self._count = 0
+        self._text: list[str] | None = None
+
+    def start(self, name: str, attributes: Mapping[str, str]) -> None:
+        self._text = None
+        self._path.append(name.rsplit("}", 1)[-1])
+        self._count += 1
+        if len(self._path) > DEEPEST:
+            raise _TooMuchError(f"{len(self._path)} elements within each other", f"at most {DEEPEST}")
+        if self._count > MOST_ELEMENTS:
+            raise _TooMuchError(f"more than {MOST_ELEMENTS} elements", f"at most {MOST_ELEMENTS}")
+        if tuple(self._path) == _POINT:
+            self.points.append(_Point(attributes.get("lat"), attributes.get("lon")))
+        elif self._key() is not None:
+            self._text = []
+
+    def text(self, text: str) -> None:
+        if self._text is not None:
+            self._text.append(text)
+
+    def end(self, _name: str) -> None:
+        key = self._key()
+        if key is not None and self._text is not None:
+            self.points[-1].texts.setdefault(key, "".join(self._text).strip())
+        self._text = None
+        self._path.pop()
+
+    def entity(self, name: str, *_rest: object) -> None:
+        raise _TooMuchError(f"the declaration of an entity, {name}", "a file without them")
+
+    def _key(self) -> str | None:
+        """Under which name the text of the present element is kept: a point's own, or a speed in its extensions."""
+        path = self._path
+        if len(path) < 5 or tuple(path[:4]) != _POINT:
+            return None
+        if len(path) == 5:
+            return path[4] if path[4] in _TEXTS else None
+        return "extended speed" if path[4] == "extensions" and path[-1].rsplit(":", 1)[-1].lower() == "speed" else None
+
+
+def read_gpx(text: str, name: str) -> Recording:
+    """The recording in a GPX file: all points of all tracks, in the order of the file.
+
+    Raises
+    ------
+    FieldDataError
+        The file is no GPX, or a point has no time, or a place, height or speed that is no number.
+    """
+    points = _points(text, name)
+    moments = [_required_moment(point, name, place) for place, point in enumerate(points)]
+    return Recording(
+        name=name,
+        places_in_file=[f"point {place + 1}" for place in range(len(points))],
+        time=np.array([(moment - moments[0]).total_seconds() for moment in moments]),
+        place=np.array([_place(point, name, place) for place, point in enumerate(points)], dtype=float).reshape(-1, 3),
+        is_geodetic=True,
+        time_scale="UTC",
+        start=moments[0] if moments else None,
+        speed=np.array([_speed(point, name, place) for place, point in enumerate(points)], dtype=float),
+        speed_kind="as the device gives it",
+        fix=np.array([point.texts.get("fix") != "none" for point in points], dtype=bool),
+        heights="above mean sea level, as recorded",
+    )
+
+
+def _points(text: str, name: str) -> list[_Point]:
+    reader, parser = _Reader(), expat.ParserCreate(namespace_separator="}")
+    parser.buffer_text = True
+    parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
+    parser.CharacterDataHandler, parser.EntityDeclHandler = reader.text, reader.entity
+    try:
+        parser.Parse(text.lstrip(), True)
+    except _TooMuchError as error:
+        raise _damaged(name, error.value, error.allowed, "No device writes such a file; export it again.") from error
+    except expat.ExpatError as error:
+        action = "The file is damaged or ends too early; export it again."
+        raise _damaged(name, str(error), "GPX 1.0 or 1.1", action) from error
+    return reader.points
+
+
+def _damaged(name: str, value: str, allowed: str, action: str) -> Exception:
+    return refusal("unreadable_file", name, value=value, allowed=allowed, action=action)
+
+
+def _required_moment(point: _Point, name: str, place: int) -> datetime:
+    moment = _moment(point.texts.get("time", ""))
+    if moment is None:
+        raise refusal(
+            "not_a_time",
+            name,
+            place=f"point {place + 1}",
+            column="time",
+            allowed="a time such as 2022-12-27T15:51:14Z in every point",
+            action="The point has no time, or one that cannot be read. A drawn route is no recorded track.",
+        )
+    return moment
+
+
+def _moment(text: str) -> datetime | None:
+    """The time in UTC; GPX says UTC, so a time without zone is taken at its word.
+
+    >>> _moment("2022-12-27T16:51:14.5+01:00").isoformat(), _moment("2022-12-27")
+    ('2022-12-27T15:51:14.500000+00:00', None)
+    """
+    found = _TIME.fullmatch(text)
+    if found is None:
+        return None
+    microsecond = int((found[7] or ".")[1:7].ljust(6, "0"))
+    try:
+        return datetime(*map(int, found.groups()[:6]), microsecond, tzinfo=_zone(found[8])).astimezone(UTC)  # type: ignore[misc, arg-type]
+    except (ValueError, OverflowError):
+        return None
+
+
+def _zone(text: str | None) -> timezone:
+    if text is None or text == "Z":
+        return UTC
+    size = timedelta(hours=int(text[1:3]), minutes=int(text[3:].strip(":") or "0"))
+    return timezone(-size if text[0] == "-" else size)
+
+
+def _place(point: _Point, name: str, place: int) -> tuple[float, float, float]:
+    return (
+        _number(point.lat, name, place, "lat", "degrees"),
+        _number(point.lon, name, place, "lon", "degrees"),
+        _number(point.texts.get("ele", "nan") or "nan", name, place, "ele", "m"),
+    )
+
+
+def _speed(point: _Point, name: str, place: int) -> float:
+    """Speed in m/s: of GPX 1.0, or of the first element called speed in the point's extensions."""
+    text = point.texts.get("speed") or point.texts.get("extended speed") or "nan"
+    return _number(text, name, place, "speed", "m/s")
+
+
+def _number(text: str | None, name: str, place: int, column: str, unit: str) -> float:
+    """NaN where the file says that itself."""
+    value = math.nan if text is None else number(text)
+    if math.isnan(value) and (text is None or text.lower() != "nan"):
+        raise refusal(
+            "not_a_number",
+            name,
+            place=f"point {place + 1}",
+            column=column,
+            value=text,
+            allowed=f"a finite number in {unit}",
+            action="Correct the point.",
+        )
+    return value

@@ -1,0 +1,243 @@
+"""Tracks in RTKLIB's solution files ``.pos``: latitude, longitude, height; earth-centred; or east, north, up of a base.
+
+The header line names the columns, their separator, and the time scale: GPST, UTC or JST. It must be there. Heights are
+as RTKLIB was told to give them: above the ellipsoid unless the header says geodetic.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from datetime import UTC, datetime, timedelta, timezone
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ...spreadsheet_text import number
+from ..point import FARTHEST, FASTEST_NUMBER
+from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
+from ..solution import Solution, solution_array
+from .recording import Recording
+from .rtklib_header import PLACES, Header, header_of
+from .trouble import refusal
+
+FloatArray = npt.NDArray[np.float64]
+
+LARGEST: Final = 1e12
+"""In any column: squares of what is larger overflow."""
+ZONES: Final = {"UTC": UTC, "JST": timezone(timedelta(hours=9))}
+GPS_BEGIN: Final = datetime(1980, 1, 6)
+"""Of the weeks that RTKLIB counts; GPS time itself has no zone."""
+DEVIATIONS: Final = {
+    "geodetic": ("sde", "sdn", "sdu"),
+    "earth_centred": ("sdx", "sdy", "sdz"),
+    "baseline": ("sde", "sdn", "sdu"),
+}
+QUALITIES: Final[dict[float, Solution]] = {
+    1.0: "fixed", 2.0: "float", 3.0: "code", 4.0: "code", 5.0: "code", 6.0: "float",
+}  # fmt: skip
+"""Of the column Q: fix, float, SBAS, DGPS, single, PPP (by the phase, without whole cycles)."""
+SPEED_DEVIATIONS: Final = {
+    "geodetic": (("sdve", "sdvn", "sdvu"), ("sdvne", "sdvun", "sdveu")),
+    "earth_centred": (("sdvx", "sdvy", "sdvz"), ("sdvxy", "sdvyz", "sdvzx")),
+    "baseline": (("sdve", "sdvn", "sdvu"), ("sdvne", "sdvun", "sdveu")),
+}
+"""Of the velocity's parts, and roots of covariances, with their signs: first and second part, second and third, third
+and first."""
+VELOCITIES: Final = {
+    "geodetic": ("ve", "vn", "vu"),
+    "earth_centred": ("vx", "vy", "vz"),
+    "baseline": ("ve", "vn", "vu"),
+}
+
+
+def read_rtklib(text: str, name: str) -> Recording:
+    """The recording in a solution file.
+
+    Raises
+    ------
+    FieldDataError
+        The header line is missing, a row is shorter than it, or a cell is no number or time.
+    """
+    lines = re.split(r"\r\n|\r|\n", text)
+    header = header_of("\n".join(lines), name)
+    base = _base(lines, header)
+    numbered = [
+        (row, line) for row, line in enumerate(lines, start=1) if line.strip() and line.lstrip()[0] not in "%+$"
+    ]
+    rows, moments, table = [], [], []
+    for row, line in numbered:
+        moment, values = _row(line, header, name, row)
+        rows.append(f"row {row}")
+        moments.append(moment)
+        table.append(values)
+    columns = _by_name(np.array(table, dtype=float).reshape(len(rows), len(header.columns)), header)
+    place, is_geodetic = _place(columns, header, base)
+    velocity, place_sd = _velocity(columns, header, place), _deviations(columns, header, place)
+    quality = columns.get("q")
+    is_ellipsoidal = "/geodetic" not in "".join(lines[:40]).lower()
+    return Recording(
+        name=name,
+        places_in_file=rows,
+        time=np.array([(moment - moments[0]).total_seconds() for moment in moments]),
+        place=place,
+        is_geodetic=is_geodetic,
+        time_scale=header.scale,
+        start=moments[0] if moments else None,
+        speed=None if velocity is None else np.linalg.norm(velocity, axis=1),
+        speed_kind="along the path (length of the recorded velocity)",
+        velocity=velocity,
+        place_sd=place_sd,
+        speed_sd=None if velocity is None else _speed_sd(columns, header),
+        fix=None if quality is None else quality > 0.0,
+        solution=None if quality is None else solution_array([QUALITIES.get(each, "") for each in quality.tolist()]),
+        axes="east_north_up",
+        axes_in_words="east, north, up in m from the base station of the solution",
+        heights="above the ellipsoid" if is_ellipsoidal else "above the geoid",
+        default_origin=base if header.kind == "baseline" else None,
+        columns=dict(zip("xyz", PLACES["geodetic" if is_geodetic else "baseline"], strict=True)),
+    )
+
+
+def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list[float]]:
+    """The moment and one number for each column."""
+    cells = line.replace(header.separator, " ").split()
+    moment = _moment(cells, header.scale)
+    if moment is None:
+        raise refusal(
+            "not_a_time",
+            name,
+            place=f"row {row}",
+            column=header.scale,
+            value=" ".join(cells[:2]),
+            allowed="a time such as 2022/12/27 15:51:14.000, or week and seconds",
+            action="The row is damaged; solve again.",
+        )
+    cells = cells[2:]
+    if len(cells) < header.width:
+        raise refusal(
+            "too_few_cells",
+            name,
+            place=f"row {row}",
+            value=line.strip(),
+            allowed=f"{header.width} numbers behind the time, as the header line says",
+            action="The row is cut short; solve again, or remove the row.",
+        )
+    values = [number(cell) for cell in cells[: header.width]]
+    for cell, value in zip(cells, values, strict=False):
+        if (math.isnan(value) and cell.lower() not in ("nan", "-nan")) or abs(value) > LARGEST:
+            raise refusal(
+                "not_a_number",
+                name,
+                place=f"row {row}",
+                value=cell,
+                allowed=f"a finite number with a decimal point, at most {LARGEST:g}",
+                action="The row is damaged; solve again.",
+            )
+    return moment, _degrees(cells, values) if header.sexagesimal else values
+
+
+def _degrees(cells: list[str], values: list[float]) -> list[float]:
+    """Degrees, minutes, seconds of latitude and longitude to degrees; a minus in front counts for all three."""
+    angles = []
+    for begin in (0, 3):
+        degrees, minutes, seconds = values[begin : begin + 3]
+        size = abs(degrees) + minutes / 60.0 + seconds / 3600.0
+        angles.append(-size if cells[begin].startswith("-") else size)
+    return angles + values[6:]
+
+
+def _moment(cells: list[str], scale: str) -> datetime | None:
+    if len(cells) < 2:
+        return None
+    try:
+        if "/" in cells[0]:
+            year, month, day = map(int, cells[0].split("/"))
+            hours, minutes, seconds = cells[1].split(":")
+            whole = datetime(year, month, day, int(hours), int(minutes), tzinfo=ZONES.get(scale))
+            second = number(seconds)
+            return whole + timedelta(seconds=second) if 0.0 <= second < 61.0 else None
+        week, second = number(cells[0]), number(cells[1])
+        if not (0.0 <= week <= 1e4 and 0.0 <= second <= 604800.0):
+            return None
+        return (GPS_BEGIN + timedelta(weeks=week, seconds=second)).replace(tzinfo=ZONES.get(scale))
+    except (ValueError, OverflowError):
+        return None
+
+
+def _base(lines: list[str], header: Header) -> GeodeticPoint | None:
+    """The base station, where a baseline's file names one that stands on earth."""
+    if header.kind != "baseline":
+        return None
+    for line in lines:
+        found = re.match(r"%\s*ref pos\s*:\s*(.*)", line)
+        cells = found[1].replace(header.separator, " ").split() if found else []
+        values = [number(cell) for cell in cells]
+        if len(values) == 7:  # degrees, minutes, seconds
+            values = _degrees(cells, values)
+        within = len(values) == 3 and abs(values[0]) <= 90.0 and abs(values[1]) <= 180.0
+        if within and abs(values[2]) <= FARTHEST and any(values):
+            return GeodeticPoint(*values)
+    return None
+
+
+def _by_name(table: FloatArray, header: Header) -> dict[str, FloatArray]:
+    return {column: table[:, place] for place, column in enumerate(header.columns)}
+
+
+def _vectors(columns: dict[str, FloatArray], names: tuple[str, str, str]) -> FloatArray | None:
+    if any(name not in columns for name in names):
+        return None
+    return np.column_stack([columns[name] for name in names])
+
+
+def _place(columns: dict[str, FloatArray], header: Header, base: GeodeticPoint | None) -> tuple[FloatArray, bool]:
+    """Places, and whether they are latitude, longitude and height."""
+    place = np.column_stack([columns[name] for name in PLACES[header.kind]])
+    if header.kind == "geodetic":
+        return place, True
+    place = np.where(np.abs(place) <= FARTHEST, place, np.nan)
+    if header.kind == "earth_centred":
+        return geodetic(place), True
+    if base is None:
+        return place, False
+    begin = earth_centred(*np.array([base.latitude_deg, base.longitude_deg, base.height]))
+    return geodetic(begin + place @ east_north_up_axes(base.latitude_deg, base.longitude_deg)), True
+
+
+def _velocity(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
+    velocity = _vectors(columns, VELOCITIES[header.kind])
+    if velocity is None or header.kind != "earth_centred":
+        return velocity
+    return np.asarray(np.einsum("nij,nj->ni", east_north_up_axes(place[:, 0], place[:, 1]), velocity))
+
+
+def _deviations(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
+    deviations = _vectors(columns, DEVIATIONS[header.kind])
+    if deviations is None or header.kind != "earth_centred":
+        return deviations
+    covariance = np.zeros((len(place), 3, 3))
+    for axis in range(3):
+        covariance[:, axis, axis] = deviations[:, axis] ** 2
+    for (one, other), name in (((0, 1), "sdxy"), ((1, 2), "sdyz"), ((0, 2), "sdzx")):
+        root = columns.get(name, np.zeros(len(place)))
+        covariance[:, one, other] = covariance[:, other, one] = np.sign(root) * root**2  # RTKLIB's way to keep the sign
+    axes = east_north_up_axes(place[:, 0], place[:, 1])
+    return np.asarray(np.sqrt(np.maximum(np.einsum("nij,njk,nik->ni", axes, covariance, axes), 0.0)))
+
+
+def _speed_sd(columns: dict[str, FloatArray], header: Header) -> FloatArray | None:
+    """Of the component along the velocity; at rest the largest of the three; NaN where it is no speed's."""
+    names, roots = SPEED_DEVIATIONS[header.kind]
+    velocity, deviations = _vectors(columns, VELOCITIES[header.kind]), _vectors(columns, names)
+    if velocity is None or deviations is None:
+        return None
+    speed = np.linalg.norm(velocity, axis=1)
+    along = velocity / np.where(speed > 0.0, speed, 1.0)[:, None]
+    variance = np.sum((along * deviations) ** 2, axis=1)
+    for name, one, other in zip(roots, (0, 1, 2), (1, 2, 0), strict=True):
+        root = columns.get(name, np.zeros(len(speed)))
+        variance += 2.0 * along[:, one] * along[:, other] * np.sign(root) * root**2
+    deviation = np.where(speed > 0.0, np.sqrt(np.maximum(variance, 0.0)), deviations.max(axis=1))
+    return np.where(np.abs(deviation) <= FASTEST_NUMBER, deviation, np.nan)

@@ -1,0 +1,219 @@
+"""Tracks in CSV: local metres, or latitude and longitude; a row a point."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import itertools
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from ...spreadsheet_text import number
+from ..point import FARTHEST
+from .recording import Recording
+from .text import Cells, cells_of, mark_of, moment, require_width
+from .trouble import refusal
+
+if TYPE_CHECKING:
+    from datetime import datetime
+
+    import numpy.typing as npt
+
+    FloatArray = npt.NDArray[np.float64]
+
+TIMES: Final = ("time_s", "time")
+LOCAL: Final = ("x_m", "y_m", "z_m")
+GEODETIC: Final = ("lat", "lon", "alt_m")
+SPEEDS: Final = ("speed_m_per_s", "speed_mps")
+ODOMETER: Final = "dist_m"
+LOCAL_SD: Final = ("x_sd_m", "y_sd_m", "z_sd_m")
+GEODETIC_SD: Final = ("east_sd_m", "north_sd_m", "up_sd_m")
+SPEED_SD: Final = "speed_sd_m_per_s"
+COLUMNS: Final = (*TIMES, *LOCAL, *GEODETIC, *SPEEDS, ODOMETER, *LOCAL_SD, *GEODETIC_SD, SPEED_SD)
+"""Every column that is read."""
+_FORMS: Final = "time_s, x_m, y_m[, z_m, speed_m_per_s] or time, lat, lon[, alt_m, speed_mps]"
+
+
+def read_table(text: str, name: str) -> Recording:
+    """The recording in a CSV file.
+
+    Raises
+    ------
+    FieldDataError
+        A column is missing or stands there twice, a cell that must be a number or a time is none, or a row has more
+        cells than the header.
+    """
+    table = _Table.of(cells_of(text, name), name)
+    is_geodetic = table.kind()
+    table.require_rows()
+    time, start = table.time()
+    first_time = 0.0 if start is not None else float(time[0])
+    place = table.vectors(GEODETIC if is_geodetic else LOCAL)
+    speeds = [column for column in SPEEDS if column in table.header]
+    sd = GEODETIC_SD if is_geodetic else LOCAL_SD
+    return Recording(
+        name=name,
+        places_in_file=[f"row {line}" for line in table.cells.lines],
+        time=time,
+        place=place,
+        is_geodetic=is_geodetic,
+        time_scale="local" if start is None or start.tzinfo is None else "UTC",
+        start=start,
+        first_time=first_time,
+        speed=table.numbers(speeds[0]) if speeds else None,
+        speed_kind="as the device gives it" if is_geodetic else "along the path",
+        place_sd=table.vectors(sd) if any(column in table.header for column in sd) else None,
+        speed_sd=table.optional(SPEED_SD),
+        odometer=table.optional(ODOMETER),
+        further_columns=tuple(column for column in table.header if column not in table.used),
+        columns=dict(zip("xyz", GEODETIC if is_geodetic else LOCAL, strict=True)),
+    )
+
+
+@dataclass(eq=False)
+class _Table:
+    """Cells with the file's name and decimal mark; remembers which columns were used."""
+
+    cells: Cells
+    name: str
+    mark: str
+    used: set[str]
+
+    @classmethod
+    def of(cls, cells: Cells, name: str) -> _Table:
+        """A table whose rows are as long as its header."""
+        _require_header(cells, name)
+        width = len(cells.header)
+        require_width(cells, name)
+        rows = tuple((row + ("",) * (width - len(row)))[:width] for row in cells.rows)
+        known = [place for place, column in enumerate(cells.header) if column in COLUMNS]
+        mark = mark_of((row[place] for place in known for row in rows), cells.separator)
+        return cls(dataclasses.replace(cells, rows=rows), name, mark, set())
+
+    @property
+    def header(self) -> tuple[str, ...]:
+        return self.cells.header
+
+    def kind(self) -> bool:
+        """Whether places are latitude and longitude."""
+        local, geodetic = (any(column in self.header for column in form[:2]) for form in (LOCAL, GEODETIC))
+        if local and geodetic:
+            raise refusal(
+                "two_places",
+                self.name,
+                place=f"row {self.cells.header_line}",
+                allowed=f"the columns {_FORMS}",
+                action="The file has places in metres and in degrees; take one of them away.",
+            )
+        for column in GEODETIC[:2] if geodetic else LOCAL[:2]:
+            if column not in self.header:
+                raise self._missing(column)
+        if not any(column in self.header for column in TIMES):
+            raise self._missing("time" if geodetic else "time_s")
+        return geodetic
+
+    def _missing(self, column: str) -> Exception:
+        near = difflib.get_close_matches(column, self.header, n=1, cutoff=0.6)
+        hint = f" Is {near[0]!r} meant to be it?" if near else ""
+        return refusal(
+            "missing_column",
+            self.name,
+            place=f"row {self.cells.header_line}",
+            column=column,
+            value=", ".join(self.header),
+            allowed=f"the columns {_FORMS}",
+            action=f"Name the column in the header.{hint}",
+        )
+
+    def require_rows(self) -> None:
+        if not self.cells.rows:
+            raise refusal(
+                "empty_file",
+                self.name,
+                allowed="a row for each point below the header",
+                action="The file has a header only; was anything recorded?",
+            )
+
+    def column(self, name: str) -> list[str]:
+        self.used.add(name)
+        place = self.header.index(name)
+        return [row[place] for row in self.cells.rows]
+
+    def numbers(self, name: str) -> FloatArray:
+        """A column of numbers, NaN where a cell is blank."""
+        cells = self.column(name)
+        values = np.array([number(cell, self.mark) for cell in cells])
+        for place in np.flatnonzero(np.isnan(values)).tolist():
+            if cells[place]:
+                raise self._no_number(place, name, cells[place])
+        return values
+
+    def optional(self, name: str) -> FloatArray | None:
+        return self.numbers(name) if name in self.header else None
+
+    def vectors(self, names: tuple[str, ...]) -> FloatArray:
+        """Columns side by side, NaN where one is absent."""
+        absent = np.full(len(self.cells.rows), np.nan)
+        return np.column_stack([self.numbers(name) if name in self.header else absent for name in names])
+
+    def time(self) -> tuple[FloatArray, datetime | None]:
+        """Seconds, and the moment of the first row where the column holds dates."""
+        name = next(column for column in TIMES if column in self.header)
+        cells = self.column(name)
+        if name == "time_s" or not math.isnan(number(cells[0], self.mark)):
+            return self._seconds(name, cells), None
+        moments = [moment(cell) for cell in cells]
+        for place, found in enumerate(moments):
+            if found is None:
+                raise self._no_time(place, name, cells[place])
+        known = [found for found in moments if found is not None]
+        for place, (one, other) in enumerate(itertools.pairwise(known)):
+            if (one.tzinfo is None) != (other.tzinfo is None):
+                raise self._no_time(place + 1, name, cells[place + 1], "all with a zone, or all without")
+        return np.array([(found - known[0]).total_seconds() for found in known]), known[0]
+
+    def _seconds(self, name: str, cells: list[str]) -> FloatArray:
+        values = np.array([number(cell, self.mark) for cell in cells])
+        for place in np.flatnonzero(~(np.abs(values) <= FARTHEST * 100.0)).tolist():
+            raise self._no_time(place, name, cells[place])
+        return values
+
+    def _no_time(self, place: int, column: str, cell: str, also: str = "in every row") -> Exception:
+        what = "seconds" if column == "time_s" else "seconds, or a date and time such as 2022-12-27T15:51:14.2Z,"
+        return refusal(
+            "not_a_number" if column == "time_s" else "not_a_time",
+            self.name,
+            place=f"row {self.cells.lines[place]}",
+            column=column,
+            value=cell,
+            allowed=f"{what} {also}",
+            action="A point without a time cannot be put on a track; correct the cell.",
+        )
+
+    def _no_number(self, place: int, column: str, cell: str) -> Exception:
+        mark = "a decimal comma" if self.mark == "," else "a decimal point"
+        return refusal(
+            "not_a_number",
+            self.name,
+            place=f"row {self.cells.lines[place]}",
+            column=column,
+            value=cell,
+            allowed=f"a finite number with {mark}, or nothing",
+            action="Correct the cell.",
+        )
+
+
+def _require_header(cells: Cells, name: str) -> None:
+    twice = [column for column in COLUMNS if cells.header.count(column) > 1]
+    if twice:
+        raise refusal(
+            "column_twice",
+            name,
+            place=f"row {cells.header_line}",
+            column=twice[0],
+            allowed="each column once",
+            action="Rename or remove one of them.",
+        )

@@ -1,0 +1,167 @@
+"""Bytes of a file to text, a table's cells, and cells to times."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Final
+
+from ...spreadsheet_text import (
+    LONGEST_CELL,
+    MOST_COLUMNS,
+    SEPARATOR_NAMES,
+    NoTextError,
+    decimal_mark,
+    decoded,
+    most_frequent_separator,
+    named_separator,
+)
+from .trouble import refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_HEAD: Final = 1 << 16
+
+
+def text_of(data: bytes, name: str) -> str:
+    """Text in UTF-8, in UTF-16 with byte order mark, or else in Windows-1252.
+
+    Raises
+    ------
+    FieldDataError
+        The bytes are no text.
+    """
+    try:
+        return decoded(data).text
+    except NoTextError as error:
+        raise _no_text(name, error.place) from error
+
+
+def _no_text(name: str, found: str) -> Exception:
+    return refusal(
+        "unreadable_file",
+        name,
+        value=found,
+        allowed="text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX",
+        action="The file is no text and no known format of receivers; export it as CSV, GPX or FIT.",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """A table cut into cells: the header, and rows with the line of the file in which each begins."""
+
+    header: tuple[str, ...]
+    header_line: int
+    lines: tuple[int, ...]
+    rows: tuple[tuple[str, ...], ...]
+    separator: str
+
+
+def cells_of(text: str, name: str) -> Cells:
+    """Cut a CSV file: comma, semicolon or tab, whichever the header has most; a first line ``sep=;`` may name it.
+
+    Raises
+    ------
+    FieldDataError
+        There is no header, a quote is never closed, a cell is too long, or there are too many columns.
+    """
+    lines = re.split(r"\r\n|\r|\n", text)
+    named = named_separator(lines[0])
+    first = 1 if named in SEPARATOR_NAMES else 0
+    if not any(re.sub('[,;"]', "", line).strip() for line in lines[first:]):
+        raise refusal("empty_file", name, allowed="a header and rows", action="The file is empty.")
+    separator = named if first and named else most_frequent_separator(text[:_HEAD])
+    reader = csv.reader(lines[first:], delimiter=separator, skipinitialspace=True, strict=True)
+    numbers: list[int] = []
+    rows: list[tuple[str, ...]] = []
+    begun = first + 1
+    try:
+        for row in reader:
+            stripped = tuple(cell.strip() for cell in row)
+            if any(stripped):
+                numbers.append(begun)
+                rows.append(stripped)
+            begun = first + reader.line_num + 1
+    except csv.Error as error:
+        raise refusal(
+            "unreadable_file",
+            name,
+            place=f"row {begun}",
+            value=str(error),
+            allowed=f"cells with quotes in pairs, of at most {LONGEST_CELL} characters",
+            action="Close the quote, or take it away.",
+        ) from error
+    _require_size(rows, numbers, name)
+    return Cells(rows[0], numbers[0], tuple(numbers[1:]), tuple(rows[1:]), separator)
+
+
+def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> None:
+    """Refuse what no table of measurements has, before anything is done with it."""
+    for line, row in zip(lines, rows, strict=True):
+        if len(row) > MOST_COLUMNS:
+            raise refusal(
+                "too_many_cells",
+                name,
+                place=f"row {line}",
+                value=f"{len(row)} cells",
+                allowed=f"at most {MOST_COLUMNS} columns",
+                action="Take out the columns that are not needed.",
+            )
+        if max(map(len, row)) > LONGEST_CELL:
+            raise refusal(
+                "unreadable_file",
+                name,
+                place=f"row {line}",
+                value=max(row, key=len),
+                allowed=f"cells of at most {LONGEST_CELL} characters",
+                action="Shorten the cell; is a separator or a quote missing?",
+            )
+
+
+def require_width(cells: Cells, name: str) -> None:
+    """Refuse a row that has more cells than the header.
+
+    Raises
+    ------
+    FieldDataError
+        It has, as a decimal comma in a file separated by commas makes it.
+    """
+    width = len(cells.header)
+    for line, row in zip(cells.lines, cells.rows, strict=True):
+        if any(row[width:]):
+            raise refusal(
+                "too_many_cells",
+                name,
+                place=f"row {line}",
+                value=next(filter(None, row[width:])),
+                allowed=f"{width} {'cell' if width == 1 else 'cells'}, as in the header",
+                action="A decimal comma in a file separated by commas looks like this; separate by semicolons.",
+            )
+
+
+def mark_of(cells: Iterable[str], separator: str) -> str:
+    """The decimal mark of a file: a comma where it does not separate and as many numbers have one as have a point.
+
+    >>> mark_of(["1", "2,5", "1.5"], ";"), mark_of(["1", "2"], ";")
+    (',', '.')
+    """
+    return "." if separator == "," else decimal_mark([cells], separator=separator)
+
+
+def moment(cell: str) -> datetime | None:
+    """The date and time in a cell after ISO 8601, in UTC where it has a zone; None where it is none.
+
+    >>> moment("2022-12-27T16:51:14.5+01:00").isoformat()
+    '2022-12-27T15:51:14.500000+00:00'
+    """
+    if len(cell) < len("2022-12-27T15:51") or not cell.isascii():
+        return None
+    try:
+        found = datetime.fromisoformat(cell)
+        return found if found.tzinfo is None else found.astimezone(UTC)
+    except (ValueError, OverflowError):
+        return None

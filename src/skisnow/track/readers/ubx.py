@@ -1,0 +1,196 @@
+"""Tracks in UBX, the binary messages of u-blox receivers: NAV-PVT, NAV-HPPOSLLH, NAV-COV, decoded with pyubx2.
+
+NAV-PVT makes a point. Where NAV-HPPOSLLH of the same time of week is there, the place is that: to 0.1 mm, not 1 cm.
+Where NAV-COV is there, the standard deviations are the roots of its variances. Frames are found by their two sync bytes
+and their checksum, so that a damaged one costs itself alone. Heights are those above the ellipsoid. ``hAcc`` is taken
+as √(σ_east² + σ_north²), each with half of the variance (Choice; u-blox's manual calls it an estimate of the horizontal
+accuracy and says no more).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from typing import Any, Final
+
+import numpy as np
+
+from ...units import MM
+from ..solution import Solution, solution_array
+from .recording import Recording
+from .trouble import refusal
+
+SYNC: Final = b"\xb5\x62"
+LENGTHS: Final = {b"\x01\x07": (84, 92), b"\x01\x14": (36,), b"\x01\x36": (64,)}
+"""Of NAV-PVT, NAV-HPPOSLLH, NAV-COV in bytes; NAV-PVT has 84 of u-blox 7, 92 of all later; a request has none."""
+_HEAD, _CHECKSUM = 6, 2
+_NO_FIX: Final = (0, 5)  # none; time only
+CARRIER_SOLUTIONS: Final[dict[int, Solution]] = {0: "code", 1: "float", 2: "fixed"}
+"""Of ``carrSoln``."""
+
+
+@dataclass(eq=False)
+class _Epoch:
+    """A NAV-PVT, and what belongs to it."""
+
+    offset: int
+    moment: datetime
+    message: Any
+    precise: Any = None
+    covariance: Any = None
+
+
+def read_ubx(data: bytes, name: str) -> Recording:
+    """The recording in the NAV-PVT messages of a file; other messages are left alone.
+
+    Raises
+    ------
+    FieldDataError
+        No message NAV-PVT with a right checksum and a valid time is in the file.
+    """
+    counts = {"messages with a wrong checksum or cut short": 0, "messages without a valid time": 0}
+    epochs = _epochs(data, counts)
+    if not epochs:
+        told = ", ".join(f"{count} {words}" for words, count in counts.items())
+        raise refusal(
+            "empty_file",
+            name,
+            value=told,
+            allowed="messages NAV-PVT with right checksums and valid times",
+            action="Switch NAV-PVT on in the receiver, or copy the file again.",
+        )
+    table = np.array([_row(epoch) for epoch in epochs])
+    start = epochs[0].moment
+    return Recording(
+        name=name,
+        places_in_file=[f"byte {epoch.offset + 1}" for epoch in epochs],
+        time=np.array([(epoch.moment - start).total_seconds() for epoch in epochs]),
+        place=table[:, 0:3],
+        is_geodetic=True,
+        time_scale="UTC",
+        start=start,
+        speed=table[:, 3],
+        speed_kind="over the ground (horizontal)",
+        velocity=table[:, 4:7],
+        place_sd=table[:, 7:10],
+        speed_sd=table[:, 10],
+        fix=table[:, 11] > 0.0,
+        solution=solution_array([_solution(epoch.message) for epoch in epochs]),
+        heights="above the ellipsoid",
+        left_out=counts,
+    )
+
+
+def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
+    """Every NAV-PVT with a valid time, and the other messages of its time of week."""
+    epochs: list[_Epoch] = []
+    precise: dict[int, Any] = {}
+    covariances: dict[int, Any] = {}
+    for offset, message in _messages(data, counts):
+        if message.identity == "NAV-HPPOSLLH":
+            if not message.invalidLlh:
+                precise[message.iTOW] = message
+        elif message.identity == "NAV-COV":
+            covariances[message.iTOW] = message
+        elif (moment := _moment(message)) is not None:
+            epochs.append(_Epoch(offset, moment, message))
+        else:
+            counts["messages without a valid time"] += 1
+    for epoch in epochs:
+        epoch.precise = precise.get(epoch.message.iTOW)
+        epoch.covariance = covariances.get(epoch.message.iTOW)
+    return epochs
+
+
+def _messages(data: bytes, counts: dict[str, int]) -> Iterator[tuple[int, Any]]:
+    """Every message that is read with its offset; counts frames that are damaged."""
+    from pyubx2 import VALNONE, UBXReader
+
+    sums = _Checksums(data)
+    at = data.find(SYNC)
+    while at >= 0:
+        length = int.from_bytes(data[at + 4 : at + _HEAD], "little")
+        end = at + _HEAD + length + _CHECKSUM
+        if end > len(data) or sums.between(at + 2, end - _CHECKSUM) != data[end - _CHECKSUM : end]:
+            counts["messages with a wrong checksum or cut short"] += 1
+            end = at + len(SYNC)
+        elif length in LENGTHS.get(data[at + 2 : at + 4], ()):
+            yield at, UBXReader.parse(data[at:end], validate=VALNONE)
+        at = data.find(SYNC, end)
+
+
+class _Checksums:
+    """Checksums of any piece of a file in a constant time each, so that sync bytes by the thousand cost one pass.
+
+    Of the bytes dᵢ from b to e, u-blox's sums modulo 256 are A = Σ dᵢ and B = Σ (e - i) dᵢ: from running sums.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        each = np.frombuffer(data, np.uint8)
+        at = np.arange(len(data)).astype(np.uint8)
+        self._sum = b"\0" + np.cumsum(each, dtype=np.uint8).tobytes()
+        self._moment = b"\0" + np.cumsum(at * each, dtype=np.uint8).tobytes()
+
+    def between(self, begin: int, end: int) -> bytes:
+        """The two bytes of the checksum over ``data[begin:end]``."""
+        first = self._sum[end] - self._sum[begin]
+        second = end * first - (self._moment[end] - self._moment[begin])
+        return bytes([first % 256, second % 256])
+
+
+def _moment(message: Any) -> datetime | None:
+    if not (message.validDate and message.validTime):
+        return None
+    try:
+        whole = datetime(message.year, message.month, message.day, message.hour, message.min, tzinfo=UTC)
+    except ValueError:
+        return None
+    # a leap second is second 60; nanoseconds may be negative
+    return whole + timedelta(seconds=message.second, microseconds=message.nano / 1000.0)
+
+
+def _solution(message: Any) -> Solution:
+    """u-blox 7 has no word for it: all its places are by the code."""
+    return CARRIER_SOLUTIONS.get(int(getattr(message, "carrSoln", 0)), "")
+
+
+def _row(epoch: _Epoch) -> tuple[float, ...]:
+    """Place, speed, velocity, their standard deviations, and 1 for a fix."""
+    message, place = epoch.message, epoch.precise or epoch.message
+    velocity = (message.velE * MM, message.velN * MM, -message.velD * MM)
+    has_fix = bool(message.gnssFixOk) and message.fixType not in _NO_FIX and not getattr(message, "invalidLlh", 0)
+    return (
+        place.lat,
+        place.lon,
+        place.height * MM,
+        message.gSpeed * MM,
+        *velocity,
+        *_place_sd(place, epoch.covariance),
+        _speed_sd(message, epoch.covariance, velocity),
+        float(has_fix),
+    )
+
+
+def _place_sd(place: Any, covariance: Any) -> tuple[float, float, float]:
+    """East, north, up (m)."""
+    if covariance is not None and covariance.posCovValid:
+        variances = (covariance.posCovEE, covariance.posCovNN, covariance.posCovDD)
+        if min(variances) > 0.0 and math.isfinite(sum(variances)):
+            east, north, up = map(math.sqrt, variances)
+            return east, north, up
+    horizontal = place.hAcc * MM / math.sqrt(2.0)
+    return horizontal, horizontal, place.vAcc * MM
+
+
+def _speed_sd(message: Any, covariance: Any, velocity: tuple[float, float, float]) -> float:
+    """Of the component along the velocity (m/s); at rest, and without NAV-COV, the receiver's ``sAcc``."""
+    speed = math.hypot(*velocity)
+    if covariance is None or not covariance.velCovValid or speed == 0.0:
+        return float(message.sAcc * MM)
+    east, north, up = (part / speed for part in velocity)
+    c, down = covariance, -up
+    variance = north * north * c.velCovNN + east * east * c.velCovEE + down * down * c.velCovDD
+    variance += 2.0 * (north * east * c.velCovNE + north * down * c.velCovND + east * down * c.velCovED)
+    return math.sqrt(variance) if 0.0 < variance < math.inf else float(message.sAcc * MM)

@@ -1,0 +1,66 @@
+"""The notebooks run, and their pages show what they print today."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+sys.path.insert(0, str(DOCS))
+write_notebooks: Any = importlib.import_module("write_notebooks")
+NAMES = tuple(write_notebooks.names_of_all())
+
+
+def text_of_page(name: str) -> str:
+    return (DOCS / "tutorials" / f"{name}.md").read_text(encoding="utf-8")
+
+
+def test_there_are_two() -> None:
+    assert NAMES == ("track", "turn")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_kept_without_outputs(name: str) -> None:
+    """A notebook that was run and saved would be of that machine and day."""
+    notebook = json.loads((DOCS / "tutorials" / f"{name}.ipynb").read_text(encoding="utf-8"))
+    assert (notebook["nbformat"], notebook["nbformat_minor"]) == (4, 5)
+    for cell in notebook["cells"]:
+        assert cell["id"]
+        if cell["cell_type"] == "code":
+            assert cell["outputs"] == []
+            assert cell["execution_count"] is None
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_page_has_every_cell(name: str) -> None:
+    page, place = text_of_page(name), 0
+    for cell in write_notebooks.cells_of(name):
+        place = page.index(cell.text, place)
+
+
+@pytest.mark.slow
+def test_turn() -> None:
+    """A carved turn of about R_sc cos ϑ; weak snow lets the edge go; energies balance."""
+    cells, names = write_notebooks.executed("turn")
+    assert write_notebooks.page("turn", cells) == text_of_page("turn")
+    assert names["run"].turn_radius_quantile(0.5) == pytest.approx(names["rule"], rel=0.1)
+    assert names["now"] > 2 * names["before"]
+    assert names["run"].energy_balance_error < 1e-3
+
+
+@pytest.mark.slow
+def test_track() -> None:
+    """What made the track is found again within the intervals, and the rest is the receiver's noise."""
+    cells, names = write_notebooks.executed("track")
+    assert write_notebooks.page("track", cells) == text_of_page("track")
+    for name, truth in (("mu_0", 0.04), ("drag_area", 0.45)):
+        low, high = names["found"][name].interval
+        assert low < truth < high
+    # 51 x 3 errors of 20 mm, of which the fit and the places between points take a little
+    assert names["after"].time.numbers.rms == pytest.approx(0.02 * np.sqrt(3), rel=0.2)

@@ -1,0 +1,22 @@
+"""The gallery's examples as the builder of its pages runs them."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def builder() -> Any:
+    """The module ``docs/write_gallery.py``."""
+    if "write_gallery" not in sys.modules:
+        spec = importlib.util.spec_from_file_location("write_gallery", ROOT / "docs" / "write_gallery.py")
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        sys.modules["write_gallery"] = module
+        spec.loader.exec_module(module)
+    return sys.modules["write_gallery"]

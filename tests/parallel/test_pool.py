@@ -1,0 +1,63 @@
+"""Processes that stay: the same ones for every call, ended with what uses them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from typing import Any
+
+import pytest
+
+from skisnow.errors import ParameterError, SkisnowError
+from skisnow.parallel.kept_rows import NumberedText
+from skisnow.parallel.pool import Pool, workers_in_force
+
+
+def own_process(_point: Any) -> dict[str, Any]:
+    return {"process": os.getpid()}
+
+
+def waiting(seconds: float) -> dict[str, Any]:
+    time.sleep(seconds)
+    return {}
+
+
+def killed(_point: Any) -> dict[str, Any]:
+    os.kill(os.getpid(), signal.SIGTERM)
+    return {}
+
+
+def texts(rows: list[list[NumberedText]]) -> set[str]:
+    return {text for chunk in rows for _, text in chunk}
+
+
+def test_processes_stay_from_one_call_to_the_next() -> None:
+    with Pool(own_process, 2, advice="") as pool:
+        seen = [texts(list(pool.rows([(n, None) for n in range(4)]))) for _ in range(3)]
+    others = set().union(*seen)
+    assert 1 <= len(others) <= 2
+    assert f'{{"process":{os.getpid()}}}' not in others
+
+
+def test_what_still_runs_is_ended_with_the_pool() -> None:
+    """A point would take a minute; another is taken, and the rest is left."""
+    begun = time.monotonic()
+    with Pool(waiting, 2, advice="") as pool:
+        assert next(iter(pool.rows([(0, 0.0), (1, 60.0), (2, 60.0)]))) == [(0, "{}")]
+    assert time.monotonic() - begun < 40.0
+
+
+def test_a_process_that_is_killed_is_told_with_advice() -> None:
+    with (
+        pytest.raises(SkisnowError, match="ended unexpectedly, perhaps for want of memory; take fewer"),
+        Pool(killed, 2, advice="take fewer") as pool,
+    ):
+        list(pool.rows([(0, None), (1, None)]))
+
+
+def test_workers_are_at_least_one_and_as_many_as_cores_where_left_out() -> None:
+    assert workers_in_force(3) == 3
+    assert 1 <= workers_in_force(None) <= (os.cpu_count() or 1)
+    with pytest.raises(ParameterError, match="workers is 0; at least 1 is needed"):
+        workers_in_force(0)

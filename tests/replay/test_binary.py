@@ -1,0 +1,127 @@
+"""Bytes and back: nothing is lost but what is said."""
+
+from __future__ import annotations
+
+import json
+import struct
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.replay import Replay, ReplayTrack, replay_bytes, replay_of_bytes, replay_of_run
+
+from ..report.runs import circle_run
+
+TRACK = ReplayTrack(name="GNSS <1>", place=np.array([[0.0, 0.0, 0.1], [1.0, 2.0, np.nan]]), time=np.array([0.0, 0.5]))
+
+
+@pytest.fixture(scope="module")
+def replay() -> Replay:
+    return replay_of_run(circle_run(), title="A turn, süß", track=TRACK)
+
+
+def header(content: bytes) -> dict[str, Any]:
+    (length,) = struct.unpack("<I", content[4:8])
+    found: dict[str, Any] = json.loads(content[8 : 8 + length])
+    return found
+
+
+def arrays(of: Any) -> dict[str, np.ndarray]:
+    return {each.name: getattr(of, each.name) for each in fields(of) if isinstance(getattr(of, each.name), np.ndarray)}
+
+
+def test_what_comes_back_is_within_the_stated_error(replay: Replay) -> None:
+    content = replay_bytes(replay)
+    back, errors = replay_of_bytes(content), {name: each["error"] for name, each in header(content)["arrays"].items()}
+    compared = 0
+    for before, of, found in (
+        ("", replay, back),
+        ("", replay.skis, back.skis),
+        ("groove_", replay.groove, back.groove),
+    ):
+        for name, values in arrays(of).items():
+            difference = np.abs(arrays(found)[name] - values).max()
+            # the error is that of the encoder; reading multiplies and adds once more
+            assert difference <= errors[before + name] + 1e-12, name
+            compared += 1
+    assert compared == 7 + 8 + 7
+    assert (back.title, back.facts, back.tilt) == (replay.title, replay.facts, replay.tilt)
+
+
+def test_errors_are_half_a_step_at_most_and_small_against_what_is_seen(replay: Replay) -> None:
+    described = header(replay_bytes(replay))["arrays"]
+    for name, each in described.items():
+        if each["type"] == "uint16":
+            assert each["error"] <= 0.5 * each["step"] * (1.0 + 1e-9), name
+    # metres: a hundredth of a millimetre on the snow, a micrometre along the ski; N/m: a thousandth of what is told
+    assert described["place"]["error"] < 1e-5
+    assert described["bending"]["error"] < 1e-6
+    assert described["force_per_length"]["error"] < 0.02
+    assert described["attitude"]["error"] < 1e-7
+
+
+def test_numbers_of_a_later_reader_are_where_the_text_says(replay: Replay) -> None:
+    """Decoded with nothing but the module's text: offsets from the end of the header, value = lowest + step n."""
+    content = replay_bytes(replay)
+    (length,) = struct.unpack("<I", content[4:8])
+    each = header(content)["arrays"]["force_per_length"]
+    time, ski, station = 17, 1, 30
+    place = 8 + length + each["start"] + 2 * ((time * 2 + ski) * each["shape"][2] + station)
+    (number,) = struct.unpack("<H", content[place : place + 2])
+    value = each["lowest"] + each["step"] * number
+    assert value == pytest.approx(replay.skis.force_per_length[time, ski, station], abs=each["error"] * 1.001)
+    assert (8 + length) % 4 == 0
+    assert all(item["start"] % 4 == 0 for item in header(content)["arrays"].values())
+
+
+def test_a_track_without_heights_lies_on_the_snow(replay: Replay) -> None:
+    back = replay_of_bytes(replay_bytes(replay)).track
+    assert back is not None
+    assert back.name == "GNSS <1>"
+    assert back.place == pytest.approx(np.array([[0.0, 0.0, 0.1], [1.0, 2.0, 0.0]]), abs=1e-6)
+    assert back.time is not None
+    assert back.time.tolist() == [0.0, 0.5]
+
+
+def test_fine_outputs_are_thinned_and_both_ends_stay() -> None:
+    replay = replay_of_run(circle_run(count=2002, duration=4.0))  # 500 a second
+    back = replay_of_bytes(replay_bytes(replay))
+    assert 380 <= len(back.time) <= 402  # 100 a second
+    assert back.time[[0, -1]] == pytest.approx([0.0, 4.0])
+    assert back.place[-1] == pytest.approx(replay.place[-1], abs=1e-5)
+    assert back.skis.bending.shape == (len(back.time), 2, 61)
+
+
+def test_five_seconds_are_below_a_megabyte() -> None:
+    assert len(replay_bytes(replay_of_run(circle_run(count=501, duration=5.0)))) < 1_000_000
+
+
+def test_one_moment_is_enough_and_none_is_refused() -> None:
+    one = replay_of_run(circle_run(count=3))
+    over = {
+        name: getattr(one, name)[:1] for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
+    }
+    skis = replace(one.skis, **{
+        name: getattr(one.skis, name)[:1] for name in ("bending", "twist", "edge_depth", "force_per_length")
+    })  # fmt: skip
+    assert len(replay_of_bytes(replay_bytes(replace(one, skis=skis, **over))).time) == 1
+    with pytest.raises(ParameterError, match="no moment"):
+        replay_of_run(replace(circle_run(count=3), time=np.zeros(0)))
+
+
+@pytest.mark.parametrize(
+    ("damage", "words"),
+    [
+        (lambda content: content[:0], "do not begin with SKRP"),
+        (lambda content: b"GIF8" + content[4:], "do not begin with SKRP"),
+        (lambda content: content[:-4000], "damaged or cut off"),
+        (lambda content: content[:100], "damaged or cut off"),
+        (lambda content: content.replace(b'"format": 1', b'"format": 2'), "reads format 1"),
+    ],
+)
+def test_damaged_bytes_are_refused(replay: Replay, damage: Any, words: str) -> None:
+    with pytest.raises(ParameterError, match=words):
+        replay_of_bytes(damage(replay_bytes(replay)))

@@ -1,0 +1,99 @@
+"""The model taken away: a GLB file by the letter of glTF 2.0, with the skis where the replay has them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges, write_replay_model
+from skisnow.replay.looks import linear, round_above
+from skisnow.units import DEGREE
+
+from ..report.runs import circle_run
+from .glb_files import GlbFile
+
+TIME = 2.0
+FRAME = 100
+
+
+@pytest.fixture(scope="module")
+def replay() -> Replay:
+    return replay_of_run(circle_run(), title="A turn")
+
+
+class Glb(GlbFile):
+    """With a mesh by its name."""
+
+    def mesh(self, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        (mesh,) = [each for each in self.words["meshes"] if each["name"] == name]
+        primitive = mesh["primitives"][0]
+        at = primitive["attributes"]
+        assert primitive["mode"] == 4
+        triangles = self.array(primitive["indices"]).reshape(-1, 3)
+        vertices, colours = self.array(at["POSITION"]), self.array(at["COLOR_0"])
+        assert triangles.max() < len(vertices) == len(colours)
+        assert self.words["accessors"][at["POSITION"]]["min"] == vertices.min(axis=0).tolist()
+        assert self.words["accessors"][at["POSITION"]]["max"] == vertices.max(axis=0).tolist()
+        return vertices, colours, triangles
+
+
+def test_the_skis_are_where_the_replay_has_them(replay: Replay) -> None:
+    glb = Glb(replay_model(replay, TIME, exaggeration=3.0))
+    edges = ski_edges(replay, FRAME, exaggeration=3.0)
+    for ski, name in enumerate(("left ski", "right ski")):
+        vertices, _, triangles = glb.mesh(name)
+        corners = vertices.reshape(-1, 8, 3)
+        assert corners[:, 3] == pytest.approx(edges[ski, :, 0], abs=2e-6)  # float32 over 30 m
+        assert corners[:, 2] == pytest.approx(edges[ski, :, 1], abs=2e-6)
+        assert len(triangles) == 60 * 4 * 2
+        boot = int(np.argmin(np.abs(replay.skis.station)))
+        top = corners[boot, 0] - corners[boot, 3]
+        assert np.linalg.norm(top) == pytest.approx(0.018, rel=0.01)
+        assert top[2] > 0.0
+
+
+def test_z_becomes_up_and_the_slope_falls_along_x(replay: Replay) -> None:
+    words = Glb(replay_model(replay, TIME)).words
+    (root,) = words["scenes"][0]["nodes"]
+    turned = Rotation.from_quat(words["nodes"][root]["rotation"])
+    # y is up: the snow's normal leans by 10° towards x, the fall line falls by 10°
+    assert turned.apply([0.0, 0.0, 1.0]) == pytest.approx(
+        [math.sin(10 * DEGREE), math.cos(10 * DEGREE), 0.0], abs=1e-12
+    )
+    assert turned.apply([1.0, 0.0, 0.0]) == pytest.approx(
+        [math.cos(10 * DEGREE), -math.sin(10 * DEGREE), 0.0], abs=1e-12
+    )
+    assert turned.apply([0.0, 1.0, 0.0]) == pytest.approx([0.0, 0.0, -1.0], abs=1e-12)
+
+
+def test_the_groove_grows_and_has_its_true_width(replay: Replay) -> None:
+    counts = [len(Glb(replay_model(replay, time)).mesh("groove")[2]) for time in (1.0, TIME, 4.0)]
+    made = [int((replay.groove.time <= time + 1e-9).sum()) for time in (1.0, TIME, 4.0)]
+    assert counts == [2 * number for number in made]
+    vertices = Glb(replay_model(replay, 4.0)).mesh("groove")[0].reshape(-1, 4, 3)
+    assert np.linalg.norm(vertices[:, 1] - vertices[:, 0], axis=1) == pytest.approx(replay.groove.width, abs=5e-6)
+    assert np.linalg.norm(vertices[:, 3] - vertices[:, 0], axis=1) == pytest.approx(0.02, abs=5e-6)
+
+
+def test_colour_is_that_of_the_force(replay: Replay) -> None:
+    colours = Glb(replay_model(replay, TIME)).mesh("right ski")[1].reshape(-1, 8, 3)
+    force = replay.skis.force_per_length[FRAME, 1]
+    dark = colours[:, 0].sum(axis=1)
+    loaded = force > 0.01 * force.max()
+    order = np.argsort(force[loaded])
+    assert (np.diff(dark[loaded][order]) <= 1e-6).all()  # more force, darker
+    assert colours[np.argmin(force), 0] == pytest.approx(linear([214, 220, 226]), abs=1e-6)
+
+
+def test_the_end_of_a_scale_is_a_round_number_above() -> None:
+    assert [round_above(value) for value in (1.0, 1.01, 1446.0, 2001.0, 0.0999)] == [1.0, 1.5, 1500.0, 3000.0, 0.1]
+
+
+def test_it_is_written_in_one_piece(replay: Replay, tmp_path: Path) -> None:
+    write_replay_model(replay, tmp_path / "turn.glb", TIME)
+    assert (tmp_path / "turn.glb").read_bytes() == replay_model(replay, TIME)
+    assert [place.name for place in tmp_path.iterdir()] == ["turn.glb"]

@@ -1,0 +1,150 @@
+"""A replay has the run's own numbers, from the object and from run.nc alike."""
+
+from __future__ import annotations
+
+import random
+import warnings
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from skisnow.errors import ParameterError, SkisnowError
+from skisnow.replay import measured_track, replay_bytes, replay_of_file, replay_of_run
+from skisnow.report.run_file import write_run_file
+from skisnow.scenario import Profile, scenario_values
+from skisnow.scenario.values import in_sections
+from skisnow.simulate.run import Run
+from skisnow.ski import ski_named, write_ski
+from skisnow.track.track import Track
+from skisnow.units import DEGREE
+
+from ..report.runs import RADIUS, SPEED, STANCE, circle_run
+
+
+def written(run: Run, folder: Path, **changes: object) -> Path:
+    values = {**scenario_values(run.scenario), **changes}
+    write_run_file(run, in_sections(values), folder / "run.nc")
+    return folder
+
+
+@pytest.mark.parametrize("left", [True, False])
+def test_numbers_are_those_of_the_run(left: bool) -> None:
+    run = circle_run(left=left)
+    replay = replay_of_run(run)
+    assert replay.speed == pytest.approx(np.full(len(run.time), SPEED))
+    assert replay.curvature == pytest.approx(np.full(len(run.time), (1.0 if left else -1.0) / RADIUS))
+    assert Rotation.from_quat(replay.attitude, scalar_first=True).as_matrix() == pytest.approx(run.attitude, abs=1e-12)
+    assert replay.tilt == pytest.approx(10.0 * DEGREE)
+    assert replay.skis.middle.tolist() == [[0.0, STANCE / 2.0, 0.0], [0.0, -STANCE / 2.0, 0.0]]
+    ski = run.scenario.ski
+    assert replay.skis.half_width[30] == pytest.approx(0.5 * np.interp(0.05, ski.station[::-1], ski.width[::-1]))
+
+
+def test_a_straight_path_has_no_curvature() -> None:
+    run = circle_run(count=5)
+    assert replay_of_run(replace(run, turn_radius=np.full(5, np.inf))).curvature.tolist() == [0.0] * 5
+
+
+def test_pieces_of_groove_have_the_time_when_the_boot_passed() -> None:
+    """Piece j of the circle lies at the boot's place at every second output, left ski first."""
+    run = circle_run()
+    groove = replay_of_run(run).groove
+    assert groove.time == pytest.approx(np.repeat(run.time[::2], 2), abs=1e-9)
+    order = np.lexsort((groove.ski, groove.time.round(9)))
+    assert groove.ski[order].tolist() == [0, 1] * (len(order) // 2)
+    assert groove.middle[order] == pytest.approx(run.groove.middle, abs=1e-12)
+    assert groove.residual_depth[order] == pytest.approx(0.9 * groove.depth[order])
+
+
+def test_the_file_gives_the_same_replay_as_the_object(tmp_path: Path) -> None:
+    run = circle_run()
+    of_file = replay_of_file(written(run, tmp_path), title="same")
+    of_run = replay_of_run(run, title="same")
+    assert replay_bytes(of_file) == replay_bytes(of_run)
+    assert replay_of_file(tmp_path / "run.nc").title == tmp_path.name
+
+
+def test_an_infinite_radius_survives_the_file(tmp_path: Path) -> None:
+    run = circle_run(count=5)
+    straight = replace(run, turn_radius=np.array([np.inf, 10.0, -20.0, np.inf, 5.0]))
+    found = replay_of_file(written(straight, tmp_path)).curvature
+    assert found == pytest.approx([0.0, 0.1, -0.05, 0.0, 0.2])
+
+
+def test_a_ski_file_is_found_beside_the_run_and_asked_for_where_it_is_not(tmp_path: Path) -> None:
+    run = circle_run(count=5)
+    folder = written(run, tmp_path, **{"ski.name": None, "ski.file": "mine.toml"})
+    with pytest.raises(ParameterError, match=r"ski of mine\.toml, which is not there any more"):
+        replay_of_file(folder)
+    assert replay_of_file(folder, ski=ski_named("slalom")).facts[-1][1].startswith("slalom")
+    write_ski(ski_named("slalom"), folder / "mine.toml")
+    assert replay_of_file(folder).skis.half_width == pytest.approx(
+        replay_of_file(folder, ski=ski_named("slalom")).skis.half_width, abs=1e-6
+    )
+
+
+@pytest.mark.parametrize("content", [b"", b"no NetCDF at all", b"CDF\x01" + b"\0" * 60])
+def test_what_is_no_run_is_refused_with_its_name(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "run.nc").write_bytes(content)
+    with pytest.raises(ParameterError, match=r"run\.nc"):
+        replay_of_file(tmp_path)
+    with pytest.raises(ParameterError, match="cannot be read"):
+        replay_of_file(tmp_path / "gone.nc")
+
+
+def test_a_damaged_run_is_refused_in_words(tmp_path: Path) -> None:
+    folder = written(circle_run(count=5), tmp_path)
+    sound, random_ = (folder / "run.nc").read_bytes(), random.Random(1)
+    refused = 0
+    for tried in range(60):
+        data = bytearray(sound)
+        if tried % 3:
+            data[random_.randrange(6000)] = random_.randrange(256)
+        else:
+            del data[random_.randrange(6000) :]
+        (folder / "run.nc").write_bytes(data)
+        with warnings.catch_warnings(), suppress(SkisnowError):
+            warnings.simplefilter("ignore")
+            refused += 1
+            replay_of_file(folder, ski=ski_named("slalom"))
+            refused -= 1
+    assert refused > 15
+
+
+def test_a_profile_is_drawn_with_its_heights() -> None:
+    x = np.linspace(-5.0, 40.0, 46)
+    run = circle_run(count=5)
+    on_profile = replace(run, scenario=replace(run.scenario, slope=Profile(x, -0.2 * x)))
+    replay = replay_of_run(on_profile)
+    assert replay.tilt == 0.0
+    assert replay.profile is not None
+    assert replay.profile[:, 1] == pytest.approx(-0.2 * replay.profile[:, 0], abs=1e-12)
+    assert np.diff(replay.profile[:, 0]).max() <= 0.25 + 1e-12
+
+
+def track(axes: str = "slope") -> Track:
+    place = np.array([[0.0, 1.0, np.nan], [np.nan, np.nan, np.nan], [2.0, 3.0, 0.5]])
+    return Track(
+        name="mine", time=np.array([0.0, 0.1, 0.2]), place=place, speed=np.full(3, np.nan), time_scale="local",
+        frame="", axes=axes,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+def test_a_measured_track_keeps_its_places_and_moves_in_time() -> None:
+    found = measured_track(track(), starts_at=1.5)
+    assert found.place[:, :2].tolist() == [[0.0, 1.0], [2.0, 3.0]]
+    assert found.time is not None
+    assert found.time == pytest.approx([1.5, 1.7])
+    with pytest.raises(ParameterError, match="axes of the slope"):
+        measured_track(track("east_north_up"))
+
+
+def test_settings_are_words_for_people() -> None:
+    facts = dict(replay_of_run(circle_run(count=3)).facts)
+    assert facts["H_V"] == "0.2 N/mm³"
+    assert facts["S_f"] == "0.5 N/mm²"
+    assert facts["Skis"] == "giant-slalom, edge angle 30°"

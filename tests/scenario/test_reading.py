@@ -1,0 +1,343 @@
+"""Scenarios from files and by name, with changes: SI values, ways of saying the same, and what is refused."""
+
+import json
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from skisnow import scenario_names
+from skisnow.errors import ParameterError
+from skisnow.scenario import Plane, Profile, read_scenario, scenario_file, scenario_text, scenario_values
+from skisnow.scenario.given import change_of, given_scenario
+from skisnow.scenario.keys import SCENARIO_KEYS
+
+PROFILE = "x,y\n" + "".join(f"{x},{-0.2 * x}\n" for x in range(0, 60, 3))
+
+
+def written(folder: Path, *, replaced: dict[str, str] | None = None) -> Path:
+    """The text of carved-46m, some lines replaced by others, as a file."""
+    lines = scenario_text("carved-46m").splitlines()
+    for start, new in (replaced or {}).items():
+        assert any(line.startswith(start) for line in lines), start
+        lines = [new if line.startswith(start) else line for line in lines]
+    path = folder / "mine.toml"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
+
+
+def test_built_in_scenario_in_si() -> None:
+    """The contract's numbers of carved-46m, converted by hand."""
+    scenario = read_scenario("carved-46m")
+    assert isinstance(scenario.slope, Plane)
+    assert scenario.slope.angle == pytest.approx(0.17453292519943295, rel=1e-15)
+    assert scenario.contact.snow.snow_hardness == 2e8
+    assert scenario.contact.snow.failure_shear_stress == 5e5
+    assert scenario.contact.unloading_ratio == 10.0
+    assert scenario.contact.friction == 0.01
+    assert scenario.air.drag_area == 0.42
+    assert scenario.sledge.mass == 80.0
+    assert scenario.sledge.stance_width == 0.5
+    assert scenario.sledge.edge_angle == pytest.approx(0.5235987755982988, rel=1e-15)
+    assert scenario.start.speed == 7.0
+    assert scenario.start.heading == pytest.approx(-0.5235987755982988, rel=1e-15)
+    assert scenario.stop.duration == 5.0
+    assert scenario.stop.length is None
+    assert scenario.solver.step == pytest.approx(5e-4, rel=1e-15)
+    assert scenario.ski.name == "giant-slalom"
+    assert scenario.gravity == 9.81
+
+
+@pytest.mark.parametrize(
+    ("name", "length", "ski"), [("giant-slalom-67m", 67.0, "giant-slalom"), ("carver-42m", 42.0, "carver")]
+)
+def test_runs_named_after_the_paper_have_its_lengths_and_kinds_of_ski(name: str, length: float, ski: str) -> None:
+    scenario = read_scenario(name)
+    assert (scenario.stop.length, scenario.stop.duration, scenario.ski.name) == (length, None, ski)
+
+
+@pytest.mark.parametrize("name", scenario_names())
+def test_every_value_of_a_built_in_scenario_says_where_it_is_from(name: str) -> None:
+    lines = [line for line in scenario_text(name).splitlines() if re.match(r"\w+ = ", line)]
+    for line in lines:
+        key, comment = line.split(" = ")[0], line.partition("#")[2].strip()
+        assert comment.startswith(("ours", "default", "as published", "of the catalogue")), line
+        if comment.startswith("default"):
+            (full,) = [each for each in SCENARIO_KEYS if each.endswith(f".{key}")]
+            assert given_scenario(name).values[full] == SCENARIO_KEYS[full].default
+    left_out = {"elements", "line_spacing_mm", "cell_mm"}
+    given = {line.split(" = ")[0] for line in lines}
+    assert not left_out & given  # from ski and snow
+    every = {full.split(".")[1] for full in SCENARIO_KEYS} - left_out
+    other_ways = {"profile", "profile_gap", "results", "site", "file"}
+    snow = {"published"} if "H_V_N_per_mm3" in given else {"H_V_N_per_mm3", "S_f_N_per_mm2"}
+    stop = {"length_m"} if "duration_s" in given else {"duration_s"}
+    assert given == every - other_ways - snow - stop
+
+
+def test_changes_by_full_name_and_without_section() -> None:
+    scenario = read_scenario("carved-46m", changes={"sledge.mass_kg": 90, "inertia_kg_m2": [5, 6, 7]})
+    assert (scenario.sledge.mass, scenario.sledge.inertia) == (90.0, (5.0, 6.0, 7.0))
+
+
+@pytest.mark.parametrize(
+    ("word", "change"),
+    [
+        ("sledge.mass_kg=90", ("sledge.mass_kg", 90)),
+        ("mass_kg = 90.5", ("sledge.mass_kg", 90.5)),
+        ("inertia_kg_m2=[5, 6, 7]", ("sledge.inertia_kg_m2", [5, 6, 7])),
+        ("snow.published=race-piste", ("snow.published", "race-piste")),
+        ('snow.published="race-piste"', ("snow.published", "race-piste")),
+        ("ski.file=a=b.toml", ("ski.file", "a=b.toml")),
+        ("snow.site=7", ("snow.site", "7")),
+        ("compaction_resistance=false", ("snow.compaction_resistance", False)),
+        ("mass_kg=heavy", ("sledge.mass_kg", "heavy")),
+    ],
+)
+def test_change_on_a_command_line(word: str, change: tuple[str, object]) -> None:
+    assert change_of(word) == change
+
+
+@pytest.mark.parametrize(
+    "word", ["mass_kg=80\nspeed_m_per_s=3", "mass_kg=80\n[x]", "mass_kg=" + "[" * 3000, "mass_kg=1" + "0" * 400]
+)
+def test_change_that_is_not_one_value_is_refused_in_a_short_sentence(word: str) -> None:
+    with pytest.raises(ParameterError, match=r"^sledge\.mass_kg is .*; it must be a number$") as error:
+        read_scenario("carved-46m", changes=dict([change_of(word)]))
+    assert len(str(error.value)) < 200
+
+
+def test_named_snow_takes_the_place_of_numbers_and_back() -> None:
+    named = read_scenario("carved-46m", changes={"published": "spring-snow"})
+    assert "spring snow" in named.contact.snow.source
+    # 2 × 0.0036/cos² 55° and 0.063/sin² 55°, by hand
+    assert named.contact.snow.snow_hardness == pytest.approx(0.0218852e9, rel=1e-5)
+    assert named.contact.snow.failure_shear_stress == pytest.approx(0.0938885e6, rel=1e-5)
+    numbers = {"H_V_N_per_mm3": 1.0, "S_f_N_per_mm2": 0.1}
+    assert read_scenario("carver-42m", changes=numbers).contact.snow.snow_hardness == 1e9
+
+
+def test_elastic_snow_needs_no_unloading_ratio_and_takes_no_other() -> None:
+    elastic = {"penetration": "elastic"}
+    assert read_scenario("carved-46m", changes=elastic).contact.unloading_ratio == 1.0
+    assert read_scenario("carved-46m", changes={**elastic, "unloading_ratio": 1}).contact.unloading_ratio == 1.0
+    with pytest.raises(ParameterError, match=r'unloading_ratio is 2 beside snow\.penetration = "elastic"'):
+        read_scenario("carved-46m", changes={**elastic, "unloading_ratio": 2})
+
+
+def test_drag_acts_at_the_centre_of_mass_where_nothing_else_is_said(tmp_path: Path) -> None:
+    path = written(
+        tmp_path, replaced={"centre_of_pressure": "", "centre_of_mass_height": "centre_of_mass_height_m = 0.2"}
+    )
+    assert read_scenario(path).air.centre_of_pressure_height == 0.2
+
+
+def test_paths_start_at_the_files_folder_and_those_of_changes_at_the_current_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "slope").mkdir()
+    (tmp_path / "slope" / "down.csv").write_text(PROFILE, encoding="utf-8")
+    path = written(tmp_path, replaced={"kind": 'kind = "profile"', "angle_deg": 'profile = "slope/down.csv"'})
+    scenario = read_scenario(path)
+    assert isinstance(scenario.slope, Profile)
+    assert scenario.slope.gradients(20.0) == pytest.approx(-0.2, abs=1e-12)
+    monkeypatch.chdir(tmp_path / "slope")
+    changes = {"slope.kind": "profile", "slope.profile": "down.csv"}
+    found = scenario_file("carved-46m", changes=changes)
+    assert isinstance(found.scenario.slope, Profile)
+    assert [file.resolve() for file in found.files] == [tmp_path / "slope" / "down.csv"]
+    assert found.values["slope.angle_deg"] is None
+
+
+def test_snow_and_ski_of_files(tmp_path: Path) -> None:
+    rows = [{"used": True, "site": "A", "H_V_N_per_mm3": value} for value in (0.1, 0.4)]
+    shear = [{"used": True, "site": "A", "S_f_N_per_mm2": value} for value in (0.3, 0.5)]
+    results = {"penetration": {"experiments": rows}, "shear": {"experiments": shear}}
+    (tmp_path / "results.json").write_text(json.dumps(results), encoding="utf-8")
+    shape = "length_mm = 1600\nrunning_length_mm = 1400\nsidecut_length_mm = 1400\n"
+    widths = "tip_width_mm = 100\nwaist_width_mm = 70\ntail_width_mm = 95\nmass_kg = 2\nrigid = true\n"
+    (tmp_path / "ski.toml").write_text(f'name = "mine"\n{shape}{widths}', encoding="utf-8")
+    path = written(
+        tmp_path, replaced={"H_V": 'results = "results.json"', "S_f": 'site = "A"', "name": 'file = "ski.toml"'}
+    )
+    found = scenario_file(path)
+    assert found.scenario.ski.name == "mine"
+    assert found.values["snow.H_V_N_per_mm3"] == pytest.approx(0.2, rel=1e-12)  # the geometric mean
+    assert found.values["snow.S_f_N_per_mm2"] == pytest.approx(0.4, rel=1e-12)
+    assert (found.values["snow.site"], found.values["ski.file"], found.values["ski.name"]) == ("A", "ski.toml", None)
+    assert set(found.files) == {path, tmp_path / "results.json", tmp_path / "ski.toml"}
+    with pytest.raises(ParameterError, match="has its own S_f"):
+        read_scenario(path, changes={"S_f_N_per_mm2": 0.3})
+
+
+def test_values_are_those_given_and_defaults() -> None:
+    values = scenario_file("carved-46m", changes={"tolerance_mm": 0.003}).values
+    assert list(values) == list(SCENARIO_KEYS)
+    assert values["solver.tolerance_mm"] == 0.003
+    assert values["snow.H_V_N_per_mm3"] == 0.2
+    assert values["start.heading_deg"] == -30.0
+    assert values["solver.elements"] is values["run.length_m"] is values["snow.published"] is None
+
+
+@pytest.mark.parametrize("name", scenario_names())
+def test_scenario_tells_its_values_back(name: str) -> None:
+    found = scenario_file(name)
+    told = scenario_values(found.scenario)
+    assert list(told) == list(SCENARIO_KEYS)
+    for key, value in found.values.items():
+        if key != "snow.published":  # numbers in SI do not tell the name
+            expected = pytest.approx(value, rel=1e-12) if isinstance(value, float) else value
+            assert told[key] == expected, key
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"snow.H_V": 1}, "Is snow.H_V_N_per_mm3 meant?"),
+        ({"sledge.H_V_N_per_mm3": 1}, "Is snow.H_V_N_per_mm3 meant?"),
+        ({"edge_angel_deg": 1}, "Is sledge.edge_angle_deg meant?"),
+        ({"slope.profile": "a.csv"}, 'slope.profile goes with slope.kind = "profile"; it is "plane"'),
+        ({"slope.kind": "profile"}, "slope.profile is missing"),
+        ({"site": "A"}, "snow.site goes with snow.results"),
+        ({"published": "race-pist"}, "did you mean 'race-piste'"),
+        ({"H_V_N_per_mm3": 1, "published": "race-piste"}, "in two ways, snow.H_V_N_per_mm3 and snow.published"),
+        ({"published": "race-piste", "S_f_N_per_mm2": 0.3}, "has its own S_f"),
+        ({"ski.name": "slalon"}, "Is slalom meant?"),
+        ({"ski.name": "carver", "ski.file": "a.toml"}, "both are there"),
+        ({"ski.file": "nowhere.toml"}, "nowhere.toml cannot be read"),
+        ({"stance_width_m": 0.05}, "is 0.11 m wide"),
+        ({"clamp_length_m": 2}, "the ski giant-slalom allows less than 1.71 m"),
+        ({"inertia_kg_m2": [1, 1, 3]}, "none more than the sum of the others"),
+        ({"mu_1_s_per_m": -0.01}, "friction at the start's speed"),
+    ],
+)
+def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: str) -> None:
+    with pytest.raises(ParameterError, match=re.escape(told)):
+        read_scenario("carved-46m", changes=changes)
+
+
+@pytest.mark.parametrize(
+    ("replaced", "told"),
+    [
+        ({"[snow]": "[sno]"}, "there is no section [sno]. Is snow meant?"),
+        ({"mass_kg": "mas_kg = 80"}, "sledge.mas_kg is no key of a scenario. Is sledge.mass_kg meant?"),
+        ({"mass_kg": ""}, "sledge.mass_kg is missing: mass without the skis. It has no default"),
+        ({"unloading_ratio": ""}, "snow.unloading_ratio is missing"),
+        ({"H_V": ""}, "no snow is given: H_V has no default"),
+        ({"S_f": ""}, "snow.S_f_N_per_mm2 is missing"),
+        ({"angle_deg": ""}, "slope.angle_deg is missing"),
+        ({"name": ""}, "neither is there"),
+        ({"duration_s": ""}, "the run has no end: give run.duration_s or run.length_m"),
+        ({"mass_kg": "mass_kg ="}, "is no TOML"),
+        ({"mass_kg": "mass_kg = 0"}, "sledge.mass_kg is 0; allowed is above 0"),
+        ({"step_ms": "step_ms = 1000"}, "solver.step_ms is 1000; allowed is from 0.001 to 5 ms"),
+    ],
+)
+def test_bad_file_is_refused_with_its_name(tmp_path: Path, replaced: dict[str, str], told: str) -> None:
+    path = written(tmp_path, replaced=replaced)
+    with pytest.raises(ParameterError, match=re.escape(told)) as error:
+        read_scenario(path)
+    assert str(error.value).startswith(str(path))
+
+
+def test_value_in_place_of_a_section_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "flat.toml"
+    path.write_text("slope = 10\n", encoding="utf-8")
+    with pytest.raises(ParameterError, match=re.escape("must be a table, begun by the line [slope]")):
+        read_scenario(path)
+
+
+def test_scenario_that_is_not_there_is_told_with_the_nearest(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="Is carved-46m meant"):
+        read_scenario("carved-46")
+    with pytest.raises(ParameterError, match=r"nowhere\.toml cannot be read"):
+        read_scenario(tmp_path / "nowhere.toml")
+    (tmp_path / "latin.toml").write_bytes("# Häng\n".encode("latin-1"))
+    with pytest.raises(ParameterError, match="not UTF-8"):
+        read_scenario(tmp_path / "latin.toml")
+
+
+def test_start_off_the_profile_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "down.csv").write_text(PROFILE, encoding="utf-8")
+    changes = {"slope.kind": "profile", "slope.profile": str(tmp_path / "down.csv")}
+    with pytest.raises(ParameterError, match="x = 58 m, is off the profile, which reaches from 0 to 57 m"):
+        read_scenario("carved-46m", changes={**changes, "x_m": 58})
+    assert read_scenario("carved-46m", changes={**changes, "x_m": 57}).start.x == 57.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"edge_angle_deg": -0.5236}, "sledge.edge_angle_deg is -0.5236: that looks like radians. If it is, write -30"),
+        ({"angle_deg": 0.175}, "slope.angle_deg is 0.175: that looks like radians. If it is, write 10.03"),
+        ({"H_V_N_per_mm3": 2e8}, "is it in N/m³? If it is, write 0.2"),
+        ({"H_V_N_per_mm3": 1e-6}, "1e-06 N/mm³ is outside"),
+        ({"S_f_N_per_mm2": 0.9}, "failure shear stress S_f 0.9 N/mm² is outside"),
+        ({"edge_angle_deg": -70}, "edge angle 70 ° is outside"),
+        ({"mu_0": 0.2}, "coefficient of friction 0.2 is outside the 0.023 to 0.139"),
+        ({"drag_area_m2": 3}, "drag area 3 m² is outside"),
+    ],
+)
+def test_likely_slips_are_warned_of(changes: dict[str, object], told: str) -> None:
+    warned = scenario_file("carved-46m", changes={"mu_0": 0.05, **changes}).warnings
+    assert any(told in text for text in warned), warned
+    assert scenario_file("carved-46m", changes={"mu_0": 0.05}).warnings == ()
+
+
+def test_nothing_is_warned_of_where_friction_and_drag_are_off() -> None:
+    assert scenario_file("carved-46m", changes={"mu_0": 0, "drag_area_m2": 0}).warnings == ()
+
+
+def test_angles_are_not_radians() -> None:
+    """An edge angle of 90 degrees is refused, not one of 1.57."""
+    assert read_scenario("carved-46m", changes={"edge_angle_deg": 85}).sledge.edge_angle == math.radians(85.0)
+
+
+@pytest.mark.parametrize("name", scenario_names())
+def test_a_built_in_scenario_is_not_warned_of_itself(name: str) -> None:
+    """Its file says where it lies beyond what was measured. What a user makes of it is."""
+    assert scenario_file(name).warnings == ()
+    assert scenario_file(name, changes={"start.speed_m_per_s": 8.0}).warnings == ()
+    assert len(scenario_file(name, changes={"friction.mu_0": 0.011}).warnings) == 1
+
+
+def test_a_copy_of_a_built_in_scenario_is_warned_of(tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    path.write_text(scenario_text("carved-46m"), encoding="utf-8")
+    (told,) = scenario_file(path).warnings
+    assert "coefficient of friction 0.01 is outside" in told
+
+
+@pytest.mark.parametrize(
+    ("section", "told"),
+    [
+        ("[identify]\nduration_s = 5", "run.duration_s cannot be looked for"),
+        ("[identify]\nmass_kg = 90", r"A value of the scenario stands in its own section, \[sledge\]"),
+        ('[identify."mu_9"]\nlower = 0', r"Near are .*friction\.mu_0"),
+        ("[identify]\nclok = 'free'", "Or is clock meant"),
+        ("[identify]\nclock = 'fre'", 'it must be "start" or "free"'),
+        ("[identify.mu_0]\nlowr = 0", "Is lower meant"),
+        ("[identify.mu_0]\nlower = nan", "lower is nan; allowed is any finite number"),
+        ("[identify.site]\nfall_line_azimut_deg = 0", "Is fall_line_azimuth_deg meant"),
+        ("[identify]\nsite = 3", r"begun by the line \[identify.site\]"),
+        ('[identify.runs."a"]\nmas_kg = 3', r"sledge\.mass_kg"),
+        ("[identify.runs]\na = 3", "must be a table of keys"),
+    ],
+)
+def test_what_nobody_would_read_under_identify(tmp_path: Path, section: str, told: str) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(f"{scenario_text('carved-46m')}\n{section}\n", encoding="utf-8")
+    with pytest.raises(ParameterError, match=told) as refused:
+        read_scenario(path)
+    assert str(path) in str(refused.value)
+
+
+def test_what_a_run_does_not_heed_may_stand_under_identify(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    section = (
+        '[identify]\nclock = "free"\n[identify.site]\nfall_line_azimuth_deg = 90\n[identify.runs."a b"]\nmass_kg = 90\n'
+        '[identify."mu_0@each"]\nlower = 0.01\n[identify."snow.S_f_N_per_mm2"]\nprior_mean = 0.4\nprior_sd = 0.1\n'
+    )
+    path.write_text(f"{scenario_text('carved-46m')}\n{section}", encoding="utf-8")
+    assert read_scenario(path).sledge.mass == 80.0

@@ -1,0 +1,140 @@
+"""Planes and measured profiles: the points, between them, beyond them, and everything that is refused."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.scenario import Plane, Profile, read_profile
+
+MEASURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "slope-profiles"
+UTAH, CALIFORNIA = MEASURED / "utah-2010-surface.csv", MEASURED / "california-2002-surface.csv"
+measured = pytest.mark.skipif(not UTAH.is_file(), reason="the measured profiles are not beside the repository")
+
+
+@pytest.mark.parametrize("degrees", [-1.0, 75.1, 90.0, math.nan])
+def test_plane_is_no_cliff(degrees: float) -> None:
+    with pytest.raises(ParameterError, match="allowed is from 0 to 75 °"):
+        Plane(math.radians(degrees))
+
+
+def test_profile_of_a_straight_line_is_that_line_also_beyond_its_ends() -> None:
+    profile = Profile(np.array([0.0, 1.0, 3.0, 6.0]), np.array([2.0, 1.5, 0.5, -1.0]))
+    x = np.linspace(-2.0, 8.0, 41)
+    np.testing.assert_allclose(profile.heights(x), 2.0 - 0.5 * x, atol=1e-13)  # rounding
+    np.testing.assert_allclose(profile.gradients(x), -0.5, atol=1e-13)
+
+
+def test_profile_passes_through_its_points_and_never_overshoots() -> None:
+    """A terrace: a cubic spline would swing above and below it; monotone cubics stay between neighbouring heights."""
+    x, height = np.arange(6.0), np.array([3.0, 3.0, 3.0, 1.0, 1.0, 1.0])
+    profile = Profile(x, height)
+    np.testing.assert_array_equal(profile.heights(x), height)
+    between = profile.heights(np.linspace(0.0, 5.0, 501))
+    assert between.max() == 3.0
+    assert between.min() == 1.0
+    assert np.all(np.diff(between) <= 0.0)
+
+
+def test_gradient_is_the_derivative_of_the_height() -> None:
+    x = np.linspace(0.0, 10.0, 11)
+    profile = Profile(x, -0.3 * x + 0.2 * np.sin(x))
+    at, step = np.linspace(0.05, 9.95, 100), 1e-6
+    differences = (profile.heights(at + step) - profile.heights(at - step)) / (2.0 * step)
+    np.testing.assert_allclose(profile.gradients(at), differences, atol=1e-8)  # rounding of heights over 2 micrometres
+    # monotone cubics are of second order in the slope at best: 1 m apart and curvature below 0.2 1/m
+    assert np.abs(profile.gradients(at) - (-0.3 + 0.2 * np.cos(at))).max() < 0.1
+
+
+def test_coefficients_are_those_of_the_cubics() -> None:
+    x = np.array([0.0, 1.0, 2.5, 4.0])
+    profile = Profile(x, np.array([0.0, -0.4, -0.7, -1.4]))
+    a, b, c, d = profile.coefficients[:, 1]
+    assert ((a * 0.5 + b) * 0.5 + c) * 0.5 + d == pytest.approx(float(profile.heights(1.5)), abs=1e-15)
+
+
+def test_tables_are_copied_and_read_only() -> None:
+    x = np.arange(4.0)
+    profile = Profile(x, -x)
+    x[0] = -5.0
+    assert profile.ends == (0.0, 3.0)
+    with pytest.raises(ValueError, match="read-only"):
+        profile.height[0] = 1.0
+
+
+@pytest.mark.parametrize(
+    ("x", "height", "told"),
+    [
+        ([0, 1, 2], [0, -1, -2], "needs 4 points or more"),
+        ([0, 1, 2, 3], [0, -1, -2], "needs 4 points or more"),
+        ([0, 1, 1, 2], [0, 0, 0, 0], "point 3 is 1 m after 1 m"),
+        ([0, 1, 2, math.nan], [0, 0, 0, 0], "x of point 4 of the profile is nan"),
+        ([0, 1, 2, 3], [0, math.inf, 0, 0], "the height of point 2 of the profile is inf"),
+        ([0, 1, 7, 8], [0, 0, 0, 0], "no point between x = 1 m and 7 m, a gap of 6 m"),
+        ([0, 1, 2, 3, 4], [0, 0, -9, -9, -9], "cliff of .* between x = 1 m and 2 m"),
+        ([0, 1, 2, 3, 4], [0, 0, 9, 9, 9], "cliff of .* between x = 1 m and 2 m"),
+    ],
+)
+def test_what_is_no_profile_is_refused_with_its_place(x: list[float], height: list[float], told: str) -> None:
+    with pytest.raises(ParameterError, match=told):
+        Profile(np.array(x), np.array(height))
+
+
+def test_cliff_is_told_by_the_steepest_place_between_the_points() -> None:
+    """A cubic that starts and ends flat is 1.5 times as steep half-way as its chord: 1.5 × 3 = tan 77.5 degrees."""
+    with pytest.raises(ParameterError, match=r"a cliff of 77\.5 degrees"):
+        Profile(np.arange(4.0), np.array([0.0, 0.0, -3.0, -3.0]))
+    assert Profile(np.arange(4.0), np.array([0.0, 0.0, -2.4, -2.4])).gradients(1.5) == pytest.approx(-3.6)
+
+
+@measured
+def test_measured_profile_is_read_as_it_stands() -> None:
+    profile = read_profile(UTAH)
+    assert len(profile.x) == 151
+    assert profile.x[1] == 0.3048006096012192
+    assert profile.height[1] == -1.724664935211867
+    assert profile.ends == (0.0, 45.72009144018288)
+    assert profile.gap == "error"
+    assert str(UTAH) in profile.source
+
+
+@measured
+def test_measured_gap_is_refused_unless_asked_for() -> None:
+    with pytest.raises(
+        ParameterError, match=r'13\.9675 m and 24\.384 m, a gap of 10\.4 m.*profile_gap = "interpolate"'
+    ):
+        read_profile(CALIFORNIA)
+    profile = read_profile(CALIFORNIA, gap="interpolate")
+    # from the kicker's lip, -1.22 m, down to -5.53 m, without a swing
+    assert -5.53 < float(profile.heights(19.0)) < -1.22
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("x,z\n0,1\n", "row 1: there is no column y among x, z"),
+        ("", "row 1: there is no column x"),
+        ("x,y\n0,0\n1,low\n", "row 3, column y: 'low' is no finite number"),
+        ("x,y\n0,0\n\n1\n", "row 4, column y: '' is no finite number"),
+        ("x,y\ninf,0\n", "row 2, column x: 'inf' is no finite number"),
+        ("x,y\n0,0\n1,-1\n", "needs 4 points or more"),
+        ("x,y\n0,-0,000\n1,-0,200\n", "row 2: 3 cells stand under 2 names of columns"),
+        ("x,y\n0,0\n1,-0.2,7\n", "row 3: 3 cells stand under 2 names"),
+    ],
+)
+def test_what_is_wrong_in_a_file_is_told_with_row_and_column(tmp_path: Path, text: str, told: str) -> None:
+    path = tmp_path / "profile.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ParameterError, match=told) as error:
+        read_profile(path)
+    assert str(error.value).startswith(str(path))
+
+
+def test_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=r"nowhere\.csv cannot be read"):
+        read_profile(tmp_path / "nowhere.csv")
+    (tmp_path / "image.csv").write_bytes(b"\xff\xfe\x00\x81")
+    with pytest.raises(ParameterError, match=r"image\.csv is not UTF-8 text"):
+        read_profile(tmp_path / "image.csv")

@@ -1,0 +1,43 @@
+"""The plan of the rooms: no file is reached again by what it imports, not even for a type."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+import skisnow
+
+SOURCE = Path(skisnow.__file__).parents[1]
+
+
+def module_of(path: Path) -> str:
+    return ".".join(path.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__")
+
+
+def imported(path: Path, modules: set[str]) -> Iterator[str]:
+    """Modules of the package that a file imports, anywhere in it; of a folder the file that the name stands in."""
+    own = module_of(path).split(".")
+    folder = own if path.name == "__init__.py" else own[:-1]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            place = [*folder[: len(folder) - node.level + 1], *(node.module.split(".") if node.module else [])]
+            for name in node.names:
+                within = ".".join([*place, name.name])
+                yield within if within in modules else ".".join(place)
+
+
+def test_no_circle_of_imports() -> None:
+    """The package itself and `python -m` stand above: they fetch names when asked."""
+    files = {module_of(path): path for path in (SOURCE / "skisnow").rglob("*.py")}
+    above = {"skisnow", "skisnow.__main__"}
+    graph = {
+        name: set(imported(path, set(files))) - above - {name} for name, path in files.items() if name not in above
+    }
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as circle:
+        pytest.fail(" <- ".join(circle.args[1]))

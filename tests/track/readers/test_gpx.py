@@ -1,0 +1,145 @@
+"""Tracks from GPX."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from .. import metres_per_degree
+from .test_table import read, refused
+
+HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n<gpx version="1.1" creator="a watch" xmlns="http://www.topografix.com/GPX/1/1"'
+EXTENSIONS = ' xmlns:gpxtpx="http://www.garmin.com/xmlschemas/TrackPointExtension/v2">'
+
+
+def point(lat: float, second: str, inside: str = "<ele>1500.5</ele>") -> str:
+    return f'<trkpt lat="{lat}" lon="11.0">{inside}<time>2022-12-27T15:51:{second}</time></trkpt>'
+
+
+def gpx(*segments: str, head: str = HEAD + EXTENSIONS) -> str:
+    return f"{head}<trk>{''.join(f'<trkseg>{segment}</trkseg>' for segment in segments)}</trk></gpx>"
+
+
+def test_places_times_heights(tmp_path: Path) -> None:
+    content = gpx(point(47.0, "14Z") + point(47.0001, "14.500Z", ""), point(47.0, "30+00:00"))
+    for name in ("a.gpx", "export.txt"):
+        track = read(tmp_path, content, name)
+        assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
+        assert track.time_scale == "UTC"
+        np.testing.assert_array_equal(track.time, [0.0, 0.5, 16.0])
+        stretched = 1e-4 * metres_per_degree.north(47.0) * (1 + 1500.5 / 6.37e6)
+        np.testing.assert_allclose(track.place[1, :2], [0.0, stretched], atol=2e-5)
+        assert track.marked == {"missing_height": 1}
+        assert np.isnan(track.speed).all()
+        assert "above mean sea level" in track.frame
+
+
+@pytest.mark.parametrize(
+    "extension",
+    [
+        "<gpxtpx:TrackPointExtension><gpxtpx:hr>120</gpxtpx:hr><gpxtpx:speed>7.25</gpxtpx:speed>"
+        "</gpxtpx:TrackPointExtension>",
+        "<speed>7.25</speed>",
+    ],
+)
+def test_speed_of_extensions(tmp_path: Path, extension: str) -> None:
+    content = gpx(
+        f'<trkpt lat="47" lon="11"><time>2022-12-27T15:51:14Z</time><extensions>{extension}</extensions></trkpt>'
+    )
+    assert read(tmp_path, content, "a.gpx").speed.tolist() == [7.25]
+
+
+def test_speed_of_version_1_0(tmp_path: Path) -> None:
+    head = '<gpx version="1.0" creator="a logger" xmlns="http://www.topografix.com/GPX/1/0">'
+    content = gpx(point(47.0, "14Z", "<speed>6.5</speed>"), head=head)
+    assert read(tmp_path, content, "a.gpx").speed.tolist() == [6.5]
+
+
+def test_time_zones(tmp_path: Path) -> None:
+    track = read(tmp_path, gpx(point(47.0, "14+01:00") + point(47.0, "14-00:30")), "a.gpx")
+    assert track.start == datetime(2022, 12, 27, 14, 51, 14, tzinfo=UTC)
+    np.testing.assert_array_equal(track.time, [0.0, 5400.0])
+
+
+def test_no_fix(tmp_path: Path) -> None:
+    track = read(tmp_path, gpx(point(47.0, "14Z") + point(47.0, "15Z", "<fix>none</fix>")), "a.gpx")
+    assert track.marked["no_fix"] == 1
+    assert track.usable.tolist() == [True, False]
+
+
+def test_other_encoding(tmp_path: Path) -> None:
+    content = gpx(point(47.0, "14Z")).replace("UTF-8", "UTF-16").replace("a watch", "eine Uhr für Schi")
+    assert len(read(tmp_path, content.encode("utf-16"), "a.gpx")) == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (gpx(point(47.0, "14Z") + '<trkpt lat="47" lon="11"/>'), ["not_a_time", "point 2, column time"]),
+        (gpx(point(47.0, "99Z")), ["not_a_time", "point 1, column time"]),
+        (gpx(point(400.0, "14Z")), ["out_of_range", "point 1, column latitude", "'400'"]),
+        (gpx(point(47.0, "14Z") + point(47.0, "13Z")), ["time_backwards", "point 2", "15:51:13"]),
+        (gpx(point(47.0, "14Z", "<ele>high</ele>")), ["not_a_number", "point 1, column ele", "'high'"]),
+        (gpx(""), ["empty_file"]),
+        (gpx(point(47.0, "14Z"))[:-30], ["unreadable_file", "ends too early"]),
+        (
+            gpx(point(47.0, "14Z", "<extensions><speed>7,5</speed></extensions>")),
+            ["not_a_number", "point 1, column speed", "'7,5'"],
+        ),
+    ],
+)
+def test_refused(tmp_path: Path, content: str, told: list[str]) -> None:
+    message = refused(tmp_path, content, "a.gpx")
+    for words in told:
+        assert words in message
+
+
+def test_deep_nesting_is_refused(tmp_path: Path) -> None:
+    deep = gpx(point(47.0, "14Z", "<extensions>" + "<a>" * 200_000 + "</a>" * 200_000 + "</extensions>"))
+    message = refused(tmp_path, deep, "a.gpx")
+    assert "101 elements within each other" in message
+    assert "at most 100" in message
+
+
+def test_as_deep_as_allowed(tmp_path: Path) -> None:
+    inside = "<a>" * 94 + "<speed>3</speed>" + "</a>" * 94
+    assert read(tmp_path, gpx(point(47.0, "14Z", f"<extensions>{inside}</extensions>")), "a.gpx").speed.tolist() == [3]
+
+
+def test_too_many_elements_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skisnow.track.readers.gpx.MOST_ELEMENTS", 9)
+    assert len(read(tmp_path, gpx(point(47.0, "14Z") + point(47.0, "15Z")), "a.gpx")) == 2  # nine
+    assert "more than 9 elements" in refused(tmp_path, gpx(point(47.0, "14Z", "<ele>1</ele><a/>") * 2), "a.gpx")
+
+
+@pytest.mark.parametrize(
+    "declared", ['<!ENTITY a "aaaa">', '<!ENTITY a SYSTEM "file:///etc/passwd">', '<!ENTITY % a "b">']
+)
+def test_entities_are_refused(tmp_path: Path, declared: str) -> None:
+    content = f"<!DOCTYPE gpx [{declared}]>" + gpx(point(47.0, "14Z", "<ele>&a;</ele>")).split("\n", 1)[1]
+    assert "the declaration of an entity, a" in refused(tmp_path, content, "a.gpx")
+
+
+def test_the_place_is_a_points_own(tmp_path: Path) -> None:
+    waypoint = '<wpt lat="1" lon="1"><ele>7</ele><time>2022-12-27T15:51:14Z</time></wpt>'
+    inside = "<extensions><ele>9</ele><time>1999-01-01T00:00:00Z</time></extensions><ele> 1500 <!-- m --></ele>"
+    content = gpx(point(47.0, "14Z", inside)).replace("<trk>", f"{waypoint}<trk>")
+    track = read(tmp_path, content, "a.gpx")
+    assert len(track) == 1
+    assert track.origin is not None
+    assert track.origin.height == 1500.0
+    assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
+
+
+@pytest.mark.parametrize("height", ["<ele></ele>", "<ele>NaN</ele>", ""])
+def test_a_height_may_be_missing(tmp_path: Path, height: str) -> None:
+    assert read(tmp_path, gpx(point(47.0, "14Z", height)), "a.gpx").marked == {"missing_height": 1}
+
+
+@pytest.mark.parametrize("place", ['lat="47"', 'lat="x" lon="11"', 'lat="1e999" lon="11"'])
+def test_a_point_needs_a_place(tmp_path: Path, place: str) -> None:
+    content = gpx(f"<trkpt {place}><time>2022-12-27T15:51:14Z</time></trkpt>")
+    assert "not_a_number: a.gpx, point 1, column l" in refused(tmp_path, content, "a.gpx")

@@ -1,0 +1,218 @@
+"""Tracks from RTKLIB's solution files."""
+
+from __future__ import annotations
+
+import math
+from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.track.projection import GeodeticPoint
+
+from .. import metres_per_degree
+from .test_table import read, refused
+
+PREAMBLE = "% program   : RTKPOST ver.2.4.3 b34\n% (lat/lon/height=WGS84/ellipsoidal,Q=1:fix,2:float,5:single)\n"
+COLUMNS = (
+    "latitude(deg) longitude(deg)  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)  sdne(m)  sdeu(m)  sdun(m)"
+    " age(s)  ratio"
+)
+TAIL = "1  12   0.0080   0.0060   0.0150   0.0010  -0.0020   0.0030   0.00   99.9"
+LLH = (
+    f"{PREAMBLE}%  GPST                  {COLUMNS}\n"
+    f"2022/12/27 15:51:14.000   47.000000000   11.000000000  1500.0000   {TAIL}\n"
+    f"2022/12/27 15:51:14.200   47.000010000   11.000000000  1499.5000   {TAIL}\n"
+)
+EARTH = (
+    "% (x/y/z-ecef=WGS84,Q=1:fix)\n"
+    "%  GPST                      x-ecef(m)      y-ecef(m)      z-ecef(m)   Q  ns   sdx(m)   sdy(m)   sdz(m)  sdxy(m)"
+    "  sdyz(m)  sdzx(m) age(s)  ratio    vx(m/s)    vy(m/s)    vz(m/s)      sdvx     sdvy     sdvz    sdvxy    sdvyz"
+    "    sdvzx\n"
+)
+BASELINE = (
+    "%  UTC                      e-baseline(m)  n-baseline(m)  u-baseline(m)   Q  ns   sde(m)   sdn(m)   sdu(m)"
+    "  sden(m)  sdnu(m)  sdue(m) age(s)  ratio\n"
+    "2022/12/27 15:51:14.000        10.0000        -5.0000         2.5000   1  12   0.0100   0.0200   0.0300   0.0010"
+    "  -0.0020   0.0030   0.00   99.9\n"
+)
+
+
+def test_latitude_longitude_height(tmp_path: Path) -> None:
+    for name in ("a.pos", "solution.txt"):
+        track = read(tmp_path, LLH, name)
+        assert (track.time_scale, track.start) == ("GPS", datetime(2022, 12, 27, 15, 51, 14))
+        np.testing.assert_allclose(track.time, [0.0, 0.2], atol=1e-9)
+        north = 1e-5 * metres_per_degree.north(47.0) * (1 + 1500 / 6.37e6)
+        np.testing.assert_allclose(track.place, np.array([[0.0, 0.0, 0.0], [0.0, north, -0.5]]), atol=1e-5)
+        np.testing.assert_array_equal(track.place_sd, [[0.006, 0.008, 0.015]] * 2)
+        assert track.velocity is None
+        assert np.isnan(track.speed).all()
+        assert "above the ellipsoid" in track.frame
+
+
+def test_carrier_phase(tmp_path: Path) -> None:
+    """Q: 1 fix, 2 float, 3 SBAS, 4 DGPS, 5 single, 6 PPP."""
+    rows = [f"2022/12/27 15:51:1{q}.000 47.0 11.0 1500.0 {q}{TAIL[1:]}" for q in range(1, 7)]
+    track = read(tmp_path, "\n".join([*LLH.splitlines()[:3], *rows]), "a.pos")
+    assert track.solution is not None
+    assert track.solution.tolist() == ["fixed", "float", "code", "code", "code", "float"]
+    assert track.marked == {"float_solution": 2, "code_solution": 3}
+
+
+def test_standard_deviation_of_the_speed(tmp_path: Path) -> None:
+    """Along the velocity (0.6 north, -0.8 east), with the covariance as RTKLIB writes it: its root with its sign."""
+    names = "    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    sdvne    sdveu    sdvun"
+    lines = LLH.splitlines()
+    rows = [f"{lines[3]} 3 -4 0 .03 .04 .5 .02 .1 .1", f"{lines[4]} 0 0 0 .03 .04 .5 -.02 0 0"]
+    track = read(tmp_path, "\n".join([*lines[:2], lines[2] + names, *rows]), "a.pos")
+    assert track.speed_sd is not None
+    wanted = math.sqrt((0.6 * 0.03) ** 2 + (0.8 * 0.04) ** 2 - 2.0 * 0.48 * 0.02**2)
+    np.testing.assert_allclose(track.speed_sd, [wanted, 0.5], rtol=1e-9)
+    unknown = read(tmp_path, "\n".join([*lines[:2], lines[2] + names, f"{lines[3]} 3 -4 0 9e9 9e9 9e9 0 0 0"]), "b.pos")
+    assert unknown.speed_sd is not None
+    assert np.isnan(unknown.speed_sd).all()
+
+
+def test_velocities(tmp_path: Path) -> None:
+    names = "    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    sdvne    sdveu    sdvun"
+    lines = LLH.splitlines()
+    text = "\n".join([*lines[:2], lines[2] + names, *(f"{line} 3 -4 -1.2 .1 .1 .1 0 0 0" for line in lines[3:])])
+    track = read(tmp_path, text, "a.pos")
+    assert track.velocity is not None
+    np.testing.assert_allclose(track.velocity, [[-4.0, 3.0, -1.2]] * 2, atol=1e-6)
+    np.testing.assert_allclose(track.speed, math.sqrt(25 + 1.44), rtol=1e-12)
+
+
+def test_commas_and_week_with_seconds(tmp_path: Path) -> None:
+    """Week 2242 began on 2022-12-25; 15:51:14 of the Tuesday is 2 × 86400 + 57074 = 229874 s of it."""
+    head = ",".join(["%  GPST", *COLUMNS.split()])
+    row = ",".join(["2242", "229874.000", "47.0", "11.0", "1500.0", *TAIL.split()])
+    track = read(tmp_path, f"{head}\n{row}\n", "a.pos")
+    assert track.start == datetime(2022, 12, 27, 15, 51, 14)
+    np.testing.assert_array_equal(track.place_sd, [[0.006, 0.008, 0.015]])
+
+
+@pytest.mark.parametrize("when", ["10001 10.000", "-1 10.000", "2242 604801.000", "2242 -1.000"])
+def test_a_week_has_604800_seconds_and_there_are_10000_weeks(tmp_path: Path, when: str) -> None:
+    message = refused(tmp_path, f"%  GPST  {COLUMNS}\n{when}   47.0  11.0  1500.0  {TAIL}\n", "a.pos")
+    assert "week and seconds" in message
+
+
+def test_degrees_minutes_seconds(tmp_path: Path) -> None:
+    head = COLUMNS.replace("(deg)", "(d'\")")
+    row = "2022/12/27 15:51:14.000   -0 30 36.00000  -71 15 18.00000  1500.0  "
+    track = read(tmp_path, f"%  JST  {head}\n{row}{TAIL}\n", "a.pos")
+    assert track.origin is not None
+    assert track.origin.latitude_deg == pytest.approx(-0.51, abs=1e-12)
+    assert track.origin.longitude_deg == pytest.approx(-71.255, abs=1e-12)
+    assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=timezone(timedelta(hours=9)))
+    assert track.time_scale == "JST"
+
+
+def test_earth_centred(tmp_path: Path) -> None:
+    """On the equator at 90° east: east is -X, north is Z, up is Y; and so are deviations and velocities."""
+    tail = "1 12 0.01 0.02 0.03 0.0 0.0 0.0 0.0 99.9 1.5 -0.5 2.5 .1 .1 .1 0 0 0"
+    rows = f"2022/12/27 15:51:14.000 0.0 6378137.0 0.0 {tail}\n2022/12/27 15:51:15.000 -3.0 6378139.0 7.0 {tail}\n"
+    track = read(tmp_path, EARTH + rows, "a.pos")
+    np.testing.assert_allclose(track.place, np.array([[0.0, 0.0, 0.0], [3.0, 7.0, 2.0]]), atol=1e-7)
+    assert track.place_sd is not None
+    assert track.velocity is not None
+    np.testing.assert_allclose(track.place_sd, [[0.01, 0.03, 0.02]] * 2, rtol=1e-6)
+    np.testing.assert_allclose(track.velocity, [[-1.5, 2.5, -0.5]] * 2, atol=1e-5)
+
+
+def test_earth_centred_at_the_date_line(tmp_path: Path) -> None:
+    """There east is -Y, north is Z, up is -X."""
+    tail = "1 12 0.01 0.02 0.03 0.0 0.0 0.0 0.0 99.9 1.5 -0.5 2.5 .1 .1 .1 0 0 0"
+    track = read(tmp_path, f"{EARTH}2022/12/27 15:51:14.000 -6378137.0 0.0 0.0 {tail}\n", "a.pos")
+    assert track.place_sd is not None
+    assert track.velocity is not None
+    np.testing.assert_allclose(track.place_sd, [[0.02, 0.03, 0.01]], rtol=1e-12)
+    np.testing.assert_allclose(track.velocity, [[0.5, 2.5, -1.5]], atol=1e-12)
+
+
+def test_covariances_of_earth_centred_places(tmp_path: Path) -> None:
+    """At 45° east on the equator east is (Y - X)/√2: its variance is half of σx² + σy² - 2 σxy, σxy = -0.01²."""
+    tail = "1 12 0.02 0.02 0.03 -0.01 0.0 0.0 0.0 99.9 0 0 0 .1 .1 .1 0 0 0"
+    side = 6378137.0 / math.sqrt(2.0)
+    track = read(tmp_path, f"{EARTH}2022/12/27 15:51:14.000 {side} {side} 0.0 {tail}\n", "a.pos")
+    assert track.place_sd is not None
+    np.testing.assert_allclose(track.place_sd[0] ** 2, [4e-4 + 1e-4, 9e-4, 4e-4 - 1e-4], rtol=1e-6)
+
+
+def test_baseline_without_a_base(tmp_path: Path) -> None:
+    track = read(tmp_path, BASELINE, "a.pos")
+    np.testing.assert_array_equal(track.place, [[10.0, -5.0, 2.5]])
+    np.testing.assert_array_equal(track.place_sd, [[0.01, 0.02, 0.03]])
+    assert (track.axes, track.origin, track.time_scale) == ("east_north_up", None, "UTC")
+    assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
+    assert "base station" in track.frame
+    assert "local metres only" in refused(tmp_path, BASELINE, "a.pos", origin=GeodeticPoint(47.0, 11.0))
+
+
+def test_baseline_with_its_base(tmp_path: Path) -> None:
+    base = "% ref pos   :  47.000000000   11.000000000  1500.0000\n"
+    track = read(tmp_path, base + BASELINE, "a.pos")
+    np.testing.assert_allclose(track.place, [[10.0, -5.0, 2.5]], atol=1e-7)
+    assert track.origin == GeodeticPoint(47.0, 11.0, height=1500.0)
+    moved = read(tmp_path, base + BASELINE, "a.pos", origin=GeodeticPoint(47.0, 11.0, height=1400.0))
+    np.testing.assert_allclose(moved.place, [[10.0, -5.0, 102.5]], atol=1e-3)
+
+
+def test_no_solution_is_marked(tmp_path: Path) -> None:
+    track = read(tmp_path, LLH.replace("1499.5000   1", "1499.5000   0"), "a.pos")
+    assert track.marked == {"no_fix": 1}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("latitude(deg)", "", ["missing_column", "header line"]),
+        ("longitude(deg)", "", ["missing_column", "longitude"]),
+        ("latitude(deg)", "\nlatitude(deg)", ["missing_column", "header line"]),
+        ("47.000010000", "4x", ["not_a_number", "row 5", "'4x'"]),
+        ("47.000010000", "470.0", ["out_of_range", "row 5, column latitude", "'470'"]),
+        ("15:51:14.200", "15:99:14.200", ["not_a_time", "row 5", "column GPS"]),
+        ("15:51:14.200", "15:51:13.200", ["time_backwards", "row 5"]),
+        ("1499.5000   " + TAIL, "1499", ["too_few_cells", "row 5", "13 numbers"]),
+    ],
+)
+def test_refused(tmp_path: Path, old: str, new: str, told: list[str]) -> None:
+    assert old in LLH
+    message = refused(tmp_path, LLH.replace(old, new), "a.pos")
+    for words in told:
+        assert words in message
+
+
+def test_header_only(tmp_path: Path) -> None:
+    assert "empty_file" in refused(tmp_path, "".join(LLH.splitlines(keepends=True)[:3]), "a.pos")
+
+
+def test_a_long_line_of_blanks_is_no_header(tmp_path: Path) -> None:
+    content = "% " + "\t" * 300_000 + "\n" + LLH  # with backtracking this would take minutes
+    assert len(read(tmp_path, content, "a.pos")) == 2
+
+
+@pytest.mark.parametrize("value", ["1e308", "-1e308", "1.1e12"])
+def test_numbers_beyond_all_solutions(tmp_path: Path, value: str) -> None:
+    row = f"2022/12/27 15:51:14.000 4.2e6 1.7e5 4.78e6 1 12 0.01 0.02 0.03 0.0 0.0 0.0 0.0 99.9 1.5 {value} 2.5"
+    message = refused(tmp_path, f"{EARTH}{row} .1 .1 .1 0 0 0\n", "a.pos")
+    assert "not_a_number" in message
+    assert value in message
+
+
+@pytest.mark.parametrize(
+    ("row", "why"),
+    [
+        ("2022/12/27 15:51:14.400", "too_few_cells"),
+        ("2022/12/27 15:51:14.400 47.0", "too_few_cells"),
+        ("2022/12/27", "not_a_time"),
+        ("2022/12/27 noon 47.0 11.0 1500.0", "not_a_time"),
+    ],
+)
+def test_a_row_that_is_cut_short_is_told_by_what_is_missing(tmp_path: Path, row: str, why: str) -> None:
+    message = refused(tmp_path, f"{LLH}{row}\n", "a.pos")
+    assert f"error {why}: " in message
+    assert f"row {len(LLH.splitlines()) + 1}" in message

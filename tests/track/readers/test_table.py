@@ -1,0 +1,227 @@
+"""Tracks from CSV: what is in the cells, how spreadsheets write them, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.errors import FieldDataError, ParameterError
+from skisnow.track.projection import GeodeticPoint
+from skisnow.track.read import read_track
+from skisnow.track.track import Track
+
+from .. import metres_per_degree
+
+LOCAL = "time_s,x_m,y_m,z_m,speed_m_per_s\n0.5,0,0,10,7\n0.6,0.7,0.1,9.9,7.25\n0.7,1.5,-.2,,\n"
+DAY = Path(__file__).resolve().parents[4] / "shared" / "data" / "ski-track" / "morin_heights_2022-12-27.csv"
+
+
+def read(tmp_path: Path, content: str | bytes, name: str = "run.csv", **named: object) -> Track:
+    path = tmp_path / name
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return read_track(path, **named)  # type: ignore[arg-type] # the tests give wrong ones on purpose
+
+
+def refused(tmp_path: Path, content: str | bytes, name: str = "run.csv", **named: object) -> str:
+    with pytest.raises(FieldDataError) as caught:
+        read(tmp_path, content, name, **named)
+    message = str(caught.value)
+    assert name in message
+    assert "allowed" in message
+    return message
+
+
+def test_local_metres(tmp_path: Path) -> None:
+    track = read(tmp_path, LOCAL)
+    np.testing.assert_allclose(track.time, [0.0, 0.1, 0.2], atol=1e-15)
+    assert track.first_time == 0.5
+    np.testing.assert_array_equal(track.place, [[0, 0, 10], [0.7, 0.1, 9.9], [1.5, -0.2, np.nan]])
+    np.testing.assert_array_equal(track.speed, [7.0, 7.25, np.nan])
+    assert track.marked == {"missing_height": 1}
+    assert (track.time_scale, track.start, track.axes, track.origin) == ("local", None, "file", None)
+    assert track.name == "run.csv"
+
+
+def test_track_of_a_simulated_run(tmp_path: Path) -> None:
+    """The header that a run writes; what is not read is named, not complained of."""
+    head = (
+        "time_s,x_m,y_m,z_m,speed_m_per_s,heading_deg,turn_radius_m,left_x_m,left_y_m,left_depth_mm,right_x_m,"
+        "right_y_m,right_depth_mm\n"
+    )
+    track = read(tmp_path, head + "0.0,0,0,0.2,7,-30,,0,0.25,1.5,0,-0.25,1\n0.01,0.06,-0.03,0.2,7,-30,25,0,0,2,0,0,2\n")
+    np.testing.assert_array_equal(track.place[1], [0.06, -0.03, 0.2])
+    assert track.further_columns[:2] == ("heading_deg", "turn_radius_m")
+    assert len(track.further_columns) == 8
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
+def test_as_a_german_spreadsheet_writes_it(tmp_path: Path, encoding: str, ends: str) -> None:
+    plain = read(tmp_path, LOCAL)
+    lines = LOCAL.replace(",", ";").replace(".", ",").splitlines()
+    text = ends.join(["Höhe;" + lines[0], *("ä;" + line for line in lines[1:]), ";;;;;"]) + ends
+    german = read(tmp_path, text.encode(encoding))
+    np.testing.assert_array_equal(german.place, plain.place)
+    np.testing.assert_array_equal(german.time, plain.time)
+    assert german.further_columns == ("Höhe",)
+
+
+def test_separator_line_and_tabs(tmp_path: Path) -> None:
+    plain = read(tmp_path, LOCAL)
+    np.testing.assert_array_equal(read(tmp_path, "sep=;\r\n" + LOCAL.replace(",", ";")).place, plain.place)
+    np.testing.assert_array_equal(read(tmp_path, LOCAL.replace(",", "\t")).place, plain.place)
+
+
+def test_latitude_and_longitude(tmp_path: Path) -> None:
+    step = 1e-4
+    rows = f"2022-12-27T15:51:14Z,46.0,7.0,0.0,3.5\n2022-12-27T16:51:16.250+01:00,{46 + step},{7 - step},5,-1\n"
+    track = read(tmp_path, "time,lat,lon,alt_m,speed_mps\n" + rows)
+    assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
+    assert track.time_scale == "UTC"
+    np.testing.assert_array_equal(track.time, [0.0, 2.25])
+    # 1e-4 degrees are some 10 m: series and plane differ by less than 1e-5 m there
+    expected = [-step * metres_per_degree.east(46.0), step * metres_per_degree.north(46.0), 5.0]
+    np.testing.assert_allclose(track.place[0], np.zeros(3), atol=1e-9)
+    np.testing.assert_allclose(track.place[1], expected, atol=2e-5)
+    np.testing.assert_array_equal(track.speed, [3.5, np.nan])
+    assert track.marked == {"negative_speed": 1}
+    assert "latitude 46°, longitude 7°, height 0 m" in track.frame
+    assert track.axes == "east_north_up"
+
+
+def test_given_origin(tmp_path: Path) -> None:
+    text = "time,lat,lon,alt_m\n0,46.0,7.0,100\n1,46.0,7.0,101\n"
+    track = read(tmp_path, text, origin=GeodeticPoint(46.0, 6.999, height=90.0))
+    assert track.place[0, 0] == pytest.approx(1e-3 * metres_per_degree.east(46.0) * (1 + 90 / 6.39e6), abs=2e-3)
+    np.testing.assert_allclose(np.diff(track.place, axis=0), [[0, 0, 1.0]], atol=2e-5)
+
+
+def test_sixty_kilometres_from_the_origin_up_is_down(tmp_path: Path) -> None:
+    """The ellipsoid falls away below the plane: d²/2R."""
+    text = "time,lat,lon,alt_m\n0,46.0,7.0,0\n"
+    track = read(tmp_path, text, origin=GeodeticPoint(46.5, 7.0))
+    distance = 0.5 * metres_per_degree.north(46.25)
+    assert track.place[0, 1] == pytest.approx(-distance, rel=1e-4)
+    assert track.place[0, 2] == pytest.approx(-(distance**2) / (2 * 6.367e6), rel=1e-2)
+
+
+def test_points_without_a_place_stay(tmp_path: Path) -> None:
+    track = read(tmp_path, "time,lat,lon\n0,,\n1,46,7\n2,,7\n3,46,7\n")
+    assert len(track) == 4
+    assert track.marked == {"no_fix": 2, "missing_height": 2}
+    np.testing.assert_array_equal(track.usable, [False, True, False, True])
+    np.testing.assert_array_equal(track.place[1, :2], [0.0, 0.0])
+
+
+def test_latitude_and_longitude_zero_are_no_place(tmp_path: Path) -> None:
+    track = read(tmp_path, "time,lat,lon,alt_m\n0,0,0.0,0\n1,0,7,5\n2,0,7,5\n")  # on the equator there is a place
+    assert track.marked == {"no_fix": 1}
+    assert track.origin == GeodeticPoint(0.0, 7.0, height=5.0)
+
+
+def test_seconds_and_dates_without_zone(tmp_path: Path) -> None:
+    seconds = read(tmp_path, "time,lat,lon\n1672156274.5,46,7\n1672156275.75,46,7\n")
+    np.testing.assert_array_equal(seconds.time, [0.0, 1.25])
+    assert (seconds.time_scale, seconds.first_time) == ("local", 1672156274.5)
+    dated = read(tmp_path, "time,x_m,y_m\n2022-12-27 15:51:14,1,2\n2022-12-27 15:51:15,1,2\n")
+    assert dated.time_scale == "local"
+    assert dated.start is not None
+    assert dated.start.tzinfo is None
+
+
+def test_uncertainties_and_odometer(tmp_path: Path) -> None:
+    head = "time_s,x_m,y_m,x_sd_m,y_sd_m,speed_sd_m_per_s,dist_m"
+    track = read(tmp_path, f"{head}\n0,0,0,0.02,0.03,0.1,4\n1,1,0,0.02,,0.1,5\n")
+    assert track.place_sd is not None
+    np.testing.assert_array_equal(track.place_sd, [[0.02, 0.03, np.nan], [0.02, np.nan, np.nan]])
+    np.testing.assert_array_equal(track.speed_sd, [0.1, 0.1])
+    np.testing.assert_array_equal(track.odometer, [4.0, 5.0])
+    assert "out_of_range" in refused(tmp_path, f"{head}\n0,0,0,-0.02,0.03,0.1,4\n")
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("", ["empty_file"]),
+        (" \n\n", ["empty_file"]),
+        ("time_s,x_m,y_m\n", ["empty_file", "header only"]),
+        ("time_s,x_m\n0,1\n", ["missing_column", "column y_m", "time_s, x_m"]),
+        ("time_s,x_m,y\n0,1,2\n", ["missing_column", "column y_m"]),
+        ("time,latt,lon\n0,46,7\n", ["missing_column", "column lat", "'latt'"]),
+        ("x_m,y_m\n0,1\n", ["missing_column", "column time_s"]),
+        ("time_s,x_m,y_m\n0,1,2\n1,one,2\n", ["not_a_number", "row 3, column x_m", "'one'", "decimal point"]),
+        ("time_s,x_m,y_m\n0,1,2\n\n1,nan,2\n", ["not_a_number", "row 4, column x_m", "'nan'"]),
+        ("time_s;x_m;y_m\n0;1,5;2,5\n1;1.5;2,5\n", ["not_a_number", "row 3, column x_m", "'1.5'", "decimal comma"]),
+        ("time_s,x_m,y_m\n0,1,5,2,5\n", ["too_many_cells", "row 2", "3 cells", "decimal comma"]),
+        ("time_s,x_m,y_m\n,1,2\n", ["not_a_number", "row 2, column time_s"]),
+        ("time,lat,lon\n27.12.2022 15:51:14,46,7\n", ["not_a_time", "row 2, column time", "27.12.2022"]),
+        ("time,lat,lon\n2022-12-27T15:51:14Z,46,7\n2022-12-27T15:51:15,46,7\n", ["not_a_time", "row 3", "zone"]),
+        ("time,lat,lon\n0,46,7\n1,400,7\n", ["out_of_range", "row 3, column lat", "'400'", "from -90 to 90"]),
+        ("time,lat,lon\n0,46,181\n", ["out_of_range", "row 2, column lon"]),
+        ("time_s,x_m,y_m\n0,1e300,2\n", ["out_of_range", "row 2, column x_m"]),
+        ("time_s,x_m,y_m,speed_mps\n0,1,2,36000\n", ["out_of_range", "row 2, column speed"]),
+        ("time_s,x_m,y_m\n0,1,2\n5.5,1,2\n5.25,1,2\n", ["time_backwards", "row 4, column time", "5.25 s", "5.5 s"]),
+        ("time_s,x_m,y_m,x_m\n0,1,2,3\n", ["column_twice", "row 1, column x_m"]),
+        ("time_s,x_m,y_m,lat,lon\n0,1,2,46,7\n", ["two_places"]),
+        ("time,lat,lon\n0,,\n1,,\n", ["no_place", "None of the 2 points"]),
+        ('time_s,x_m,y_m\n0,"1,2\n1,1,2\n', ["unreadable_file", "row 2"]),
+        (b"time_s,x_m,y_m\n0,1\x00,2\n", ["unreadable_file", "NUL"]),
+    ],
+)
+def test_refused(tmp_path: Path, content: str | bytes, told: list[str]) -> None:
+    message = refused(tmp_path, content)
+    for words in told:
+        assert words in message
+
+
+def test_dates_that_run_backwards_are_told_as_dates(tmp_path: Path) -> None:
+    message = refused(tmp_path, "time,lat,lon\n2022-12-27T15:51:14Z,46,7\n2022-12-27T15:51:13.5Z,46,7\n")
+    assert "row 3" in message
+    assert "2022-12-27 15:51:13.5" in message
+
+
+def test_origin_on_earth_needs_places_on_earth(tmp_path: Path) -> None:
+    assert "local metres only" in refused(tmp_path, LOCAL, origin=GeodeticPoint(46.0, 7.0))
+
+
+def test_arguments(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="fastest"):
+        read(tmp_path, LOCAL, fastest=0.0)
+    with pytest.raises(ParameterError, match="no track format 'kml'"):
+        read(tmp_path, LOCAL, kind="kml")
+
+
+def test_no_such_file_and_a_folder(tmp_path: Path) -> None:
+    for path in (tmp_path / "absent.csv", tmp_path):
+        with pytest.raises(FieldDataError, match="Check the path"):
+            read_track(path)
+
+
+def test_a_real_day() -> None:
+    """What the page of the data says of it, and what a plain reader of CSV finds."""
+    if not DAY.exists():
+        pytest.skip("the shared day of skiing is not beside this repository")
+    track = read_track(DAY)
+    with DAY.open() as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(track) == len(rows) == 5898
+    assert track.marked == {"repeated_time": 13}
+    assert track.further_columns == ("lap",)
+    np.testing.assert_array_equal(track.speed, [float(row["speed_mps"]) for row in rows])
+    assert track.odometer is not None
+    assert track.odometer[-1] == float(rows[-1]["dist_m"])
+    # the sum of steps by the lengths of a degree at the resort; 1e-3 of some 14 km for the latitude's change
+    steps = np.diff([[float(row["lon"]), float(row["lat"])] for row in rows], axis=0)
+    lengths = np.hypot(steps[:, 0] * metres_per_degree.east(45.9), steps[:, 1] * metres_per_degree.north(45.9))
+    own = np.hypot(*np.diff(track.place[:, :2], axis=0).T)
+    assert own.sum() == pytest.approx(lengths.sum(), rel=1e-3)
+
+
+def test_tables_of_no_measurement_are_refused(tmp_path: Path) -> None:
+    assert "at most 1000 columns" in refused(tmp_path, "x," * 100_000 + "\n1\n")
+    assert "row 2" in refused(tmp_path, f"time_s,x_m,y_m\n1,2,{'9' * 40_000}\n")
+    assert "not_a_number" in refused(tmp_path, f"time_s,x_m,y_m\n1,2,{'9' * 30_000}\n")

@@ -1,0 +1,187 @@
+"""Tracks from UBX, of messages packed by hand."""
+
+from __future__ import annotations
+
+import math
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from pyubx2 import calc_checksum
+
+from skisnow.track.projection import GeodeticPoint
+from skisnow.track.readers.ubx import SYNC, _Checksums
+
+from .. import metres_per_degree
+from .receivers import nav_cov, nav_hpposllh, nav_pvt, sentence, ubx_frame
+from .test_table import read, refused
+
+
+def test_messages(tmp_path: Path) -> None:
+    """Numbers as packed: 1e-7 degrees, mm, mm/s; velocity north, east, down."""
+    other = ubx_frame(b"\x01\x35", bytes(20))
+    data = nav_pvt() + other + nav_pvt(nano=100_000_123, lat=472345678 + 100)
+    for name in ("a.ubx", "a.log"):
+        track = read(tmp_path, data, name)
+        assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
+        assert track.time_scale == "UTC"
+        np.testing.assert_allclose(track.time, [0.0, 0.1], atol=1e-6)
+        np.testing.assert_allclose(track.speed, [5.0, 5.0], rtol=1e-12)
+        assert track.velocity is not None
+        np.testing.assert_allclose(track.velocity, [[-4.0, 3.0, -1.2]] * 2, atol=2e-5)
+        assert track.origin is not None
+        assert track.origin.latitude_deg == pytest.approx(47.2345678, abs=1e-12)
+        assert track.origin.longitude_deg == pytest.approx(11.1234567, abs=1e-12)
+        assert track.origin.height == 1500.123
+        north = 1e-5 * metres_per_degree.north(47.2345678) * (1 + 1500 / 6.37e6)
+        np.testing.assert_allclose(track.place[1], [0.0, north, 0.0], atol=2e-5)
+        assert track.marked == {}
+        assert track.left_out == {}
+
+
+def test_velocity_about_an_origin_far_away(tmp_path: Path) -> None:
+    """Meridians converge by Δλ sin φ: seen from 1° further west, north at the point leans 0.734° to the west."""
+    origin = GeodeticPoint(47.2345678, 10.1234567, height=1500.0)
+    track = read(tmp_path, nav_pvt(velocity=(5000, 0, 0)), "a.ubx", origin=origin)
+    assert track.velocity is not None
+    lean = math.degrees(math.atan2(-track.velocity[0, 0], track.velocity[0, 1]))
+    assert lean == pytest.approx(math.sin(math.radians(47.2345678)), abs=1e-3)
+
+
+def test_accuracies(tmp_path: Path) -> None:
+    track = read(tmp_path, nav_pvt(accuracies=(50, 80, 30)), "a.ubx")
+    assert track.place_sd is not None
+    east, north, up = track.place_sd[0]
+    assert math.hypot(east, north) == pytest.approx(0.050)
+    assert east == north
+    assert up == pytest.approx(0.080)
+    assert track.speed_sd is not None
+    np.testing.assert_allclose(track.speed_sd, [0.030])
+
+
+def test_high_precision_places(tmp_path: Path) -> None:
+    """1e-9 degrees and 0.1 mm are added with their signs; before or behind the NAV-PVT, with equal time of week."""
+    precise = nav_hpposllh(), nav_hpposllh(time_of_week=229_892_100, lat=(472345678, 55))
+    points = nav_pvt(), nav_pvt(nano=100_000_000, time_of_week=229_892_100)
+    later = nav_pvt(nano=200_000_000, time_of_week=229_892_200)
+    for data in (points[0] + precise[0] + points[1] + precise[1], precise[0] + points[0] + precise[1] + points[1]):
+        track = read(tmp_path, data + later, "a.ubx")
+        assert track.origin is not None
+        assert track.origin.latitude_deg == pytest.approx(47.234567845, abs=1e-11)
+        assert track.origin.longitude_deg == pytest.approx(11.123456633, abs=1e-11)
+        assert track.origin.height == pytest.approx(1500.1226, abs=1e-7)
+        north = 1e-8 * metres_per_degree.north(47.2345678) * (1 + 1500 / 6.37e6)
+        np.testing.assert_allclose(track.place[1], [0.0, north, 0.0], atol=2e-6)
+        assert track.place_sd is not None
+        east_north = 0.0123 / math.sqrt(2.0)
+        np.testing.assert_allclose(track.place_sd[:2], [[east_north, east_north, 0.0201]] * 2, rtol=1e-12)
+        assert track.place_sd[2, 2] == pytest.approx(0.080)  # of the NAV-PVT that has no other message beside it
+
+
+def test_a_high_precision_place_that_is_not_valid_does_not_count(tmp_path: Path) -> None:
+    track = read(tmp_path, nav_pvt() + nav_hpposllh(invalid=1), "a.ubx")
+    assert track.origin is not None
+    assert track.origin.height == 1500.123
+    assert read(tmp_path, nav_pvt() + nav_pvt(second=15, invalid_place=1), "b.ubx").marked == {"no_fix": 1}
+
+
+def test_covariances(tmp_path: Path) -> None:
+    """North and east are not mixed up, and of the velocity counts what lies along it: 0.6 north, -0.8 east, no down."""
+    place, velocity = (4e-4, 1e-4, 0.0, 9e-4, 0.0, 25e-4), (4e-4, 1e-4, 7e-4, 1e-4, 7e-4, 1.0)
+    data = nav_pvt(velocity=(3000, -4000, 0)) + nav_hpposllh() + nav_cov(place, velocity)
+    track = read(tmp_path, data, "a.ubx")
+    assert track.place_sd is not None
+    np.testing.assert_allclose(track.place_sd, [[0.03, 0.02, 0.05]], rtol=1e-6)  # of 32 bit
+    assert track.speed_sd is not None
+    wanted = math.sqrt(0.36 * 4e-4 + 0.64 * 1e-4 - 2.0 * 0.48 * 1e-4)
+    assert track.speed_sd[0] == pytest.approx(wanted, rel=1e-6)
+    steep = read(tmp_path, nav_pvt(velocity=(3000, 0, 4000)) + nav_cov(place, velocity), "b.ubx")
+    assert steep.speed_sd is not None
+    assert steep.speed_sd[0] == pytest.approx(math.sqrt(0.36 * 4e-4 + 0.64 + 2.0 * 0.48 * 7e-4), rel=1e-6)
+
+
+def test_covariances_that_are_not_valid_do_not_count(tmp_path: Path) -> None:
+    wide = (1.0, 0.0, 0.0, 1.0, 0.0, 1.0)
+    far = read(tmp_path, nav_pvt() + nav_cov((math.inf,) * 6, (math.nan,) * 6), "b.ubx")
+    assert far.place_sd is not None
+    assert far.speed_sd is not None
+    assert (far.place_sd[0, 2], far.speed_sd[0]) == pytest.approx((0.080, 0.030))
+    for valid, place_sd, speed_sd in (((0, 1), 0.080, 1.0), ((1, 0), 1.0, 0.030), ((0, 0), 0.080, 0.030)):
+        track = read(tmp_path, nav_pvt() + nav_cov(wide, wide, valid=valid), "a.ubx")
+        assert track.place_sd is not None
+        assert track.speed_sd is not None
+        assert track.place_sd[0, 2] == pytest.approx(place_sd)
+        assert track.speed_sd[0] == pytest.approx(speed_sd)
+
+
+def test_carrier_phase(tmp_path: Path) -> None:
+    """Bits 6 and 7 of the flags: 0 none, 1 float, 2 fixed."""
+    data = b"".join(nav_pvt(second=10 + i, carrier=carrier) for i, carrier in enumerate((2, 1, 0)))
+    track = read(tmp_path, data + nav_pvt(second=13, fix=0, carrier=2), "a.ubx")
+    assert track.solution is not None
+    assert track.solution.tolist() == ["fixed", "float", "code", ""]
+    assert track.marked == {"no_fix": 1, "float_solution": 1, "code_solution": 1}
+    assert track.usable.tolist() == [True, True, True, False]
+    assert read(tmp_path, nav_pvt(), "b.ubx").marked == {}
+
+
+def test_negative_fraction_of_a_second(tmp_path: Path) -> None:
+    track = read(tmp_path, nav_pvt(second=13, nano=900_000_000) + nav_pvt(second=14, nano=-2000), "a.ubx")
+    assert track.time[1] == pytest.approx(0.099998, abs=1e-6)
+
+
+def test_no_fix(tmp_path: Path) -> None:
+    data = nav_pvt(second=1) + nav_pvt(second=2, fix=0) + nav_pvt(second=3, fix_ok=0) + nav_pvt(second=4, fix=5)
+    track = read(tmp_path, data, "a.ubx")
+    assert track.usable.tolist() == [True, False, False, False]
+    assert track.marked == {"no_fix": 3}
+
+
+def test_time_that_is_not_valid_yet(tmp_path: Path) -> None:
+    track = read(tmp_path, nav_pvt(second=50, valid=0b001) + nav_pvt(second=1), "a.ubx")
+    assert len(track) == 1
+    assert track.left_out == {"messages without a valid time": 1}
+
+
+@pytest.mark.parametrize("byte", [3, 4, 5, 30, 98])
+def test_a_damaged_message_costs_itself_alone(tmp_path: Path, byte: int) -> None:
+    """Also where the damage is in the length: the next message is found all the same."""
+    middle = bytearray(nav_pvt(second=2))
+    middle[byte] ^= 0xFF
+    data = nav_pvt(second=1) + bytes(middle) + nav_pvt(second=3) + nav_pvt(second=4)[:50]
+    track = read(tmp_path, data, "a.ubx")
+    np.testing.assert_array_equal(track.time, [0.0, 2.0])
+    assert track.left_out == {"messages with a wrong checksum or cut short": 2}
+
+
+def test_noise_and_sentences_between(tmp_path: Path) -> None:
+    data = b"\xb5noise" + nav_pvt(second=1) + sentence("GNRMC,,V,,,,,,,,,,N") + nav_pvt(second=2)
+    assert len(read(tmp_path, data, "a.ubx")) == 2
+
+
+def test_refused(tmp_path: Path) -> None:
+    damaged = bytearray(nav_pvt())
+    damaged[-1] ^= 1
+    assert "1 messages with a wrong checksum" in refused(tmp_path, bytes(damaged), "a.ubx")
+    assert "NAV-PVT" in refused(tmp_path, ubx_frame(b"\x01\x35", bytes(20)), "a.ubx")
+    assert "time_backwards: a.ubx, byte 101" in refused(tmp_path, nav_pvt(second=2) + nav_pvt(second=1), "a.ubx")
+    assert "no_place" in refused(tmp_path, nav_pvt(fix=0), "a.ubx")
+    assert "out_of_range" in refused(tmp_path, nav_pvt(lat=1_000_000_000), "a.ubx")
+
+
+def test_sync_bytes_by_the_thousand_cost_one_pass(tmp_path: Path) -> None:
+    content = nav_pvt() + SYNC * 200_000 + nav_pvt(second=15)  # frame by frame this would take many minutes
+    track = read(tmp_path, content, "a.ubx")
+    assert len(track) == 2
+    assert track.left_out == {"messages with a wrong checksum or cut short": 200_000}
+
+
+@settings(max_examples=50, deadline=None)
+@given(data=st.binary(min_size=1, max_size=1000), ends=st.tuples(st.floats(0, 1), st.floats(0, 1)))
+@example(data=bytes([255] * 70_000), ends=(0.0, 1.0))
+def test_checksums_of_pieces(data: bytes, ends: tuple[float, float]) -> None:
+    begin, end = sorted(int(share * len(data)) for share in ends)
+    assert _Checksums(data).between(begin, end) == calc_checksum(data[begin:end])
