@@ -13,7 +13,7 @@ struct StepRule {
   bool fixed = false;
   double tolerance = 3e-7;                 // error of place (m) of one step, by its own estimate
   double shortest = 1e-7, longest = 6e-3;  // (s)
-  double closeness = 0.1;                  // share of a step's own error to which Newton's method solves it
+  double closeness = 0.03;                 // share of a step's own error to which Newton's method solves it
   int keep = 8;                            // steps over which the matrix may be kept
 };
 

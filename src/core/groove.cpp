@@ -18,15 +18,12 @@ class Reader {
   int knot() const { return at_; }
   double next() const { return at_ < count_ ? place_[at_] : BEYOND; }
 
-  // Depth at a place up to the next knot, there on its left side.
-  double before(double y) {
+  // Depth at a place up to the next knot, there on its left side. Its mirror image has the same bits.
+  double before(double y) const {
     if (at_ == 0 || at_ == count_) return 0.0;
-    if (y == place_[at_]) return depth_[at_];
-    if (sloped_ != at_) {
-      slope_ = (depth_[at_] - depth_[at_ - 1]) / (place_[at_] - place_[at_ - 1]);
-      sloped_ = at_;
-    }
-    return depth_[at_ - 1] + slope_ * (y - place_[at_ - 1]);
+    const double a = place_[at_ - 1], b = place_[at_];
+    if (y == b) return depth_[at_];
+    return (depth_[at_ - 1] * (b - y) + depth_[at_] * (y - a)) / (b - a);
   }
 
   // Go past a place; the depth on its right side.
@@ -38,8 +35,7 @@ class Reader {
 
  private:
   const double *place_, *depth_;
-  int count_, at_, sloped_ = 0;  // knot up to which the slope is known
-  double slope_ = 0.0;
+  int count_, at_;
 };
 
 // Depths of the ground and of what is pressed into it, at one side of a place.
@@ -64,8 +60,8 @@ class Deeper {
     const bool first = any && (all || over > 0.0), last = any && (all || over_end > 0.0);
     turn(first ? from.pressed : from.ground, first, first ? pressed_knot : knot);
     if (first != last) {
-      const double share = over / (over - over_end);
-      out_.append(y_ + share * (y - y_), from.pressed + share * (to.pressed - from.pressed));
+      const double apart = over - over_end;
+      out_.append((y * over - y_ * over_end) / apart, (to.pressed * over - from.pressed * over_end) / apart);
     }
     changed_ = changed_ || (any && y - y_ > THIN);
     is_pressed_ = last;

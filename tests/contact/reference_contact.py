@@ -103,7 +103,7 @@ class ReferenceRunner:
     def update(self, pose: Pose) -> None:
         for line in self.lines:
             section = _Section(self, line, pose)
-            line.marked, before = None, line.marked
+            before, line.marked = line.marked, None
             if section.share <= 0.0:
                 continue
             touch = section.touch

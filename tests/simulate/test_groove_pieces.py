@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from skisnow.simulate.run_setup import Setup
 from skisnow.simulate.simulated_run import _groove
 
 ROWS = np.array([
@@ -24,7 +26,14 @@ ROWS = np.array([
 def groove(rows: np.ndarray) -> Any:
     contact = SimpleNamespace(tracks=lambda: rows)
     scenario = SimpleNamespace(contact=SimpleNamespace(unloading_ratio=5.0))
-    return _groove(cast("Any", SimpleNamespace(dynamics=SimpleNamespace(contact=contact), scenario=scenario)))
+    setup = cast(
+        "Any",
+        SimpleNamespace(
+            dynamics=SimpleNamespace(contact=contact), scenario=scenario, snow=SimpleNamespace(penetration=None)
+        ),
+    )
+    setup.residual_depth = partial(Setup.residual_depth, setup)
+    return _groove(setup)
 
 
 def test_each_line_is_a_piece_as_deep_as_its_deepest_knot() -> None:

@@ -24,7 +24,7 @@ LONGEST_STEP: Final = 6e-3
 """Longest step (s) (Choice: longer ones do not pay, the history must be marched within them)."""
 SHORTEST_STEP: Final = 1e-7
 """Step (s) below which a run ends."""
-CLOSENESS: Final = 0.1
+CLOSENESS: Final = 0.03
 """Share of a step's own error to which Newton's method solves it (Choice: 0.01 moves ends by less than their error)."""
 MATRIX_KEPT: Final = 8
 """Steps over which Newton's matrix is kept while it serves (Choice)."""

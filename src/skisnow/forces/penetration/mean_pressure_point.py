@@ -37,11 +37,23 @@ class MeanPressurePoint(PointLaw):
     ramp_depth
         ε_B (m), > 0: at the surface itself the law would jump to B.
 
+    See Also
+    --------
+    skisnow.forces.penetration.MeanPressureLaw
+    skisnow.forces.penetration.HypoplasticPoint
+
     Notes
     -----
     Range, source: as `MeanPressureLaw`; ramp and unloading are ours. On a wedge the ramp takes B ε_B/(2 e) off the mean
     pressure. That the part across is a most and no force that always acts is ours too: a base that is pushed along the
     surface at its own depth does no work on the snow, and would be given energy without end.
+
+    References
+    ----------
+    * Federolf and others (2006), "Deformation of snow during a carved ski turn", Cold Reg. Sci. Technol. 46, 69-77,
+      doi 10.1016/j.coldregions.2006.06.006.
+    * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+      snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------

@@ -24,11 +24,21 @@ class VolumeWithAnglePoint(PointLaw):
     unloading_ratio
         k_u/H_V ≥ 1.
 
+    See Also
+    --------
+    skisnow.forces.penetration.VolumeWithAngleLaw
+    skisnow.forces.penetration.HypoplasticPoint
+
     Notes
     -----
     Range, source: as `VolumeWithAngleLaw`; the unloading is ours, as `HypoplasticPoint`'s. Only ``stress_and_energy``
     knows an angle: the other methods are those of a flat base, with a factor of 0.99. Energy of grooves that were cut
     at 60° is 15 % above what `lost_energy` tells.
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
 
     Examples
     --------
