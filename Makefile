@@ -11,12 +11,14 @@ SBOM ?= dist/skisnow.cdx.json
 # the same examples every time (test-all seeks others); neighbours stay in one process, which has what they share
 QUICK := -n 2 --dist worksteal -q --hypothesis-profile=ci
 
-.PHONY: help demo test test-repeating test-all lint tidy sanitize docs bench lock sbom clean
+.PHONY: help demo test test-repeating test-all test-minimum coverage lint tidy sanitize docs bench lock sbom clean
 
 help:
 	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, with reports in $(DEMO)/"
 	@echo "make test      the tests that take minutes, not hours"
 	@echo "make test-all  those and the long ones"
+	@echo "make test-minimum  the quick tests with the oldest versions that pyproject.toml allows"
+	@echo "make coverage  how much of the package the quick tests run"
 	@echo "make lint      ruff, mypy, import-linter"
 	@echo "make tidy      clang-tidy over the compiled core"
 	@echo "make sanitize  the compiled core under sanitizers: tests of contact, motion and carve"
@@ -29,9 +31,12 @@ $(BIN)/python:
 	@test -n "$(PYTHON)" || { echo "skisnow needs Python 3.11 or newer with its venv module (Debian: apt install python3-venv)"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 
+comma := ,
 # What is installed stands in requirements/, file by file with its hashes. Where an index has not all of it,
 # LOCKED=no takes the newest that pyproject.toml allows.
 LOCKED ?= yes
+# the extras that tests need; what only those need who work on it stands in [dependency-groups]
+TESTED := web$(comma)pandas$(comma)xarray
 # a change of the compiled core builds it anew; without a C++ compiler it is built with the one of Zig's wheel
 CORE := CMakeLists.txt $(wildcard build_backend/*.py src/core/*)
 COMPILER := $(shell command -v c++ || command -v g++ || command -v clang++)
@@ -42,7 +47,7 @@ define install
 		|| { echo "not all of requirements/$(1).txt could be installed: 'make LOCKED=no ...' takes what pyproject.toml allows"; exit 1; }; } \
 		&& { [ -n "$(COMPILER)" ] || $(BIN)/python $(PIP) --require-hashes --requirement requirements/compiler.txt; } \
 		&& $(BIN)/python $(PIP) --no-deps --no-build-isolation --editable .; \
-	else $(BIN)/python $(PIP) --editable '.[$(2)]'; fi
+	else $(BIN)/python $(PIP) --upgrade 'pip>=25.1' && $(BIN)/python $(PIP) --editable '.[$(2)]' $(3); fi
 endef
 
 $(VENV)/.skisnow: pyproject.toml requirements/run.txt $(CORE) | $(BIN)/python
@@ -50,7 +55,7 @@ $(VENV)/.skisnow: pyproject.toml requirements/run.txt $(CORE) | $(BIN)/python
 	@touch $@
 
 $(VENV)/.skisnow-dev: pyproject.toml requirements/dev.txt $(CORE) | $(BIN)/python
-	$(call install,dev,dev)
+	$(call install,dev,$(TESTED),--group dev)
 	@touch $@ $(VENV)/.skisnow
 
 $(TOOLS)/.tools: requirements/tools.txt
@@ -111,6 +116,21 @@ sanitize: $(VENV)/.skisnow-dev
 		PYTHONPATH=$(SANITIZED)/package:$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \
 		$(BIN)/python -S -m pytest -q -p no:cacheprovider -p no:xdist $(SANITIZED_TESTS)
 
+# The oldest versions that pyproject.toml allows, in a virtual environment of their own; browsers are the newest's affair.
+MINIMUM := .venv-minimum
+$(MINIMUM)/.installed: pyproject.toml $(CORE) $(TOOLS)/.tools
+	$(TOOLS)/bin/uv --quiet venv --clear --python '$(PYTHON)' $(MINIMUM)
+	$(TOOLS)/bin/uv --quiet pip install --python $(MINIMUM) --resolution lowest-direct --group test --editable '.[$(TESTED)]'
+	@touch $@
+
+test-minimum: $(MINIMUM)/.installed
+	$(MINIMUM)/bin/python -m pytest $(QUICK) -m 'not slow and not browser'
+
+# how much of the package the quick tests run; coverage.py is fetched for it and stays nobody's dependency
+coverage: $(VENV)/.skisnow-dev
+	$(BIN)/python $(PIP) --target build/coverage 'pytest-cov>=6' --no-deps 'coverage>=7.6'
+	PYTHONPATH=build/coverage $(BIN)/python -m pytest $(QUICK) --cov=skisnow --cov-branch --cov-report=term:skip-covered
+
 docs: $(VENV)/.skisnow-dev
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs docs/_build/html
 
@@ -121,7 +141,7 @@ bench: $(VENV)/.skisnow-dev
 COMPILE := $(TOOLS)/bin/uv --quiet --no-config pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-header --no-annotate $(UPGRADE)
 lock: $(TOOLS)/.tools
-	$(COMPILE) --extra dev pyproject.toml requirements/build.in --output-file requirements/dev.txt
+	$(COMPILE) --group dev $(addprefix --extra ,web pandas xarray) pyproject.toml requirements/build.in --output-file requirements/dev.txt
 	$(COMPILE) --extra web --constraint requirements/dev.txt pyproject.toml requirements/build.in --output-file requirements/run.txt
 	$(COMPILE) requirements/tools.in --output-file requirements/tools.txt
 	$(COMPILE) requirements/compiler.in --output-file requirements/compiler.txt
@@ -134,4 +154,4 @@ sbom: $(TOOLS)/.tools
 	$(TOOLS)/bin/python requirements/sbom.py $(TOOLS)/run/bin/python $(SBOM)
 
 clean:
-	rm -rf $(VENV) $(TOOLS) $(DEMO) build dist docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(TOOLS) $(MINIMUM) $(DEMO) build dist docs/_build .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -33,6 +33,7 @@ napoleon_use_rtype = False
 
 suppress_warnings = ["ref.python"]  # F and p are fields of several results: their names need no link
 
+highlight_language = "text"  # what is no program is not coloured as one
 html_theme = "furo"
 html_title = f"skisnow {release}"
 html_static_path = ["_static"]

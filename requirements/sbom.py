@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
-STATIC = ROOT / "src" / "skisnow" / "web" / "replay" / "static"
+STATIC = ROOT / "src" / "skisnow" / "replay" / "static"
 
 
 def three_js() -> dict[str, Any]:

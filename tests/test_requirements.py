@@ -15,6 +15,8 @@ from packaging.version import Version
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCKS = {name: (ROOT / "requirements" / f"{name}.txt").read_text(encoding="utf-8") for name in ("run", "dev", "tools")}
+TESTED = ("web", "pandas", "xarray")
+"""Extras that the tests need."""
 PYTHONS = ("3.11.7", "3.12.1", "3.13.0", "3.14.0")
 
 
@@ -44,14 +46,19 @@ def bare(name: str) -> str:
 
 
 def asked(*extras: str) -> Iterator[Requirement]:
-    """What pyproject.toml asks for with these extras, and with those that they name."""
+    """What pyproject.toml asks for with these extras."""
     project = PROJECT["project"]
     lines = [*project["dependencies"], *(line for extra in extras for line in project["optional-dependencies"][extra])]
-    for requirement in map(Requirement, lines):
-        if requirement.name == project["name"]:
-            yield from asked(*requirement.extras)
+    yield from map(Requirement, lines)
+
+
+def of_group(name: str) -> Iterator[Requirement]:
+    """What a group of pyproject.toml asks for, and the groups that it includes."""
+    for each in PROJECT["dependency-groups"][name]:
+        if isinstance(each, str):
+            yield Requirement(each)
         else:
-            yield requirement
+            yield from of_group(each["include-group"])
 
 
 @pytest.mark.parametrize("name", LOCKS)
@@ -63,12 +70,15 @@ def test_each_file_is_named_by_its_hashes_and_no_place(name: str) -> None:
 
 
 @pytest.mark.parametrize("python", PYTHONS)
-@pytest.mark.parametrize(("name", "extra"), [("run", "web"), ("dev", "dev")])
-def test_what_is_asked_for_is_locked(name: str, extra: str, python: str) -> None:
+@pytest.mark.parametrize(("name", "extras", "groups"), [("run", ("web",), ()), ("dev", TESTED, ("dev",))])
+def test_what_is_asked_for_is_locked(name: str, extras: tuple[str, ...], groups: tuple[str, ...], python: str) -> None:
     locked = chosen(name, python)
+    in_groups = [each for group in groups for each in of_group(group)]
     build = [Requirement(line) for line in PROJECT["build-system"]["requires"]]
     missing = [
-        str(each) for each in [*asked(extra), *build] if not each.specifier.contains(locked.get(bare(each.name), "0"))
+        str(each)
+        for each in [*asked(*extras), *in_groups, *build]
+        if not each.specifier.contains(locked.get(bare(each.name), "0"))
     ]
     assert missing == []
 
@@ -90,7 +100,7 @@ def test_what_runs_is_what_is_tested(python: str) -> None:
 
 def test_every_dependency_and_every_bound_is_explained() -> None:
     page = (ROOT / "docs" / "dependencies.md").read_text(encoding="utf-8").lower()
-    for each in asked("dev", "posterior", "peers"):
+    for each in [*asked(*TESTED, "posterior", "peers"), *of_group("dev")]:
         assert bare(each.name) in page.replace("_", "-"), each
         for bound in each.specifier:
             if bound.operator == "<":

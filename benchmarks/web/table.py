@@ -13,7 +13,7 @@ from . import opening, reacting
 from .filled_lab import filled_lab
 from .opening import Times
 
-ABSENT = "no table of the web lab: it needs Chromium and Playwright (pip install 'skisnow[test]'; Debian: chromium)"
+ABSENT = "no table of the web lab: it needs Chromium and Playwright (pip install playwright; Debian: chromium)"
 
 
 def print_tables(readings: int, tries: int) -> None:

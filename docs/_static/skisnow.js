@@ -1,7 +1,9 @@
 // Blocks of code: a button that copies them, and a place in the tab order, so that long lines can be scrolled by key.
 "use strict";
 
-const COMMAND = /^(\$ )?(skisnow|make|python|pip|\.venv\/bin\/|git|kill)\b|^ +/;
+const COMMAND = /^(\$ )?(skisnow|make|python|pip|\.venv\/bin\/|\.ci\/|git|kill)\b|^ +/;
+/** What is aligned in columns, or is a program, scrolls: it would be hard to read in broken lines. */
+const COLUMNS = /\S {3,}\S|[|│┌└─]/;
 
 /** What a reader wants to paste: without prompts, and of a session only what was typed. */
 function typed(text) {
@@ -26,7 +28,10 @@ function furnished(block) {
   pre.tabIndex = 0;
   pre.setAttribute("role", "region");
   pre.setAttribute("aria-label", "code");
-  if (text.split("\n").every((line) => !line || COMMAND.test(line))) block.classList.add("commands");
+  const sentences = !block.closest(".highlight-python, .highlight-toml, .highlight-json, .doctest") && !text.includes(">>> ");
+  if (text.split("\n").every((line) => !line || COMMAND.test(line)) || (sentences && !COLUMNS.test(text))) {
+    block.classList.add("wraps");
+  }
   const button = Object.assign(document.createElement("button"), { className: "copy", type: "button", textContent: "Copy" });
   button.setAttribute("aria-label", "Copy this code");
   button.addEventListener("click", async () => {

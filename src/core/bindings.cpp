@@ -86,8 +86,8 @@ struct PythonLaws {
       if (found.ndim() != 2 || found.shape(0) != 2 || found.shape(1) != n)
         throw std::invalid_argument("a shear law must give strength and thrust for each section");
       for (std::size_t i = 0; i < n; i++) {
-        s[EDGE_STRENGTH][i] = s.touches(int(i)) ? found.data()[i] : 0.0;
-        s[EDGE_THRUST][i] = s.touches(int(i)) ? found.data()[n + i] : 0.0;
+        s[EDGE_STRENGTH][i] = s[STRENGTH_LEFT][i] * found.data()[i];
+        s[EDGE_THRUST][i] = s[STRENGTH_LEFT][i] * found.data()[n + i];
       }
     }
   }
@@ -128,6 +128,7 @@ nb::dict sections_of(const SnowContact& contact, int k) {
                                                          {"push", PUSH},
                                                          {"sliding", SLIDING},
                                                          {"friction", FRICTION},
+                                                         {"friction_load", FRICTION_LOAD},
                                                          {"strength", EDGE_STRENGTH},
                                                          {"shear_used", SHEAR_USED}};
   nb::dict out;
@@ -199,6 +200,15 @@ void bind_snow(nb::module_& m) {
       .def_rw("film_speed", &FrictionLaw::film_speed)
       .def_rw("fade_speed", &FrictionLaw::fade_speed);
 
+  nb::class_<ShearLaw>(m, "ShearLaw")
+      .def(nb::init<>())
+      .def_rw("decrease", &ShearLaw::decrease)
+      .def_rw("cuts", &ShearLaw::cuts)
+      .def_rw("friction_angle", &ShearLaw::friction_angle)
+      .def_rw("least_plane", &ShearLaw::least_plane)
+      .def_rw("residual_ratio", &ShearLaw::residual_ratio)
+      .def_rw("weakening", &ShearLaw::weakening);
+
   nb::class_<Snow>(m, "Snow")
       .def(nb::init<>())
       .def_rw("surface", &Snow::surface)
@@ -210,6 +220,8 @@ void bind_snow(nb::module_& m) {
       .def_rw("edge_blend_sine", &Snow::edge_blend_sine)
       .def_rw("compaction_resistance", &Snow::compaction_resistance)
       .def_rw("friction", &Snow::friction)
+      .def_rw("friction_on_base", &Snow::friction_on_base)
+      .def_rw("shear", &Snow::shear)
       .def_rw("knot_area", &Snow::knot_area)
       .def_rw("part_along", &Snow::part_along)
       .def_rw("part_across", &Snow::part_across);

@@ -202,6 +202,8 @@ Situation situation(const SnowContact& contact, const double* position, const do
 
 }  // namespace
 
+const char* skisnow_contact_sources(void) { return SKISNOW_SOURCE_HASH; }
+
 void skisnow_snow_defaults(skisnow_snow* snow) {
   if (snow == nullptr) return;
   const Snow usual;

@@ -24,6 +24,21 @@ void load_beam(const Runner& runner, const Sections& s, std::vector<double>& bea
   }
 }
 
+// [strengthen] Strength and thrust of the sections by the edge's angle.
+void strengthen(const ShearLaw& law, Sections& s) {
+  for (int i = 0; i < s.count(); i++) {
+    if (!s.touches(i)) continue;
+    const double angle = std::asin(std::min(std::fabs(s[EDGE_SINE][i]), 1.0)), strength = s[EDGE_STRENGTH][i];
+    if (law.cuts) {
+      const double cotangent = 1.0 / std::tan(std::max(0.5 * (angle - law.friction_angle), law.least_plane));
+      s[EDGE_STRENGTH][i] = 2.0 * cotangent * strength;
+      s[EDGE_THRUST][i] = (cotangent * cotangent - 1.0) * strength;
+    } else {
+      s[EDGE_STRENGTH][i] = (1.0 - law.decrease * angle) * strength;
+    }
+  }
+}
+
 // The same situation with one runner moved, or its motion changed, by a small step of one of its six freedoms.
 Situation displaced(const Situation& at, int k, int freedom, double step, bool of_motion) {
   Situation out = at;
@@ -88,6 +103,7 @@ const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose&
   kernels_->press(*snow_, lines, s);
   if (bearing_) bearing_->press(lines, s);
   kernels_->slide(motion, pose, *snow_, s);
+  if (snow_->shear.by_angle()) strengthen(snow_->shear, s);
   if (laws) laws(k, s);
   Wrench& wrench = wrenches_[std::size_t(k)];
   kernels_->push(motion, pose, *snow_, s, wrench);
@@ -212,24 +228,30 @@ void SnowContact::settle_history(int k, const Pose& pose) {
   lines.lay_ahead(runner(k), pose, *snow_);
 }
 
-// Leave all lines to the archive and lay others, on which the edge is displaced as it was at the same station.
+// Leave all lines to the archive and lay others, on which the edge is displaced and has slipped as it had at the same
+// station.
 void SnowContact::lay_anew(int k, const Pose& pose) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   Sections& s = sections_[std::size_t(k)];
-  std::vector<std::pair<double, double>> displaced;  // by station, rising
+  std::vector<std::pair<double, double>> displaced, slipped;  // by station, rising
   for (std::int64_t n = lines.first; n < lines.end; n++) {
     const int i = s.index(n), slot = lines.slot(n);
-    if (s.touches(i)) displaced.emplace_back(s[STATION][i], lines.values[ANCHOR][slot] - s[EDGE_PLACE][i]);
+    if (!s.touches(i)) continue;
+    displaced.emplace_back(s[STATION][i], lines.values[ANCHOR][slot] - s[EDGE_PLACE][i]);
+    slipped.emplace_back(s[STATION][i], lines.values[SLIPPED][slot]);
   }
   std::sort(displaced.begin(), displaced.end());
+  std::sort(slipped.begin(), slipped.end());
   lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
   state_.strips[std::size_t(k)] = snow_->archive.new_strip();
   lines.lay_ahead(runner(k), pose, *snow_);
   kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
   remember(k, lines);
   for (std::int64_t n = lines.first; n < lines.end && !displaced.empty(); n++) {
-    const int i = s.index(n);
-    if (s.touches(i)) lines.values[ANCHOR][lines.slot(n)] = s[EDGE_PLACE][i] + interpolated(displaced, s[STATION][i]);
+    const int i = s.index(n), slot = lines.slot(n);
+    if (!s.touches(i)) continue;
+    lines.values[ANCHOR][slot] = s[EDGE_PLACE][i] + interpolated(displaced, s[STATION][i]);
+    lines.values[SLIPPED][slot] = interpolated(slipped, s[STATION][i]);
   }
 }
 
@@ -285,7 +307,7 @@ ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) c
                                 v[2] + o[0] * at[1] - o[1] * at[0] + lifting - s[TWIST_COSINE][i] * twisting};
     const double across = velocity[0] * s[ACROSS_0][i] + velocity[1] * s[ACROSS_1][i] + velocity[2] * s[ACROSS_2][i];
     out.shear += s[SHEAR][i] * across;
-    out.friction -= s[FRICTION][i] * s[FORCE][i] * s[SLIDING][i];
+    out.friction -= s[FRICTION][i] * s[FRICTION_LOAD][i] * s[SLIDING][i];
   }
   out.normal = all - out.shear - out.friction;
   return out;

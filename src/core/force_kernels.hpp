@@ -20,6 +20,9 @@ struct BootMotion {
   }
 };
 
+// Force (N) of a section below which its centre of pressure is lost in rounding: it then lies at the edge.
+constexpr double LEAST_FORCE = 1e-6;
+
 // The centre of pressure of a section: where it lies, and how far across the base from the ski's middle.
 template <class V>
 struct Centre {
@@ -27,7 +30,8 @@ struct Centre {
   V arm;
 
   Centre(const Cut<V>& c, V force, V moment) {
-    const V off = moment / select(force > 0.0, force, all<V>(1.0));
+    const MaskOf<V> presses = force > LEAST_FORCE;
+    const V off = select(presses, moment, V{}) / select(presses, force, all<V>(1.0));
     at = {c.station + off * (c.left.x - c.fall * c.normal.x), c.edge_left + off * (c.left.y - c.fall * c.normal.y),
           c.edge_up + off * (c.left.z - c.fall * c.normal.z)};
     arm = c.reach + off * c.widening;
@@ -82,24 +86,36 @@ struct Acting {
 template <class V>
 struct Pushed {
   static constexpr int PARTS = 8;
-  V shear, along;
+  V shear, along, load;
   V parts[PARTS];  // force and moment about the boot in the ski's axes; force and moment on the beam
 
-  Pushed(const Cut<V>& c, const Acting<V>& by, double compaction) {
+  Pushed(const Cut<V>& c, const Acting<V>& by, const Snow& snow) {
     const V none{};
+    const double compaction = snow.compaction_resistance ? 1.0 : 0.0;
     const MaskOf<V> wet = (by.share > 0.0) & (c.deepest > 0.0);
     const Centre<V> centre(c, by.force, by.moment);
     const V by_twist = c.twist_slope * by.moment / (1.0 - c.sine * c.sine) * c.size;
     const V resistance = (by.force * c.climb + by_twist) * compaction;
-    along = select(wet, resistance - by.friction * by.force, none);
     const V used = within(by.used, -1.0, 1.0), area = c.deepest * by.share;
     shear = select(wet, by.strength * area * used, none);
     const V thrust = select(wet, by.thrust * area * absolute(used), none);
     const Vector<V>& n = c.normal;
-    const Vector<V> a{by.force * n.x + along * c.along.x, by.force * n.y + along * c.along.y,
-                      by.force * n.z + along * c.along.z};
-    const Vector<V> z{shear * c.across.x + thrust * n.x, shear * c.across.y + thrust * n.y,
-                      shear * c.across.z + thrust * n.z};
+    // what friction acts on: of the pressure, and of what acts at the edge
+    V pressing = by.force, aside = none;
+    if (snow.friction_on_base) {
+      const V upright = n.y * c.sp + n.z * c.cp;
+      pressing = by.force * upright;
+      aside = maximum(thrust * upright + shear * (c.across.y * c.sp + c.across.z * c.cp), -pressing);
+    }
+    load = pressing + aside;
+    const V at_centre = select(wet, resistance - by.friction * pressing, none);
+    const V at_edge = select(wet, -by.friction * aside, none);
+    along = at_centre + at_edge;
+    const Vector<V> a{by.force * n.x + at_centre * c.along.x, by.force * n.y + at_centre * c.along.y,
+                      by.force * n.z + at_centre * c.along.z};
+    const Vector<V> z{shear * c.across.x + thrust * n.x + at_edge * c.along.x,
+                      shear * c.across.y + thrust * n.y + at_edge * c.along.y,
+                      shear * c.across.z + thrust * n.z + at_edge * c.along.z};
     const Vector<V> moment = cross(centre.at, a), edge_moment = cross({c.station, c.edge_left, c.edge_up}, z);
     const V turning = -centre.arm * (c.sp * a.y + c.cp * a.z) - c.reach * (c.sp * z.y + c.cp * z.z);
     const V all_parts[PARTS] = {
@@ -123,16 +139,16 @@ Cut<V> displaced(const Cut<V>& base, int change, double way) {
 template <class V>
 void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out) {
   Sum sums[6];
-  const double compaction = snow.compaction_resistance ? 1.0 : 0.0;
   for (int i = 0; i < s.count(); i += WIDTH<V>) {
     const Acting<V> by{load<V>(s[SHARE] + i),     load<V>(s[FORCE] + i),         load<V>(s[MOMENT] + i),
                        load<V>(s[FRICTION] + i),  load<V>(s[EDGE_STRENGTH] + i), load<V>(s[EDGE_THRUST] + i),
                        load<V>(s[SHEAR_USED] + i)};
-    const Pushed<V> pushed(Cut<V>::stored(s, i), by, compaction);
+    const Pushed<V> pushed(Cut<V>::stored(s, i), by, snow);
     for (int k = 0; k < Pushed<V>::PARTS; k++) store(s[SectionField(FORCE_0 + k)] + i, pushed.parts[k]);
     for (int k = 0; k < 6; k++) sums[k].add(i % BLOCK, pushed.parts[k]);
     store(s[SHEAR] + i, pushed.shear);
     store(s[PUSH] + i, pushed.along);
+    store(s[FRICTION_LOAD] + i, pushed.load);
   }
   for (int a = 0; a < 3; a++) out.force[a] = sums[a].total(), out.moment[a] = sums[a + 3].total();
 }
@@ -143,7 +159,6 @@ void push(const Motion&, const Pose&, const Snow& snow, Sections& s, Wrench& out
 template <class V>
 void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, double step, double sense,
             SectionDifferences& out) {
-  const double compaction = snow.compaction_resistance ? 1.0 : 0.0;
   for_lanes<V>(s, lines, [&](int i, int j) {
     const Cut<V> base(s, i);
     Acting<V> by;
@@ -159,7 +174,7 @@ void differ(const Snow& snow, const GrooveLines& lines, const Sections& s, doubl
         const Pressed<V> answer(snow, lines, j, c);
         by.force = by.share * answer.force, by.moment = by.share * answer.moment,
         by.used = shear_used(snow, lines, j, c);
-        const Pushed<V> pushed(c, by, compaction);
+        const Pushed<V> pushed(c, by, snow);
         for (int k = 0; k < Pushed<V>::PARTS; k++)
           parts[k] = (load<V>(s[SectionField(FORCE_0 + k)] + i) - pushed.parts[k]) / way;
       }

@@ -13,7 +13,8 @@ constexpr int NEWTON_STEPS = 3;      // to the place on a curved surface
 constexpr double MOST_UNEVEN = 0.25;  // of the spacing, between neighbours
 constexpr double MOST_TURN = 0.3;     // (rad) between a line's direction ahead and the ski
 constexpr double REACH = 2.0;         // (m) to both sides, over which a new line looks for older tracks
-constexpr double MOST_ASIDE = 1.9;    // (m) of the ski from a line's origin
+constexpr double MOST_ASIDE =
+    0.2;  // (m) of the ski from a line's origin: beyond, it may run in a track that was left since
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 

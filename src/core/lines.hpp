@@ -24,6 +24,7 @@ enum LineField {
   ANCHORED, ANCHOR,              // whether the edge holds (0 or 1), and where across (m)
   ABOVE, EDGE_ABOVE, DEPTH_ABOVE,     // whether the base was just above at the last accepted pose; its edge then
   MARKED, EDGE_MARKED, DEPTH_MARKED,  // whether it was in the snow then; its edge then
+  SLIPPED,                            // how far an edge has slipped across here (m)
   LINE_FIELDS
 };
 // clang-format on

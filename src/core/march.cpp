@@ -75,6 +75,7 @@ void keep_anchor(const Sections& s, int i, const Snow& snow, GrooveLines& lines,
   else if (v[ABOVE][slot] > 0.5)
     anchor = edge - depth / (depth - v[DEPTH_ABOVE][slot]) * (edge - v[EDGE_ABOVE][slot]);
   v[ANCHOR][slot] = std::clamp(anchor, edge - reach, edge + reach);
+  v[SLIPPED][slot] += std::fabs(v[ANCHOR][slot] - anchor);
   v[ANCHORED][slot] = 1.0;
 }
 

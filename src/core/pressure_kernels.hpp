@@ -134,6 +134,12 @@ V shear_used(const Snow& snow, const GrooveLines& lines, int j, const Cut<V>& c)
   return (anchor - c.place) / snow.shear_displacement;
 }
 
+// [strength_left] Of a strength, where an edge has slipped this far (m).
+template <class V>
+V strength_left(const ShearLaw& law, V slipped) {
+  return 1.0 - (1.0 - law.residual_ratio) * minimum(slipped * (1.0 / law.weakening), all<V>(1.0));
+}
+
 // [press] What the snow answers to each section, and how far the shear at its edge is displaced.
 template <class V>
 void press(const Snow& snow, const GrooveLines& lines, Sections& s) {
@@ -141,7 +147,7 @@ void press(const Snow& snow, const GrooveLines& lines, Sections& s) {
     const V share = load<V>(s[SHARE] + i), none{};
     const Cut<V> c = Cut<V>::stored(s, i);
     const MaskOf<V> wet = (share > 0.0) & (c.deepest > 0.0);
-    for (SectionField field : {FORCE, MOMENT, SNOW_ENERGY, SHEAR_USED, EDGE_STRENGTH, EDGE_THRUST})
+    for (SectionField field : {FORCE, MOMENT, SNOW_ENERGY, SHEAR_USED, STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST})
       store(s[field] + i, none);
     if (!any(wet)) return;
     const Pressed<V> answer(snow, lines, j, c);
@@ -149,7 +155,9 @@ void press(const Snow& snow, const GrooveLines& lines, Sections& s) {
     store(s[MOMENT] + i, select(wet, share * answer.moment, none));
     store(s[SNOW_ENERGY] + i, select(wet, share * answer.energy, none));
     store(s[SHEAR_USED] + i, select(wet, shear_used(snow, lines, j, c), none));
-    store(s[EDGE_STRENGTH] + i, select(wet, snow.strength_share * load<V>(lines.values[STRENGTH] + j), none));
+    const V left = strength_left(snow.shear, load<V>(lines.values[SLIPPED] + j));
+    store(s[STRENGTH_LEFT] + i, select(wet, left, none));
+    store(s[EDGE_STRENGTH] + i, select(wet, snow.strength_share * load<V>(lines.values[STRENGTH] + j) * left, none));
   });
 }
 

@@ -36,11 +36,12 @@ enum SectionField {
   DEPTH_FALL, DEPTH_CLIMB, BASE_WIDENING, WET_FROM, WET_TO,
   // the answer of the snow: force (N) and its moment about the edge; elastic energy of the snow (J)
   FORCE, MOMENT, SNOW_ENERGY,
-  // the edge: shear strength S_f and the thrust off the snow that comes with it (Pa), the share of the displacement to
-  // full strength in use
-  EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED,
-  // velocity of the base at the centre of pressure along the edge (m/s); μ with its sign, and its growth with it
-  SLIDING, FRICTION, FRICTION_SLOPE,
+  // the edge: share of the strength that is left after slip, shear strength S_f and the thrust off the snow that comes
+  // with it (Pa), the share of the displacement to full strength in use
+  STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED,
+  // velocity of the base at the centre of pressure along the edge (m/s); μ with its sign, and its growth with it; the
+  // load that friction acts on (N)
+  SLIDING, FRICTION, FRICTION_SLOPE, FRICTION_LOAD,
   // shear across the edge, what acts along it (N); force and moment about the boot in the ski's axes; on the beam
   SHEAR, PUSH, FORCE_0, FORCE_1, FORCE_2, MOMENT_0, MOMENT_1, MOMENT_2, BEAM_FORCE, BEAM_MOMENT,
   SECTION_FIELDS

@@ -66,6 +66,9 @@ typedef struct skisnow_runner {
   const double* node;        /* their positions (m), falling, the first at the tip, the last at the tail */
 } skisnow_runner;
 
+/* Fingerprint of the sources that the library was built from. */
+SKISNOW_API const char* skisnow_contact_sources(void);
+
 SKISNOW_API void skisnow_snow_defaults(skisnow_snow* snow);
 
 /* Runners in a snow of their own. Where it fails *contact is NULL, and `message` (of `size` bytes, or NULL) says why.

@@ -13,16 +13,30 @@ struct FrictionLaw {
   double fade_speed = 0.01;  // below it the friction fades to zero
 };
 
+// Strength of an edge over that of the snow's line, by its angle ϑ and by how far it has slipped there.
+struct ShearLaw {
+  double decrease = 0.0;        // k of 1 - k ϑ (1/rad)
+  bool cuts = false;            // machining: 2 cot φ of the line's strength S, φ = (ϑ - β)/2; thrust cot² φ - 1
+  double friction_angle = 0.0;  // its β
+  double least_plane = 0.087;   // φ where the edge is flatter (rad)
+  double residual_ratio = 1.0;  // strength after slip over that before, reached linearly over a slip (m)
+  double weakening = 1e-3;
+
+  bool by_angle() const { return cuts || decrease != 0.0; }
+};
+
 struct Snow {
-  Grid surface;                        // height (m)
-  Grid hardness, strength;             // H_V (N/m³), S_f (Pa)
-  double strength_share = 1.0;         // of S_f everywhere, which may change during a run
-  double unloading_ratio = 1.0;        // k_u/H_V
-  double shear_displacement = 0.5e-3;  // of the edge across, to full strength (m)
+  Grid surface;                         // height (m)
+  Grid hardness, strength;              // H_V (N/m³), S_f (Pa)
+  double strength_share = 1.0;          // of S_f everywhere, which may change during a run
+  double unloading_ratio = 1.0;         // k_u/H_V
+  double shear_displacement = 0.02e-3;  // of the edge across, to full strength (m)
   // sine of the edge angle (2°) above which the shear acts at the edge alone
   double edge_blend_sine = 0.03489949670250097;
   bool compaction_resistance = true;
   FrictionLaw friction;
+  bool friction_on_base = false;  // of what presses on the base, or of the pressure along the snow's normal
+  ShearLaw shear;
   double knot_area = 1e-4;  // share of depth times width of a contact below which a knot is dropped
   // longest way (m) of tip and tail, along the ski and across it, over which the history is marched at once
   double part_along = 0.01, part_across = 2e-3;

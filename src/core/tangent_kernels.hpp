@@ -72,7 +72,7 @@ inline void add_stiffness(const Sections& s, const SectionDifferences& minus, do
 // [friction_damping] Friction grows with the sliding speed.
 inline void add_friction_damping(const Sections& s, double weight, bool bends, RunnerTangent& out) {
   for (int i = 0; i < s.count(); i++) {
-    const double force = s[FORCE][i], rate = weight * force * s[FRICTION_SLOPE][i];
+    const double force = s[FORCE][i], rate = weight * s[FRICTION_LOAD][i] * s[FRICTION_SLOPE][i];
     if (!s.touches(i) || !(force > 0.0) || rate == 0.0) continue;
     const double off = s[MOMENT][i] / force, fall = s[DEPTH_FALL][i];
     const double at[3] = {s[STATION][i] + off * (s[LINE_LEFT_0][i] - fall * s[LINE_NORMAL_0][i]),

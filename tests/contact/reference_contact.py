@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from skisnow.contact import Runner, SnowField
+from skisnow.forces.shear.slip import strength_left
 
 FloatArray = npt.NDArray[np.float64]
 _POINT, _WEIGHT = np.polynomial.legendre.leggauss(3)
@@ -30,6 +31,7 @@ class Line:
     anchor: float | None = None
     above: tuple[float, float] | None = None
     marked: tuple[float, float] | None = None
+    slipped: float = 0.0
 
     @property
     def left(self) -> FloatArray:
@@ -101,7 +103,7 @@ class ReferenceRunner:
     def update(self, pose: Pose) -> None:
         for line in self.lines:
             section = _Section(self, line, pose)
-            line.marked, before = None, line.marked
+            before, line.marked = line.marked, None
             if section.share <= 0.0:
                 continue
             touch = section.touch
@@ -116,7 +118,9 @@ class ReferenceRunner:
                 )
             line.marked = touch.edge, touch.depth
             reach = self.snow.shear_displacement
-            line.anchor = float(np.clip(_anchor(line, touch), touch.edge - reach, touch.edge + reach))
+            held = _anchor(line, touch)
+            line.anchor = float(np.clip(held, touch.edge - reach, touch.edge + reach))
+            line.slipped += abs(line.anchor - held)
             line.above = None
 
 
@@ -193,7 +197,7 @@ class _Section:
         snow, line, touch = self.whole.snow, self.line, self.touch
         n, y = line.out, line.left
         force, moment = (self.share * value for value in _pressure(line, touch, snow))
-        off = moment / force if force > 0.0 else 0.0
+        off = moment / force if force > 1e-6 else 0.0  # below, lost in rounding
         push_at, arm = self.edge_at + off * (y - touch.fall * n), self.reach + off * self.wide
         v, omega = self.pose.velocity[:3], self.pose.velocity[3:]
         moves = v + np.cross(omega, push_at) + float(self.deflects @ self.rate) * self.up
@@ -202,17 +206,35 @@ class _Section:
         sliding = float(forwards @ moves)
         by_twist = self.twist_s * moment / (1.0 - self.sine**2) * self.per_length
         resist = force * float(self.base @ forwards) + by_twist if snow.compaction_resistance else 0.0
-        mu = float(snow.friction.coefficient(abs(sliding))) if hasattr(snow.friction, "coefficient") else snow.friction
-        rub = -mu * force * sliding / math.hypot(sliding, snow.fade_speed)
         used = (_anchor(line, touch) - touch.edge) / snow.shear_displacement
-        strength = snow.failure_shear_stress
-        assert isinstance(strength, float)
-        shear = strength * touch.deepest * self.share * min(max(used, -1.0), 1.0) * self.u
-        push = force * n + (resist + rub) * forwards
+        strength, thrust = self._strength()
+        area = touch.deepest * self.share
+        shear = strength * area * min(max(used, -1.0), 1.0) * self.u + thrust * area * min(abs(used), 1.0) * n
+        # Coulomb's law on what presses square on the base: snow's normal and side force together
+        pressing, aside = force, 0.0
+        if snow.friction_acts_on == "base-normal":
+            pressing = force * float(n @ self.r)
+            aside = max(float(shear @ self.r), -pressing)
+        mu = float(snow.friction.coefficient(abs(sliding))) if hasattr(snow.friction, "coefficient") else snow.friction
+        rub = -mu * sliding / math.hypot(sliding, snow.fade_speed)
+        push = force * n + (resist + rub * pressing) * forwards
+        shear = shear + rub * aside * forwards
         wrench[:3] += push + shear
         wrench[3:] += np.cross(push_at, push) + np.cross(self.edge_at, shear)
         loads += (self.deflects * float(self.up @ (push + shear))).reshape(-1, 3)
         loads -= (self.twists * float(self.r @ (arm * push + self.reach * shear))).reshape(-1, 3)
+
+    def _strength(self) -> tuple[float, float]:
+        """Shear strength and thrust (N/m²), less what slip has taken."""
+        snow, touch = self.whole.snow, self.touch
+        left = strength_left(self.line.slipped, residual_ratio=snow.residual_ratio, slip_weakening=snow.slip_weakening)
+        if snow.shear is None:
+            assert isinstance(snow.failure_shear_stress, float)
+            return float(left) * snow.failure_shear_stress, 0.0
+        angle = math.asin(min(abs(self.sine), 1.0))
+        stress = snow.shear.failure_stress(touch.deepest, angle)
+        thrust = snow.shear.thrust_force(touch.deepest, 1.0, angle) / touch.deepest
+        return float(left * stress), float(left * thrust)
 
 
 def _pressure(line: Line, touch: Touch, snow: SnowField) -> tuple[float, float]:

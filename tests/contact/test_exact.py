@@ -9,6 +9,9 @@ import numpy.typing as npt
 import pytest
 
 from skisnow.contact import SnowContact, SnowField
+from skisnow.forces.friction.load import ActsOn
+from skisnow.forces.shear import MachiningShear
+from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
 
 from .conftest import edged, straight
 
@@ -55,7 +58,7 @@ def test_unloading_of_a_wedge_is_a_square(ratio: float) -> None:
     for share in (0.2, 0.5, 0.9):
         lifted = wrench(contact, placed(angle, e - share * e / ratio))[2]
         assert lifted == pytest.approx(most * (1.0 - share) ** 2, rel=1e-9)
-    assert wrench(contact, placed(angle, e - 1.01 * e / ratio))[2] == 0.0
+    assert wrench(contact, placed(angle, e - 1.01 * e / ratio))[2] == pytest.approx(0.0, abs=1e-12)  # rounding
 
 
 def test_elastic_snow_keeps_nothing() -> None:
@@ -79,7 +82,7 @@ def test_the_energy_of_a_cycle_is_that_of_the_groove() -> None:
 
 def test_an_edge_holds_up_to_its_strength_and_then_slips() -> None:
     angle, e, reach = math.radians(45), 2e-3, 0.5e-3
-    contact = pressed(SnowField(H, S, 10.0), placed(angle, e))
+    contact = pressed(SnowField(H, S, 10.0, shear_displacement=reach), placed(angle, e))
     for aside in (0.1e-3, 0.4e-3, -0.3e-3):
         assert wrench(contact, placed(angle, e, y=aside))[1] == pytest.approx(-S * LENGTH * e * aside / reach, rel=1e-9)
     for aside in (0.6e-3, 5e-3):
@@ -112,13 +115,55 @@ def test_friction_acts_against_the_glide() -> None:
         assert found[0] == pytest.approx(-0.05 * normal * np.sign(speed), rel=1e-5)
 
 
+@pytest.mark.parametrize("degrees", [30, -60])
+def test_friction_acts_on_what_presses_on_the_base(degrees: float) -> None:
+    """N cos ϑ + Z sin ϑ, which is N/cos ϑ in the balance of a carve, Z = N tan ϑ; or N."""
+    angle, e, mu = math.radians(degrees), 2e-3, 0.05
+    normal = H * LENGTH * e * e / (2.0 * math.tan(abs(angle)))
+    strength = 1.25 * normal * math.tan(abs(angle)) / (LENGTH * e)  # at 80 % of the grip in balance
+    gliding = np.array([[8.0, 0, 0, 0, 0, 0]])
+    aside = -math.copysign(0.8 * 0.5e-3, angle)  # the snow then pushes to the side of the edge that is down
+    loads: dict[ActsOn, float] = {"base-normal": normal / math.cos(angle), "snow-normal": normal}
+    for acts_on, load in loads.items():
+        snow = SnowField(H, strength, 1.0, mu, friction_acts_on=acts_on, shear_displacement=0.5e-3)
+        contact = pressed(snow, placed(angle, e))
+        found = wrench(contact, placed(angle, e, y=aside), gliding)
+        assert found[1] == pytest.approx(normal * math.tan(angle), rel=1e-9)
+        assert found[0] == pytest.approx(-mu * load, rel=1e-5)
+        assert contact.sections().friction_load.sum() == pytest.approx(load, rel=1e-9)
+    unloaded = SnowContact(SnowField(H, strength, 1.0, mu, friction_acts_on="base-normal"), [straight()])
+    assert wrench(unloaded, placed(angle, e), gliding)[0] == pytest.approx(-mu * normal * math.cos(angle), rel=1e-5)
+
+
+def test_cutting_pushes_the_edge_out() -> None:
+    """Machining at 60°, β = 0: 2 S cot 30° across, S (cot² 30° - 1) = 2 S off the snow, for each e L."""
+    angle, e, cut = math.radians(60), 2e-3, 1e5
+    snow = SnowField(H, S, 1.0, shear=MachiningShear(cut, 0.0, least_shear_plane=0.05))
+    contact = pressed(snow, placed(angle, e))
+    at_rest = wrench(contact, placed(angle, e))[2]
+    found = wrench(contact, placed(angle, e, y=1e-3))
+    assert found[1] == pytest.approx(-2.0 * cut * math.sqrt(3.0) * LENGTH * e, rel=1e-9)
+    assert found[2] - at_rest == pytest.approx(2.0 * cut * LENGTH * e, rel=1e-9)
+
+
+def test_strength_falls_with_slip() -> None:
+    """From S_f to r S_f over the slip d, in proportion: after d/2 half of what can be lost."""
+    angle, e, reach, ratio, over = math.radians(45), 2e-3, 0.02e-3, 0.4, 2e-3
+    snow = SnowField(H, S, 1.0, shear_displacement=reach, residual_ratio=ratio, slip_weakening=over)
+    contact = pressed(snow, placed(angle, e))
+    for slip, left in ((0.0, 1.0), (0.5 * over, 0.7), (over, ratio), (3.0 * over, ratio)):
+        pose = placed(angle, e, y=reach + slip)
+        contact.update(*pose, 5e-4)
+        assert wrench(contact, pose)[1] == pytest.approx(-left * S * LENGTH * e, rel=1e-9)
+
+
 def test_stiffness_of_a_wedge() -> None:
     """∂F/∂e = H_V L e/tan ϑ, and S_f e L over the displacement to full strength across."""
     angle, e = math.radians(45), 2e-3
     contact = pressed(SnowField(H, S, 1.0), placed(angle, e))
     stiffness, damping = contact.tangent(*placed(angle, e), AT_REST, 5e-4)
     assert stiffness[0, 2, 2] == pytest.approx(H * LENGTH * e / math.tan(angle), rel=1e-6)
-    assert stiffness[0, 1, 1] == pytest.approx(S * LENGTH * e / 0.5e-3, rel=1e-6)
+    assert stiffness[0, 1, 1] == pytest.approx(S * LENGTH * e / SHEAR_DISPLACEMENT, rel=1e-6)
     assert damping[0] == pytest.approx(np.zeros((6, 6)), abs=1e-6)
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import warnings
+from typing import Any
+
 import numpy as np
 import pytest
 
 from skisnow import read_ski
 from skisnow.contact import Runner, SnowContact, SnowField
+from skisnow.errors import RangeWarning
 from skisnow.forces.friction import WaterFilmFriction
+from skisnow.forces.shear import AngleShear, MachiningShear, ShearLaw
 
 from .conftest import edged
 from .reference_contact import Pose, ReferenceRunner
@@ -34,12 +39,26 @@ def a_pose(rng: np.random.Generator, near: Pose | None = None) -> Pose:
     return Pose(position, rotation, rng.normal(size=6) * [8, 1, 0.3, 1, 1, 1], beam, rng.normal(size=beam.shape) * 0.1)
 
 
+def _laws(seed: int, strength: float) -> dict[str, Any]:
+    """In turn every shear law of the core, strength that falls with slip and strength that does not, both loads."""
+    with warnings.catch_warnings():  # of strengths that were never measured
+        warnings.simplefilter("ignore", RangeWarning)
+        cut = MachiningShear(strength / 2.0, 0.2, least_shear_plane=0.1)
+        shear: tuple[ShearLaw | None, ...] = (None, AngleShear(strength, 0.266), cut)
+    acts_on = "snow-normal" if seed % 4 == 3 else "base-normal"
+    weakens = {"residual_ratio": 0.3, "slip_weakening": 0.4e-3} if seed % 2 else {}
+    # over half a millimetre a walk of small steps both holds and slips
+    return {"shear": shear[seed % 3], "friction_acts_on": acts_on, "shear_displacement": 0.5e-3, **weakens}
+
+
 def differences(seed: int, *, steps: int) -> list[float]:
     """Of wrench and beam loads over the largest force, along a short random walk."""
     rng = np.random.default_rng(seed)
     hardness, strength = (float(10.0 ** rng.uniform(*ends)) for ends in ((7.3, 11.0), (4.5, 6.5)))
     ratio = float(rng.uniform(1.0, 50.0))
-    snow = SnowField(hardness, strength, ratio, FILM, knot_area=0.0, part_along=1.0, part_across=1.0)
+    snow = SnowField(
+        hardness, strength, ratio, FILM, knot_area=0.0, part_along=1.0, part_across=1.0, **_laws(seed, strength)
+    )
     runner = Runner.of(SKI, nodes=NODES)
     contact = SnowContact(snow, [runner], spacing=SPACING)
     pose = a_pose(rng)

@@ -64,6 +64,7 @@ def snow_of(scenario: Scenario, *, friction: FrictionLaw | float | None = None) 
         contact.unloading_ratio,
         friction=contact.friction if friction is None else friction,
         compaction_resistance=contact.compaction_resistance,
+        shear_displacement=contact.shear_displacement,
     )
 
 

@@ -66,7 +66,7 @@ def test_half_a_second_ends_where_the_former_solver_ended() -> None:
     """A tenth of a millimetre of 3.6 m: the former run at half its step moves by 0.4 µm, but its cells are 0.3 mm wide
     and its history knows no cut within a step; the present one may err by 0.3 µm in each of some 600 steps."""
     former = FORMER["run"]
-    dynamics = advanced(given(former["scenario"]), former["duration"])
+    dynamics = advanced(given(former["scenario"], snow__shear_displacement_mm=0.5), former["duration"])
     run = dynamics.position - former["place"]
     assert np.linalg.norm(run) < 1e-4
     assert np.linalg.norm(dynamics.velocity[:3]) == pytest.approx(former["speed"], rel=1e-4)

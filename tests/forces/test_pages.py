@@ -14,6 +14,8 @@ from skisnow.forces.penetration import AreaLaw, BilinearLaw, HypoplasticPoint, M
 from skisnow.forces.shear import MachiningShear
 from skisnow.snow import published_names, published_snow
 
+from ..versions import SAME_PIXELS
+
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 INDEX = (DOCS / "forces" / "index.md").read_text(encoding="utf-8")
 LAWS = (*penetration.LAWS, *penetration.POINT_LAWS, *shear.LAWS, *friction.LAWS)
@@ -71,6 +73,7 @@ DRAWN_QUICKLY = ("penetration-volume", "penetration-hypoplastic-point", "shear-m
 """One of each kind; the rest takes half a second each."""
 
 
+@SAME_PIXELS
 @pytest.mark.parametrize(
     "name",
     [pytest.param(page.stem, marks=() if page.stem in DRAWN_QUICKLY else pytest.mark.slow) for page in PAGES],

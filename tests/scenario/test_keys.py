@@ -66,6 +66,8 @@ def test_units_come_from_the_names() -> None:
         "mu_0",
         "damping_ratio",
         "groove_tolerance",
+        "transverse_friction",
+        "residual_ratio",
     }
 
 

@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from skisnow.errors import ParameterError
 from skisnow.statistics import expanded_factor, welch_satterthwaite
 
+from ..versions import EXACT_QUANTILES
+
 
 def test_equal_contributions_add_their_degrees() -> None:
     # u⁴-weights equal: (k u²)²/(k u⁴/ν) = k ν
@@ -43,6 +45,7 @@ def test_between_the_least_and_the_sum(parts: list[tuple[float, float]]) -> None
     assert dof.min() * (1 - 1e-12) <= found <= dof.sum() * (1 + 1e-12)
 
 
+@EXACT_QUANTILES
 def test_expanded_factors_of_elementary_distributions() -> None:
     # t with 1 degree: tan(π c/2); with 2: c √(2/(1 - c²)); the limit: normal
     c = 0.9545

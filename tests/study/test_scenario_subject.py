@@ -113,7 +113,7 @@ def test_interruption_ends_the_study_not_the_point(
     with pytest.raises(KeyboardInterrupt):
         run_study(study, workers=1)
     assert study.partial.is_file()
-    replaced(lambda scenario: asked.append(scenario) or straight_run(scenario))  # type: ignore[func-returns-value]
+    replaced(lambda scenario: asked.append(scenario) or straight_run(scenario))  # type: ignore[func-returns-value, redundant-expr]
     table = run_study(study, workers=1)
     assert len(asked) == 3 + 4  # two were kept
     assert [row["outcome"] for row in table.rows] == ["finished"] * 6

@@ -162,7 +162,7 @@ def served_with_figures(tmp_path: Path) -> Iterator[Served]:
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
     if MISSING:
-        pytest.skip(f"not installed: {', '.join(MISSING)} (pip install 'skisnow[test]')")
+        pytest.skip(f"not installed: {', '.join(MISSING)} (pip install 'skisnow[web]' playwright)")
     if CHROMIUM is None:
         pytest.skip("there is no Chromium on this machine (Debian: apt install chromium)")
     from playwright.sync_api import sync_playwright

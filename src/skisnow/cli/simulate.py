@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from ..scenario import Scenario, ScenarioFile
     from ..simulate.run import Run
+    from ..simulate.verification import Refinement
 
 LOADING = "loading"
 
@@ -43,7 +44,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json, track.csv, run.nc and a report")
     replay = "with --out: also write replay.html, the run in three dimensions, which opens without network"
     parser.add_argument("--replay", action="store_true", help=replay)
-    finer = "repeat the run finer, one choice of the solver at a time, and say how far its end moves"
+    finer = (
+        "repeat the run, finer and with 0.1 %% more and less of its inputs, one at a time; say how far its end moves"
+    )
     parser.add_argument("--verify", action="store_true", help=finer)
     parser.add_argument("--json", action="store_true", help="print summary.json alone to standard output")
     parser.add_argument("--list", action="store_true", help="name the built-in scenarios; with NAME print that one")
@@ -65,8 +68,8 @@ def run(options: argparse.Namespace) -> int:
         asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
     _prepare(options, asked)
     with ending_is_an_interrupt() as ending:
-        found, verification = _computed(asked, verify=options.verify)
-        _tell(options, asked, found, verification)
+        found, refinements = _computed(asked, verify=options.verify)
+        _tell(options, asked, found, refinements)
     return _status(found, ending)
 
 
@@ -89,7 +92,7 @@ def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
         print(f"warning: {text}", file=sys.stderr)
 
 
-def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, dict[str, Any] | None]:
+def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
     with ExitStack() as loading, Progress() as progress:
         loading.enter_context(announced(LOADING))
         from ..simulate.simulated_run import simulate
@@ -101,29 +104,35 @@ def _computed(asked: ScenarioFile, *, verify: bool) -> tuple[Run, dict[str, Any]
         return found, _verified(found, progress)
 
 
-def _verified(found: Run, progress: Progress) -> dict[str, Any]:
+def _verified(found: Run, progress: Progress) -> tuple[Refinement, ...]:
     from ..simulate.simulated_run import simulate
-    from ..simulate.verification import refined_solvers, verification_dict, verify
+    from ..simulate.verification import repetitions, verify
 
-    keys = iter(refined_solvers(found))
+    keys = iter(repetitions(found))
 
     def finer(scenario: Scenario) -> Run:
-        return simulate(scenario, progress=_Pace(progress, f"finer {next(keys)}: "))
+        return simulate(scenario, progress=_Pace(progress, f"again, {next(keys)}: "))
 
-    return verification_dict(verify(found, finer))
+    return verify(found, finer)
 
 
-def _tell(options: argparse.Namespace, asked: ScenarioFile, found: Run, verification: dict[str, Any] | None) -> None:
+def _tell(
+    options: argparse.Namespace, asked: ScenarioFile, found: Run, refinements: tuple[Refinement, ...] | None
+) -> None:
     from ..simulate.run_summary import run_warnings, summary_dict
+    from ..simulate.verification import limit_warnings, verification_dict
 
-    summary = summary_dict(found, asked.values, files=asked.files, warnings=asked.warnings, verification=verification)
+    verification = None if refinements is None else verification_dict(refinements)
+    near = limit_warnings(found, refinements or ())
+    warned = (*asked.warnings, *near)
+    summary = summary_dict(found, asked.values, files=asked.files, warnings=warned, verification=verification)
     if options.json:
         print(json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
         from ..report.simulate_summary import simulate_summary
 
         print(simulate_summary(summary, title=asked.title), flush=True)
-    for text in run_warnings(found):
+    for text in (*near, *run_warnings(found)):
         print(f"warning: {text}", file=sys.stderr)
     if options.out is not None:
         _write(options.out, found, summary, replay_title=asked.title if options.replay else None)

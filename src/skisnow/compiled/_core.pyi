@@ -28,6 +28,14 @@ class FrictionLaw:
     film_speed: float
     fade_speed: float
 
+class ShearLaw:
+    decrease: float
+    cuts: bool
+    friction_angle: float
+    least_plane: float
+    residual_ratio: float
+    weakening: float
+
 class Snow:
     surface: Grid
     hardness: Grid
@@ -38,6 +46,8 @@ class Snow:
     edge_blend_sine: float
     compaction_resistance: bool
     friction: FrictionLaw
+    friction_on_base: bool
+    shear: ShearLaw
     knot_area: float
     part_along: float
     part_across: float

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import os
 from pathlib import Path
 from typing import Final
 
@@ -19,8 +21,14 @@ def c_library() -> Path:
     ------
     FileNotFoundError
         The package was put together without it.
+    ImportError
+        In a checkout: it was built from other sources than those that lie there.
     """
-    return _first(*(_FOLDER / name for name in NAMES))
+    path = _first(*(_FOLDER / name for name in NAMES))
+    sources = ctypes.CDLL(os.fspath(path)).skisnow_contact_sources
+    sources.restype = ctypes.c_char_p
+    compiled.require_current(sources().decode(), compiled.SOURCES)
+    return path
 
 
 def c_header() -> Path:

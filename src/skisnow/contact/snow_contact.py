@@ -66,8 +66,8 @@ class Sections(Shown):
         Depth of the deeper edge (m, < 0 above the snow), sine of the edge angle, place of the edge on its line (m).
     normal_force, shear, push
         Of the pressure, of the edge across, and along the edge (N).
-    sliding, friction
-        Speed along the edge (m/s), and μ with the sign of the sliding.
+    sliding, friction, friction_load
+        Speed along the edge (m/s), μ with the sign of the sliding, and the load that it acts on (N).
     strength, shear_used
         S_f (N/m²), and the share of the displacement to full strength in use (beyond ±1: slips).
     """
@@ -82,12 +82,16 @@ class Sections(Shown):
     push: FloatArray
     sliding: FloatArray
     friction: FloatArray
+    friction_load: FloatArray
     strength: FloatArray
     shear_used: FloatArray
 
     def _facts(self) -> Facts:
         units = dict.fromkeys(("position_along_ski", "length", "depth", "edge_place"), "m")
-        units |= dict.fromkeys(("normal_force", "shear", "push"), "N") | {"sliding": "m/s", "strength": "N/m²"}
+        units |= dict.fromkeys(("normal_force", "shear", "push", "friction_load"), "N") | {
+            "sliding": "m/s",
+            "strength": "N/m²",
+        }
         return field_facts(self, units)
 
 
@@ -136,10 +140,10 @@ class SnowContact(Shown):
             raise ParameterError(f"SnowContact: instruction_set is {instruction_set!r}; this machine has {known}")
         self.snow, self.runners = snow, tuple(runners)
         self.compiled = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
-        friction = snow.friction_in_python
-        if friction is not None or snow.shear is not None:
+        friction, shear = snow.friction_in_python, snow.shear_in_python
+        if friction is not None or shear is not None:
             called = None if friction is None else _coefficient(friction)
-            self.compiled.set_laws(called, None if snow.shear is None else _strength(snow.shear), snow.fade_speed)
+            self.compiled.set_laws(called, None if shear is None else _strength(shear), snow.fade_speed)
         if snow.penetration is not None:
             law = snow.penetration
             self.compiled.set_penetration(_Pressed(law), np.array(law.bends, float), law.along_base_normal)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Final, TypeAlias
+from typing import Final, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -12,9 +12,11 @@ import numpy.typing as npt
 from ..compiled import core
 from ..errors import ParameterError
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
+from ..forces.friction.load import ActsOn
 from ..forces.penetration import PointLaw
-from ..forces.shear import ShearLaw
+from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear, NaturalDensityShear, ShearLaw
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
+from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING
 from ..geometry.surfaces import Grid, Plane
 from ..shown import Facts, Shown, amount
 from ..units import N_PER_MM2, N_PER_MM3
@@ -49,6 +51,11 @@ class SnowField(Shown):
         A law for μ(v), or a constant μ ≥ 0.
     shear
         A law for the strength over depth and edge angle, with the thrust that comes with it; ``None``: S_f.
+    friction_acts_on
+        What μ is multiplied with: the pressure along the snow's normal, or what presses square on the base, side force
+        included.
+    residual_ratio, slip_weakening
+        Share of the strength that is left where an edge has slipped, 0 to 1, and the slip (m) over which it is reached.
     penetration
         A law for the stress over depth and deepest depth, asked at three Gauss points of each straight piece; ``None``:
         H_V and k_u, in closed form.
@@ -75,7 +82,10 @@ class SnowField(Shown):
     failure_shear_stress: float | Grid
     unloading_ratio: float
     friction: FrictionLaw | float = 0.0
+    friction_acts_on: ActsOn = "snow-normal"
     shear: ShearLaw | None = None
+    residual_ratio: float = RESIDUAL_RATIO
+    slip_weakening: float = SLIP_WEAKENING
     penetration: PointLaw | None = None
     surface: Plane | Grid = field(default_factory=Plane)
     compaction_resistance: bool = True
@@ -104,7 +114,21 @@ class SnowField(Shown):
         _require("failure_shear_stress", _least(self.failure_shear_stress), least=0.0)
         _require("unloading_ratio", self.unloading_ratio, least=1.0)
         self._require_one_hold()
-        for name in ("shear_displacement", "edge_blend_angle", "fade_speed", "part_along", "part_across"):
+        _require("residual_ratio", self.residual_ratio, least=0.0)
+        if self.residual_ratio > 1.0:
+            raise ParameterError(f"SnowField: residual_ratio is {self.residual_ratio!r}; it must be at most 1")
+        if self.friction_acts_on not in get_args(ActsOn):
+            raise ParameterError(
+                f"SnowField: friction_acts_on is {self.friction_acts_on!r}; it must be {' or '.join(get_args(ActsOn))}"
+            )
+        for name in (
+            "slip_weakening",
+            "shear_displacement",
+            "edge_blend_angle",
+            "fade_speed",
+            "part_along",
+            "part_across",
+        ):
             _require(name, getattr(self, name), above=0.0)
         _require("knot_area", self.knot_area, least=0.0)
         object.__setattr__(self, "compiled", self._compiled())
@@ -121,11 +145,12 @@ class SnowField(Shown):
 
     def _compiled(self) -> core.Snow:
         snow = core.Snow()
-        snow.hardness, snow.strength = _grid(self.snow_hardness), _grid(self.failure_shear_stress)
+        snow.hardness, snow.strength = _grid(self.snow_hardness), _grid(self._strength())
         snow.surface = _grid(0.0 if isinstance(self.surface, Plane) else self.surface, goes_on=True)
         snow.unloading_ratio, snow.shear_displacement = self.unloading_ratio, self.shear_displacement
         snow.edge_blend_sine = math.sin(self.edge_blend_angle)
         snow.compaction_resistance, snow.friction = self.compaction_resistance, self._friction()
+        snow.friction_on_base, snow.shear = self.friction_acts_on == "base-normal", self._shear()
         snow.knot_area, snow.part_along, snow.part_across = self.knot_area, self.part_along, self.part_across
         return snow
 
@@ -146,6 +171,33 @@ class SnowField(Shown):
             _require("friction", law, least=0.0)
             out.constant = law
         return out
+
+    def _strength(self) -> float | Grid:
+        """S_f, or the strength that the core multiplies by a share over the edge angle."""
+        law = self.shear
+        if isinstance(law, ConstantShear | DensityShear | NaturalDensityShear):
+            return law.failure_shear_stress
+        if isinstance(law, AngleShear):
+            return law.flat_shear_stress
+        return law.dynamic_shear_strength if isinstance(law, MachiningShear) else self.failure_shear_stress
+
+    def _shear(self) -> core.ShearLaw:
+        law, out = self.shear, core.ShearLaw()
+        out.residual_ratio, out.weakening = self.residual_ratio, self.slip_weakening
+        if isinstance(law, AngleShear):
+            out.decrease = law.relative_decrease
+        elif isinstance(law, MachiningShear):
+            out.cuts, out.least_plane = law.least_shear_plane > 0.0, law.least_shear_plane
+            out.friction_angle = math.atan(law.transverse_friction)
+        return out
+
+    @property
+    def shear_in_python(self) -> ShearLaw | None:
+        """The shear law, if it is none that the core knows."""
+        known = (AngleShear, ConstantShear, DensityShear, NaturalDensityShear)
+        if isinstance(self.shear, known) or (isinstance(self.shear, MachiningShear) and self._shear().cuts):
+            return None
+        return self.shear
 
     @property
     def friction_in_python(self) -> FrictionLaw | None:

@@ -81,7 +81,7 @@ def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture]) 
     if not pictures:
         sections = [Section("outcome", "Outcome", key=outcome_sentences(run), words=[_no_step()])]
     if summary.get("verification"):
-        sections.append(Section("verification", "Computed finer", tables=[verification_table(summary["verification"])]))
+        sections.append(Section("verification", "Computed again", tables=[verification_table(summary["verification"])]))
     sections.append(Section("scenario", "Scenario", tables=[scenario_table(summary["scenario"])]))
     sections.append(Section("provenance", "Provenance", words=provenance_sentences(run, summary)))
     return sheet(_header(run), sections)

@@ -72,7 +72,7 @@ def _computed(summary: Mapping[str, Any]) -> str:
 
 
 def _verification(verification: Mapping[str, Json]) -> Iterator[str]:
-    yield "computed finer, one choice at a time:"
+    yield "computed again, finer or with another input, one at a time:"
     width = max((len(key) for key in verification), default=0)
     for key, found in verification.items():
         other = "" if found["outcome"] == "finished" else f" ({found['outcome'].replace('_', ' ')})"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -11,13 +12,21 @@ from .slope import Profile
 if TYPE_CHECKING:
     from ..ski import Ski
     from .contact import Contact
+    from .shear import Shear
     from .sledge import RigidSledge
     from .slope import Plane
     from .start import Start
 
 
 def require_sound(
-    slope: Plane | Profile, contact: Contact, sledge: RigidSledge, ski: Ski, *, clamp_length: float, start: Start
+    slope: Plane | Profile,
+    contact: Contact,
+    sledge: RigidSledge,
+    ski: Ski,
+    *,
+    clamp_length: float,
+    start: Start,
+    shear: Shear,
 ) -> None:
     """Refuse parts that do not go together.
 
@@ -26,12 +35,18 @@ def require_sound(
     ParameterError
         The first thing that is wrong: what it is, what is allowed, what to do.
     """
-    for complaint in _together(slope, contact, sledge, ski, clamp_length, start):
+    for complaint in _together(slope, contact, sledge, ski, clamp_length, start, shear):
         raise ParameterError(complaint)
 
 
 def _together(
-    slope: Plane | Profile, contact: Contact, sledge: RigidSledge, ski: Ski, clamp_length: float, start: Start
+    slope: Plane | Profile,
+    contact: Contact,
+    sledge: RigidSledge,
+    ski: Ski,
+    clamp_length: float,
+    start: Start,
+    shear: Shear,
 ) -> Iterator[str]:
     width = float(ski.width.max())
     if sledge.stance_width < width * (1.0 - 1e-9):  # the width of a ski file is rounded on its way to metres
@@ -48,6 +63,12 @@ def _together(
     friction = contact.friction + contact.friction_by_speed * start.speed
     if friction < 0.0:
         yield f"the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski"
+    if abs(sledge.edge_angle) < shear.least_edge_angle:
+        least = math.degrees(shear.least_edge_angle)
+        yield (
+            f"the edge angle is {math.degrees(abs(sledge.edge_angle)):.3g}°; machining needs {least:.3g}° or more, "
+            "β + 2 shear.least_shear_plane_deg: edge more, or take another shear.law"
+        )
     if isinstance(slope, Profile):
         first, last = slope.ends
         if not first <= start.x <= last:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias, get_args
 
+from ..forces.friction.load import ActsOn
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..inputs import Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
@@ -33,8 +34,8 @@ class Contact:
         Whether the base's slope along the ski counts as resistance.
     shear_displacement
         u_y > 0 (m).
-    friction, friction_by_speed
-        μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m).
+    friction, friction_by_speed, friction_acts_on
+        μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m); and what it is multiplied with.
 
     See Also
     --------
@@ -77,7 +78,7 @@ class Contact:
             "u_y, the way of an edge across until the snow holds it with all of S_f",
             lowest=0.01,  # below, a step's corrections are as large
             highest=10.0,
-            origin="not measured: a choice. The law of the paper is its limit 0",
+            origin="not measured: a choice near the law of the paper, which is its limit 0",
             search=Search(0.2e-3, 0.01e-3, 5e-3, logarithmic=True),
         ),
     ] = SHEAR_DISPLACEMENT
@@ -103,6 +104,14 @@ class Contact:
             search=Search(0.01, -0.05, 0.05),
         ),
     ] = 0.0
+    friction_acts_on: Annotated[
+        ActsOn,
+        Quantity(
+            "friction.acts_on",
+            "what μ is multiplied with: the load along the snow's normal, or square on the base, side force included",
+            origin="choice: it does not hang on how the side force spreads along the edge, which nobody measured",
+        ),
+    ] = "snow-normal"
 
     __repr__ = declared_text
 

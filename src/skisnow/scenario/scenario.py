@@ -19,6 +19,7 @@ from ..units import DEGREE
 from .air import Air
 from .checks import require_sound
 from .contact import Contact
+from .shear import Shear
 from .sledge import RigidSledge
 from .slope import Plane, Profile
 from .solver import Solver
@@ -45,8 +46,8 @@ class Scenario(Shown):
     ----------
     slope
         A plane or a measured profile.
-    contact, air
-        Snow with friction; drag.
+    contact, shear, air
+        Snow with friction; the law of its shear strength; drag.
     sledge
         The rigid part with its edge angle, without the skis.
     ski, clamp_length, damping_ratio
@@ -102,6 +103,7 @@ class Scenario(Shown):
     ] = 0.02
     start: Start
     stop: Stop
+    shear: Shear = field(default_factory=Shear)
     solver: Solver = field(default_factory=Solver)
     gravity: Annotated[
         float,
@@ -123,7 +125,15 @@ class Scenario(Shown):
         if self.stop.duration is None and self.stop.length is None:
             raise ParameterError("the run has no end: give a duration or a length")
         require_declared(self)
-        require_sound(self.slope, self.contact, self.sledge, self.ski, clamp_length=self.clamp_length, start=self.start)
+        require_sound(
+            self.slope,
+            self.contact,
+            self.sledge,
+            self.ski,
+            clamp_length=self.clamp_length,
+            start=self.start,
+            shear=self.shear,
+        )
 
     def with_(self, **changes: Any) -> Scenario:
         """The same scenario with other parts or other values; this one stays as it is.

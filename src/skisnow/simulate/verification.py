@@ -1,14 +1,16 @@
-"""How exact a run is: the same run computed finer, one choice of the solver at a time, and how far its end moves."""
+"""How exact and how steady a run is: repeated finer, and with a little more or less of its inputs, one at a time."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Final, TypeAlias
 
 import numpy as np
 
 from ..former_names import formerly
+from ..inputs import values_of
 from ..json_number import json_number
 from ..scenario import Scenario, Solver
 from ..scenario.keys import SCENARIO_KEYS
@@ -19,6 +21,17 @@ from .run import Outcome, Run
 Simulate: TypeAlias = Callable[[Scenario], Run]
 FINER: Final = 2.0
 """By how much each choice is refined."""
+DISPLACEMENT: Final = "snow.shear_displacement_mm"
+NUDGED: Final = (
+    "start.speed_m_per_s",
+    "sledge.edge_angle_deg",
+    "snow.H_V_N_per_mm3",
+    "snow.S_f_N_per_mm2",
+)
+NUDGE: Final = 1e-3
+"""Share by which each of them is changed, up and down."""
+NEAR: Final = 5.0
+"""Times the share of the run by which its end may move for the same share of an input (Choice: carves move by once)."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -68,20 +81,44 @@ def refined_solvers(run: Run) -> dict[str, Solver]:
     }
 
 
+def nudged_scenarios(run: Run) -> dict[str, tuple[Scenario, ...]]:
+    """Scenarios with half of u_y, and a thousandth more and less of what a run near its limit hangs on, by key.
+
+    Half of u_y only where a scenario may have it; an input that is 0 is not nudged.
+    """
+    scenario = run.scenario
+    found: dict[str, tuple[Scenario, ...]] = {}
+    displacement = _given(scenario, DISPLACEMENT)
+    if displacement / FINER >= SCENARIO_KEYS[DISPLACEMENT].lowest:
+        found[DISPLACEMENT] = (scenario.with_(**{DISPLACEMENT: displacement / FINER}),)
+    for key in NUDGED:
+        value = _given(scenario, key)
+        if value:
+            found[key] = tuple(scenario.with_(**{key: value * (1.0 + sign * NUDGE)}) for sign in (1.0, -1.0))
+    return found
+
+
+def repetitions(run: Run) -> tuple[str, ...]:
+    """Keys of the runs that `verify` makes, in their order."""
+    nudged = (key for key, each in nudged_scenarios(run).items() for _ in each)
+    return (*refined_solvers(run), *nudged)
+
+
 def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]:
-    """Repeat a run, finer in one choice at a time, and see how far its end moves.
+    """Repeat a run, finer or with a little more or less of an input, one at a time, and see how far its end moves.
 
     Parameters
     ----------
     run
         The run.
     simulate
-        What computes a scenario, called in the order of `refined_solvers`; left out: `skisnow.simulate`.
+        What computes a scenario, called in the order of `repetitions`; left out: `skisnow.simulate`.
 
     Returns
     -------
     tuple
-        One entry for each choice. Where a repetition is interrupted, those before it.
+        One entry for each choice of the solver, for half of u_y, and for each of start speed, edge angle, H_V and S_f
+        with 0.1 % more and less: what moves the end farther. Where a repetition is interrupted, those before it.
 
     See Also
     --------
@@ -91,14 +128,45 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     ----------
     The page docs/validation/simulated-turn.md.
     """
-    found: list[Refinement] = []
     again = simulate or _plainly()
+    finer = refine(run, again)
+    return finer if len(finer) < len(refined_solvers(run)) else (*finer, *_nudge(run, again))
+
+
+def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
+    """The part of `verify` that makes the solver finer."""
+    found: list[Refinement] = []
     for key, solver in refined_solvers(run).items():
-        finer = again(replace(run.scenario, solver=solver))
+        finer = simulate(replace(run.scenario, solver=solver))
         if finer.outcome == "interrupted":
             break
         found.append(Refinement(key, _in_force(run, key), _chosen(solver, key), _distance(run, finer), finer.outcome))
     return tuple(found)
+
+
+def _nudge(run: Run, simulate: Simulate) -> Iterator[Refinement]:
+    for key, scenarios in nudged_scenarios(run).items():
+        moved: list[Refinement] = []
+        for scenario in scenarios:
+            other = simulate(scenario)
+            if other.outcome == "interrupted":
+                return
+            was, now = _given(run.scenario, key), _given(scenario, key)
+            moved.append(Refinement(key, was, now, _distance(run, other), other.outcome))
+        yield max(moved, key=lambda each: math.inf if each.end_moves is None else each.end_moves)
+
+
+def limit_warnings(run: Run, refinements: Iterable[Refinement]) -> tuple[str, ...]:
+    """A sentence where a thousandth of an input moves the end by more than five thousandths of the run."""
+    path = run.run_length
+    worst = [each for each in refinements if each.key in NUDGED and (each.end_moves or 0.0) > NEAR * NUDGE * path]
+    if not worst:
+        return ()
+    most = max(worst, key=lambda each: each.end_moves or 0.0)
+    return (
+        f"near the limit of grip: the end moves {most.end_moves:.2g} m for {100.0 * NUDGE:g} % of {most.key}. A run "
+        "there tells what may happen and not where it ends: look at many, over what the inputs leave open",
+    )
 
 
 def _plainly() -> Simulate:
@@ -131,6 +199,10 @@ def _in_force(run: Run, key: str) -> float:
         line_spacing=numbers["line_spacing_m"],
     )
     return _chosen(chosen, key)
+
+
+def _given(scenario: Scenario, key: str) -> float:
+    return float(values_of(scenario)[key])
 
 
 def _chosen(solver: Solver, key: str) -> float:

@@ -48,7 +48,7 @@ def require_tables(name: str, tables: SkiSections) -> None:
     ParameterError
         The first rule broken.
     """
-    if not (isinstance(name, str) and name.strip()):
+    if not (isinstance(name, str) and name.strip()):  # type: ignore[redundant-expr] # callers without types
         _refuse(name, "its name is blank", "Give it one")
     for which in ("station", "base_height", *_POSITIVE):
         table: FloatArray = getattr(tables, which)

@@ -62,10 +62,11 @@ class PatientToAPoint(_Protocol):
 
     def _is_waiting(self) -> bool:
         """Whether no request is being answered or taken in."""
-        return self.cycle is None or bool(self.cycle.response_complete)
+        # typed as never None, which it is until the first request
+        return self.cycle is None or bool(self.cycle.response_complete)  # type: ignore[redundant-expr]
 
     def _is_in_body(self) -> bool:
-        return self.cycle is not None and bool(self.cycle.more_body)
+        return self.cycle is not None and bool(self.cycle.more_body)  # type: ignore[redundant-expr]
 
     def _wait(self, seconds: float | None) -> None:
         if self._closing is not None:

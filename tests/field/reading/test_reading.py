@@ -295,7 +295,8 @@ def test_folder_and_pipe_in_place_of_a_file(write_campaign: WriteCampaign, small
 
 def assert_told_and_not_raised(folder: Path) -> None:
     problems = check_campaign(folder)
-    assert all(isinstance(problem, Problem) and problem.allowed and problem.action for problem in problems)
+    assert {type(problem) for problem in problems} <= {Problem}
+    assert all(problem.allowed and problem.action for problem in problems)
     if any(problem.severity == "error" for problem in problems):
         with pytest.raises(FieldDataError):
             read_campaign(folder)

@@ -14,7 +14,7 @@ import numpy as np
 from skisnow import Run
 from skisnow.scenario import Solver, read_scenario
 from skisnow.simulate.simulated_run import simulate
-from skisnow.simulate.verification import verify
+from skisnow.simulate.verification import refine
 
 from ...dynamics.test_free_flight import DURATION, tumbling_drift
 from . import test_cross_slope, test_static_start, test_steady_circle, test_straight_run
@@ -46,7 +46,7 @@ def per_cent(share: float | None) -> str:
 
 def _refined(snow: tuple[float, float]) -> list[str]:
     run = carved(**{"snow.H_V_N_per_mm3": snow[0], "snow.S_f_N_per_mm2": snow[1]})
-    moved = [refinement.end_moves for refinement in verify(run, simulate)]
+    moved = [refinement.end_moves for refinement in refine(run, simulate)]
     return [
         f"{snow[0]:g}", f"{snow[1]:g}", run.outcome, f"{run.run_length:.2f}", f"{run.energies['shear'][-1]:.0f}",
         per_cent(run.energy_balance_error), *("" if m is None else f"{100.0 * m:.2f}" for m in moved),

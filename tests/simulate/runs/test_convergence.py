@@ -9,7 +9,7 @@ import pytest
 
 from skisnow.scenario import read_scenario
 from skisnow.simulate.simulated_run import simulate
-from skisnow.simulate.verification import verification_dict, verify
+from skisnow.simulate.verification import refine, verification_dict
 
 MOST = 2.0
 """(cm)"""
@@ -20,12 +20,12 @@ SKIDS = [(0.04, 0.04), (0.2, 0.1), (1.0, 0.25), (90.0, 0.3)]
 """H_V, S_f that skid."""
 
 
-def moves(hardness: float, strength: float) -> dict[str, Any]:
+def moves(hardness: float, strength: float, **more: float) -> dict[str, Any]:
     """How far the end moves (cm) under each refinement; every run reaches its end."""
-    changes = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength}
+    changes = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength, **more}
     run = simulate(read_scenario("carved-46m", changes=changes))
     assert run.outcome == "finished"
-    found = verification_dict(verify(run, simulate))
+    found = verification_dict(refine(run, simulate))
     assert len(found) == 4
     assert {each["outcome"] for each in found.values()} == {"finished"}
     return {key: each["end_moves_cm"] for key, each in found.items()}
@@ -48,7 +48,8 @@ HALF_OF_THE_SPACING = pytest.mark.xfail(strict=True, reason="lines half as far a
     [pytest.param(*each, marks=[HALF_OF_THE_SPACING] if each == (1.0, 0.25) else []) for each in SKIDS],
 )
 def test_skidding(hardness: float, strength: float) -> None:
-    found = moves(hardness, strength)
+    """An edge that gives way by half a millimetre; nearer to the limit a skid hangs on its last decimetres."""
+    found = moves(hardness, strength, shear_displacement_mm=0.5)
     assert max(found.values()) < MOST, found
 
 

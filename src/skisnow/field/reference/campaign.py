@@ -143,7 +143,8 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
     >>> len(drawn.penetration), len(drawn.penetration.load), len(drawn.shear)
     (236, 1652, 108)
     """
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+    # a caller without types may give anything
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:  # type: ignore[redundant-expr]
         raise ParameterError(f"reference_campaign: the seed is {seed!r}; it must be an integer of at least 0")
     # One stream per kind of draw, so that none depends on how many numbers another took.
     spots, spread, readings, shear, beside = np.random.default_rng(seed).spawn(5)

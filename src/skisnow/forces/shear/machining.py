@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
+from ...errors import ParameterError
 from ..cutting import cutting_stress, cutting_thrust
 from ..measured_ranges import FAILURE_SHEAR_STRESS
-from ..parameter_checks import edge_angles, require_above_zero, require_not_below_zero
+from ..parameter_checks import RIGHT_ANGLE, edge_angles, require_above_zero, require_not_below_zero
 from .law import FloatArray, ShearLaw
 
 
@@ -24,6 +25,9 @@ class MachiningShear(ShearLaw):
         S (N/m²): the strength of snow that is being cut, not the S_f at which failure starts.
     transverse_friction
         μ_t ≥ 0, the friction across the ski.
+    least_shear_plane
+        Angle (rad), 0 to π/4, that (ϑ - β)/2 does not fall below (Choice, for a contact whose edges may come to lie
+        flat); 0: the theory as it is.
 
     See Also
     --------
@@ -53,10 +57,15 @@ class MachiningShear(ShearLaw):
 
     dynamic_shear_strength: float
     transverse_friction: float
+    least_shear_plane: float = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
         require_above_zero(self, dynamic_shear_strength=self.dynamic_shear_strength)
         require_not_below_zero(self, transverse_friction=self.transverse_friction)
+        if not 0.0 <= self.least_shear_plane <= RIGHT_ANGLE / 2.0:
+            raise ParameterError(
+                f"MachiningShear: least_shear_plane is {self.least_shear_plane!r} rad; it must lie between 0 and π/4"
+            )
         FAILURE_SHEAR_STRESS.warn_outside(2.0 * self.dynamic_shear_strength, "MachiningShear, 2 S", stacklevel=3)
 
     @property
@@ -68,10 +77,15 @@ class MachiningShear(ShearLaw):
         self, edge_depth: npt.ArrayLike, edge_length: npt.ArrayLike, edge_angle: npt.ArrayLike
     ) -> FloatArray:
         """See `ShearLaw.thrust_force`: S (cot²φ - 1) e L, φ = (ϑ - β)/2; with F_t it makes one force."""
-        thrust = cutting_thrust(
-            self.dynamic_shear_strength, edge_angles(edge_angle), transverse_friction=self.transverse_friction
-        )
+        angle = self._cut_angle(edge_angles(edge_angle))
+        thrust = cutting_thrust(self.dynamic_shear_strength, angle, transverse_friction=self.transverse_friction)
         return thrust * np.maximum(np.asarray(edge_depth, float), 0.0) * np.asarray(edge_length, float)
 
     def _stress(self, depth: FloatArray, angle: FloatArray) -> FloatArray:  # noqa: ARG002
-        return cutting_stress(self.dynamic_shear_strength, angle, transverse_friction=self.transverse_friction)
+        cut = self._cut_angle(angle)
+        return cutting_stress(self.dynamic_shear_strength, cut, transverse_friction=self.transverse_friction)
+
+    def _cut_angle(self, angle: FloatArray) -> FloatArray:
+        if self.least_shear_plane == 0.0:
+            return angle
+        return np.maximum(angle, np.arctan(self.transverse_friction) + 2.0 * self.least_shear_plane)

@@ -116,7 +116,7 @@ def _change(start: float | None, end: float | None) -> tuple[float | None, float
 
 
 def verification_table(verification: Json) -> Table:
-    """How far the end moves when one choice of the solver at a time is made finer.
+    """How far the end moves when one choice of the solver is made finer, or one input is another, at a time.
 
     Parameters
     ----------
@@ -125,11 +125,11 @@ def verification_table(verification: Json) -> Table:
     """
     return Table(
         "verification",
-        "The same run with one choice of the solver made finer at a time, and how far that moves its end.",
+        "The same run with one choice of the solver finer, or one input another, at a time, and how far its end moves.",
         (
             Column("key", "Key", "text"),
             Column("was", "Was"),
-            Column("now", "Finer"),
+            Column("now", "Again with"),
             Column("end_moves_cm", "End moves by", unit="cm"),
             Column("outcome", "Outcome", "text"),
         ),

@@ -54,7 +54,8 @@ class Beside:
                 except (FieldDataError, StoreError) as error:
                     self._value.set_text(told(error))
                     continue
-                if self._wanted is None and found is not None:
+                # another may have been wanted while this one was waited for
+                if self._wanted is None and found is not None:  # type: ignore[redundant-expr]
                     self._show(name, found)
         finally:
             self._working = False

@@ -1,0 +1,47 @@
+"""Strength that falls as an edge slips."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+RESIDUAL_RATIO: Final = 1.0
+"""Strength after slip over that before it (Choice: the paper measured where shearing starts, and no slip)."""
+SLIP_WEAKENING: Final = 1e-3
+"""Slip (m) over which it is reached (Choice)."""
+
+
+def strength_left(
+    slip: npt.ArrayLike, *, residual_ratio: float = RESIDUAL_RATIO, slip_weakening: float = SLIP_WEAKENING
+) -> FloatArray:
+    """Share of a strength that is left after a slip: 1 - (1 - r) min(slip/d, 1).
+
+    Parameters
+    ----------
+    slip
+        How far the edge has slipped across at a place on the snow (m), ≥ 0.
+    residual_ratio
+        r, 0 to 1; 1: nothing is lost.
+    slip_weakening
+        d (m), > 0.
+
+    Notes
+    -----
+    Range: r and d are not measured for groomed snow. Mössner and others (2013) presume that snow that is being sheared
+    is weaker than S_f. McClung (1977, J. Glaciol. 19(81)) found softening after the peak in direct shear of snow. To
+    fall in proportion to the slip is the plainest form of slip weakening (Choice).
+
+    Examples
+    --------
+    Half of the strength, reached over 2 mm: after 1 mm three quarters are left.
+
+    >>> float(strength_left(1e-3, residual_ratio=0.5, slip_weakening=2e-3))
+    0.75
+    """
+    gone = np.minimum(np.asarray(slip, float) / slip_weakening, 1.0)
+    result: FloatArray = 1.0 - (1.0 - residual_ratio) * gone
+    return result
