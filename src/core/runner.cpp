@@ -17,6 +17,21 @@ Vector3 rotation_vector(const double (&m)[3][3]) {
   return {factor * twice[0], factor * twice[1], factor * twice[2]};
 }
 
+// What turns at a steady rate and keeps its velocity in its own axes goes along an arc: how far that lies beside the
+// straight way, to the second order of the turn (in the axes of the start).
+void bend_way(const Pose& from, const Pose& to, const Vector3& turn, double share, Vector3& place) {
+  double way[3], axis[3];
+  for (std::size_t a = 0; a < 3; a++) {
+    way[a] = to.position[a] - from.position[a];
+    axis[a] = from.rotation[a][0] * turn[0] + from.rotation[a][1] * turn[1] + from.rotation[a][2] * turn[2];
+  }
+  const double bend = 0.5 * share * (share - 1.0);
+  for (std::size_t a = 0; a < 3; a++) {
+    const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+    place[a] += bend * (axis[b] * way[c] - axis[c] * way[b]);
+  }
+}
+
 constexpr double TABLE_STEP = 1e-3;  // (m) of the table, at most; between its rows it is linear
 
 // A column over falling positions, straight between them, at a place within.
@@ -72,6 +87,7 @@ Pose between(const Pose& from, const Pose& to, double share) {
     }
   }
   Vector3 turn = rotation_vector(relative);
+  bend_way(from, to, turn, share, middle.position);
   for (double& each : turn) each *= share;
   rotation_matrix(turn, step);
   for (int a = 0; a < 3; a++)

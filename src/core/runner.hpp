@@ -39,8 +39,8 @@ struct Motion {
   std::vector<double> beam;
 };
 
-// The pose a share (0 to 1) of the way from one to another, the rotation about the axis that leads from one to the
-// other.
+// The pose a share (0 to 1) of the way from one to another: rotation about the axis that leads from one to the other at
+// a steady rate, along the arc that goes with it.
 Pose between(const Pose& from, const Pose& to, double share);
 
 void rotation_matrix(const Vector3& v, double (&out)[3][3]);  // of a rotation vector

@@ -26,7 +26,7 @@ def given(name: str = CARVE, /, **changes: float) -> Scenario:
 
 def fixed(step: float) -> StepControl:
     """Newton's method goes closer than in a run, so that what is left is the step's own error."""
-    return StepControl(first=step, fixed=True, closeness=0.01)
+    return StepControl(first=step, fixed=True, closeness=0.003)
 
 
 def clamped_ski(scenario: Scenario, elements: int) -> ClampedSki:

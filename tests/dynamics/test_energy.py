@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.dynamics import Dynamics, Ended
+from skisnow.dynamics import Dynamics, Ended, StepControl
 
 from .sledges import ahead, given, sledge, started
 
@@ -59,7 +59,7 @@ def test_what_the_snow_takes_is_in_its_grooves(hardness: float, within: float) -
     without a force of their own. A line enters under the tip at once: what that leaves goes down with the spacing."""
     scenario = given(sledge__edge_angle_deg=0.0, start__heading_deg=0.0, snow__H_V_N_per_mm3=hardness)
     straight = replace(scenario.ski, width=np.full_like(scenario.ski.width, 0.07))
-    dynamics = sledge(replace(scenario, ski=straight), spacing=0.01)
+    dynamics = sledge(replace(scenario, ski=straight), StepControl(tolerance=3e-7), spacing=0.01)
     dynamics.settle()
     dynamics.begin(ahead(scenario.start.speed))
     before = in_snow(dynamics)

@@ -26,8 +26,8 @@ def test_switches_and_words_have_pythons_defaults() -> None:
 
 def test_defaults_stand_in_the_unit_of_their_key() -> None:
     told = {key: SCENARIO_KEYS[key].default for key in ("solver.step_ms", "solver.tolerance_mm", "run.output_ms")}
-    assert told == pytest.approx({"solver.step_ms": 0.5, "solver.tolerance_mm": 0.0003, "run.output_ms": 10.0})
-    assert (Solver().step, Solver().tolerance, Solver().output_interval) == (0.5e-3, 3e-7, 0.01)
+    assert told == pytest.approx({"solver.step_ms": 0.5, "solver.tolerance_mm": 0.001, "run.output_ms": 10.0})
+    assert (Solver().step, Solver().tolerance, Solver().output_interval) == (0.5e-3, 1e-6, 0.01)
 
 
 def test_what_must_be_given() -> None:

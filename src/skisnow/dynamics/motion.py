@@ -18,10 +18,10 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 STEPS_AT_ONCE: Final = 1000
 """Steps after which compiled code comes back, so that an interrupt is heard."""
-TOLERANCE: Final = 3e-7
+TOLERANCE: Final = 1e-6
 """Error of place (m) that one step may make by its own estimate (Choice, see the frontier in the docs)."""
 LONGEST_STEP: Final = 6e-3
-"""Longest step (s) (Choice: longer ones do not pay, the history must be marched within them)."""
+"""Longest step (s) (modelling assumption: the powers are summed by the trapezoidal rule from step to step)."""
 SHORTEST_STEP: Final = 1e-7
 """Step (s) below which a run ends."""
 CLOSENESS: Final = 0.03

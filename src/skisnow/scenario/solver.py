@@ -50,7 +50,7 @@ class Solver:
             highest=10.0,
             origin="choice: see the tests of convergence",
         ),
-    ] = 3e-7
+    ] = 1e-6
     fixed: Annotated[
         bool,
         Quantity(

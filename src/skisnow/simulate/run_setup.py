@@ -13,6 +13,7 @@ import numpy.typing as npt
 from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, StepControl
+from ..dynamics.motion import LONGEST_STEP
 from ..errors import RangeWarning
 from ..forces.friction import LinearFriction
 from ..geometry import surfaces
@@ -28,6 +29,8 @@ LINE_SPACING: Final = 0.02
 """Largest spacing (m) of the snow's lines (Choice)."""
 FAST: Final = 10.0
 """Times the tolerance, to which the fast method holds a step's error (Choice)."""
+FAST_LONGEST: Final = 10e-3
+"""Longest step (s) of the fast method (Choice: that of outputs)."""
 FAST_PART: Final = 0.02
 """Way along a ski (m) over which its history is marched at once with the fast method (Choice: the lines' spacing)."""
 FLOATING_DEPTH: Final = 0.1
@@ -142,7 +145,8 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
 def _control(scenario: Scenario) -> StepControl:
     solver = scenario.solver
     tolerance = solver.tolerance * (FAST if solver.method == "fast" else 1.0)
-    return StepControl(first=solver.step, fixed=solver.fixed, tolerance=tolerance)
+    longest = FAST_LONGEST if solver.method == "fast" else LONGEST_STEP
+    return StepControl(first=solver.step, fixed=solver.fixed, tolerance=tolerance, longest=longest)
 
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
