@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from skisnow.scenario import read_scenario
-from skisnow.simulate.run_record import Record
+from skisnow.simulate.run_record import Record, _at_boot
 from skisnow.simulate.run_setup import set_up
 
 
@@ -32,3 +32,17 @@ def test_moments_are_kept_replaced_and_dropped() -> None:
     record.drop()
     record.drop()
     assert record.histories()["time"].tolist() == [0.0]
+
+
+@pytest.mark.parametrize(
+    ("node", "at_boot"),
+    [
+        ([0.9, 0.5, 0.1, -0.3], 1.5),  # a quarter of the way from 2 to 0
+        ([0.9, 0.3, -0.1, -0.3], 2.25),  # three quarters of the way from 3 to 2
+        ([0.9, 0.5, 0.0, -0.3], 2.0),
+        ([0.3, -0.1, -0.5, -0.9], 3.25),
+    ],
+)
+def test_what_is_under_the_boot_lies_between_its_neighbours(node: list[float], at_boot: float) -> None:
+    values = np.array([[4.0, 3.0, 2.0, 0.0], [8.0, 6.0, 4.0, 0.0]])
+    assert _at_boot(np.array(node), values) == pytest.approx([at_boot, 2.0 * at_boot], rel=1e-12)
