@@ -52,3 +52,10 @@ def test_elements_and_lines_follow_from_the_waves_of_a_beam_on_an_elastic_founda
     assert found["load_N"] == pytest.approx(force, rel=1e-9)
     assert found["line_spacing_m"] == pytest.approx(wave / 10.0, rel=1e-9)
     assert found["elements"] == math.ceil(5.0 * 1.6 / wave) > 40.0
+
+
+def test_in_soft_snow_an_element_is_four_and_a_half_centimetres_long() -> None:
+    """1.8 m of giant-slalom ski, and a line of snow every two centimetres."""
+    found = laid_out(read_scenario("carved-46m", changes={"snow.H_V_N_per_mm3": 0.02})).numbers
+    assert 1.8 / found["elements"] == pytest.approx(0.045)
+    assert found["line_spacing_m"] == 0.02
