@@ -85,3 +85,18 @@ def test_quick_points_are_handed_over_many_at_a_time() -> None:
 def test_only_a_pool_starts_a_worker() -> None:
     with pytest.raises(SkisnowError, match="not started by a Pool"):
         _chunk([(0, None)])
+
+
+@pytest.mark.parametrize(("points", "each"), [([2.0], 2.0), ([1.0, 3.0], 2.0), ([], 0.0)])
+def test_a_chunk_tells_how_long_a_point_takes(
+    points: list[float], each: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = [100.0]
+
+    def lasting(seconds: float) -> dict[str, Any]:
+        clock[0] += seconds
+        return {}
+
+    monkeypatch.setattr("skisnow.parallel.pool._Worker.function", lasting)
+    monkeypatch.setattr("skisnow.parallel.pool.time.perf_counter", lambda: clock[0])
+    assert _chunk(list(enumerate(points))).seconds_per_point == each
