@@ -56,6 +56,12 @@ def test_half_a_clamp_ends_before_tip_and_tail() -> None:
         require_clamp(tool, 0.2)
 
 
+def test_a_clamp_in_millimetres_that_would_not_fit_either_is_no_guess() -> None:
+    assert 200.0 * 1e-3 == 0.2
+    with pytest.raises(ParameterError, match=r"write --clamp-length-m 0$"):
+        require_clamp(read_ski("paper-tool"), 200.0)
+
+
 @pytest.mark.parametrize(
     ("length", "told"),
     [
