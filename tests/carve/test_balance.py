@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import get_args
+from types import SimpleNamespace
+from typing import Any, cast, get_args
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_bvp
 
-from skisnow.carve.equilibrium import Equilibrium, GrooveForm, MomentBalance, carve
+from skisnow.carve.equilibrium import Equilibrium, GrooveForm, MomentBalance, _warnings, carve
 from skisnow.errors import ParameterError
 from skisnow.ski import Ski, read_ski
 
@@ -234,3 +235,17 @@ def test_a_moment_balance_that_is_none() -> None:
             read_ski("slalom"), snow(0.2), edge_angle=0.5, load=800.0, unloading_ratio=10.0,
             moment_balance="ski",  # type: ignore[arg-type]
         )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("slope", "twist", "told"),
+    [
+        (0.35, -0.35, []),
+        (0.3501, -0.35, ["the ski bends to a slope of 0.35: beyond 0.35 beams"]),
+        (0.35, -0.3501, ["the ski twists by 20 degrees"]),
+    ],
+)
+def test_beyond_small_deflections_the_answer_says_so(slope: float, twist: float, told: list[str]) -> None:
+    line = SimpleNamespace(greatest_slope=lambda: slope, twist=np.array([0.1, twist]))
+    said = _warnings(cast("Any", line))
+    assert [each for each, start in zip(said, told, strict=True) if not each.startswith(start)] == []

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import get_args
 
 import numpy as np
 import pytest
 
 from skisnow.carve.equilibrium import Equilibrium, GrooveForm, carve
 from skisnow.ski import Ski, read_ski
+from skisnow.ski.beam.clamped import CLAMP_LENGTH
 
-from .synthetic import FloatArray, snow
+from .synthetic import FloatArray, snow, weights
 
 RATIOS = (1.0, 2.0, 5.0, 10.0, 50.0)
 
@@ -124,3 +126,17 @@ def test_groove_along_the_path(ratio: float) -> None:
     ]
     assert radii[1] == pytest.approx(radii[0], rel=1e-9 if ratio == 1.0 else 0.1)
     assert (radii[0] == pytest.approx(radii[1], rel=1e-6)) is (ratio == 1.0)
+
+
+@pytest.mark.parametrize("name", ["slalom", "giant-slalom", "carver"])
+def test_a_path_that_is_overshot_is_found_in_smaller_steps(name: str) -> None:
+    """At 75° in snow that hardly springs back: longer steps from path to path never end."""
+    ski = read_ski(name)
+    edge, path = (
+        carve(ski, snow(0.2), edge_angle=math.radians(75.0), load=800.0, unloading_ratio=100.0, groove=groove)
+        for groove in get_args(GrooveForm)
+    )
+    assert path.outcome == "equilibrium"
+    assert path.turn_radius_boot == pytest.approx(edge.turn_radius_boot, rel=0.1)
+    assert path.turn_radius_boot != pytest.approx(edge.turn_radius_boot, rel=1e-3)
+    assert weights(ski, CLAMP_LENGTH) @ np.asarray(path.force_per_length) == pytest.approx(800.0, rel=1e-8)

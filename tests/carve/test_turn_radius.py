@@ -7,9 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.carve.edge_line import circle_radius
-from skisnow.carve.equilibrium import Equilibrium, carve
+from skisnow.carve.edge_line import EdgeLine, circle_radius
+from skisnow.carve.equilibrium import Equilibrium, _conditions, carve
+from skisnow.carve.solve import solved
 from skisnow.ski import Ski
+from skisnow.ski.beam.clamped import clamped
 
 from .synthetic import circular_sidecut, plain_ski, race_profile, snow
 
@@ -135,3 +137,12 @@ def test_circle_through_three_points(radius: float) -> None:
     centre = np.array([0.13, 0.4 + radius])
     points = [(x, centre[1] - math.copysign(math.sqrt(radius**2 - (x - 0.13) ** 2), radius)) for x in (0.8, 0.1, -0.6)]
     assert circle_radius(*points) == pytest.approx(radius, rel=1e-9)
+
+
+def test_the_straight_sides_of_a_flat_ski_lie_on_no_circle() -> None:
+    ski = plain_ski()
+    model = clamped(ski, 0.3, 40)
+    line = EdgeLine(model, 0.0, solved(model, _conditions(ski, snow(0.2), 0.0, 400.0, 0.0, 1.0, False, False)))
+    assert line.radius_at_boot() is None
+    with pytest.raises(ValueError, match="straight edge line"):
+        line.offset_from_circle()

@@ -11,7 +11,7 @@ import pytest
 
 from skisnow.errors import ParameterError, SkisnowError
 from skisnow.parallel.kept_rows import NumberedText
-from skisnow.parallel.pool import Pool, workers_in_force
+from skisnow.parallel.pool import LARGEST_CHUNK, Pool, _chunk, workers_in_force
 
 
 def own_process(_point: Any) -> dict[str, Any]:
@@ -61,3 +61,42 @@ def test_workers_are_at_least_one_and_as_many_as_cores_where_left_out() -> None:
     assert 1 <= workers_in_force(None) <= (os.cpu_count() or 1)
     with pytest.raises(ParameterError, match="workers is 0; at least 1 is needed"):
         workers_in_force(0)
+
+
+@pytest.mark.parametrize(("counted", "cores"), [(6, 6), (None, 1)])
+def test_cores_of_a_system_that_does_not_say_which_are_ours(
+    counted: int | None, cores: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(os, "cpu_count", lambda: counted)
+    assert workers_in_force(None) == cores
+
+
+def test_quick_points_are_handed_over_many_at_a_time() -> None:
+    """One by one until it is known how long they take, then in chunks that all fit through a pipe."""
+    with Pool(own_process, 2, advice="") as pool:
+        chunks = [len(chunk) for chunk in pool.rows([(n, None) for n in range(1000)])]
+    assert sum(chunks) == 1000
+    assert chunks[0] == 1
+    assert 10 < max(chunks) <= LARGEST_CHUNK
+    assert len(chunks) < 500
+
+
+def test_only_a_pool_starts_a_worker() -> None:
+    with pytest.raises(SkisnowError, match="not started by a Pool"):
+        _chunk([(0, None)])
+
+
+@pytest.mark.parametrize(("points", "each"), [([2.0], 2.0), ([1.0, 3.0], 2.0), ([], 0.0)])
+def test_a_chunk_tells_how_long_a_point_takes(
+    points: list[float], each: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = [100.0]
+
+    def lasting(seconds: float) -> dict[str, Any]:
+        clock[0] += seconds
+        return {}
+
+    monkeypatch.setattr("skisnow.parallel.pool._Worker.function", lasting)
+    monkeypatch.setattr("skisnow.parallel.pool.time.perf_counter", lambda: clock[0])
+    assert _chunk(list(enumerate(points))).seconds_per_point == each

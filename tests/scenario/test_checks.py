@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from skisnow.errors import ParameterError
-from skisnow.scenario import Profile, Scenario, read_scenario
+from skisnow.scenario import Profile, Scenario, Solver, read_scenario
 
 
 def changed(part: str, **values: Any) -> Scenario:
@@ -59,3 +59,11 @@ def test_limits_themselves_are_allowed() -> None:
     assert changed("solver", step=5e-3).solver.step == 5e-3
     assert changed("sledge", stance_width=0.11).sledge.stance_width == 0.11
     assert changed("sledge", edge_angle=-np.radians(85.0)).sledge.edge_angle < 0.0
+
+
+def test_the_former_word_of_the_method_is_told_where_it_is_written() -> None:
+    """Python shows it to whoever wrote the line, at a prompt or in a test, and to nobody else."""
+    with pytest.warns(DeprecationWarning, match="now called") as warned:
+        solver = Solver(method="ros2")  # type: ignore[arg-type]
+    assert solver == Solver()
+    assert [each.filename for each in warned] == [__file__]

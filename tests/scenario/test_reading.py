@@ -259,6 +259,23 @@ def test_scenario_that_is_not_there_is_told_with_the_nearest(tmp_path: Path) -> 
         read_scenario(tmp_path / "latin.toml")
 
 
+@pytest.mark.parametrize("place", [Path("nowhere"), "nowhere.toml", "nowhere.TOML", "folder/nowhere"])
+def test_what_names_a_file_is_looked_for_as_a_file(place: str | Path) -> None:
+    with pytest.raises(ParameterError, match=f"{re.escape(str(place))} cannot be read"):
+        read_scenario(place)
+
+
+def test_a_file_of_the_current_folder_needs_no_ending(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path, replaced={"mass_kg": "mass_kg = 71"}).rename(tmp_path / "mine")
+    monkeypatch.chdir(tmp_path)
+    assert read_scenario("mine").sledge.mass == 71.0
+
+
+def test_the_text_of_a_scenario_that_is_not_built_in_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"no built-in scenario 'carved-46'\. Is carved-46m meant"):
+        scenario_text("carved-46")
+
+
 def test_start_off_the_profile_is_refused(tmp_path: Path) -> None:
     (tmp_path / "down.csv").write_text(PROFILE, encoding="utf-8")
     changes = {"slope.kind": "profile", "slope.profile": str(tmp_path / "down.csv")}

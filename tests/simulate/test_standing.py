@@ -9,7 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow.simulate.standing import _carried_across, why_no_start
+from skisnow.scenario import Plane, Profile
+from skisnow.simulate.run_setup import laid_out
+from skisnow.simulate.standing import _carried_across, weight_meets_base, why_no_start
+
+from .runs.sledges import rigid_ski, scenario
+
+TAN_20 = math.tan(math.radians(20.0))
 
 
 def stood(hardness: float, edge_angle_deg: float) -> Any:
@@ -54,3 +60,20 @@ def test_in_soft_snow_and_flat_the_whole_base_carries() -> None:
 def test_where_the_weight_passes_is_told(ahead: float, left: float, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skisnow.simulate.standing.weight_meets_base", lambda _: (ahead, left))
     assert told in why_no_start(stood(12.5e6, 45.0))
+
+
+@pytest.mark.parametrize(
+    "slope",
+    [Plane(math.radians(20.0)), Profile(np.arange(-5.0, 6.0), -TAN_20 * np.arange(-5.0, 6.0))],
+    ids=["plane", "profile"],
+)
+@pytest.mark.parametrize("heading_deg", [0.0, 30.0, -90.0])
+def test_gravity_passes_through_the_centre_of_mass(slope: Plane | Profile, heading_deg: float) -> None:
+    """From a height h over a slope of angle α: h tan α down the fall line, from which the sledge heads to the left."""
+    given = scenario(ski=rigid_ski(), slope=slope, centre_height=0.4, heading_deg=heading_deg)
+    setup, heading = laid_out(given), math.radians(heading_deg)
+    forward, left, height = setup.dynamics.body.first_moment / setup.dynamics.body.mass
+    assert height == pytest.approx(0.4 * 80.0 / (80.0 + 2.0 * given.ski.mass), rel=1e-2)  # the skis lie at the base
+    down = height * TAN_20
+    expected = (forward + down * math.cos(heading), left - down * math.sin(heading))
+    assert weight_meets_base(setup) == pytest.approx(expected, abs=1e-12)

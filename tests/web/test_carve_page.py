@@ -29,6 +29,7 @@ def test_the_sliders_are_inputs_of_a_carved_turn() -> None:
     for name, (label, stops, start) in SLIDERS.items():
         assert label.endswith(f"({CARVE_KEYS[name].unit})")
         assert start in stops
+        assert [float(stop) for stop in stops] == sorted({float(stop) for stop in stops})
         assert all(CARVE_KEYS[name].in_range(float(stop)) == float(stop) for stop in stops)
     assert all(CARVE_KEYS["unloading_ratio"].in_range(float(ratio)) for ratio in RATIOS)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+import pytest
+
 from .conftest import Served, settled
 from .test_day import create, enter_series
 
@@ -36,6 +38,19 @@ def contrast(ink: str, paper: str) -> float:
 
 def test_black_on_white_by_definition() -> None:
     assert contrast("rgb(0, 0, 0)", "rgb(255, 255, 255)") == 21.0
+
+
+def test_lines_are_told_apart_by_colour_and_dashes_alone() -> None:
+    """Three to one against the page's white is what graphics need (WCAG 2.2, 1.4.11)."""
+    chart = pytest.importorskip("skisnow.web.line_chart", reason="the web lab is not installed")
+    read = [look for look in chart.LOOKS if look["read"]]
+    assert read == list(chart.LOOKS[: chart.BEHIND])
+    for name in ("colour", "dash"):
+        assert len({look[name] for look in read}) == len(read)
+    assert len({(look["width"], look["point"]) for look in read}) == 1
+    for look in read:
+        red, green, blue = bytes.fromhex(look["colour"].removeprefix("#"))
+        assert contrast(f"rgb({red}, {green}, {blue})", "rgb(255, 255, 255)") >= 3.0
 
 
 def test_all_text_stands_out(page: Page, served: Served) -> None:

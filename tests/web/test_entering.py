@@ -65,6 +65,13 @@ def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:
         assert head.n_entries == 1
 
 
+def test_a_campaign_without_a_plate_says_where_to_name_one(page: Page, served: Served) -> None:
+    with Store.open(served.store) as store:
+        id_ = Journals(store).begin('name = "Bare"\n')
+    page.goto(f"{served.address}enter/{id_}?table=shear.csv")
+    page.locator(".bad", has_text="This campaign has no plate yet: name one under Campaign.").wait_for()
+
+
 def test_two_browsers_on_one_series(page: Page, served: Served) -> None:
     create(page, served)
     enter_series(page, "1")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -10,24 +11,40 @@ import pytest
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 from skisnow.errors import StoreError
-from skisnow.web.trouble import LOG, log_to, plain_page, told
+from skisnow.web.trouble import LOG, _notified, log_to, plain_page, told
 
 
-def test_an_unforeseen_error_is_a_reference_that_the_log_knows(tmp_path: Path) -> None:
+@pytest.fixture
+def log(tmp_path: Path) -> Iterator[Path]:
+    """The lab's log file."""
     log_to(tmp_path / "lab.log")
+    yield tmp_path / "lab.log"
+    LOG.handlers[-1].close()
+    LOG.handlers.pop()
+
+
+def test_an_unforeseen_error_is_a_reference_that_the_log_knows(log: Path) -> None:
     try:
         raise KeyError("inner secret")
     except KeyError as error:
         said = told(error)
-    finally:
-        LOG.handlers[-1].close()
-        LOG.handlers.pop()
     assert "secret" not in said
     found = re.search(r"Reference: ([0-9a-f]{8})\.", said)
     assert found is not None
-    log = (tmp_path / "lab.log").read_text(encoding="utf-8")
-    assert found[1] in log
-    assert "Traceback" in log
+    written = log.read_text(encoding="utf-8")
+    assert f"ERROR reference {found[1]}\n" in written
+    assert "Traceback" in written
+
+
+def test_what_no_page_can_show_stands_in_the_log(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """NiceGUI raises where a task belongs to no page."""
+
+    def without_page(*_: object, **__: object) -> None:
+        raise RuntimeError("the slot stack for this task is empty")
+
+    monkeypatch.setattr("nicegui.ui.notify", without_page)
+    _notified(StoreError("the disk is full"))
+    assert log.read_text(encoding="utf-8").endswith(" INFO not shown on a page: the disk is full\n")
 
 
 def test_our_own_errors_say_what_to_do() -> None:

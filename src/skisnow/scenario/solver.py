@@ -124,5 +124,6 @@ def present_method(word: object) -> object:
     """
     if word != FORMER_METHOD:
         return word
-    warnings.warn(f'solver.method = "{FORMER_METHOD}" is now called "default"', DeprecationWarning, stacklevel=3)
+    # 4: where a Solver is made, behind this function and its own two
+    warnings.warn(f'solver.method = "{FORMER_METHOD}" is now called "default"', DeprecationWarning, stacklevel=4)
     return "default"

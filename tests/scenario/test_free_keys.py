@@ -1,0 +1,56 @@
+"""Words for keys that may be looked for: found, guessed, and refused with the reason."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.scenario.free_keys import FREE_KEYS, free_key, free_keys, short_name
+
+
+@pytest.mark.parametrize(
+    ("word", "key"),
+    [
+        ("start.x_m", "start.x_m"),
+        ("x_m", "start.x_m"),
+        ("start.x", "start.x_m"),
+        (" x ", "start.x_m"),
+        ("mu_1", "friction.mu_1_s_per_m"),
+    ],
+)
+def test_with_and_without_section_and_unit(word: str, key: str) -> None:
+    assert free_key(word) == key
+
+
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [
+        ("x_ms", "'x_ms' is no key of a scenario. Near are start.x_m, "),
+        ("MASS", "Near are sledge.mass_kg"),
+        ("speeds", "Near are start.speed_m_per_s"),
+        ("step", "solver.step_ms cannot be looked for: it is how the run is computed, not what it follows from. There"),
+        ("inertia", "sledge.inertia_kg_m2 cannot be looked for: it is a whole table, not one number. There are"),
+        ("ski.name", "ski.name cannot be looked for: it is a text, not a number. There are"),
+        ("mu_0@ ", "behind the @ of 'mu_0@ ' a run is missing. Name one, or write mu_0@each"),
+        ("mu_0, mass, friction.mu_0", "friction.mu_0 is named twice. Remove one of them"),
+    ],
+)
+def test_what_is_no_key_to_look_for(word: str, told: str) -> None:
+    with pytest.raises(ParameterError, match=re.escape(told)):
+        free_keys(word)
+
+
+def test_where_nothing_is_near_all_are_told() -> None:
+    with pytest.raises(ParameterError) as refused:
+        free_key("quark")
+    told = str(refused.value).partition("There are ")[2].split(", ")
+    assert [free_key(word) for word in told] == list(FREE_KEYS)
+    assert told == [short_name(key) for key in FREE_KEYS]
+
+
+def test_a_key_of_one_run_may_stand_beside_that_of_another() -> None:
+    listed = ["mu_0@first", "mu_0 @ second", "", "speed@each"]
+    keys = ("friction.mu_0@first", "friction.mu_0@second", "start.speed_m_per_s@each")
+    assert free_keys(listed) == free_keys(",".join(listed)) == keys

@@ -1,0 +1,61 @@
+"""The numbers that a run chooses from its ski and its snow."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from skisnow.scenario import read_scenario
+from skisnow.simulate import run_setup
+from skisnow.simulate.run_setup import Setup, laid_out
+
+from ..carve.synthetic import plain_ski
+from .runs.sledges import load, scenario
+
+
+@pytest.mark.parametrize(("load", "sinks"), [(1699.0, False), (1701.0, True)])
+def test_snow_that_does_not_bear_a_ski_a_decimetre_deep(load: float, sinks: bool) -> None:
+    """1.7 m by 0.1 m, 0.1 m deep in 0.1 MN/m³: 1700 N."""
+    ski = SimpleNamespace(
+        station=np.array([0.9, 0.2, -0.8]), at=lambda station: SimpleNamespace(width=np.full_like(station, 0.1))
+    )
+    snow = SimpleNamespace(contact=SimpleNamespace(snow=SimpleNamespace(snow_hardness=1e5)), ski=ski)
+    stub = cast("Any", SimpleNamespace(scenario=snow, numbers={"load_N": load}))
+    assert cast("Any", Setup.sinks).fget(stub) is sinks
+
+
+def test_a_ski_that_bends_in_short_waves_has_five_elements_to_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1.8 m of giant-slalom ski and waves of 0.1 m: 90 elements, and a line of snow every centimetre."""
+    scenario, contact = read_scenario("carved-46m"), run_setup._contact
+    monkeypatch.setattr(run_setup, "_contact", lambda each: (*contact(each)[:2], 0.1))
+    found = laid_out(scenario).numbers
+    assert float(scenario.ski.station[0] - scenario.ski.station[-1]) == pytest.approx(1.8)
+    assert found["elements"] == 90.0
+    assert found["line_spacing_m"] == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("edge_deg", [0.0, 45.0])
+def test_elements_and_lines_follow_from_the_waves_of_a_beam_on_an_elastic_foundation(edge_deg: float) -> None:
+    """Hetényi: 1/λ = (4 EI/k)^(1/4), k = H_V times the width that bears.
+
+    Flat, all of the ski bears; edged by 45° as much as the wedge is deep, of which F = H_V L e²/2 over 0.8 of the ski.
+    """
+    given = scenario(ski=plain_ski(length=1.6, width=0.065, bending=300.0), hardness=20.0, edge_deg=edge_deg)
+    force = load(given) / 2.0
+    bears = math.sqrt(2.0 * force / (20e9 * 0.8 * 1.6)) if edge_deg else 0.065
+    wave = (4.0 * 300.0 / (20e9 * bears)) ** 0.25
+    found = laid_out(given).numbers
+    assert found["load_N"] == pytest.approx(force, rel=1e-9)
+    assert found["line_spacing_m"] == pytest.approx(wave / 10.0, rel=1e-9)
+    assert found["elements"] == math.ceil(5.0 * 1.6 / wave) > 40.0
+
+
+def test_in_soft_snow_an_element_is_four_and_a_half_centimetres_long() -> None:
+    """1.8 m of giant-slalom ski, and a line of snow every two centimetres."""
+    found = laid_out(read_scenario("carved-46m", changes={"snow.H_V_N_per_mm3": 0.02})).numbers
+    assert 1.8 / found["elements"] == pytest.approx(0.045)
+    assert found["line_spacing_m"] == 0.02
