@@ -29,7 +29,7 @@ stored = sum(
 )
 open_by = (
     abs(height[-1] - sum(part[-1] for part in parts.values()) - stored[-1])
-    / run.energy_turned_over
+    / run.energy_exchanged
 )
 print(f"the height gave {height[-1]:.0f} J; the parts are off by {open_by:.1e} of it")
 for name, part in parts.items():

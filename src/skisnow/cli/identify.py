@@ -50,13 +50,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _add_ways(parser: argparse.ArgumentParser) -> None:
-    profile = "also intervals by fitting all others anew along each parameter"
+    profile = "also intervals by refitting all others along each parameter"
     parser.add_argument("--profile", action="store_true", help=profile)
     bootstrap = "also intervals by N resamples of the residuals, 40 or more"
     parser.add_argument(
         "--bootstrap", type=whole_number(40, MOST_RESAMPLES, or_zero=True), default=0, metavar="N", help=bootstrap
     )
-    by = "each resample is fitted anew, with simulations of its own (left out), or by the linearised model"
+    by = "each resample is refitted, with simulations of its own (left out), or by the linearised model"
     parser.add_argument("--bootstrap-by", choices=("refit", "linear"), default="refit", help=by)
     posterior = "also about N samples of the posterior (needs emcee)"
     parser.add_argument("--posterior", type=whole_number(0, MOST_SAMPLES), default=0, metavar="N", help=posterior)

@@ -161,5 +161,5 @@ def _step(solution: Solution, sample: _Sample, residuals: FloatArray | None) -> 
     lower, upper = bounds_of(solution.problem.parameters)
     step = step_inside(jacobian, own, lower - sample.place, upper - sample.place)
     sample.place = np.clip(sample.place + step, lower, upper)
-    if float(np.linalg.norm(jacobian @ step)) <= min(SETTLED, solution.manner.tolerance):
+    if float(np.linalg.norm(jacobian @ step)) <= min(SETTLED, solution.options.tolerance):
         sample.best, sample.ended = sample.place, True

@@ -107,7 +107,7 @@ class Pool:
                     self._running.add(self._handed(waiting, fair))
         except BrokenProcessPool as error:
             raise SkisnowError(
-                f"a worker process ended unexpectedly, perhaps for want of memory; {self._advice}"
+                f"a worker process ended unexpectedly, perhaps for lack of memory; {self._advice}"
             ) from error
 
     def _handed(self, waiting: deque[Numbered], size: int) -> Future[_Done]:

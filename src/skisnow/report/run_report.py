@@ -116,7 +116,7 @@ def outcome_sentences(run: Run) -> list[Markup]:
     sentences = [prose("Outcome: {outcome}. {remedy}", outcome=run.outcome.replace("_", " "), remedy=run.remedy)]
     sentences.append(
         prose(
-            "{length} m in {time} s, from {first} to {last} m/s, at most {most} m/s.",
+            "{length} m in {time} s, from {first} to {last} m/s, maximum {most} m/s.",
             length=_number(run.run_length), time=_number(run.simulated_s),
             first=_number(float(run.speed[0])), last=_number(float(run.speed[-1])),
             most=_number(float(np.nanmax(run.speed))),

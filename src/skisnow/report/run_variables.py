@@ -82,7 +82,7 @@ def _energies() -> list[RunVariable]:
     }
     lost = {
         "penetration": "work lost to the grooves in the snow since the start",
-        "shear": "work lost to sliding across the skis since the start",
+        "shear": "work lost to side-slip of the skis since the start",
         "friction": "work lost to glide friction since the start",
         "drag": "work lost to air drag since the start",
         "damping": "work lost to damping of the skis since the start",

@@ -18,7 +18,7 @@ MOST_SITES: Final = 8
 
 
 def summary(results: Json) -> str:
-    """Campaign, experiments, H_V, S_f, the nine rows, the selected law and the regressions.
+    """Campaign, experiments, H_V, S_f, the nine candidate models, the selected law and the regressions.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ MOST_TRIED: Final = 100
 
 
 @dataclass(slots=True, repr=False)
-class ScenarioSubject(ShownFields):
+class ScenarioModel(ShownFields):
     """Runs a scenario with the values of each point. Relative paths start at `folder`.
 
     Attributes
