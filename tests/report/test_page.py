@@ -97,9 +97,9 @@ def test_the_nine_rows_are_those_of_the_results(reference: Reported, read: _Read
     for cells, model in zip(rows, models, strict=True):
         row = dict(zip(head, cells, strict=True))
         for header, key in (
-            ("rmse over n N", "rmse_N"),
-            ("over n − p N", "rmse_dof_N"),
-            ("over free points N", "rmse_free_N"),
+            ("RMSE with 1/n N", "rmse_N"),
+            ("RMSE with 1/(n − p) N", "rmse_dof_N"),
+            ("RMSE without the defining reading N", "rmse_free_N"),
         ):
             assert _agrees(row[header], model[key], 4)
         for name in ("a0", "a1", "b0", "b1"):

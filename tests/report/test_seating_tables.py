@@ -38,7 +38,7 @@ def data(reference: Reported) -> ReportData:
 def test_quantiles_are_over_the_used_series_that_have_an_offset(data: ReportData) -> None:
     """Of −1, 0.5, 2 mm the quartiles are −0.25 and 1.25 mm, linear between neighbours."""
     table = seating_quantiles_table(data)
-    assert [row[0] for row in table.rows] == ["least", "5 %", "25 %", "median", "75 %", "95 %", "greatest"]
+    assert [row[0] for row in table.rows] == ["minimum", "5 %", "25 %", "median", "75 %", "95 %", "maximum"]
     assert [row[1] for row in table.rows] == pytest.approx([-1.0, -0.85, -0.25, 0.5, 1.25, 1.85, 2.0])
     assert [row[2] for row in table.rows] == pytest.approx([-10.0, -6.5, 7.5, 25.0, 62.5, 92.5, 100.0])
     assert [column.key for column in table.columns] == ["quantile", "depth_offset_mm", "H_V_change_percent"]

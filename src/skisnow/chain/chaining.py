@@ -26,9 +26,9 @@ from ..snow.mean_snow import site_in_words
 from .ensemble import ensemble_of
 
 UNLOADING_RATIO: Final = 10.0
-"""k_u/H_V of hypoplastic snow (Choice: none is published)."""
+"""k_u/H_V of hypoplastic snow (modelling assumption: none is published)."""
 RUNS: Final = 32
-"""Of the ensemble (Choice: the band of 90 % then leaves three out)."""
+"""Of the ensemble (modelling assumption: the band of 90 % then leaves three out)."""
 
 
 def chain(

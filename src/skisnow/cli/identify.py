@@ -1,4 +1,4 @@
-"""``skisnow identify``: parameters from tracks, photo-cell times, or marks left in the snow."""
+"""``skisnow identify``: parameters from tracks, photo-cell times, or the track left in the snow."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "identify",
-        help="friction, drag, snow and more from tracks, photo-cell times or marks",
+        help="friction, drag, snow and more from tracks, photo-cell times or measured grooves",
         description="Find the parameters of a scenario that fit what was measured. Ctrl-C keeps the best so far.",
     )
     parser.add_argument("scenario", metavar="NAME|SCENARIO.toml", help="a built-in scenario or a TOML file")
@@ -36,7 +36,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         nargs="+",
         type=Path,
         metavar="DATA",
-        help="tracks (CSV, GPX, FIT, NMEA, UBX, .pos), photo-cell times or marks (CSV); several are fitted together",
+        help="tracks (CSV, GPX, FIT, NMEA, UBX, .pos), photo-cell times or measured grooves (CSV); several are "
+        "fitted together",
     )
     free = 'what is looked for, such as mu_0,drag_area,S_f; left out: what has a table [identify."KEY"] in the file'
     parser.add_argument("--free", default="", metavar="KEY,KEY", help=free)

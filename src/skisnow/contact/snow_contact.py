@@ -25,7 +25,7 @@ Beams: TypeAlias = Sequence[npt.ArrayLike] | None
 State: TypeAlias = core.State
 
 SPACING: Final = 0.02
-"""Of the lines of snow along a runner (m) (Choice, as in the simulated turns)."""
+"""Of the lines of snow along a runner (m) (modelling assumption, as in the simulated turns)."""
 ORTHONORMAL: Final = 1e-9
 """By how much a rotation may fail to be one."""
 

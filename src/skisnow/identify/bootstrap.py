@@ -26,7 +26,7 @@ FEWEST: Final = 40
 MOST_STEPS: Final = 4
 """Gauss-Newton steps of a resample."""
 SETTLED: Final = 0.1
-"""A step that moves the residuals by less than so many standard deviations of one is the last (Choice)."""
+"""A step that moves the residuals by less than so many standard deviations of one is the last (assumption)."""
 AT_ONCE: Final = 32
 """Resamples whose runs are asked together."""
 

@@ -21,7 +21,7 @@ from .solving import Request, solution_of, solved, with_further_intervals
 FloatArray = npt.NDArray[np.float64]
 
 SLID: Final = 0.01
-"""Probability below which marks are not those of an edge that held (Choice)."""
+"""Probability below which marks are not those of an edge that held (modelling assumption)."""
 _ONE_SIDED: Final = 0.95
 
 

@@ -23,7 +23,7 @@ Numbered: TypeAlias = tuple[int, Any]
 """A point and its number."""
 
 CHUNK_SECONDS: Final = 0.25
-"""Work that is handed over at once, and that a kill loses (Choice: handing over costs 1 ms)."""
+"""Work that is handed over at once, and that a kill loses (modelling assumption: handing over costs 1 ms)."""
 LARGEST_CHUNK: Final = 64
 """Points; their rows stay well below the 64 kB that a pipe takes in one piece."""
 

@@ -141,7 +141,7 @@ def _balance(run: Run) -> list[Markup]:
         return []
     if told := run_warnings(run):
         return [prose("Warning: {told}.", told=each) for each in told]
-    return [prose("The balance of energy closes within {error} %.", error=_number(100.0 * error, 2))]
+    return [prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))]
 
 
 def _no_step() -> Markup:

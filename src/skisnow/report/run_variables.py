@@ -157,7 +157,7 @@ def _of_groove() -> list[RunVariable]:
                     lambda run: run.groove.width, coordinates=_GROOVE),
         RunVariable("groove_depth", (PIECE,), "m", "deepest that the snow was pushed", lambda run: run.groove.depth,
                     coordinates=_GROOVE),
-        RunVariable("groove_residual_depth", (PIECE,), "m", "depth of the groove that stays",
+        RunVariable("groove_residual_depth", (PIECE,), "m", "permanent (residual) groove depth",
                     lambda run: run.groove.residual_depth, coordinates=_GROOVE),
     ]  # fmt: skip
 

@@ -60,7 +60,7 @@ def _experiments(results: Json) -> Iterator[str]:
             yield f"{kind} experiments: none"
             continue
         used, marked = sum(row["used"] for row in rows), sum(bool(row["flags"]) for row in rows)
-        yield f"{kind} experiments: {len(rows)}, used {used}, marked {marked}{_codes(rows)}"
+        yield f"{kind} experiments: {len(rows)}, used {used}, flagged {marked}{_codes(rows)}"
 
 
 def _codes(rows: list[Json]) -> str:

@@ -25,11 +25,11 @@ Strength: TypeAlias = Callable[[float], float]
 """Takes the distance run (m), and gives S_f over that of the scenario, > 0."""
 
 TIPPED: Final = math.radians(60.0)
-"""Angle between the sledge and the snow's normal at which it has tipped over (Choice)."""
+"""Angle between the sledge and the snow's normal at which it has tipped over (modelling assumption)."""
 LONGEST_FLIGHT: Final = 0.3
-"""Time (s) with both skis off the snow after which it is airborne (Choice)."""
+"""Time (s) with both skis off the snow after which it is airborne (modelling assumption)."""
 SINKING_DEPTH: Final = 0.5
-"""Depth (m) of the boots below the surface at which the sledge has sunk (Choice)."""
+"""Depth (m) of the boots below the surface at which the sledge has sunk (modelling assumption)."""
 OUTPUTS_AT_ONCE: Final = 5
 """Outputs between which no progress is reported."""
 _COMPUTED_WRONG: Final = ("step_too_small", "not_finite", "interrupted")

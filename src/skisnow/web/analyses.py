@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 MOST_CAMPAIGNS: Final = 6
 MOST_CHOICES: Final = 4
-"""How many are kept in memory (Choice): those of a day's work, not of a season's."""
+"""How many are kept in memory (modelling assumption): those of a day's work, not of a season's."""
 
 
 @dataclass(eq=False)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 CHUNK_BYTES: Final = 1 << 18
 DEEPEST: Final = 32
-"""Folders within one another (Choice: a campaign has two)."""
+"""Folders within one another (modelling assumption: a campaign has two)."""
 
 _METHODS: Final = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _END_RECORD: Final = struct.Struct("<4s4H2LH")

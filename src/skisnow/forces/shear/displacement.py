@@ -5,4 +5,4 @@ from __future__ import annotations
 from typing import Final
 
 SHEAR_DISPLACEMENT: Final = 0.5e-3
-"""u_y (m) (Choice: not measured; the law of the paper, all of S_f or nothing, is its limit 0)."""
+"""u_y (m) (modelling assumption: not measured; the law of the paper, all of S_f or nothing, is its limit 0)."""

@@ -33,7 +33,7 @@ PANELS: Final = {
     "bending_mm": "Deflection (mm)",
     "twist_deg": "Twist (°)",
 }
-# Stops of the sliders and where they stand first (Choice): whole numbers of the field, over what was measured.
+# Stops of the sliders and where they stand first (assumption): whole numbers of the field, over what was measured.
 ANGLES: Final = tuple(str(angle) for angle in range(0, 86))
 LOADS: Final = tuple(str(load) for load in range(100, 3001, 50))
 _SOFT: Final = (0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.2, 1.5, 2)
