@@ -51,11 +51,15 @@ class BaseShape:
     ] = 0.0
     shovel_height: Annotated[
         float | None,
-        ski_quantity("shovel_height_mm", "height of the tip over that line", (0, 300), (5, 150), "50 (assumption)"),
+        ski_quantity(
+            "shovel_height_mm", "height of the tip over that line", (0, 300), (5, 150), "50 (modelling assumption)"
+        ),
     ] = None
     tail_height: Annotated[
         float | None,
-        ski_quantity("tail_height_mm", "height of the tail over that line", (0, 300), (1, 150), "8 (assumption)"),
+        ski_quantity(
+            "tail_height_mm", "height of the tail over that line", (0, 300), (1, 150), "8 (modelling assumption)"
+        ),
     ] = None
     tip_rocker_length: Annotated[
         float,

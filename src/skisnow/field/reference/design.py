@@ -70,8 +70,8 @@ DROP_CONE_REPEATS: Final = 3
 
 # Modelling assumption: eight sites, their medians evenly spaced in ln H_V so that the spread within the first and the
 # last reaches the ends of the paper's range. As the paper found no relation, mean ρ and H_p of the sites are arranged
-# to have none with the medians (correlations of 0.01): eight sites drawn at random would often show one by chance. The two sites
-# with pairs have nearly the same density, so that S_f has no relation with H_V between them either.
+# to have none with the medians (correlations of 0.01): eight sites drawn at random would often show one by chance.
+# The two sites with pairs have nearly the same density, so that S_f has no relation with H_V between them either.
 PENETRATION_SITES: Final = tuple(
     PenetrationSite(f"site {letter}", series, hardness * N_PER_MM3, density, cone * MM, spots)
     for letter, series, hardness, density, cone, spots in zip(
