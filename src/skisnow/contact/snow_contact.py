@@ -1,4 +1,4 @@
-"""Any number of runners in one snow, each with its own pose."""
+"""Any number of runners in one snow, each with its own pose; the snow's history is kept as internal variables."""
 
 from __future__ import annotations
 
