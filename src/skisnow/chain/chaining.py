@@ -14,7 +14,7 @@ from ..estimate.site_snow import site_of_campaign
 from ..field import Campaign
 from ..parallel.pool import workers_in_force
 from ..report.figures.track_band import FEWEST
-from ..report.material import is_synthetic
+from ..report.report_data import is_synthetic
 from ..report.turn_chain import TurnChain
 from ..scenario import Scenario, read_scenario
 from ..scenario.contact import ELASTIC
