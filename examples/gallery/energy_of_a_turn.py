@@ -7,7 +7,7 @@ must be what there was at the start: a check on the whole computation.
 Figure: the energies over time, stacked: kinetic, and all that was lost, against what
 the height has given.
 Known from: conservation of energy: gains and losses differ by less than a thousandth of
-what was turned over.
+the energy exchanged.
 """
 
 import matplotlib.pyplot as plt
