@@ -21,7 +21,9 @@ PARTS = (TURNS, IDENTIFY, WEB, CONTACT)
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
-    parser.add_argument("part", nargs="?", choices=[*PARTS, SCENARIOS, FRONTIER], help="these alone; left out: everything")
+    parser.add_argument(
+        "part", nargs="?", choices=[*PARTS, SCENARIOS, FRONTIER], help="these alone; left out: everything"
+    )
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
     parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds of a turn")
     parser.add_argument("--repeats", type=int, default=5, help="of each turn; the shortest time counts")

@@ -28,7 +28,7 @@ INSIDE = {
     "dynamics": "bodies, steps, static start",
     "estimate": "hardness, strength, models, intervals",
     "sources": "named skis, snows",
-    "contact": "snow that remembers, under any runners",
+    "contact": "history-dependent snow, any runners",
     "field": "campaign files, records, store",
     "parallel": "processes, kept rows",
     "ski": "shape, stiffness, beam",

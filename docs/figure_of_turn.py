@@ -26,7 +26,7 @@ SCENARIO = "carved-46m"
 MOMENT = 3.0
 """Time (s) at which the ski is drawn."""
 OUTER = 1
-"""The ski that carries most in a turn to the left: the right one."""
+"""The more heavily loaded (outer) ski in a turn to the left: the right one."""
 
 
 def turn(run: Run, elastic: Run) -> Figure:
@@ -49,7 +49,7 @@ def _draw_along(axes: Axes, run: Run, elastic: Run) -> None:
         axes.plot(one.skis.station, depth, color=SKI_COLOURS[OUTER], linestyle=style, label=label)
     axes.axhline(0.0, color=GREY, linewidth=0.6)
     axes.set_ylim(1.1 * float(depth.max()) + 1.2, -0.5)
-    axes.set_xlabel("station from the boot (m); tail left, tip right")
+    axes.set_xlabel("position along the ski (m); boot = 0, tail left, tip right")
     axes.set_ylabel("edge depth\n(mm)")
     axes.set_title(f"right ski at {MOMENT:g} s", loc="left", fontsize=7.5)
     axes.legend(loc="lower right", ncols=2)

@@ -79,7 +79,7 @@ def how_to_carve(_folder: Path) -> dict[str, str]:
 
 
 def reference_campaign(_folder: Path) -> dict[str, str]:
-    """The rmse of the nine rows for seed 1, and the least and greatest of seeds 0 to 39 (N)."""
+    """The rmse of the nine candidate models for seed 1, and the least and greatest of seeds 0 to 39 (N)."""
     rmse = [{fit.model.id: fit.rmse for fit in _nine_rows(seed)} for seed in range(40)]
     numbers = {}
     for row in rmse[1]:

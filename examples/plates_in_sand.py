@@ -3,7 +3,7 @@
     python examples/plates_in_sand.py DATA [--out CAMPAIGN]
 
 DATA is a folder with ``plates_large_box_7level.csv``: load and depth of nine trials with discs of 60, 80 and 100 mm at
-seven levels each, from github robomechanics/3d-terramechanics (MIT). Prints what the nine rival models make of them;
+seven levels each, from github robomechanics/3d-terramechanics (MIT). Prints what the nine candidate models give;
 ``skisnow analyse CAMPAIGN --out DIR`` gives the whole report.
 """
 

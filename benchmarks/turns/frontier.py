@@ -1,4 +1,4 @@
-"""Error against cost of a turn, one choice of the solver varied at a time: ``python -m benchmarks frontier --out FILE``.
+"""Error against cost of a turn, one choice of the solver varied: ``python -m benchmarks frontier --out FILE``.
 
 FILE is a table with a row for each run; what stands in it already is not computed again.
 """
@@ -104,7 +104,9 @@ def _point(snow: str, method: str, key: str, value: float, repeats: int, referen
     found = [_run({**of_snow, **METHODS[method], **varied}) for _ in range(repeats)]
     run = found[0][0]
     cost = min(seconds for _, seconds in found)
-    return Point(snow, method, key, value, round(cost, 4), run.steps, round(1e3 * end_distance(run, references[name]), 3))
+    return Point(
+        snow, method, key, value, round(cost, 4), run.steps, round(1e3 * end_distance(run, references[name]), 3)
+    )
 
 
 def _run(changes: Mapping[str, object]) -> tuple[Run, float]:

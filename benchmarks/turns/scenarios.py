@@ -64,8 +64,8 @@ def row(seed: int) -> dict[str, Any]:
         try:
             run = simulate(scenario(seed))
             found: dict[str, Any] = {"outcome": run.outcome, "simulated_s": float(run.time[-1]), "steps": run.steps}
-            found |= {"warned": run.is_open_by(WARNED_SHARE), "open": run.is_open_by(OPEN_SHARE)}
-            found |= {"open_J": run.open_energy, "open_share": run.energy_balance_error}
+            found |= {"warned": run.has_residual_above(WARNED_SHARE), "open": run.has_residual_above(OPEN_SHARE)}
+            found |= {"open_J": run.energy_residual, "open_share": run.energy_balance_error}
         except SkisnowError as error:
             found = {"outcome": type(error).__name__, "words": str(error)}
     return {"seed": seed, **found, "seconds": round(time.perf_counter() - begin, 3)}

@@ -7,7 +7,7 @@ must be what there was at the start: a check on the whole computation.
 Figure: the energies over time, stacked: kinetic, and all that was lost, against what
 the height has given.
 Known from: conservation of energy: gains and losses differ by less than a thousandth of
-what was turned over.
+the energy exchanged.
 """
 
 import matplotlib.pyplot as plt
@@ -29,7 +29,7 @@ stored = sum(
 )
 open_by = (
     abs(height[-1] - sum(part[-1] for part in parts.values()) - stored[-1])
-    / run.energy_turned_over
+    / run.energy_exchanged
 )
 print(f"the height gave {height[-1]:.0f} J; the parts are off by {open_by:.1e} of it")
 for name, part in parts.items():

@@ -35,7 +35,7 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
 ``study``, ``read_study``, ``Study``, ``StudyTable``, ``run_batch``
     One question over a grid or a sample of its inputs; one function over many points, on all cores.
 ``SnowField``, ``SnowContact``, ``Runner``, ``ContactForces``
-    Snow that remembers, and any body of one's own in it.
+    History-dependent snow, and any body of one's own in it.
 ``regress``
     Linear regression with the arguments and results of MATLAB's and Octave's ``regress``.
 """

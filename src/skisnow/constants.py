@@ -3,7 +3,7 @@
 from typing import Final
 
 STANDARD_GRAVITY: Final = 9.81
-"""Acceleration of gravity in m/s² (Choice: the value the skiing literature computes with)."""
+"""Acceleration of gravity in m/s² (modelling assumption: the value the skiing literature computes with)."""
 
 ICE_DENSITY: Final = 917.0
 """Density of ice at 0 °C in kg/m³ (Mössner and others 2013, introduction): no snow is denser."""

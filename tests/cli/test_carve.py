@@ -121,7 +121,7 @@ def test_slipping_edge_is_an_answer(capsys: Printed) -> None:
     assert main(["carve", *words]) == 0
     text = capsys.readouterr().out
     assert found["remedy"] in text
-    assert "edge holds" in text
+    assert "grip holds" in text
 
 
 def test_swallowed_ski_has_an_outcome_in_words_and_no_numbers(capsys: Printed) -> None:
@@ -156,7 +156,7 @@ def test_table_has_skis_own_names_sidecut_radius_and_bearing_length(tmp_path: Pa
     lines = capsys.readouterr().out.splitlines()
     assert next(line for line in lines if line.startswith(" ")).split() == ["slalom", "mine"]
     told = {line[:44].strip(): line[44:].split() for line in lines}
-    radius, bearing = (told[row][0] for row in ("sidecut radius of three widths (m)", "length that carries load (m)"))
+    radius, bearing = (told[row][0] for row in ("sidecut radius of three widths (m)", "loaded contact length (m)"))
     assert float(radius) == pytest.approx(found["ski"]["sidecut_radius_of_three_widths_m"], rel=5e-3)  # three digits
     assert float(bearing) == pytest.approx(found["bearing_length_m"], rel=5e-3)
     # between neighbouring stations that carry; each end of a bearing piece is off by their distance, 1 cm, at most

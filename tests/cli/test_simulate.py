@@ -77,9 +77,9 @@ def test_summary_says_in_words_what_came_out(capsys: Printed) -> None:
     told = {line[:20].strip(): line[20:].strip() for line in out.splitlines()[1:] if line}
     assert out.startswith("carved-46m: finished\n")
     assert told["run length"] == "12.44 m in 2.000 s"
-    assert told["speed"] == "7.44 m/s at the end, 7.44 m/s at most"
+    assert told["speed"] == "7.44 m/s at the end, maximum 7.44 m/s"
     assert told["turn radius"].startswith("none, the run is straight")
-    assert told["energy balance"].startswith("closes within ")
+    assert told["energy residual"].endswith(" % of the energy exchanged")
     assert told["steps"] == "1000, 7 rejected"
     assert told["computed in"] == "0.500 s, 4.00 times real time"
     assert "warning" not in err  # on a busy machine a line says that it is loading
@@ -227,14 +227,14 @@ def test_an_open_balance_is_told(tmp_path: Path, capsys: Printed, replaced: Repl
     replaced(opened)
     assert main(["simulate", *ASKED, "--out", str(tmp_path)]) == 0
     out, err = capsys.readouterr()
-    warned = "the balance of energy is open by "
-    assert "energy balance" in out
-    assert "open by" in out
+    warned = "the energy residual is "
+    assert "energy residual" in out
+    assert "too large" in out
     assert f"warning: {warned}" in err
     assert any(warned in each for each in json.loads((tmp_path / "summary.json").read_text())["warnings"])
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert warned in page
-    assert "closes within" not in page
+    assert "add up to 0 within" not in page
 
 
 def test_progress_tells_the_real_time_factor(

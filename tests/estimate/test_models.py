@@ -1,4 +1,4 @@
-"""The nine rows against an independent constrained optimiser, by-hand cases and the paper's structure."""
+"""The nine candidate models against an independent constrained optimiser, by-hand cases and the paper's structure."""
 
 import math
 from typing import Any

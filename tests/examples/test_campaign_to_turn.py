@@ -38,7 +38,7 @@ def test_chain_from_campaign_to_report(tmp_path: Path) -> None:
     assert 0.2 < hypoplastic < elastic < 308 / 410
     page = (tmp_path / "turn" / "report.html").read_text(encoding="utf-8")
     assert "Synthetic data." in page
-    assert "Both hold their edges." in page
+    assert "Grip holds in both." in page
     assert "run 5 of 5" in done.stderr
 
 

@@ -18,7 +18,7 @@ from skisnow.identify.observations import Fit, Kind, Values
 from skisnow.identify.parameter import Parameter
 from skisnow.identify.problem import problem_of
 from skisnow.identify.result import identification_of
-from skisnow.identify.solving import Asked, solution_of
+from skisnow.identify.solving import Request, solution_of
 
 from . import straight_tracks
 from .straight_tracks import SCENARIO, track
@@ -59,7 +59,7 @@ def resampled(by: BootstrapBy, seed: int) -> tuple[Decay, Identification]:
     decay = Decay(seed)
     parameters = tuple(Parameter(key=key, name=key, start=1.0, lower=0.01, upper=20.0, size=1.0) for key in ("a", "b"))
     rng = np.random.default_rng(3)
-    plan = Asked(title="", starts=1, profile=False, bootstrap=0, posterior=0, rng=rng, told=lambda _: None)
+    plan = Request(title="", starts=1, profile=False, bootstrap=0, posterior=0, rng=rng, told=lambda _: None)
     solution = solution_of(problem_of(parameters, (decay,)), plan)
     found = identification_of(solution, "", (), ())
     return decay, bootstrapped(found, solution, 80, by, np.random.default_rng(4), lambda _: None)

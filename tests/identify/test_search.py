@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from skisnow.identify.search import FINE, Manner, Search
+from skisnow.identify.search import FINE, Search, SearchOptions
 from skisnow.identify.uncertainty import uncertainty
 
 FAR = np.full(2, 1e3)
@@ -43,7 +43,7 @@ def test_a_jacobian_of_a_search_is_asked_at_once() -> None:
         asked.append(len(many))
         return [np.concatenate([each - 0.3, [each[0] * each[1]]]) for each in many]
 
-    Search(residuals, -FAR, FAR, replace(Manner(), candidates=2)).run(np.zeros(2))
+    Search(residuals, -FAR, FAR, replace(SearchOptions(), candidates=2)).run(np.zeros(2))
     assert asked[0] == 3  # the start with one-sided differences
     assert set(asked[1:]) <= {2, 4}  # trial steps, central differences
 
@@ -56,8 +56,10 @@ def test_differences_are_taken_over_a_standard_error() -> None:
         asked.append(many)
         return [np.array([40.0 * (a - 0.3), 300.0 * (b - 0.2)]) for a, b in many]
 
-    manner = replace(Manner(), accuracy_is_stated=True, keeps_jacobian=0.0, smallest_step=0.01, largest_step=0.05)
-    Search(residuals, -FAR, FAR, manner).run(np.zeros(2))
+    options = replace(
+        SearchOptions(), accuracy_is_stated=True, keeps_jacobian=0.0, smallest_step=0.01, largest_step=0.05
+    )
+    Search(residuals, -FAR, FAR, options).run(np.zeros(2))
     central = [many for many in asked[1:] if len(many) == 4][-1]
     assert (central[0] - central[1]) / 2.0 == pytest.approx([0.025, 0.0])
     assert (central[2] - central[3]) / 2.0 == pytest.approx([0.0, 0.01])

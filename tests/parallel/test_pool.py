@@ -50,7 +50,7 @@ def test_what_still_runs_is_ended_with_the_pool() -> None:
 
 def test_a_process_that_is_killed_is_told_with_advice() -> None:
     with (
-        pytest.raises(SkisnowError, match="ended unexpectedly, perhaps for want of memory; take fewer"),
+        pytest.raises(SkisnowError, match="ended unexpectedly, perhaps for lack of memory; take fewer"),
         Pool(killed, 2, advice="take fewer") as pool,
     ):
         list(pool.rows([(0, None), (1, None)]))

@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 from skisnow.field import Campaign
-from skisnow.report.material import Material
 from skisnow.report.numerals import interval, significant
+from skisnow.report.report_data import ReportData
 from skisnow.report.sentences.caveats import caveats
 from skisnow.report.sentences.key_results import key_results
 from skisnow.report.sentences.regressions import regression_sentences
@@ -22,15 +22,15 @@ def plain(markup: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def material(campaign: Campaign) -> Material:
+def data(campaign: Campaign) -> ReportData:
     two = replace(campaign, name="real", shear=None, penetration=first_series(campaign, 60))
-    return Material(analysis_of(two))
+    return ReportData(analysis_of(two))
 
 
-def test_the_first_sentence_is_about_the_sites(material: Material) -> None:
-    hardness = plain(key_results(material)[0])
-    (ratio,) = material.results["site_comparisons"]
-    for row in material.results["site_means"]:
+def test_the_first_sentence_is_about_the_sites(data: ReportData) -> None:
+    hardness = plain(key_results(data)[0])
+    (ratio,) = data.results["site_comparisons"]
+    for row in data.results["site_means"]:
         assert f"{row['site']} {significant(row['mean'])} N/mm³ (95 % interval {interval(row['interval'])}" in hardness
     assert f"site A over site B: {significant(ratio['ratio'])} (95 % interval {interval(ratio['interval'])}" in hardness
     assert "without an interval: fewer than 4 sites" in hardness
@@ -40,29 +40,29 @@ def test_one_site_has_an_interval_over_its_experiments(campaign: Campaign) -> No
     one = replace(campaign, name="real", shear=None, penetration=first_series(campaign, 30))
     analysis = analysis_of(one)
     results = analysis.results
-    hardness = plain(key_results(Material(analysis))[0])
+    hardness = plain(key_results(ReportData(analysis))[0])
     own = next(row for row in results["comparisons"] if row["quantity"] == "H_V_N_per_mm3")
     assert f"{significant(own['own'])} N/mm³ (95 % interval {interval(own['own_interval'])}" in hardness
     assert hardness.endswith("30 of 30 penetration experiments used, at 1 site.")
 
 
-def test_no_slope_on_two_densities_is_called_significant(material: Material) -> None:
-    relations = plain(key_results(material)[-1])
+def test_no_slope_on_two_densities_is_called_significant(data: ReportData) -> None:
+    relations = plain(key_results(data)[-1])
     assert relations.startswith("Relations: significant at 5 %: none; not significant: none; not judged")
-    density = next(text for text in map(plain, regression_sentences(material)) if text.startswith("HV on snow density"))
+    density = next(text for text in map(plain, regression_sentences(data)) if text.startswith("HV on snow density"))
     assert "not judged: the predictor takes 2 different values" in density
     assert "significant" not in density
 
 
-def test_warnings_of_fits_come_first_among_the_caveats(material: Material) -> None:
-    told = replace_warnings(material, ["The rmse of H_e:a=linear,b=linear (15647 N) is above the loads."])
+def test_warnings_of_fits_come_first_among_the_caveats(data: ReportData) -> None:
+    told = replace_warnings(data, ["The rmse of H_e:a=linear,b=linear (15647 N) is above the loads."])
     assert plain(caveats(told)[0]).startswith("The rmse of He:a=linear,b=linear (15647 N)")
 
 
-def replace_warnings(material: Material, warnings: list[str]) -> Material:
-    found = material.analysis.penetration
+def replace_warnings(data: ReportData, warnings: list[str]) -> ReportData:
+    found = data.analysis.penetration
     assert found is not None
-    return Material(replace(material.analysis, penetration=replace(found, warnings=tuple(warnings))))
+    return ReportData(replace(data.analysis, penetration=replace(found, warnings=tuple(warnings))))
 
 
 def test_relations_stand_where_their_p_value_puts_them(reference: Reported) -> None:
@@ -70,7 +70,7 @@ def test_relations_stand_where_their_p_value_puts_them(reference: Reported) -> N
     rows = [row for row in results["regressions"] if row["p"] is not None][:4]
     judged = [row | {"p": p, "interval_by_site": None} for row, p in zip(rows, (0.011, 0.05, 0.049, 0.6), strict=True)]
     other = altered(reference.analysis, results | {"regressions": judged})
-    relations = plain(key_results(Material(other))[-1])
+    relations = plain(key_results(ReportData(other))[-1])
     yes, no = relations.split("; not significant: ")
     assert re.findall(r"p = ([0-9.]+)", yes) == ["0.011", "0.049"]
     assert re.findall(r"p = ([0-9.]+)", no.partition(". How large")[0]) == ["0.050", "0.60"]

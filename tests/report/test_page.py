@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from skisnow.field import Campaign
-from skisnow.report.material import Material
+from skisnow.report.report_data import ReportData
 
 from .conftest import Reported, analysis_of, first_series, first_shear, reported
 
@@ -97,9 +97,9 @@ def test_the_nine_rows_are_those_of_the_results(reference: Reported, read: _Read
     for cells, model in zip(rows, models, strict=True):
         row = dict(zip(head, cells, strict=True))
         for header, key in (
-            ("rmse over n N", "rmse_N"),
-            ("over n − p N", "rmse_dof_N"),
-            ("over free points N", "rmse_free_N"),
+            ("RMSE with 1/n N", "rmse_N"),
+            ("RMSE with 1/(n − p) N", "rmse_dof_N"),
+            ("RMSE without the defining reading N", "rmse_free_N"),
         ):
             assert _agrees(row[header], model[key], 4)
         for name in ("a0", "a1", "b0", "b1"):
@@ -280,7 +280,7 @@ def test_small_campaigns_have_a_report(case: str, figures: int, campaign: Campai
     assert len([tag for tag, _ in reader.tags if tag == "img"]) == figures
     visible = " ".join(text for text in reader.text)
     assert not re.search(r"\bnan\b|\bNone\b(?! of the)|\binf\b", visible)
-    assert ("Figures left out for want of data" in visible) == (figures < 10)
+    assert ("Figures left out for lack of data" in visible) == (figures < 10)
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -322,5 +322,5 @@ def test_the_days_of_the_campaign_are_read_from_its_times(campaign: Campaign) ->
     dated = replace(
         campaign, penetration=None, density=None, drop_cone=None, shear=replace(shear, further={"time": times})
     )
-    assert Material(analysis_of(dated)).dates == ("2026-01-31", "2026-02-03")
-    assert Material(analysis_of(replace(dated, shear=shear))).dates is None
+    assert ReportData(analysis_of(dated)).dates == ("2026-01-31", "2026-02-03")
+    assert ReportData(analysis_of(replace(dated, shear=shear))).dates is None

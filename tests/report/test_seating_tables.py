@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.report.material import Material
+from skisnow.report.report_data import ReportData
 from skisnow.report.tables.seating import (
     offsets_that_show,
     seating_largest_table,
@@ -23,7 +23,7 @@ CHANGES = [-10.0, 25.0, 100.0, None, -60.0]
 
 
 @pytest.fixture
-def material(reference: Reported) -> Material:
+def data(reference: Reported) -> ReportData:
     """The first five series of the campaign, the last of them not used; its sites and angles stay."""
     whole = reference.results["penetration"]
     own = [row | {"used": place != 4} for place, row in enumerate(whole["experiments"][:5])]
@@ -32,33 +32,31 @@ def material(reference: Reported) -> Material:
         for row, offset, ends, change in zip(whole["seating"], OFFSETS, ENDS, CHANGES, strict=False)
     ]
     results = reference.results | {"penetration": whole | {"experiments": own, "seating": seating}}
-    return Material(altered(reference.analysis, results))
+    return ReportData(altered(reference.analysis, results))
 
 
-def test_quantiles_are_over_the_used_series_that_have_an_offset(material: Material) -> None:
+def test_quantiles_are_over_the_used_series_that_have_an_offset(data: ReportData) -> None:
     """Of −1, 0.5, 2 mm the quartiles are −0.25 and 1.25 mm, linear between neighbours."""
-    table = seating_quantiles_table(material)
-    assert [row[0] for row in table.rows] == ["least", "5 %", "25 %", "median", "75 %", "95 %", "greatest"]
+    table = seating_quantiles_table(data)
+    assert [row[0] for row in table.rows] == ["minimum", "5 %", "25 %", "median", "75 %", "95 %", "maximum"]
     assert [row[1] for row in table.rows] == pytest.approx([-1.0, -0.85, -0.25, 0.5, 1.25, 1.85, 2.0])
     assert [row[2] for row in table.rows] == pytest.approx([-10.0, -6.5, 7.5, 25.0, 62.5, 92.5, 100.0])
     assert [column.key for column in table.columns] == ["quantile", "depth_offset_mm", "H_V_change_percent"]
     assert [column.unit for column in table.columns] == ["", "mm", "%"]
-    silent = Material(
-        altered(material.analysis, material.results | {"penetration": {"experiments": [], "seating": []}})
-    )
+    silent = ReportData(altered(data.analysis, data.results | {"penetration": {"experiments": [], "seating": []}}))
     assert seating_quantiles_table(silent).rows == []
 
 
-def test_the_largest_are_in_the_order_of_their_factor(material: Material) -> None:
+def test_the_largest_are_in_the_order_of_their_factor(data: ReportData) -> None:
     """Twice as hard, a quarter more, a tenth less: |ln| is 0.69, 0.22, 0.11."""
-    table = seating_largest_table(material)
-    names = [row["experiment"] for row in material.penetration]
+    table = seating_largest_table(data)
+    names = [row["experiment"] for row in data.penetration]
     assert [row[0] for row in table.rows] == [names[2], names[1], names[0]]
     assert [row[5] for row in table.rows] == [100.0, 25.0, -10.0]
     assert table.rows[0][1:5] == (
-        material.penetration[2]["site"],
-        material.penetration[2]["edge_angle_deg"],
-        material.penetration[2]["H_V_N_per_mm3"],
+        data.penetration[2]["site"],
+        data.penetration[2]["edge_angle_deg"],
+        data.penetration[2]["H_V_N_per_mm3"],
         (2.0, [-0.5, 4.5]),
     )
     assert [(column.key, column.kind) for column in table.columns[4:]] == [
@@ -69,23 +67,23 @@ def test_the_largest_are_in_the_order_of_their_factor(material: Material) -> Non
 
 
 def test_of_many_series_twelve_stand_there(reference: Reported) -> None:
-    table = seating_largest_table(Material(reference.analysis))
+    table = seating_largest_table(ReportData(reference.analysis))
     assert len(table.rows) == 12
     assert table.caption.startswith("The 12 used series whose H_V would change most")
     factors = [abs(math.log(1.0 + row[5] / 100.0)) for row in table.rows]
     assert factors == sorted(factors, reverse=True)
-    every = [row["H_V_change_percent"] for row in Material(reference.analysis).seating]
+    every = [row["H_V_change_percent"] for row in ReportData(reference.analysis).seating]
     known = np.log(1.0 + np.array([change for change in every if change is not None]) / 100.0)
     assert factors[0] == pytest.approx(np.abs(known).max())
 
 
-def test_every_series_has_a_row(material: Material) -> None:
-    table = seating_table(material)
+def test_every_series_has_a_row(data: ReportData) -> None:
+    table = seating_table(data)
     assert [row[2:] for row in table.rows] == [
         (used, (offset, ends), change)
         for used, offset, ends, change in zip([True] * 4 + [False], OFFSETS, ENDS, CHANGES, strict=True)
     ]
-    assert [row[:2] for row in table.rows] == [(row["experiment"], row["site"]) for row in material.penetration]
+    assert [row[:2] for row in table.rows] == [(row["experiment"], row["site"]) for row in data.penetration]
 
 
 def test_an_offset_shows_where_its_interval_leaves_zero_out() -> None:

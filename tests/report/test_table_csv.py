@@ -6,7 +6,7 @@ import csv
 import io
 from dataclasses import replace
 
-from skisnow.report.material import Material
+from skisnow.report.report_data import ReportData
 from skisnow.report.table import Column, Table
 from skisnow.report.table_csv import table_csv
 from skisnow.report.tables import tables_of
@@ -20,7 +20,7 @@ TABLE = Table(
         Column("site", "Site", "text"),
         Column("n", "n", "count"),
         Column("used", "used", "yes"),
-        Column("flags", "marks", "codes"),
+        Column("flags", "flags", "codes"),
         Column("H_V_N_per_mm3", "H_V", "estimate", "N/mm³"),
         Column("range_mm", "range", "interval", "mm"),
         Column("p", "p", "p"),
@@ -101,5 +101,5 @@ HEADS = {
 
 
 def test_columns_of_every_table_have_their_names(reference: Reported) -> None:
-    tables = tables_of(Material(reference.analysis))
+    tables = tables_of(ReportData(reference.analysis))
     assert {name: " ".join(column.key for column in table.columns) for name, table in tables.items()} == HEADS

@@ -98,7 +98,7 @@ def test_text_counts_and_defines() -> None:
     values = summary_dict(slalom())
     values["marked"] = {"repeated_time": 2}
     text = track_text(values, mark_sentences={"repeated_time": "Twice the same."})
-    assert "marked repeated time: 2. Twice the same." in text
+    assert "flagged repeated time: 2. Twice the same." in text
     assert re.search(r"\n4 turns\nA turn is", text)
     assert len(re.findall(r"^ +\d+\.\d +\d+\.\d +(left|right)", text, flags=re.MULTILINE)) == 4
     assert "carrier phase" not in text

@@ -17,8 +17,8 @@ from skisnow.report.turn_chain import EnsembleRun, TurnChain
 from skisnow.report.turn_numbers import (
     afterbody_depth_ratio,
     band_width,
-    greatest_distance,
     loaded_skis,
+    maximum_distance,
     middle_track,
     used_grip,
 )
@@ -154,11 +154,11 @@ def test_the_wider_turn_is_called_the_wider(ratio: float, told: str) -> None:
 @pytest.mark.parametrize(
     ("first", "other", "told"),
     [
-        (0.3, 0.6, "It uses more of its grip: 0.600 against 0.300. Both hold their edges."),
-        (0.6, 0.3, "It uses less of its grip: 0.300 against 0.600. Both hold their edges."),
-        (0.6, 1.0, "It uses more of its grip: 1.00 against 0.600. “other” slides across."),
-        (1.0, 0.6, "It uses less of its grip: 0.600 against 1.00. “first” slides across."),
-        (1.0, 1.0, "It uses as much of its grip: 1.00 against 1.00. Both slide across."),
+        (0.3, 0.6, "Its grip utilisation is higher: 0.600 against 0.300. Grip holds in both."),
+        (0.6, 0.3, "Its grip utilisation is lower: 0.300 against 0.600. Grip holds in both."),
+        (0.6, 1.0, "Its grip utilisation is higher: 1.00 against 0.600. “other” side-slips."),
+        (1.0, 0.6, "Its grip utilisation is lower: 0.600 against 1.00. “first” side-slips."),
+        (1.0, 1.0, "Its grip utilisation is the same: 1.00 against 1.00. Both side-slip."),
     ],
 )
 def test_who_draws_more_on_the_snow_and_who_slides(first: float, other: float, told: str) -> None:
@@ -168,8 +168,8 @@ def test_who_draws_more_on_the_snow_and_who_slides(first: float, other: float, t
 @pytest.mark.parametrize(
     ("first", "other", "told"),
     [
-        (0.8, 0.3, "Its afterbody lies less deep, in parts of the forebody's depth: 0.300 against 0.800."),
-        (0.3, 0.8, "Its afterbody lies deeper, in parts of the forebody's depth: 0.800 against 0.300."),
+        (0.8, 0.3, "Its afterbody/forebody edge-depth ratio is smaller: 0.300 against 0.800."),
+        (0.3, 0.8, "Its afterbody/forebody edge-depth ratio is larger: 0.800 against 0.300."),
     ],
 )
 def test_whose_afterbody_lies_deeper(first: float, other: float, told: str) -> None:
@@ -185,7 +185,7 @@ def test_what_would_bring_back_the_edges_is_said_where_they_slide(chain: TurnCha
 def test_distance_of_paths_and_width_of_a_band() -> None:
     run = circle_run()
     aside = replace(run, place=run.place + np.array([0.0, 0.0, 0.7]))
-    assert greatest_distance(aside, run) == pytest.approx(0.7)
+    assert maximum_distance(aside, run) == pytest.approx(0.7)
     time = np.linspace(0.0, 2.0, 41)
     nominal = TimedTrack(time, 5.0 * time, np.zeros(41))
     tracks = [TimedTrack(time, (5.0 + 0.1 * k) * time, 0.05 * k * time) for k in np.linspace(-1.0, 1.0, 201)]

@@ -110,13 +110,13 @@ def opened(joule: float) -> Run:
 
 
 def test_an_open_balance_is_warned_of() -> None:
-    over = straight_run(ASKED.scenario).energy_turned_over
+    over = straight_run(ASKED.scenario).energy_exchanged
     assert run_warnings(opened(0.019 * over)) == ()
     (told,) = summary_dict(opened(0.03 * over), warnings=("another",))["warnings"][1:]
-    assert told.startswith(f"the balance of energy is open by 2.9 % of what was turned over, {0.03 * over:.3g} J")
+    assert told.startswith(f"the energy residual is 2.9 % of the energy exchanged, {0.03 * over:.3g} J")
     nothing = replace(at_rest(), energies=at_rest().energies | {"damping": np.linspace(0.0, -3.0, 201)})
     assert nothing.energy_balance_error is None  # what was turned over is less than nothing: no share, but a word
-    assert run_warnings(nothing)[0].startswith("the balance of energy is open by 3 J: ")
+    assert run_warnings(nothing)[0].startswith("the energy residual is 3 J: ")
     still = replace(at_rest(), energies=at_rest().energies | {"damping": np.linspace(0.0, 0.9, 201)})
     assert still.energy_balance_error == 1.0
     assert run_warnings(still) == ()  # less than 1 J

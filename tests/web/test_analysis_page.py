@@ -68,7 +68,7 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
     page.get_by_text(told(pressed), exact=True).wait_for(timeout=DRAWING_MS)
     drawn = page.locator("figure img").count()
     assert drawn >= 8
-    page.locator("summary", has_text="Experiments that take part").press("Enter")
+    page.locator("summary", has_text="Included experiments").press("Enter")
     first = next(row for row in results["penetration"]["experiments"] if row["used"])
     words = f"Penetration {first['experiment']}, {first['site']}, {first['edge_angle_deg']:g}°"
     page.get_by_role("checkbox", name=words, exact=True).press("Space")
@@ -77,7 +77,7 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
     assert page.locator("figure img").count() == drawn
     row = next(row for row in given["penetration"]["experiments"] if row["experiment"] == first["experiment"])
     assert not row["used"] and "cancelled" in row["flags"]
-    page.locator("summary", has_text="Leave out experiments with these marks").press("Enter")
+    page.locator("summary", has_text="Exclude experiments with these quality flags").press("Enter")
     box = page.get_by_role("checkbox", name=choosable_marks()["layered"], exact=True)
     assert box.is_checked() == ("layered" in campaign.excluding)
     box.press("Space")

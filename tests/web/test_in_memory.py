@@ -15,10 +15,10 @@ from skisnow.field import read_campaign
 from skisnow.field.store import Journals, NewEntry, Store, export_corrected
 from skisnow.report.numerals import significant
 from skisnow.snow import snow_from_results
-from skisnow.web.analyses import Subject
+from skisnow.web.analyses import CampaignSource
 from skisnow.web.analysing import Choice, Numbers, numbers_of
-from skisnow.web.desk import Desk
-from skisnow.web.kept_desk import KeptDesk
+from skisnow.web.correction_session import CorrectionSession
+from skisnow.web.edit_session import EditSession
 from skisnow.web.settings import Lab
 from skisnow.web.snow_of_campaign import snow_of_campaign
 from skisnow.web.transfer import entry_files, kept_files, write_entry
@@ -75,8 +75,8 @@ def correct(lab: Lab, id_: str) -> None:
     entry = NewEntry(
         action="correct", file="penetration.csv", test="2", cells={"7/depth_mm": "3.2"}, who="Ada", why="slip", about=0
     )
-    desk = KeptDesk(lab, id_)
-    desk.write_down(entry, seen=0)
+    session = CorrectionSession(lab, id_)
+    session.write_down(entry, seen=0)
 
 
 def experiments(results: dict[str, Any]) -> Any:
@@ -86,7 +86,7 @@ def experiments(results: dict[str, Any]) -> Any:
 @pytest.mark.usefixtures("no_folder")
 def test_tests_at_the_desk_say_at_once_what_the_analysis_says(lab: Lab) -> None:
     id_ = entered(lab)
-    (row,) = Desk(lab, id_).at_once("A").penetration.values()
+    (row,) = EditSession(lab, id_).at_once("A").penetration.values()
     found = numbers_of(entry_files(lab, id_), Choice())
     assert isinstance(found, Numbers)
     assert experiments(found.results) == [row]
@@ -112,7 +112,7 @@ def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: 
     assert experiments(found.results) == experiments(results)
     assert found.results["provenance"]["files"] == results["provenance"]["files"]
     assert found.analysis.campaign.unread_files == ("photo.jpg",)
-    assert KeptDesk(lab, id_).at_once("A").penetration["2"] == experiments(results)[1]
+    assert CorrectionSession(lab, id_).at_once("A").penetration["2"] == experiments(results)[1]
     unchanged = numbers_of(before, Choice())
     assert isinstance(unchanged, Numbers)
     assert experiments(unchanged.results)[1] != experiments(results)[1]
@@ -138,11 +138,11 @@ def test_the_snow_of_a_campaign_is_that_of_its_results(lab: Lab, tmp_path: Path)
 def test_what_is_downloaded_is_the_campaign_that_was_analysed(lab: Lab, tmp_path: Path) -> None:
     """A correction that comes afterwards is not in it; the files that no analysis reads are."""
     id_ = kept_id(lab, tmp_path / "kept")
-    subject = Subject(lab, "kept", id_)
+    subject = CampaignSource(lab, "kept", id_)
     correct(lab, id_)
     subject.write_campaign(tmp_path / "first")
     assert {path.name for path in (tmp_path / "first").iterdir()} == {"campaign.toml", "penetration.csv", "photo.jpg"}
-    Subject(lab, "kept", id_).write_campaign(tmp_path / "second")
+    CampaignSource(lab, "kept", id_).write_campaign(tmp_path / "second")
     export_corrected(lab.store, id_, tmp_path / "export")
     exported = (tmp_path / "export" / "corrections.csv").read_bytes()
     assert (tmp_path / "second" / "corrections.csv").read_bytes() == exported

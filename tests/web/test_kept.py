@@ -57,7 +57,7 @@ def imported(page: Page, served: Served) -> None:
     )
     ready(page)
     page.get_by_role("button", name="Import files or zip").press("Enter")
-    page.get_by_text("The campaign is kept, byte for byte.").wait_for()
+    page.get_by_text("The campaign is imported, byte for byte.").wait_for()
 
 
 def exported(page: Page, served: Served, place: Path) -> Path:

@@ -29,14 +29,16 @@ GrooveForm: TypeAlias = Literal["edge", "path"]
 MomentBalance: TypeAlias = Literal["boot", "free"]
 
 ELEMENTS: Final = 160
-"""Elements over the whole ski: 1 cm each, half of 1/λ on the hardest snow (Choice: see the convergence tests)."""
+"""Elements over the whole ski: 1 cm each, half of 1/λ on the hardest snow (assumption: see the convergence tests)."""
 SINKING_DEPTH: Final = 0.30
-"""Edge depth (m) beyond which a ski counts as swallowed: no balance above it (Choice)."""
+"""Edge depth (m) beyond which a ski counts as swallowed: no balance above it (modelling assumption)."""
 GREATEST_EDGE_ANGLE: Final = math.radians(85.0)
 LARGE_SLOPE: Final = 0.35
-"""Slope of the bent ski, and twist (rad), beyond which beams of small deflection fail (Choice: 6 % in the cosine)."""
+"""Slope of the bent ski, and twist (rad), beyond which beams of small deflection fail (modelling assumption: 6 % in
+the cosine)."""
 GENTLER_RATIOS: Final = (500.0, 300.0, 200.0)
-"""Unloading ratios to fall back on, with a warning, where steeper unloading has no numerical end (Choice): against 1000
+"""Unloading ratios to fall back on, with a warning, where steeper unloading has no numerical end (modelling
+assumption): against 1000
 the greatest depth is 0.6, 1.1 and 1.7 % smaller, the radius less than 0.2 %."""
 _MOST_PATHS: Final = 80
 _PATH_TOLERANCE: Final = 1e-5  # m, of the edge from the path that was assumed
@@ -212,7 +214,8 @@ def carve(
     Notes
     -----
     The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight
-    is left out. The side force draws the same share of the shear strength everywhere along the edge (Choice): τ e per
+    is left out. The side force draws the same share of the shear strength everywhere along the edge (modelling
+    assumption): τ e per
     length.
 
     References

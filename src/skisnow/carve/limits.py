@@ -11,7 +11,7 @@ from ..units import MM, N_PER_MM3, in_degrees_if_radians
 from .keys import CARVE_KEYS, CarveQuestion
 
 USUAL_LOADS_N: Final = (20.0, 5000.0)
-"""Loads beyond it look like another unit: 2 kg of ski, and six times the weight of a heavy skier (Choice)."""
+"""Loads beyond it look like another unit: 2 kg of ski, and six times the weight of a heavy skier (assumption)."""
 
 
 def require_clamp(ski: Ski, clamp_length_m: float) -> None:

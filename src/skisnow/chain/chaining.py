@@ -14,7 +14,7 @@ from ..estimate.site_snow import site_of_campaign
 from ..field import Campaign
 from ..parallel.pool import workers_in_force
 from ..report.figures.track_band import FEWEST
-from ..report.material import is_synthetic
+from ..report.report_data import is_synthetic
 from ..report.turn_chain import TurnChain
 from ..scenario import Scenario, read_scenario
 from ..scenario.contact import ELASTIC
@@ -26,9 +26,9 @@ from ..snow.mean_snow import site_in_words
 from .ensemble import ensemble_of
 
 UNLOADING_RATIO: Final = 10.0
-"""k_u/H_V of snow that keeps its grooves (Choice: none is published)."""
+"""k_u/H_V of hypoplastic snow (modelling assumption: none is published)."""
 RUNS: Final = 32
-"""Of the ensemble (Choice: the band of 90 % then leaves three out)."""
+"""Of the ensemble (modelling assumption: the band of 90 % then leaves three out)."""
 
 
 def chain(
@@ -56,7 +56,7 @@ def chain(
     ski
         In place of the scenario's: a ski, a name of the catalogue, or a file.
     unloading_ratio
-        k_u/H_V > 1 of the contact that keeps its groove; the other contact springs back.
+        k_u/H_V > 1 of the hypoplastic contact; the other contact is elastic.
     runs
         Of the ensemble, 3 or more: H_V and S_f are drawn from their intervals.
     seed

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..snow import SnowProperties
 
 STEP: Final = 1e-3
-"""Of the ensemble's fixed steps (s) (Choice: a fifth of the time; the report says what that costs)."""
+"""Of the ensemble's fixed steps (s) (modelling assumption: a fifth of the time; the report says what that costs)."""
 EVERY: Final = 5
 """Of a track's rows the band draws one in so many."""
 

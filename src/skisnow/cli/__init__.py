@@ -76,7 +76,7 @@ def _say(error: SkisnowError | MemoryError) -> None:
     if isinstance(error, FieldDataError):
         for problem in error.problems:
             print(_short(str(problem)), file=sys.stderr)
-        print("Nothing was written: mend the errors above first.", file=sys.stderr)
+        print("Nothing was written: fix the errors above first.", file=sys.stderr)
     elif isinstance(error, SkisnowError):
         print(f"skisnow: {_short(str(error))}", file=sys.stderr)
     else:

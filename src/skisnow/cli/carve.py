@@ -19,7 +19,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "carve",
-        help="equilibrium of a ski in snow: depth, pressure, bend, twist, turn radius",
+        help="equilibrium of a ski in snow: depth, pressure, deflection, twist, turn radius",
         description="Equilibrium of a ski that carves a steady turn, or is set down on snow. The snow is given in one "
         "of three ways: --H-V-N-per-mm3 with --S-f-N-per-mm2, --results, or --published.",
     )

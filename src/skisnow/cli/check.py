@@ -31,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
             print(problem)
         for remark in told:
             print(f"remark: {remark}")
-        print(f"errors: {errors}, warnings: {warnings}, marks: {marks}")
+        print(f"errors: {errors}, warnings: {warnings}, flags: {marks}")
     return 1 if errors else 0
 
 

@@ -24,7 +24,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser(
         "compare",
         help="distances between a simulated and a measured track",
-        description="Hold a simulated track against a measured one: largest, mean and rms distance by nearest place, "
+        description="Compare a simulated track with a measured one: largest, mean and rms distance by nearest place, "
         "at equal arc length and at equal time.",
     )
     track = "a track file, or the folder of a run with its track.csv"

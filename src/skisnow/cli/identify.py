@@ -1,4 +1,4 @@
-"""``skisnow identify``: parameters from tracks, photo-cell times, or marks left in the snow."""
+"""``skisnow identify``: parameters from tracks, photo-cell times, or the track left in the snow."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "identify",
-        help="friction, drag, snow and more from tracks, photo-cell times or marks",
+        help="friction, drag, snow and more from tracks, photo-cell times or measured grooves",
         description="Find the parameters of a scenario that fit what was measured. Ctrl-C keeps the best so far.",
     )
     parser.add_argument("scenario", metavar="NAME|SCENARIO.toml", help="a built-in scenario or a TOML file")
@@ -36,7 +36,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         nargs="+",
         type=Path,
         metavar="DATA",
-        help="tracks (CSV, GPX, FIT, NMEA, UBX, .pos), photo-cell times or marks (CSV); several are fitted together",
+        help="tracks (CSV, GPX, FIT, NMEA, UBX, .pos), photo-cell times or measured grooves (CSV); several are "
+        "fitted together",
     )
     free = 'what is looked for, such as mu_0,drag_area,S_f; left out: what has a table [identify."KEY"] in the file'
     parser.add_argument("--free", default="", metavar="KEY,KEY", help=free)
@@ -50,13 +51,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _add_ways(parser: argparse.ArgumentParser) -> None:
-    profile = "also intervals by fitting all others anew along each parameter"
+    profile = "also intervals by refitting all others along each parameter"
     parser.add_argument("--profile", action="store_true", help=profile)
     bootstrap = "also intervals by N resamples of the residuals, 40 or more"
     parser.add_argument(
         "--bootstrap", type=whole_number(40, MOST_RESAMPLES, or_zero=True), default=0, metavar="N", help=bootstrap
     )
-    by = "each resample is fitted anew, with simulations of its own (left out), or by the linearised model"
+    by = "each resample is refitted, with simulations of its own (left out), or by the linearised model"
     parser.add_argument("--bootstrap-by", choices=("refit", "linear"), default="refit", help=by)
     posterior = "also about N samples of the posterior (needs emcee)"
     parser.add_argument("--posterior", type=whole_number(0, MOST_SAMPLES), default=0, metavar="N", help=posterior)

@@ -29,7 +29,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
     )
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a map of the table: .png, .svg or .pdf")
-    about = "radius over edge angle, or where the edge lets go; left out: radius"
+    about = "radius over edge angle, or where the edge loses grip; left out: radius"
     parser.add_argument("--map", choices=("radius", "grip"), default="radius", help=about)
     parser.set_defaults(run=run)
 

@@ -19,8 +19,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser(
         "turn",
         help="from a campaign to a turn: analysis, the snow of a site, a simulated turn, a band over the uncertainty",
-        description="Analyse a campaign and simulate a turn on the snow of a site, with a contact that keeps its "
-        "groove and one that springs back, and over the uncertainty of the snow.",
+        description="Analyse a campaign and simulate a turn on the snow of a site, with hypoplastic and with "
+        "elastic contact, and over the uncertainty of the snow.",
     )
     parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of the campaign")
     parser.add_argument("--site", metavar="SITE", help='whose snow it is, "C" or "site C"; left out: all sites')
@@ -42,7 +42,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--unloading-ratio",
         type=number("", lowest=1.0, highest=1000.0, above=True),
         metavar="RATIO",
-        help="k_u/H_V of the contact that keeps its groove; left out: 10",
+        help="k_u/H_V of the hypoplastic contact; left out: 10",
     )
     parser.add_argument(
         "--runs", type=whole_number(3, MOST_RUNS), metavar="N", help="of the ensemble, 3 or more; left out: 32"

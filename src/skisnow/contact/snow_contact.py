@@ -1,4 +1,4 @@
-"""Any number of runners in one snow, each with its own pose."""
+"""Any number of runners in one snow, each with its own pose; the snow's history is kept as internal variables."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Beams: TypeAlias = Sequence[npt.ArrayLike] | None
 State: TypeAlias = core.State
 
 SPACING: Final = 0.02
-"""Of the lines of snow along a runner (m) (Choice, as in the simulated turns)."""
+"""Of the lines of snow along a runner (m) (modelling assumption, as in the simulated turns)."""
 ORTHONORMAL: Final = 1e-9
 """By how much a rotation may fail to be one."""
 

@@ -24,15 +24,15 @@ from ..units import N_PER_MM2, N_PER_MM3
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 EDGE_BLEND: Final = math.radians(2.0)
-"""Edge angle (rad) above which the shear acts at the edge alone; below it moves to the middle (Choice)."""
+"""Edge angle (rad) above which the shear acts at the edge alone; below it moves to the middle (assumption)."""
 FADE_SPEED: Final = 0.01
-"""Sliding speed (m/s) below which friction fades to zero (Choice): Coulomb's law, regularised."""
+"""Sliding speed (m/s) below which friction fades to zero (modelling assumption): Coulomb's law, regularised."""
 KNOT_AREA: Final = 1e-4
-"""Share of a contact's depth times width below which a knot of the groove is dropped (Choice)."""
+"""Share of a contact's depth times width below which a knot of the groove is dropped (modelling assumption)."""
 PART_ALONG: Final = 0.01
-"""Longest way (m) of tip or tail along the ski over which the history advances at once (Choice)."""
+"""Longest way (m) of tip or tail along the ski over which the history advances at once (modelling assumption)."""
 PART_ACROSS: Final = 2e-3
-"""The same across the ski (m): what an edge cuts on the way hangs on where it was between (Choice)."""
+"""The same across the ski (m): what an edge cuts on the way hangs on where it was between (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -19,15 +19,16 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 STEPS_AT_ONCE: Final = 1000
 """Steps after which compiled code comes back, so that an interrupt is heard."""
 TOLERANCE: Final = 1e-6
-"""Error of place (m) that one step may make by its own estimate (Choice, see the frontier in the docs)."""
+"""Error of place (m) that one step may make by its own estimate (modelling assumption; the docs draw its frontier)."""
 LONGEST_STEP: Final = 6e-3
 """Longest step (s) (modelling assumption: the powers are summed by the trapezoidal rule from step to step)."""
 SHORTEST_STEP: Final = 1e-7
 """Step (s) below which a run ends."""
 CLOSENESS: Final = 0.03
-"""Share of a step's own error to which Newton's method solves it (Choice: 0.01 moves ends by less than their error)."""
+"""Share of a step's own error to which Newton's method solves it (modelling assumption: 0.01 moves ends by less than
+their error)."""
 MATRIX_KEPT: Final = 8
-"""Steps over which Newton's matrix is kept while it serves (Choice)."""
+"""Steps over which Newton's matrix is kept while it serves (modelling assumption)."""
 
 
 class Ended(IntEnum):

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 FEWEST_SITES: Final = 4
-"""Fewer sites do not tell how sites scatter (two leave one degree of freedom): no interval over them (Choice)."""
+"""Fewer sites do not tell how sites scatter (two leave one degree of freedom): no interval over them (assumption)."""
 
 
 @dataclass(frozen=True, slots=True)

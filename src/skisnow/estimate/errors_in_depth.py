@@ -103,7 +103,7 @@ def pooled_scatter(scatter: FloatArray) -> float:
 def fit_models_with_depth_errors(
     fitted: FittedHardness, uncertainty: ReadingUncertainty, *, n_iterations: int = 12
 ) -> tuple[tuple[ModelFit, ...], dict[Model, FloatArray]]:
-    """Fit the nine rows by effective variance.
+    """Fit the nine candidate models by effective variance.
 
     Returns the rows and the final weights of the readings (1/N²) of each, for the bootstrap. The rmse are in force and
     unweighted, to stand beside those of `models.fit_models`.

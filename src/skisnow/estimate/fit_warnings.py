@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from .models import ModelFit
 
 POOR: Final = 0.5
-"""A selected law whose rmse is above this share of the loads' rms leaves a quarter of their squares open (Choice)."""
+"""A selected law whose rmse is above this share of the loads' rms leaves a quarter of their squares open (modelling
+assumption)."""
 _LISTED: Final = 3
 _DEPTH: Final = " with errors in depth"
 _LOOK: Final = "Look for wrong units, depths or tools, and for snow that follows none of these laws."

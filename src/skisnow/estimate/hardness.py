@@ -9,7 +9,7 @@ Error model of a reading, used throughout this room: its departure from the law,
 
 with u_F the standard uncertainty of the load, u_e = (gauge step)/√12 that of the depth, and s the relative scatter of
 the snow, estimated from the series' own load steps (Paule and Mandel 1982). Intervals use Student's t with the degrees
-of freedom of s (Choice): the effective degrees of the GUM (JCGM 100:2008, G.4) take s = 0 for certain where the
+of freedom of s (assumption): the effective degrees of the GUM (JCGM 100:2008, G.4) take s = 0 for certain where the
 estimate happens to be 0, and then covered the truth in as few as 90 % of simulated series; this form covers it in
 92-96 %, and in more where the gauge alone limits.
 """

@@ -3,7 +3,7 @@
 A series whose snow grows harder or softer below follows, near enough, F = H_V V₇ (V/V₇)^(1 + κ/2), with V₇ = F₇/H_V at
 the largest load and κ = 0 for F = H_V V. κ is fitted together with H_V and the offset δ of the depth zero (`seating`).
 Both bend the curve, so seven readings leave much of κ open: that belongs into the interval of H_V. The whole module is
-our Choice.
+our modelling assumption.
 """
 
 from __future__ import annotations

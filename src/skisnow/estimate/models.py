@@ -1,4 +1,4 @@
-"""The paper's nine rival models of the penetration force (Eqn 6) and the choice between them.
+"""The paper's nine candidate models of the penetration force (Eqn 6) and the choice between them.
 
 F = H (a(ϑ) A + b(ϑ) V), H one of three hardness definitions, a and b absent, constant or linear in ϑ, fitted to all
 readings at once with a ≥ 0 and b ≥ 0 over the whole range of ϑ in the data. A linear coefficient is carried by its
@@ -73,7 +73,7 @@ MODELS: Final = (
     Model("H_V", "none", "constant"),
     Model("H_V", "none", "one"),
 )
-"""The paper's nine rows, in its order."""
+"""The paper's nine candidate models, in its order."""
 
 NESTED_PAIRS: Final = tuple((full, reduced) for full in MODELS for reduced in MODELS if full.contains(reduced))
 
@@ -245,7 +245,7 @@ def _bounds(model: Model, basis: EndBasis, bound: npt.NDArray[np.bool_]) -> tupl
 
 
 def fit_models(readings: Readings, hardnesses: dict[str, FloatArray]) -> tuple[ModelFit, ...]:
-    """Fit the nine rows; ``hardnesses`` gives H of each series (SI) by definition."""
+    """Fit the nine candidate models; ``hardnesses`` gives H of each series (SI) by definition."""
     bases = {symbol: end_basis(readings, hardnesses[symbol]) for symbol in DEFINITIONS}
     return tuple(fit_model(readings, bases[model.hardness], model)[0] for model in MODELS)
 

@@ -30,7 +30,8 @@ Source: TypeAlias = Literal["penetration", "shear", "spots"]
 FEWEST_TESTS: Final = 5
 FEWEST_ANGLES: Final = 3
 FEWEST_VALUES: Final = 4
-"""A predictor that takes fewer values does not show a relation: what differs between them may be anything (Choice)."""
+"""A predictor that takes fewer values does not show a relation: what differs between them may be anything (modelling
+assumption)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -275,13 +275,14 @@ def _selected(found: PenetrationAnalysis) -> Json | None:
 def _reason(chosen: ModelFit, best: ModelFit) -> str:
     if chosen.model == best.model:
         return (
-            f"The smallest rmse of the nine rows, {chosen.rmse:.4g} N; no row with fewer fitted parameters "
-            f"({chosen.n_parameters} here) comes within 5 % of it."
+            f"The smallest rmse of the nine candidate models, {chosen.rmse:.4g} N; no model with fewer fitted "
+            f"parameters ({chosen.n_parameters} here) comes within 5 % of it."
         )
     more = 100.0 * (chosen.rmse / best.rmse - 1.0) if best.rmse > 0 else 0.0
     return (
-        f"The simplest of the nine rows whose rmse is within 5 % of the best: {chosen.rmse:.4g} N with fitted "
-        f"parameters: {chosen.n_parameters}, against {best.rmse:.4g} N of {best.model.id} with {best.n_parameters}, "
+        f"The simplest of the nine candidate models whose rmse is within 5 % of the best: {chosen.rmse:.4g} N "
+        f"with fitted parameters: {chosen.n_parameters}, against {best.rmse:.4g} N of "
+        f"{best.model.id} with {best.n_parameters}, "
         f"{f'{more:.2g} % more' if more >= _SAME_PERCENT else 'which is the same'}."
     )
 

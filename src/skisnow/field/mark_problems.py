@@ -64,8 +64,8 @@ def _marked(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, str]]:
 
 def _follows(campaign: Campaign, code: str) -> str:
     if code in campaign.excluding:
-        return "The experiment is kept and counted, and takes no part in the estimates."
-    return "The experiment is only marked and takes part in the estimates; look at it."
+        return "The experiment is kept and counted, but not included in the estimates."
+    return "The experiment is only flagged and included in the estimates; look at it."
 
 
 def _resolution_limit(campaign: Campaign) -> str:

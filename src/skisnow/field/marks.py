@@ -10,9 +10,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 FEWEST_LOADS: Final = 3
-"""Fewer load steps do not show whether the law holds (Choice)."""
+"""Fewer load steps do not show whether the law holds (modelling assumption)."""
 RESOLUTIONS: Final = 5.0
-"""A depth of fewer gauge resolutions is read with more than some 6 % of standard uncertainty: 1/(5 √12) (Choice)."""
+"""A depth of fewer gauge resolutions is read with more than some 6 % of standard uncertainty: 1/(5 √12) (modelling
+assumption)."""
 
 
 ALWAYS_EXCLUDE: Final = frozenset({"cancelled", "zero_depth"})

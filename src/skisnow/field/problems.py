@@ -28,6 +28,8 @@ WARNING_CODES = (
     "encoding",
     "separator",
 )
+_SHOWN = {"mark": "flag"}
+"""What a severity is called on a terminal, where it is not its own word."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +56,8 @@ class Problem:
         if self.experiment is not None:
             place += f" (experiment {self.experiment})"
         found = "" if self.value is None else f" found {self.value!r};"
-        return f"{self.severity} {self.code}: {place}:{found} allowed: {self.allowed}. {self.action}"
+        shown = _SHOWN.get(self.severity, self.severity)
+        return f"{shown} {self.code}: {place}:{found} allowed: {self.allowed}. {self.action}"
 
     def as_dict(self) -> dict[str, str | int | None]:
         """Give the problem as the object of ``skisnow check --json``."""

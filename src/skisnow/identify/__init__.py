@@ -1,4 +1,4 @@
-"""Parameters from tracks, photo-cell times, or marks left in the snow.
+"""Parameters from tracks, photo-cell times, or the track left in the snow.
 
 The room can be called: `skisnow.identify(…)` is `skisnow.identify.identify`.
 """

@@ -26,7 +26,7 @@ FEWEST: Final = 40
 MOST_STEPS: Final = 4
 """Gauss-Newton steps of a resample."""
 SETTLED: Final = 0.1
-"""A step that moves the residuals by less than so many standard deviations of one is the last (Choice)."""
+"""A step that moves the residuals by less than so many standard deviations of one is the last (assumption)."""
 AT_ONCE: Final = 32
 """Resamples whose runs are asked together."""
 
@@ -161,5 +161,5 @@ def _step(solution: Solution, sample: _Sample, residuals: FloatArray | None) -> 
     lower, upper = bounds_of(solution.problem.parameters)
     step = step_inside(jacobian, own, lower - sample.place, upper - sample.place)
     sample.place = np.clip(sample.place + step, lower, upper)
-    if float(np.linalg.norm(jacobian @ step)) <= min(SETTLED, solution.manner.tolerance):
+    if float(np.linalg.norm(jacobian @ step)) <= min(SETTLED, solution.options.tolerance):
         sample.best, sample.ended = sample.place, True

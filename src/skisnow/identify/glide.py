@@ -21,13 +21,13 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 STEPS: Final = 200
-"""Time steps over a run at least: the terms change over tens of seconds (Choice)."""
+"""Time steps over a run at least: the terms change over tens of seconds (modelling assumption)."""
 WAIT: Final = 5.0
 """How many times as long as a run took its body is waited for."""
 CRAWL: Final = 0.1
 """Speed (m/s) of a body that does not get there in that time, so that a search is told the way."""
 LONGEST_STEP_ON_PROFILE: Final = 0.02
-"""(s): 0.4 m at 20 m/s (Choice); a step ends at every point of a profile besides."""
+"""(s): 0.4 m at 20 m/s (modelling assumption); a step ends at every point of a profile besides."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +35,8 @@ class SlopeLine:
     """The slope along the way, from the start on, in n pieces on which its gradient changes linearly.
 
     A profile's points do not say where between them it bends. Each of its segments has its gradient at its middle, and
-    from middle to middle the gradient changes linearly (Choice): a hollow presses and a crest relieves over the length
+    from middle to middle the gradient changes linearly (modelling assumption): a hollow presses and a crest relieves
+    over the length
     between the middles, by the whole angle and nowhere by the contrary, as cubics through the points would.
 
     Attributes

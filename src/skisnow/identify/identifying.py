@@ -33,7 +33,7 @@ from .problem import problem_of
 from .result import too_few
 from .run_simulation import RunSimulation
 from .simulations import Simulations
-from .solving import Asked, solved
+from .solving import Request, solved
 from .track_positions import TrackPositions
 
 _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
@@ -74,11 +74,11 @@ def identify(
     starts
         Searches, the first from the scenario's values, the others from random places about them.
     profile
-        Whether intervals are also found by fitting all others anew along each parameter.
+        Whether intervals are also found by refitting all others along each parameter.
     bootstrap, posterior
         Numbers of resamples, and of samples of the posterior; 0: none.
     bootstrap_by
-        "refit": each resample is fitted anew, with one to four simulated runs of each track; "linear": by the model
+        "refit": each resample is refitted, with one to four simulated runs of each track; "linear": by the model
         linearised at the best values, in no time.
     clock_is_free
         Whether each photo-cell run's clock has an offset of its own; None: as ``[identify] clock`` says, else not.
@@ -140,7 +140,7 @@ def identify(
     with Simulations(simulate, rows, workers, counted) as simulations:
         observations = _observations(asked, read, simulations, clock_is_free=_clock(given, clock_is_free))
         _require_used(keys, observations)
-        plan = Asked(
+        plan = Request(
             title=given.title,
             starts=starts,
             profile=profile,
@@ -165,7 +165,7 @@ def identify(
         )
 
 
-def _found(parameters: tuple[Parameter, ...], observations: tuple[Observations, ...], plan: Asked) -> Identification:
+def _found(parameters: tuple[Parameter, ...], observations: tuple[Observations, ...], plan: Request) -> Identification:
     problem = problem_of(parameters, observations)
     if not problem.priors and problem.points < len(parameters) + problem.nuisances + (not problem.accuracy_is_stated):
         return too_few(problem, plan.title, plan.warnings)

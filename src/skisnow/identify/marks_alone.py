@@ -16,16 +16,16 @@ from .mark_grooves import STRENGTH, MarkGrooves
 from .parameter import Parameter
 from .problem import problem_of
 from .result import identification_of, too_few
-from .solving import Asked, solution_of, solved, with_further_intervals
+from .solving import Request, solution_of, solved, with_further_intervals
 
 FloatArray = npt.NDArray[np.float64]
 
 SLID: Final = 0.01
-"""Probability below which marks are not those of an edge that held (Choice)."""
+"""Probability below which marks are not those of an edge that held (modelling assumption)."""
 _ONE_SIDED: Final = 0.95
 
 
-def marks_alone(parameters: Sequence[Parameter], marks: MarkGrooves, plan: Asked) -> Identification:
+def marks_alone(parameters: Sequence[Parameter], marks: MarkGrooves, plan: Request) -> Identification:
     """Identify from marks.
 
     Notes
@@ -43,7 +43,7 @@ def marks_alone(parameters: Sequence[Parameter], marks: MarkGrooves, plan: Asked
     return _holding(others, tuple(parameters), strength, marks, plan)
 
 
-def _slid(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Asked) -> bool:
+def _slid(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Request) -> bool:
     """Whether the measured radius is larger than that of an edge that holds, beyond chance."""
     if not math.isfinite(marks.mean_radius):
         return False
@@ -63,7 +63,9 @@ def _slid(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Asked) -> boo
     return worse and marks.mean_radius > groove.turn_radius
 
 
-def _sliding(parameters: tuple[Parameter, ...], strength: Parameter, marks: MarkGrooves, plan: Asked) -> Identification:
+def _sliding(
+    parameters: tuple[Parameter, ...], strength: Parameter, marks: MarkGrooves, plan: Request
+) -> Identification:
     sliding = replace(marks, slides=True)
     begin = sliding.strength_for({}, marks.mean_radius)
     own = strength
@@ -86,7 +88,7 @@ def _holding(
     parameters: tuple[Parameter, ...],
     strength: Parameter,
     marks: MarkGrooves,
-    plan: Asked,
+    plan: Request,
 ) -> Identification:
     """Identify the others; S_f is bounded from below by what the turn needed."""
     found = _others(others, marks, plan) if others else _nothing_else(marks, plan)
@@ -118,13 +120,13 @@ def _holding(
     )
 
 
-def _others(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Asked) -> Identification:
+def _others(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Request) -> Identification:
     solution = solution_of(problem_of(others, (marks,)), plan)
     found = identification_of(solution, plan.title, plan.warnings, plan.methods)
     return with_further_intervals(found, solution, plan)
 
 
-def _nothing_else(marks: MarkGrooves, plan: Asked) -> Identification:
+def _nothing_else(marks: MarkGrooves, plan: Request) -> Identification:
     """The scenario's own ski and snow held against the marks; there is nothing to look for."""
     problem = problem_of((), (marks,))
     residuals = marks.residuals([{}])[0]

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from .identification import REASONS, Effort, Identification, Identified, Interval, Outcome
 from .parameter import Parameter, bounds_of
 from .problem import Problem
-from .search import Found, Manner
+from .search import SearchOptions, SearchState
 from .uncertainty import Uncertainty, uncertainty
 from .words import (
     bound_warnings,
@@ -48,15 +48,15 @@ class Solution:
         Starts, and the sum of squares that each led to.
     methods
         How it was computed, in words.
-    manner
+    options
         Of the search.
     """
 
     problem: Problem
-    found: Found
+    found: SearchState
     tried: tuple[tuple[FloatArray, float | None], ...]
     methods: tuple[str, ...]
-    manner: Manner
+    options: SearchOptions
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -148,7 +148,7 @@ def interval_of(parameter: Parameter, place: float, half: float) -> Interval:
     return parameter.value(float(ends[0])), parameter.value(float(ends[1]))
 
 
-def _outcome(found: Found, known: Uncertainty | None) -> Outcome:
+def _outcome(found: SearchState, known: Uncertainty | None) -> Outcome:
     if found.state == "interrupted":
         return "interrupted"
     if known is not None and known.unknown.any():

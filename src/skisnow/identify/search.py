@@ -31,7 +31,7 @@ _AT_BOUND: Final = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Manner:
+class SearchOptions:
     """How the search goes.
 
     Attributes
@@ -72,7 +72,7 @@ class Manner:
     accuracy_is_stated: bool = False
 
 
-FINE: Final = Manner(
+FINE: Final = SearchOptions(
     smallest_step=1e-3,
     largest_step=1e-3,
     tolerance=1e-5,
@@ -87,7 +87,7 @@ FINE: Final = Manner(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Found:
+class SearchState:
     """Where a search is, or ended.
 
     Attributes
@@ -130,7 +130,7 @@ class Search:
         What is made small.
     lower, upper
         Bounds, in sizes from the start.
-    manner
+    options
         How.
     told
         Is told where the search is.
@@ -139,11 +139,11 @@ class Search:
     residuals: Residuals
     lower: FloatArray
     upper: FloatArray
-    manner: Manner
+    options: SearchOptions
     told: Told = field(default=lambda _: None)
-    best: Found | None = None
+    best: SearchState | None = None
 
-    def run(self, start: FloatArray) -> Found | None:
+    def run(self, start: FloatArray) -> SearchState | None:
         """Search from a place; None where there are no residuals at the start.
 
         Ctrl-C ends it with what is best so far in the state "interrupted"; before the first residuals it passes on.
@@ -156,12 +156,12 @@ class Search:
                 raise
             return replace(self.best, state="interrupted")
 
-    def _searched(self) -> Found:
+    def _searched(self) -> SearchState:
         damping = _FIRST_DAMPING
-        for _ in range(self.manner.most_rounds):
+        for _ in range(self.options.most_rounds):
             here = self._with_jacobian(self._seen())
             left = self._left_to_gain(here)
-            ends = left <= self.manner.tolerance or self._settled(here)
+            ends = left <= self.options.tolerance or self._settled(here)
             if ends and here.is_central:
                 return replace(here, state="converged")
             if ends:
@@ -170,32 +170,32 @@ class Search:
             better, damping = self._stepped(here, damping)
             if better is not None:
                 self.best = better
-            if better is None or here.cost - better.cost < self.manner.worth * self.noise(here) ** 2:
+            if better is None or here.cost - better.cost < self.options.worth * self.noise(here) ** 2:
                 if here.is_central and here.differentiated_at is here.place:
-                    return replace(self._seen(), state="converged" if left <= self.manner.rough else "not_converged")
+                    return replace(self._seen(), state="converged" if left <= self.options.rough else "not_converged")
                 self._differentiated(self._seen())
                 damping = _FIRST_DAMPING
         return replace(self._differentiated(self._seen()), state="not_converged")
 
-    def _seen(self) -> Found:
+    def _seen(self) -> SearchState:
         assert self.best is not None
         return self.best
 
-    def _with_jacobian(self, found: Found) -> Found:
+    def _with_jacobian(self, found: SearchState) -> SearchState:
         """With derivatives that hold here: not one-sided ones, nor of a place too far away, nor such as failed."""
         if found.jacobian is None or found.differentiated_at is None:
             return self._differentiated(found)
         away = found.place - found.differentiated_at
         if not np.any(away):
             return found
-        far = np.max(np.abs(away)) > self.manner.keeps_jacobian and self._in_noise(found, away) > min(
-            _SLIGHT, 1e3 * self.manner.keeps_jacobian
+        far = np.max(np.abs(away)) > self.options.keeps_jacobian and self._in_noise(found, away) > min(
+            _SLIGHT, 1e3 * self.options.keeps_jacobian
         )
         if far or not found.is_central or not found.is_trusted:
             return self._differentiated(found)
         return found
 
-    def _differentiated(self, found: Found) -> Found:
+    def _differentiated(self, found: SearchState) -> SearchState:
         jacobian, second = self._differences(found)
         renewed = replace(
             found,
@@ -210,10 +210,10 @@ class Search:
         self.told(f"round {renewed.rounds}: rms residual {np.sqrt(renewed.cost / len(renewed.residuals)):.4g}")
         return renewed
 
-    def _begun(self, start: FloatArray) -> Found | None:
+    def _begun(self, start: FloatArray) -> SearchState | None:
         """Residuals of the start and one-sided derivatives there, in one batch: enough for a first step."""
         places = [start]
-        steps = np.full(len(start), np.sqrt(self.manner.smallest_step * self.manner.largest_step))
+        steps = np.full(len(start), np.sqrt(self.options.smallest_step * self.options.largest_step))
         for j, step in enumerate(steps):
             place = start.copy()
             place[j] += step if start[j] + step <= self.upper[j] else -step
@@ -224,9 +224,9 @@ class Search:
             return None
         ends = [(places[j + 1][j] - start[j], asked[j + 1]) for j in range(len(start))]
         jacobian = np.column_stack([_slope_and_bend([end], first)[0] for end in ends])
-        return Found(start, first, jacobian, np.zeros_like(jacobian), differentiated_at=start)
+        return SearchState(start, first, jacobian, np.zeros_like(jacobian), differentiated_at=start)
 
-    def polished(self, found: Found, residuals: Residuals, *, most: int = 2) -> Found:
+    def polished(self, found: SearchState, residuals: Residuals, *, most: int = 2) -> SearchState:
         """Go on with other, dearer residuals and the Jacobian that is known; the best place seen with those."""
         assert found.jacobian is not None
         first = residuals([found.place])[0]
@@ -236,7 +236,7 @@ class Search:
         self.best = best
         for _ in range(most):
             step = self._full_step(here)
-            if self._in_noise(here, step) <= self.manner.tolerance:
+            if self._in_noise(here, step) <= self.options.tolerance:
                 break
             dearer = residuals([here.place + step])[0]
             if dearer is None:
@@ -247,37 +247,37 @@ class Search:
             self.best = best = here
         return best
 
-    def noise(self, found: Found) -> float:
+    def noise(self, found: SearchState) -> float:
         """Standard deviation of a residual: one where it is stated, else estimated."""
-        if self.manner.accuracy_is_stated:
+        if self.options.accuracy_is_stated:
             return 1.0
         return float(np.sqrt(found.cost / max(len(found.residuals) - len(found.place), 1)))
 
-    def _left_to_gain(self, found: Found) -> float:
+    def _left_to_gain(self, found: SearchState) -> float:
         return self._in_noise(found, self._full_step(found))
 
-    def _in_noise(self, found: Found, step: FloatArray) -> float:
+    def _in_noise(self, found: SearchState, step: FloatArray) -> float:
         assert found.jacobian is not None
         noise = self.noise(found)
         return float(np.linalg.norm(found.jacobian @ step)) / noise if noise > 0.0 else 0.0
 
-    def _settled(self, found: Found) -> bool:
-        return float(np.max(np.abs(self._full_step(found)), initial=0.0)) <= self.manner.smallest_move
+    def _settled(self, found: SearchState) -> bool:
+        return float(np.max(np.abs(self._full_step(found)), initial=0.0)) <= self.options.smallest_move
 
-    def _full_step(self, found: Found) -> FloatArray:
+    def _full_step(self, found: SearchState) -> FloatArray:
         return self._step(found, _SMALLEST_DAMPING)
 
-    def _step(self, found: Found, damping: float) -> FloatArray:
+    def _step(self, found: SearchState, damping: float) -> FloatArray:
         """The damped step inside the bounds, no longer than is known."""
         assert found.jacobian is not None
-        low = np.maximum(self.lower - found.place, -self.manner.longest_move)
-        high = np.minimum(self.upper - found.place, self.manner.longest_move)
+        low = np.maximum(self.lower - found.place, -self.options.longest_move)
+        high = np.minimum(self.upper - found.place, self.options.longest_move)
         return step_inside(found.jacobian, found.residuals, low, high, damping=damping)
 
-    def _stepped(self, found: Found, damping: float) -> tuple[Found | None, float]:
+    def _stepped(self, found: SearchState, damping: float) -> tuple[SearchState | None, float]:
         """The best of some trial steps; None where none of ever shorter ones improves."""
         for _ in range(4):
-            dampings = [damping * 10.0 ** (2 * i - 1) for i in range(self.manner.candidates)]
+            dampings = [damping * 10.0 ** (2 * i - 1) for i in range(self.options.candidates)]
             places = [np.clip(found.place + self._step(found, each), self.lower, self.upper) for each in dampings]
             tried = self.residuals(places)
             costs = [np.inf if each is None else float(each @ each) for each in tried]
@@ -288,7 +288,7 @@ class Search:
             damping = min(dampings[-1] * 10.0, _LARGEST_DAMPING)
         return None, damping
 
-    def _differences(self, found: Found) -> tuple[FloatArray, FloatArray]:
+    def _differences(self, found: SearchState) -> tuple[FloatArray, FloatArray]:
         """Central differences, one-sided where a bound is near or there are no residuals."""
         steps = self._difference_steps(found)
         places = []
@@ -305,8 +305,8 @@ class Search:
             jacobian[:, j], second[:, j] = _slope_and_bend(ends, found.residuals)
         return jacobian, second
 
-    def _difference_steps(self, found: Found) -> FloatArray:
-        low, high = self.manner.smallest_step, self.manner.largest_step
+    def _difference_steps(self, found: SearchState) -> FloatArray:
+        low, high = self.options.smallest_step, self.options.largest_step
         if found.jacobian is None or low == high:
             return np.full(len(found.place), np.sqrt(low * high))
         length = np.linalg.norm(found.jacobian, axis=0)
@@ -336,7 +336,7 @@ def step_inside(
     return np.asarray(np.clip(solved.x / scale, low, high))
 
 
-def _moved(found: Found, place: FloatArray, residuals: FloatArray) -> Found:
+def _moved(found: SearchState, place: FloatArray, residuals: FloatArray) -> SearchState:
     """At a better place, with the derivatives as they were.
 
     Broyden's update is left away: along a direction that hardly shows in the data it would learn the roughness of the

@@ -16,7 +16,7 @@ from .identification import Identification
 from .parameter import bounds_of
 from .problem import Problem
 from .result import Solution, identification_of
-from .search import FINE, Found, Manner, Search
+from .search import FINE, Search, SearchOptions, SearchState
 
 FloatArray = npt.NDArray[np.float64]
 Told = Callable[[str], None]
@@ -32,7 +32,7 @@ _STEPS_APART: Final = 3.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Asked:
+class Request:
     """What is wanted beside the best values.
 
     Attributes
@@ -44,7 +44,7 @@ class Asked:
     profile, bootstrap, posterior
         Further intervals.
     bootstrap_by
-        Whether each resample is fitted anew, or by the linearised model.
+        Whether each resample is refitted, or by the linearised model.
     rng
         Source of random numbers.
     told
@@ -65,7 +65,7 @@ class Asked:
     methods: tuple[str, ...] = ()
 
 
-def solved(problem: Problem, plan: Asked) -> Identification:
+def solved(problem: Problem, plan: Request) -> Identification:
     """Search from every start, and go on from the best.
 
     Raises
@@ -79,7 +79,7 @@ def solved(problem: Problem, plan: Asked) -> Identification:
     return with_further_intervals(identification_of(solution, plan.title, plan.warnings, plan.methods), solution, plan)
 
 
-def with_further_intervals(found: Identification, solution: Solution, plan: Asked) -> Identification:
+def with_further_intervals(found: Identification, solution: Solution, plan: Request) -> Identification:
     """Profile, bootstrap and posterior, where they were asked for; Ctrl-C keeps those that are complete."""
     if found.outcome == "interrupted":
         return found
@@ -96,22 +96,22 @@ def with_further_intervals(found: Identification, solution: Solution, plan: Aske
     return found
 
 
-def solution_of(problem: Problem, plan: Asked) -> Solution:
+def solution_of(problem: Problem, plan: Request) -> Solution:
     """The best place, with derivatives in standard deviations of the data."""
     return _Solver(problem, plan).solution()
 
 
-def manner_of(problem: Problem) -> Manner:
+def options_of(problem: Problem) -> SearchOptions:
     """How to search: by the roughest of the data."""
     kinds = {each.kind for each in problem.observations}
-    manner = Manner() if "track" in kinds else OF_GROOVES if "marks" in kinds else FINE
-    return replace(manner, accuracy_is_stated=problem.accuracy_is_stated)
+    options = SearchOptions() if "track" in kinds else OF_GROOVES if "marks" in kinds else FINE
+    return replace(options, accuracy_is_stated=problem.accuracy_is_stated)
 
 
 @dataclass(slots=True)
 class _Solver:
     problem: Problem
-    plan: Asked
+    plan: Request
     tried: list[tuple[FloatArray, float | None]] = field(default_factory=list)
     methods: list[str] = field(default_factory=list)
 
@@ -130,10 +130,10 @@ class _Solver:
     def _search(self, problem: Problem, about: str, *, final: bool = False) -> Search:
         lower, upper = bounds_of(problem.parameters)
         residuals = problem.final_residuals if final else problem.residuals
-        return Search(residuals, lower, upper, manner_of(problem), lambda text: self.plan.told(f"{about}{text}"))
+        return Search(residuals, lower, upper, options_of(problem), lambda text: self.plan.told(f"{about}{text}"))
 
-    def _best(self) -> Found:
-        best: Found | None = None
+    def _best(self) -> SearchState:
+        best: SearchState | None = None
         for number, start in enumerate(self._starts()):
             about = f"start {number + 1} of {self.plan.starts}: " if self.plan.starts > 1 else ""
             try:
@@ -161,7 +161,7 @@ class _Solver:
         others = self.plan.rng.uniform(np.maximum(lower, -1.0), np.minimum(upper, 1.0), (self.plan.starts - 1, p))
         return [np.zeros(p), *others]
 
-    def _with_noise(self, found: Found) -> Found:
+    def _with_noise(self, found: SearchState) -> SearchState:
         """Weigh priors, and data of several kinds, by the noise that the residuals show, until that stays."""
         problem = self.problem
         if problem.accuracy_is_stated or not (problem.priors or len(problem.observations) > 1):
@@ -178,7 +178,7 @@ class _Solver:
         self.problem = problem
         return found
 
-    def _polished(self, found: Found) -> Found:
+    def _polished(self, found: SearchState) -> SearchState:
         """The last steps with the scenario's own solver; all with it where the quick one was too far off."""
         self.plan.told("last steps with the scenario's own solver")
         search = self._search(self.problem, "")
@@ -201,7 +201,7 @@ class _Solver:
         )
         return polished
 
-    def _weighed(self, found: Found) -> Solution:
+    def _weighed(self, found: SearchState) -> Solution:
         """Residuals and derivatives in standard deviations of the data, stated or seen."""
         problem = self.problem
         if not problem.accuracy_is_stated:
@@ -214,4 +214,4 @@ class _Solver:
                 second=None if found.second is None else found.second * weight[:, None],
             )
             problem = seen
-        return Solution(problem, found, tuple(self.tried), tuple(self.methods), manner_of(problem))
+        return Solution(problem, found, tuple(self.tried), tuple(self.methods), options_of(problem))

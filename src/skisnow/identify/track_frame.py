@@ -21,7 +21,7 @@ from ..units import DEGREE
 
 FloatArray = npt.NDArray[np.float64]
 FARTHEST: Final = 50_000.0
-"""(m) from the site: a track beyond is of another place, and a plane no longer the earth (Choice)."""
+"""(m) from the site: a track beyond is of another place, and a plane no longer the earth (modelling assumption)."""
 
 
 def in_scenario_frame(track: Track, asked: ScenarioFile, site: object) -> tuple[Track, list[str]]:

@@ -24,12 +24,12 @@ NOMINAL_SD: Final = 0.1
 LEAST_SD: Final = 1e-3
 """(m): below it a track without noise would be weighed by rounding."""
 LONGEST_INTERVAL: Final = 0.3
-"""Time (s) between points above which differences show the path and not its noise (Choice: 3 m at 10 m/s)."""
+"""Time (s) between points above which differences show the path and not its noise (assumption: 3 m at 10 m/s)."""
 FEWEST_FOR_NOISE: Final = 8
 FAR: Final = 20.0
-"""A track that begins farther from the start than this (m) and than its own length is of another place (Choice)."""
+"""A track that begins farther from the start than this (m) and than its own length is of another place (assumption)."""
 NEAR: Final = 1.0
-"""(m) A track that begins farther off is warned of where its start is not looked for (Choice)."""
+"""(m) A track that begins farther off is warned of where its start is not looked for (modelling assumption)."""
 _THIRD_DIFFERENCES: Final = math.sqrt(20.0)  # 1 + 9 + 9 + 1
 _MEDIAN_OF_NORMAL: Final = 0.6744897501960817
 _OUTLIER: Final = 5.0

@@ -16,9 +16,9 @@ FloatArray = npt.NDArray[np.float64]
 SINGULAR: Final = 1e-6
 """Of scaled columns: a singular value below this share of the largest is none."""
 WIDEST: Final = 1.5
-"""Half an interval, in sizes of its parameter, from which on the data say nothing about it (Choice)."""
+"""Half an interval, in sizes of its parameter, from which on the data say nothing about it (modelling assumption)."""
 TAKES_PART: Final = 0.2
-"""Share of a direction that nothing is known of, from which on a parameter takes part in it (Choice)."""
+"""Share of a direction that nothing is known of, from which on a parameter takes part in it (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

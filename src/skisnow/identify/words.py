@@ -38,7 +38,7 @@ _HELPS: Final = {
     "longer track tells them apart",
 }
 _ALONE: Final = {
-    "snow.S_f_N_per_mm2": "S_f shows only where the edge slides across; an edge that holds bounds it from below. A run "
+    "snow.S_f_N_per_mm2": "S_f shows only where the edge side-slips; an edge with grip bounds it from below. A run "
     "that skids, a tighter turn or a shear test tells it",
     "snow.H_V_N_per_mm3": "The path hardly depends on the depth of the groove. Depth and width of the marks, or a "
     "penetration test, tell it",

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Kind: TypeAlias = Literal["number", "whole number", "text", "switch", "numbers", "three numbers"]
 SMALLEST, LARGEST = 1e-100, 1e100
-"""Sizes of numbers that can be squared and divided by (Choice)."""
+"""Sizes of numbers that can be squared and divided by (modelling assumption)."""
 InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
 
 

@@ -23,7 +23,7 @@ Numbered: TypeAlias = tuple[int, Any]
 """A point and its number."""
 
 CHUNK_SECONDS: Final = 0.25
-"""Work that is handed over at once, and that a kill loses (Choice: handing over costs 1 ms)."""
+"""Work that is handed over at once, and that a kill loses (modelling assumption: handing over costs 1 ms)."""
 LARGEST_CHUNK: Final = 64
 """Points; their rows stay well below the 64 kB that a pipe takes in one piece."""
 
@@ -107,7 +107,7 @@ class Pool:
                     self._running.add(self._handed(waiting, fair))
         except BrokenProcessPool as error:
             raise SkisnowError(
-                f"a worker process ended unexpectedly, perhaps for want of memory; {self._advice}"
+                f"a worker process ended unexpectedly, perhaps for lack of memory; {self._advice}"
             ) from error
 
     def _handed(self, waiting: deque[Numbered], size: int) -> Future[_Done]:

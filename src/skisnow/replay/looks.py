@@ -21,7 +21,7 @@ COLOURS: Final[dict[str, Any]] = {
 """In sRGB, 0 to 255, each scale from nothing to the most; up to ``least_share`` of the most a ski is unloaded."""
 
 THICKEST, THINNEST = 0.018, 0.006
-"""Thickness (m) of a ski under the boot and at its ends: drawn, not computed with (Choice)."""
+"""Thickness (m) of a ski under the boot and at its ends: drawn, not computed with (modelling assumption)."""
 
 
 def drawn_thickness(station: FloatArray) -> FloatArray:

@@ -20,7 +20,7 @@ IntArray: TypeAlias = npt.NDArray[np.int64]
 
 _MARGIN: Final = 3.0
 LIFTED: Final = 0.0005
-"""Height (m) of the groove over the snow of a model, or the two would flicker into each other (Choice)."""
+"""Height (m) of the groove over the snow of a model, or the two would flicker into each other (assumption)."""
 _GRID: Final = {False: [188, 202, 217], True: [128, 149, 171]}
 CORNERS: Final = 8
 """Vertices of a ski's cross section: left and right on top, right and left on the base, and the same for the walls."""

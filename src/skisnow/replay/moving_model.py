@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 GROOVE_STEP: Final = 0.05
-"""Time (s) in which a part of the groove is made that appears as one, when it is complete (Choice)."""
+"""Time (s) in which a part of the groove is made that appears as one, when it is complete (modelling assumption)."""
 _EYE, _LOOKED_AT = (-4.0, 0.0, 2.0), (0.4, 0.0, 0.1)  # of the camera that goes along, from the sledge (m)
 _HIDDEN_AND_SHOWN: Final = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
 

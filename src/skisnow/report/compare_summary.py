@@ -23,7 +23,7 @@ def compare_summary(found: Mapping[str, Any]) -> str:
     """
     simulated, measured = found["simulated"], found["measured"]
     lines = [
-        f"{simulated['name']} ({_plain(simulated['length_m'], 4)} m) held against {measured['name']} "
+        f"{simulated['name']} ({_plain(simulated['length_m'], 4)} m) compared with {measured['name']} "
         f"({_plain(measured['length_m'], 4)} m), {found['seen']}",
         "",
     ]
@@ -32,8 +32,8 @@ def compare_summary(found: Mapping[str, Any]) -> str:
     back = found["largest_from_simulated_m"]
     if back is not None:
         lines.append(
-            f"The other way round, from the simulated track to the nearest place of the measured one: {_plain(back)} m "
-            "at most."
+            f"The other way round, from the simulated track to the nearest place of the measured one: "
+            f"maximum {_plain(back)} m."
         )
     lines.append(f"{found['means']}.")
     lines += _fitted(found)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from .figures import LeftOut, Picture
-    from .material import Material
+    from .report_data import ReportData
     from .table import Table
 
 SECTIONS: Final = {
@@ -30,8 +30,8 @@ SECTIONS: Final = {
     "seating": "Seating: offsets of the depth zero",
     "relations": "Relations between snow parameters",
     "sites": "Sites compared",
-    "published": "Beside published values",
-    "marks": "Marks of the screening",
+    "published": "Compared with published values",
+    "marks": "Quality flags of the screening",
     "experiments": "All experiments",
     "methods": "Methods",
     "provenance": "Provenance",
@@ -39,16 +39,14 @@ SECTIONS: Final = {
 _ONLY_WITH_PENETRATION: Final = ("law", "seating")
 
 
-def page(
-    material: Material, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]
-) -> str:
+def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]) -> str:
     """The HTML of the whole report."""
     environment = Environment(
         loader=PackageLoader("skisnow.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
     return environment.get_template("report.html").render(
-        **_frame(material),
-        **_words(material),
+        **_frame(data),
+        **_words(data),
         tables=_Tables(tables),
         pictures=pictures,
         missing=missing,
@@ -68,18 +66,18 @@ class _Tables:
         return self._html.get(name, Markup(""))
 
 
-def _frame(material: Material) -> dict[str, Any]:
-    results, has_penetration = material.results, bool(material.penetration)
+def _frame(data: ReportData) -> dict[str, Any]:
+    results, has_penetration = data.results, bool(data.penetration)
     ids = [name for name in SECTIONS if has_penetration or name not in _ONLY_WITH_PENETRATION]
     return {
         "campaign": results["campaign"],
         "provenance": results["provenance"],
         "geometry": results["provenance"]["options"]["geometry"],
-        "shapes": {type(tool).__name__ for tool in material.campaign.tools.values()},
+        "shapes": {type(tool).__name__ for tool in data.campaign.tools.values()},
         "stated": _stated(results["campaign"]),
-        "synthetic": material.synthetic,
-        "dates": material.dates,
-        "counts": _counts(material),
+        "synthetic": data.synthetic,
+        "dates": data.dates,
+        "counts": _counts(data),
         "has_penetration": has_penetration,
         "selected": results["penetration"]["selected"],
         "sections": [(name, SECTIONS[name]) for name in ids],
@@ -89,11 +87,11 @@ def _frame(material: Material) -> dict[str, Any]:
     }
 
 
-def _counts(material: Material) -> str:
+def _counts(data: ReportData) -> str:
     return (
-        f"{counted(len(material.penetration), 'penetration experiment')} ({whole(len(material.hardness))} used), "
-        f"{counted(len(material.shear), 'shear experiment')} ({whole(len(material.stress))} used), "
-        f"{counted(len(material.sites), 'site')}"
+        f"{counted(len(data.penetration), 'penetration experiment')} ({whole(len(data.hardness))} used), "
+        f"{counted(len(data.shear), 'shear experiment')} ({whole(len(data.stress))} used), "
+        f"{counted(len(data.sites), 'site')}"
     )
 
 
@@ -111,12 +109,12 @@ def _stated(campaign: dict[str, Any]) -> dict[str, str]:
     }
 
 
-def _words(material: Material) -> dict[str, Any]:
+def _words(data: ReportData) -> dict[str, Any]:
     return {
-        "key_results": key_results(material),
-        "caveats": caveats(material),
-        "readings_used": readings_used(material),
-        "procedures_compared": procedures_compared(material),
-        "seating_found": seating_found(material),
-        "regression_sentences": regression_sentences(material),
+        "key_results": key_results(data),
+        "caveats": caveats(data),
+        "readings_used": readings_used(data),
+        "procedures_compared": procedures_compared(data),
+        "seating_found": seating_found(data),
+        "regression_sentences": regression_sentences(data),
     }

@@ -59,17 +59,17 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
             "White: the edge is above the snow, or the snow does not press: behind the place of the largest load the "
             "afterbody runs in the groove that the forebody cut."
         ),
-        "Maps of edge depth and force per length over station and time, for both skis.",
+        "Maps of edge depth and force per length over position along the ski and time, for both skis.",
         run_along_ski(run),
         wide=True,
     )
     yield Drawing(
         "grip",
         prose(
-            "Share of the shear strength S_f e that the side force uses, along each ski and for each whole ski. At 1 "
-            "the snow yields and the edge slides across."
+            "Grip utilisation, the side force over the shear capacity S_f e, along each ski and for each whole ski. "
+            "At 1 the snow yields and the edge side-slips."
         ),
-        "Share of the shear strength used over station and time.",
+        "Grip utilisation over position along the ski and time.",
         run_grip(run),
         wide=True,
     )

@@ -116,7 +116,7 @@ def outcome_sentences(run: Run) -> list[Markup]:
     sentences = [prose("Outcome: {outcome}. {remedy}", outcome=run.outcome.replace("_", " "), remedy=run.remedy)]
     sentences.append(
         prose(
-            "{length} m in {time} s, from {first} to {last} m/s, at most {most} m/s.",
+            "{length} m in {time} s, from {first} to {last} m/s, maximum {most} m/s.",
             length=_number(run.run_length), time=_number(run.simulated_s),
             first=_number(float(run.speed[0])), last=_number(float(run.speed[-1])),
             most=_number(float(np.nanmax(run.speed))),
@@ -141,7 +141,7 @@ def _balance(run: Run) -> list[Markup]:
         return []
     if told := run_warnings(run):
         return [prose("Warning: {told}.", told=each) for each in told]
-    return [prose("The balance of energy closes within {error} %.", error=_number(100.0 * error, 2))]
+    return [prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))]
 
 
 def _no_step() -> Markup:

@@ -82,7 +82,7 @@ def _energies() -> list[RunVariable]:
     }
     lost = {
         "penetration": "work lost to the grooves in the snow since the start",
-        "shear": "work lost to sliding across the skis since the start",
+        "shear": "work lost to side-slip of the skis since the start",
         "friction": "work lost to glide friction since the start",
         "drag": "work lost to air drag since the start",
         "damping": "work lost to damping of the skis since the start",
@@ -157,7 +157,7 @@ def _of_groove() -> list[RunVariable]:
                     lambda run: run.groove.width, coordinates=_GROOVE),
         RunVariable("groove_depth", (PIECE,), "m", "deepest that the snow was pushed", lambda run: run.groove.depth,
                     coordinates=_GROOVE),
-        RunVariable("groove_residual_depth", (PIECE,), "m", "depth of the groove that stays",
+        RunVariable("groove_residual_depth", (PIECE,), "m", "permanent (residual) groove depth",
                     lambda run: run.groove.residual_depth, coordinates=_GROOVE),
     ]  # fmt: skip
 

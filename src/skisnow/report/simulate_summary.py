@@ -44,25 +44,25 @@ def _rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "heading at the end", f"{_plain(end['heading_deg'])} degrees from the fall line, positive left"
     yield (
         "speed",
-        (f"{_plain(end['speed_m_per_s'])} m/s at the end, {_plain(summary['greatest_speed_m_per_s'])} m/s at most"),
+        (f"{_plain(end['speed_m_per_s'])} m/s at the end, maximum {_plain(summary['greatest_speed_m_per_s'])} m/s"),
     )
     yield "turn radius", _radius(summary)
-    yield "energy balance", _balance(summary["energy_balance_error"])
+    yield "energy residual", _residual(summary["energy_balance_error"])
     yield "steps", f"{summary['steps']}, {summary['rejected_steps']} rejected"
     yield "computed in", _computed(summary)
 
 
 def _radius(summary: Mapping[str, Any]) -> str:
-    median, least = summary["turn_radius_median_m"], summary["turn_radius_p5_m"]
+    median, minimum = summary["turn_radius_median_m"], summary["turn_radius_p5_m"]
     if median is None:
         return "none, the run is straight or was over within half a second"
-    return f"median {_plain(median)} m, 5 % of the time below {_plain(least)} m"
+    return f"median {_plain(median)} m, 5 % of the time below {_plain(minimum)} m"
 
 
-def _balance(error: float | None) -> str:
+def _residual(error: float | None) -> str:
     if error is None:
-        return "nothing was turned over"
-    return f"{'closes within' if error <= WARNED_SHARE else 'open by'} {_plain(100.0 * error, 2)} %"
+        return "no energy was exchanged"
+    return f"{_plain(100.0 * error, 2)} % of the energy exchanged{'' if error <= WARNED_SHARE else ', too large'}"
 
 
 def _computed(summary: Mapping[str, Any]) -> str:

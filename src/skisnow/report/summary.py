@@ -18,7 +18,7 @@ MOST_SITES: Final = 8
 
 
 def summary(results: Json) -> str:
-    """Campaign, experiments, H_V, S_f, the nine rows, the selected law and the regressions.
+    """Campaign, experiments, H_V, S_f, the nine candidate models, the selected law and the regressions.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def _experiments(results: Json) -> Iterator[str]:
             yield f"{kind} experiments: none"
             continue
         used, marked = sum(row["used"] for row in rows), sum(bool(row["flags"]) for row in rows)
-        yield f"{kind} experiments: {len(rows)}, used {used}, marked {marked}{_codes(rows)}"
+        yield f"{kind} experiments: {len(rows)}, used {used}, flagged {marked}{_codes(rows)}"
 
 
 def _codes(rows: list[Json]) -> str:

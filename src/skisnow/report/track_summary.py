@@ -23,7 +23,7 @@ _RUNS_WORDS: Final = {
 }
 _TURNS_WORDS: Final = (
     "A turn is a stretch of one sense of curvature in a run, 10 degrees at least; two that follow each other meet "
-    "in the switch point. The least radius is 1 / the largest curvature of the smoothed track, with its 95 % "
+    "in the switch point. The minimum radius is 1 / the largest curvature of the smoothed track, with its 95 % "
     "interval from the noise alone. `passed` is the share of the curvature that the smoothing leaves of half a "
     "sine as long as the turn."
 )
@@ -43,7 +43,7 @@ def track_text(values: Mapping[str, Any], *, mark_sentences: Mapping[str, str] |
     width = max(len(name) for name, _ in rows)
     lines = [values["file"], "", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
     for code, count in values["marked"].items():
-        lines.append(f"{'marked ' + code.replace('_', ' ')}: {count}. {(mark_sentences or {}).get(code, '')}".rstrip())
+        lines.append(f"{'flagged ' + code.replace('_', ' ')}: {count}. {(mark_sentences or {}).get(code, '')}".rstrip())
     for remark in values["remarks"]:
         lines.append(f"Note: {remark}")
     lines += _table("runs", values["runs"], _RUN_COLUMNS, _RUNS_WORDS[values["runs_by"]])
@@ -105,8 +105,9 @@ _LIFT_COLUMNS: Final = (
 )  # fmt: skip
 _TURN_COLUMNS: Final = (
     ("start_s", "start (s)", -1), ("end_s", "end (s)", -1), ("direction", "to the", 0),
-    ("turned_angle_deg", "turned (deg)", 3), ("length_m", "length (m)", 3), ("least_radius_m", "least radius (m)", 3),
-    ("least_radius_interval_m", "95 % interval (m)", 3), ("share_passed", "passed", 2),
+    ("turned_angle_deg", "change of heading (deg)", 3), ("length_m", "length (m)", 3),
+    ("least_radius_m", "minimum radius (m)", 3), ("least_radius_interval_m", "95 % interval (m)", 3),
+    ("share_passed", "passed", 2),
 )  # fmt: skip
 
 

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 YIELDS: Final = 0.95
-"""Share of the shear strength from which a ski counts as sliding across: short pieces at its ends may still hold."""
+"""Share of the shear strength from which a ski counts as side-slipping: short parts at its ends may have grip."""
 
 
 def loaded_skis(run: Run) -> npt.NDArray[np.intp]:
-    """Which ski presses harder at each time, (n,): 0 left, 1 right."""
+    """The more heavily loaded ski at each time, (n,): 0 left, 1 right."""
     return np.argmax(np.trapezoid(run.skis.force_per_length, -run.skis.station, axis=2), axis=1)
 
 
@@ -46,7 +46,7 @@ def _mean_depth(depth: FloatArray) -> FloatArray:
 
 
 def used_grip(run: Run) -> tuple[float | None, float | None]:
-    """Median share of the shear strength that the loaded ski uses, and the share of time in which it slides across."""
+    """Median share of the shear strength that the loaded ski uses, and the share of time in which it side-slips."""
     share = np.take_along_axis(used_share_of_skis(run), loaded_skis(run)[:, None], axis=1)[:, 0]
     known = share[np.isfinite(share)]
     return (float(np.median(known)), float(np.mean(known >= YIELDS))) if known.size else (None, None)
@@ -58,7 +58,7 @@ def median_radius(run: Run) -> float | None:
     return float(np.median(radius)) if radius.size else None
 
 
-def greatest_distance(run: Run, reference: Run) -> float | None:
+def maximum_distance(run: Run, reference: Run) -> float | None:
     """The farthest that a run's path goes from that of another (m) while it lies beside it; None: nowhere."""
     distance = distance_beside(run.place, reference.place)
     return float(np.nanmax(distance)) if np.isfinite(distance).any() else None
@@ -72,6 +72,6 @@ def middle_track(run: Run) -> TimedTrack:
 def band_width(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[float, float]:
     """Width of the band of 90 % of the tracks to the side, and ahead, at the last time that three runs reach (m)."""
     aside, ahead = offsets(nominal, tracks)
-    sides, ways = (band_of(values)[4] - band_of(values)[0] for values in (aside, ahead))
+    sides, leads = (band_of(values)[4] - band_of(values)[0] for values in (aside, ahead))
     last = int(np.flatnonzero(np.isfinite(sides))[-1])
-    return float(sides[last]), float(ways[last])
+    return float(sides[last]), float(leads[last])

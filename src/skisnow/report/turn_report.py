@@ -68,8 +68,8 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
     yield Drawing(
         "contacts",
         html(
-            "The turn with each contact: from above, distance from the first track, and depth along the ski that "
-            "carries most. Squares: ends."
+            "The turn with each contact: from above, distance from the first track, and depth along the more heavily "
+            "loaded ski. Squares: ends."
         ),
         "Tracks from above, distances and depth along the ski, one line for each contact.",
         runs_compared(chain.runs),
@@ -80,14 +80,14 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
         prose(
             "Edge depth and force per length along both skis, {name}. White: no contact, or no force.", name=html(name)
         ),
-        "Maps of edge depth and force per length over station and time.",
+        "Maps of edge depth and force per length over position along the ski and time.",
         run_along_ski(nominal),
         wide=True,
     )
     yield Drawing(
         "grip",
-        prose("Share of the shear strength S_f e that the side force uses, {name}.", name=html(name)),
-        "Share of the shear strength used over station and time.",
+        prose("Grip utilisation: side force over the shear capacity S_f e, {name}.", name=html(name)),
+        "Grip utilisation over position along the ski and time.",
         run_grip(nominal),
         wide=True,
     )
@@ -125,9 +125,10 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
     by_name = {picture.name: picture for picture in pictures}
     nominal = next(iter(chain.runs.values()))
     contacts = html(
-        "The hypoplastic contact remembers: snow that the forebody pressed stays down, and the afterbody runs in that "
-        "groove. The elastic contact springs back: the groove closes under the afterbody as the load passes. What that "
-        "changes in this turn stands under the key results. k_u / H_V is not published; it is a parameter."
+        "The hypoplastic contact depends on the history of loading: the forebody leaves a permanent groove, and the "
+        "afterbody runs in it. The elastic contact has no history: the groove closes under the afterbody as the load "
+        "passes. What that changes in this turn stands under the key results. k_u / H_V is not published; it is a "
+        "parameter."
     )
     drawn = prose(
         "{count} runs with H_V drawn from a log-normal and S_f from a normal distribution, both with the 95 % "
@@ -172,7 +173,7 @@ def _snow() -> Markup:
 
 def _provenance(chain: TurnChain) -> Markup:
     return prose(
-        "Snow from {source}. Computed with skisnow {version}; {runs} in {seconds} s, beside the ensemble.",
+        "Snow from {source}. Computed with skisnow {version}; {runs} in {seconds} s, without the ensemble.",
         source=chain.snow.source,
         version=version("skisnow"),
         runs=f"{len(chain.runs)} runs",

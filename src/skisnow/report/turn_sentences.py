@@ -10,7 +10,7 @@ from .symbols import html, prose
 from .turn_numbers import (
     afterbody_depth_ratio,
     band_width,
-    greatest_distance,
+    maximum_distance,
     median_radius,
     middle_track,
     used_grip,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 ALIKE: Final = 0.002
 """Two numbers that differ by less of their size are called alike."""
 HELD: Final = 0.05
-"""A ski that slides across in no larger share of the time holds its edge."""
+"""A ski that side-slips in no larger share of the time keeps its grip."""
 _UNLOADING: Final = (
     "How the snow unloads matters more here than how exactly it was measured: a test that presses, lifts and presses "
     "again would tell more about this turn than further tests of the kinds that were made."
@@ -57,8 +57,8 @@ def _snow(chain: TurnChain) -> Markup:
 def _contact(name: str, run: Run) -> Markup:
     grip, slides = used_grip(run)
     return prose(
-        "{name}: {outcome} after {length} m and {time} s. The afterbody stands at {ratio} of the forebody's depth; "
-        "the ski that carries more uses {grip} of its grip and slides across in {slides} % of the time.",
+        "{name}: {outcome} after {length} m and {time} s. The afterbody/forebody edge-depth ratio is {ratio}; the more "
+        "heavily loaded (outer) ski has a grip utilisation of {grip} and side-slips in {slides} % of the time.",
         name=html(name[:1].upper() + name[1:]),
         outcome=run.outcome.replace("_", " "),
         length=significant(run.run_length),
@@ -70,20 +70,21 @@ def _contact(name: str, run: Run) -> Markup:
 
 
 def contrast(chain: TurnChain) -> list[Markup]:
-    """What the other contacts do otherwise than the first: how wide, by how much grip, how deep behind the boot."""
+    """What the other contacts do otherwise than the first: turn radius, grip utilisation, edge-depth ratio."""
     (first, reference), *others = chain.runs.items()
-    return [sentence for name, run in others for sentence in _beside(html(name), run, html(first), reference)]
+    return [sentence for name, run in others for sentence in _contrast(html(name), run, html(first), reference)]
 
 
-def _beside(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
+def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
     return [
         prose("The turn with the contact “{name}” ", name=name) + _width(median_radius(run), first, reference),
-        prose("It uses {more} of its grip: {shares}. ", more=_more(used_grip(run)[0], used_grip(reference)[0]),
-              shares=_both(used_grip(run)[0], used_grip(reference)[0])) + _hold(name, run, first, reference),
-        prose("Its afterbody lies {deeper}, in parts of the forebody's depth: {ratios}.",
-              deeper=_more(*_ratios(run, reference), words=("deeper", "less deep", "as deep")),
+        prose("Its grip utilisation is {more}: {shares}. ",
+              more=_more(*_grips(run, reference), words=("higher", "lower", "the same")),
+              shares=_both(*_grips(run, reference))) + _slip(name, run, first, reference),
+        prose("Its afterbody/forebody edge-depth ratio is {larger}: {ratios}.",
+              larger=_more(*_ratios(run, reference), words=("larger", "smaller", "the same")),
               ratios=_both(*_ratios(run, reference))),
-        prose("The tracks lie up to {distance} m apart.", distance=significant(greatest_distance(run, reference))),
+        prose("The tracks lie up to {distance} m apart.", distance=significant(maximum_distance(run, reference))),
     ]  # fmt: skip
 
 
@@ -104,21 +105,23 @@ def _width(radius: float | None, first: Markup, reference: Run) -> Markup:
     )
 
 
-def _hold(name: Markup, run: Run, first: Markup, reference: Run) -> Markup:
-    """Which of two runs slides across at all."""
+def _slip(name: Markup, run: Run, first: Markup, reference: Run) -> Markup:
+    """Which of two runs side-slips at all."""
     sliding = [each for each, of in ((name, run), (first, reference)) if (used_grip(of)[1] or 0.0) > HELD]
     if not sliding:
-        return html("Both hold their edges.")
-    return html("Both slide across.") if len(sliding) == 2 else prose("“{who}” slides across.", who=sliding[0])
+        return html("Grip holds in both.")
+    return html("Both side-slip.") if len(sliding) == 2 else prose("“{who}” side-slips.", who=sliding[0])
+
+
+def _grips(run: Run, reference: Run) -> tuple[float | None, float | None]:
+    return used_grip(run)[0], used_grip(reference)[0]
 
 
 def _ratios(run: Run, reference: Run) -> tuple[float | None, float | None]:
     return afterbody_depth_ratio(run), afterbody_depth_ratio(reference)
 
 
-def _more(
-    value: float | None, other: float | None, *, words: tuple[str, str, str] = ("more", "less", "as much")
-) -> str:
+def _more(value: float | None, other: float | None, *, words: tuple[str, str, str]) -> str:
     if value is None or other is None or abs(value - other) < ALIKE * abs(other):
         return words[2]
     return words[0] if value > other else words[1]
@@ -172,16 +175,16 @@ def meaning(chain: TurnChain) -> list[Markup]:
     """Model against measurement: which of the two moves the track more."""
     reference, *others = chain.runs.values()
     aside, _ = _widths(chain)
-    far = max(greatest_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
+    far = max(maximum_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
     contacts = (
         "The choice of the contact moves the track by up to {far} m, the uncertainty of the measured snow by {aside} m "
         "(width of the band that holds 90 % at the end). "
     )
     more = _UNLOADING if far > aside else _MEASURING
-    grip = "An edge holds while the side force stays below S_f times the edge's depth times its length. "
+    grip = "The grip holds while the side force stays below the shear capacity: S_f times depth times length. "
     if any((used_grip(run)[1] or 0.0) > HELD for run in (reference, *others)):
         grip += (
-            "Hard snow lets an edge in little and so offers little to hold on to: here the skis slide across, and a "
+            "Hard snow lets an edge in little and so offers little to hold on to: here the skis side-slip, and a "
             "slower start, a gentler slope or softer snow brings them back on their edges."
         )
     return [prose(contacts + more, far=significant(far, 2), aside=significant(aside, 2)), html(grip)]

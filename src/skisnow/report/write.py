@@ -13,8 +13,8 @@ from ..files import write_file
 from ..memory import paused_collector
 from ..staging import staged, tidied
 from .figures import figures_of
-from .material import Material
 from .page import page
+from .report_data import ReportData
 from .table_csv import table_csv
 from .table_latex import table_latex
 from .tables import tables_of
@@ -75,25 +75,25 @@ def write_report(analysis: Analysis, out: str | Path, *, progress: Callable[[str
     for sentence in tidied(out):
         say(sentence)
     with paused_collector(), staged(out, last=RESULTS) as stage:
-        stage.stale += _write(Material(analysis), stage.path, say)
+        stage.stale += _write(ReportData(analysis), stage.path, say)
     return out / "report.html"
 
 
-def _write(material: Material, stage: Path, say: Callable[[str], None]) -> list[str]:
+def _write(data: ReportData, stage: Path, say: Callable[[str], None]) -> list[str]:
     """Write all files below the stage; returns those of an earlier report that this campaign has no data for."""
     say("tables of the report")
-    every_table = tables_of(material)
+    every_table = tables_of(data)
     tables = {name: table for name, table in every_table.items() if table.rows}
     for table in tables.values():
         say(f"table {table.name}")
         _write_table(table, stage / "tables")
-    pictures, missing = figures_of(material, progress=say)
+    pictures, missing = figures_of(data, progress=say)
     for picture in pictures:
         _write_picture(picture, stage / "figures")
     say("report.html")
-    write_file(stage / "report.html", page(material, tables, pictures, missing))
+    write_file(stage / "report.html", page(data, tables, pictures, missing))
     say("results.json")
-    write_file(stage / RESULTS, results_json(material.results))
+    write_file(stage / RESULTS, results_json(data.results))
     stale = [f"tables/{stem}{ending}" for stem in _other_stems(every_table.values()) for ending in (".csv", ".tex")]
     return stale + [f"figures/{left_out.name}{ending}" for left_out in missing for ending in (".svg", ".png")]
 

@@ -56,7 +56,7 @@ class Contact:
         ),
         Word(
             "snow.penetration",
-            "whether the snow keeps the groove, or springs back",
+            "whether the snow is plastic (history-dependent), or elastic",
             choices=get_args(Penetration),
             default="hypoplastic",
             origin="snow keeps its tracks",

@@ -68,7 +68,7 @@ class RigidSledge:
         float,
         Quantity(
             "sledge.stance_width_m",
-            "between the middles of the skis; at least a ski's greatest width",
+            "between the middles of the skis; at least a ski's maximum width",
             lowest=0.0,
             highest=3.0,
             above=True,

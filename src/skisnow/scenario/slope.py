@@ -24,9 +24,9 @@ Gap: TypeAlias = Literal["error", "interpolate"]
 
 FEWEST_POINTS: Final = 4
 LONGEST_GAP: Final = 5.0
-"""Distance (m) between points of a profile beyond which it is not joined unasked (Choice)."""
+"""Distance (m) between points of a profile beyond which it is not joined unasked (modelling assumption)."""
 STEEPEST_DEG: Final = 75.0
-"""Slope angle (degrees) that a slope may have; steeper is a cliff (Choice)."""
+"""Slope angle (degrees) that a slope may have; steeper is a cliff (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)

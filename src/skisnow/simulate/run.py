@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..former_names import warn_of_former_name
 from ..from_above import from_above
 from ..scenario import Plane, Scenario
 from ..shown import Facts, Shown, amount, field_facts, span
@@ -32,7 +33,7 @@ Outcome: TypeAlias = Literal[
 ]
 
 WARNED_SHARE, OPEN_SHARE, LEAST_OPEN = 0.02, 0.1, 1.0
-"""Shares of the energy turned over by which the balance may be open before a run warns of it, and before its end is
+"""Shares of the energy exchanged by which the balance may be open before a run warns of it, and before its end is
 `energy_open`; and the energy (J) below which neither counts."""
 STEADY_SPEED, STEADY_FROM = 1.0, 0.5
 """Speed (m/s) above which, and time (s) from which on, a run's turn radius counts: before, it is that of the start."""
@@ -250,11 +251,11 @@ class Run(Shown):
         error, radius = self.energy_balance_error, self.turn_radius_quantile(0.5)
         rows = (
             ("run length", f"{amount(self.run_length, 'm')} in {amount(self.simulated_s, 's')}"),
-            ("speed", f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, at most {_most(self.speed)}"),
+            ("speed", f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, maximum {_most(self.speed)}"),
             ("heading", span(float(self.heading[0]) / DEGREE, float(self.heading[-1]) / DEGREE, "°")),
             ("turn radius", "straight" if radius is None else f"{amount(radius, 'm')} (median)"),
-            ("edge depth", f"at most {amount(float(np.nanmax(self.skis.edge_depth)) / MM, 'mm')}"),
-            ("energy balance", "nothing turned over" if error is None else f"open by {amount(100.0 * error)} %"),
+            ("edge depth", f"maximum {amount(float(np.nanmax(self.skis.edge_depth)) / MM, 'mm')}"),
+            ("energy residual", "no energy exchanged" if error is None else f"{amount(100.0 * error)} %"),
             ("computed in", f"{self.steps} steps, {amount(self.wall_s, 's')}"),
         )
         return Facts(self.outcome.replace("_", " "), rows)
@@ -270,7 +271,7 @@ class Run(Shown):
         return float(self.time[-1])
 
     @property
-    def energy_turned_over(self) -> float:
+    def energy_exchanged(self) -> float:
         """Kinetic energy at the start, all losses, and the largest fall in potential energy (J)."""
         potential = self.energies["potential"]
         lost = sum(float(self.energies[name][-1]) for name in LOST)
@@ -278,21 +279,38 @@ class Run(Shown):
 
     @property
     def energy_balance_error(self) -> float | None:
-        """|energy at the end + losses - energy at the start| as a share of what was turned over; None if that is 0."""
-        over = self.energy_turned_over
-        return self.open_energy / over if over > 0.0 else None
+        """|energy at the end + losses - energy at the start| as a share of the energy exchanged; None if that is 0."""
+        over = self.energy_exchanged
+        return self.energy_residual / over if over > 0.0 else None
 
     @property
-    def open_energy(self) -> float:
+    def energy_residual(self) -> float:
         """|energy at the end + losses - energy at the start| (J)."""
         change = sum(float(self.energies[name][-1] - self.energies[name][0]) for name in STORED)
         lost = sum(float(self.energies[name][-1]) for name in LOST)
         return abs(change + lost)
 
-    def is_open_by(self, share: float) -> bool:
-        """Whether the balance of energy is open by more than a share of what was turned over, and by more than 1 J."""
+    def has_residual_above(self, share: float) -> bool:
+        """Whether the energy residual is more than a share of the energy exchanged, and more than 1 J."""
         error = self.energy_balance_error
-        return error is not None and error > share and self.open_energy > LEAST_OPEN
+        return error is not None and error > share and self.energy_residual > LEAST_OPEN
+
+    @property
+    def energy_turned_over(self) -> float:
+        """Former name of `energy_exchanged`."""
+        warn_of_former_name("Run.energy_turned_over", "energy_exchanged")
+        return self.energy_exchanged
+
+    @property
+    def open_energy(self) -> float:
+        """Former name of `energy_residual`."""
+        warn_of_former_name("Run.open_energy", "energy_residual")
+        return self.energy_residual
+
+    def is_open_by(self, share: float) -> bool:
+        """Former name of `has_residual_above`."""
+        warn_of_former_name("Run.is_open_by", "has_residual_above")
+        return self.has_residual_above(share)
 
     def turn_radius_quantile(self, share: float) -> float | None:
         """Quantile of the turn radius (m), without its sign, once the start is over; None of a straight run."""

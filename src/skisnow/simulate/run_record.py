@@ -17,7 +17,8 @@ from .run_setup import Setup
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 GAINED_SHARE, GAINED = 0.05, 10.0
-"""Share of the energy turned over, and energy (J), that may seem to be gained before numbers have run away (Choice)."""
+"""Share of the energy exchanged, and energy (J), that may seem to be gained before numbers have run away (modelling
+assumption)."""
 _MECHANICAL = 3  # kinetic, potential, elastic in the skis
 _TROUBLES: Final[dict[Ended, Outcome]] = {Ended.STEP_TOO_SMALL: "step_too_small", Ended.NOT_FINITE: "not_finite"}
 

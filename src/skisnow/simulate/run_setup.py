@@ -24,17 +24,18 @@ from .sledge.body import sledge_body
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 ELEMENTS: Final = 40
-"""Finite elements over a ski at least: 4.5 cm each (Choice, see the convergence of the docs)."""
+"""Finite elements over a ski at least: 4.5 cm each (modelling assumption, see the convergence of the docs)."""
 LINE_SPACING: Final = 0.02
-"""Largest spacing (m) of the snow's lines (Choice)."""
+"""Largest spacing (m) of the snow's lines (modelling assumption)."""
 FAST: Final = 10.0
-"""Times the tolerance, to which the fast method holds a step's error (Choice)."""
+"""Times the tolerance, to which the fast method holds a step's error (modelling assumption)."""
 FAST_LONGEST: Final = 10e-3
-"""Longest step (s) of the fast method (Choice: that of outputs)."""
+"""Longest step (s) of the fast method (modelling assumption: that of outputs)."""
 FAST_PART: Final = 0.02
-"""Way along a ski (m) over which its history is marched at once with the fast method (Choice: the lines' spacing)."""
+"""Way along a ski (m) over which its history is marched at once with the fast method (modelling assumption: the
+lines' spacing)."""
 FLOATING_DEPTH: Final = 0.1
-"""Depth (m) by which a flat base must carry the sledge, or it has sunk from the start (Choice)."""
+"""Depth (m) by which a flat base must carry the sledge, or it has sunk from the start (modelling assumption)."""
 AT_REST: Final = 1e-6
 """Last step (m) of Newton's method that counts as equilibrium."""
 PROFILE_STEP: Final = 0.02

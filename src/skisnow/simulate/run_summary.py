@@ -104,11 +104,11 @@ def radii_dict(run: Run) -> dict[str, float | None]:
 def run_warnings(run: Run) -> tuple[str, ...]:
     """What about the numbers of a run is to be told, in words: a balance of energy that stays open."""
     error = run.energy_balance_error
-    if not (run.is_open_by(WARNED_SHARE) or (error is None and run.open_energy > LEAST_OPEN)):
+    if not (run.has_residual_above(WARNED_SHARE) or (error is None and run.energy_residual > LEAST_OPEN)):
         return ()
-    share = "" if error is None else f"{100.0 * error:.2g} % of what was turned over, "
+    share = "" if error is None else f"{100.0 * error:.2g} % of the energy exchanged, "
     return (
-        f"the balance of energy is open by {share}{run.open_energy:.3g} J: where and how fast the run ends is less "
+        f"the energy residual is {share}{run.energy_residual:.3g} J: where and how fast the run ends is less "
         "certain than its digits say. Take smaller steps or a smaller tolerance, and see how far the end moves",
     )
 

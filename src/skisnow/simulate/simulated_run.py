@@ -25,11 +25,11 @@ Strength: TypeAlias = Callable[[float], float]
 """Takes the distance run (m), and gives S_f over that of the scenario, > 0."""
 
 TIPPED: Final = math.radians(60.0)
-"""Angle between the sledge and the snow's normal at which it has tipped over (Choice)."""
+"""Angle between the sledge and the snow's normal at which it has tipped over (modelling assumption)."""
 LONGEST_FLIGHT: Final = 0.3
-"""Time (s) with both skis off the snow after which it is airborne (Choice)."""
+"""Time (s) with both skis off the snow after which it is airborne (modelling assumption)."""
 SINKING_DEPTH: Final = 0.5
-"""Depth (m) of the boots below the surface at which the sledge has sunk (Choice)."""
+"""Depth (m) of the boots below the surface at which the sledge has sunk (modelling assumption)."""
 OUTPUTS_AT_ONCE: Final = 5
 """Outputs between which no progress is reported."""
 _COMPUTED_WRONG: Final = ("step_too_small", "not_finite", "interrupted")
@@ -38,7 +38,7 @@ _REACHED: Final = 1e-6
 """Run length (m) that counts as none left."""
 
 REMEDIES: Final[dict[Outcome, str]] = {
-    "finished": "The duration was simulated to its end.",
+    "finished": "Completed: the whole duration was simulated.",
     "distance_reached": "The run length was reached.",
     "end_of_slope": "The tips reached the end of the profile. Give a longer profile, or a shorter run.",
     "tipped_over": "The sledge leant more than 60° from the snow's normal: it has tipped over. Lower its centre of "
@@ -47,7 +47,7 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "smoother slope.",
     "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
     "Take harder snow, less mass or a wider ski.",
-    "energy_open": "The balance of energy is open by more than a tenth of what was turned over: these numbers are not "
+    "energy_open": "The energy residual is more than a tenth of the energy exchanged: these numbers are not "
     "those of a sledge on snow. Take smaller steps, or the error control (solver.fixed false); on "
     "very hard snow, or at more than 50° of edge angle, a smaller tolerance.",
     "step_too_small": "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen "
@@ -181,7 +181,7 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
         wall_s=wall,
         numbers=setup.numbers,
     )
-    if outcome in _COMPUTED_WRONG or not run.is_open_by(OPEN_SHARE):
+    if outcome in _COMPUTED_WRONG or not run.has_residual_above(OPEN_SHARE):
         return run
     return replace(run, outcome="energy_open", remedy=REMEDIES["energy_open"])
 

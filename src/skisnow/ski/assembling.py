@@ -35,7 +35,7 @@ class SkiParts:
     width, base_height, bending_stiffness, torsional_stiffness
         As in `Ski`; the base may have any height at the boot.
     mass_per_length
-        As in `Ski`; None: proportional to the width (Choice), with ``mass``.
+        As in `Ski`; None: proportional to the width (modelling assumption), with ``mass``.
     mass
         Of the ski (kg); looked at only without ``mass_per_length``.
     stations
@@ -126,11 +126,12 @@ def arc_ski(
     tip_width, waist_width, tail_width
         At the front end, the middle and the rear end of the sidecut length (m).
     mass
-        Of the ski alone (kg); spread in proportion to the width (Choice).
+        Of the ski alone (kg); spread in proportion to the width (modelling assumption).
     bending_stiffness, torsional_stiffness
         EI and GJ (N m²), tip to tail, one value or several.
     stiffness_station
-        Stations of both (m, from the boot, falling); left out: evenly spaced over the running length (Choice). Between
+        Stations of both (m, from the boot, falling); left out: evenly spaced over the running length (modelling
+        assumption). Between
         them a shape-preserving cubic, beyond them the end values.
     base
         Camber, rocker and heights; left out: flat, with the usual shovel and tail.

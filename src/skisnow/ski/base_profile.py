@@ -18,20 +18,20 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 SHOVEL_HEIGHT: Final = 0.050
-"""Height of the tip over the contact points (m). Choice: 50 mm, a usual alpine ski."""
+"""Height of the tip over the contact points (m). Modelling assumption: 50 mm, a usual alpine ski."""
 
 ROUNDING: Final = 0.100
-"""Length before a contact point over which the camber is rounded off (m). Choice: 100 mm."""
+"""Length before a contact point over which the camber is rounded off (m). Modelling assumption: 100 mm."""
 
 TAIL_HEIGHT: Final = 0.008
-"""Height of the tail over the contact points (m). Choice: 8 mm, a usual square tail."""
+"""Height of the tail over the contact points (m). Modelling assumption: 8 mm, a usual square tail."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BaseShape:
     """Heights and lengths of the unloaded base (m); heights are over the line through the contact points.
 
-    Choices:
+    Modelling assumptions:
 
     - Camber is an arch of one curvature, so that the ends stay down when the middle is pressed flat; over the last
       100 mm before each contact point (`ROUNDING`) it is rounded so that it meets it with slope 0.
@@ -51,11 +51,15 @@ class BaseShape:
     ] = 0.0
     shovel_height: Annotated[
         float | None,
-        ski_quantity("shovel_height_mm", "height of the tip over that line", (0, 300), (5, 150), "50 (Choice)"),
+        ski_quantity(
+            "shovel_height_mm", "height of the tip over that line", (0, 300), (5, 150), "50 (modelling assumption)"
+        ),
     ] = None
     tail_height: Annotated[
         float | None,
-        ski_quantity("tail_height_mm", "height of the tail over that line", (0, 300), (1, 150), "8 (Choice)"),
+        ski_quantity(
+            "tail_height_mm", "height of the tail over that line", (0, 300), (1, 150), "8 (modelling assumption)"
+        ),
     ] = None
     tip_rocker_length: Annotated[
         float,

@@ -27,7 +27,7 @@ EDITED_COLUMNS: Final = {
 }
 """Columns of a ski's table that can be edited, and what they are called in `Ski`."""
 _LARGEST_FACTOR: Final = 100.0
-_END: Final = 0.005  # m between two stations at least (Choice)
+_END: Final = 0.005  # m between two stations at least (modelling assumption)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,7 +11,8 @@ from .layout import TAIL_OVERHANG
 from .ski_quantity import ski_quantity
 
 RIGID: Final = 1e6
-"""EI and GJ of a rigid ski (N m²). Choice: 200 mm of it, held in the middle, bend by 0.03 micrometre under 500 N."""
+"""EI and GJ of a rigid ski (N m²). Modelling assumption: 200 mm of it, held in the middle, bend by 0.03 micrometre
+under 500 N."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,7 +68,7 @@ class SkiFile:
             "length of ski behind the sidecut length; the rest is the tip",
             (0, 500),
             (1, 250),
-            "20 (Choice)",
+            "20 (modelling assumption)",
         ),
     ] = TAIL_OVERHANG
     boot_position: Annotated[
@@ -77,7 +78,7 @@ class SkiFile:
             "boot in front of the middle of the running length, negative behind",
             (-500, 500),
             (-200, 200),
-            "0 (Choice)",
+            "0 (modelling assumption)",
         ),
     ] = 0.0
     mass: Annotated[
@@ -98,7 +99,7 @@ class SkiFile:
             "width of that strip, below half the waist",
             (0, 20),
             (0.5, 5),
-            "2 (Choice: a usual steel edge)",
+            "2 (modelling assumption: a usual steel edge)",
         ),
     ] = 2e-3
     bending_stiffness: Annotated[
@@ -124,7 +125,7 @@ class SkiFile:
             "stations of both lists",
             (-3000, 3000),
             (-1500, 1500),
-            "evenly over the running length (Choice)",
+            "evenly over the running length (modelling assumption)",
         ),
     ] = None
     rigid: Annotated[bool, Quantity("rigid", "`true`: EI and GJ are 10⁶ N m² everywhere", origin="`false`")] = False

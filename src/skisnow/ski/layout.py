@@ -8,14 +8,15 @@ from typing import Final
 from ..errors import ParameterError
 
 TAIL_OVERHANG: Final = 0.020
-"""Length of ski behind the rear end of the sidecut length (m). Choice: 20 mm, a short square tail."""
+"""Length of ski behind the rear end of the sidecut length (m). Modelling assumption: 20 mm, a short square tail."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Layout:
     """Stations and lengths of a ski (m). Stations count from the boot, positive forward.
 
-    Choice: the running length is centred in the sidecut length, ``middle`` is the station of both middles.
+    Modelling assumption: the running length is centred in the sidecut length, ``middle`` is the station of both
+    middles.
     """
 
     tip: float
@@ -65,9 +66,9 @@ def layout_of_lengths(
     running_length, sidecut_length
         Between the contact points, between the widest points.
     tail_overhang
-        Of the tail behind the sidecut length; what is left of the length is the tip. Choice: 20 mm.
+        Of the tail behind the sidecut length; what is left of the length is the tip. Modelling assumption: 20 mm.
     boot_position
-        Of the boot in front of the middle of the running length, negative behind it. Choice: 0.
+        Of the boot in front of the middle of the running length, negative behind it. Modelling assumption: 0.
 
     Raises
     ------

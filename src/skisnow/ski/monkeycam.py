@@ -66,7 +66,7 @@ def read_monkeycam(
     mass, bending_stiffness, torsional_stiffness, stiffness_station, base, base_bevel, edge_width
         As in `arc_ski`.
     running_length
-        Between the contact points (m); left out: the effective edge (Choice).
+        Between the contact points (m); left out: the effective edge (modelling assumption).
 
     Raises
     ------

@@ -14,14 +14,15 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 TIP_END_SHARE: Final = 0.2
-"""Width at the very tip as a share of the tip width. Choice: a blunt end, so that the ski has a width everywhere."""
+"""Width at the very tip as a share of the tip width. Modelling assumption: a blunt end, so that the ski has a width
+everywhere."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArcOutline:
     """Widths over the stations of a ski of which three widths are known (m).
 
-    Choices:
+    Modelling assumptions:
 
     - The side line is one parabola (constant curvature to a part in a thousand) through the half widths at the front
       end, the middle and the rear end of the sidecut length. With tip and tail unlike, the ski is narrowest a little

@@ -21,7 +21,7 @@ FloatArray = npt.NDArray[np.float64]
 FEWEST_ROWS: Final = 3
 """Rows within the sidecut length without which nothing says how deep the sidecut is."""
 LEAST_SHARE: Final = 0.5
-"""Share of the sidecut length that these rows span at least (Choice)."""
+"""Share of the sidecut length that these rows span at least (modelling assumption)."""
 _SAME_PLACE: Final = 1e-3  # m: a row at the end of the sidecut length, measured on another day
 
 
@@ -30,7 +30,8 @@ def width_of_table(table: StationTable, layout: Layout) -> Along:
 
     A dense table is used as it is. Between the rows of a coarser one a parabola, fitted to those within the sidecut
     length, carries the sidecut; what the rows differ from it follows the shape-preserving cubic of `StationTable`
-    (Choice). Three rows give the side line of three widths; a cubic through the widths themselves would be flat at the
+    (modelling assumption). Three rows give the side line of three widths; a cubic through the widths themselves would
+    be flat at the
     widest and at the narrowest row, and bend between them as no ski does.
 
     Raises

@@ -56,7 +56,7 @@ class Ski(Shown):
     base_bevel
         Angle by which the edge strip is ground up from the base (rad), 0 to 0.1.
     edge_width
-        Width of the bevelled strip (m). Choice: 2 mm, a usual steel edge.
+        Width of the bevelled strip (m). Modelling assumption: 2 mm, a usual steel edge.
     sidecut_middle
         Station of the middle of running length and sidecut length (m): 0 where the boot stands there.
 

@@ -34,7 +34,7 @@ def drawn_snows(snow: SnowProperties, count: int, generator: np.random.Generator
     -----
     The middle of each distribution is that of the interval, of H_V on logarithms. S_f is drawn only above 0: the normal
     distribution is cut there. The intervals are those of means, so the snows show how well the mean is known, not how
-    much the snow of a slope changes from place to place. H_V and S_f are drawn independently (Choice).
+    much the snow of a slope changes from place to place. H_V and S_f are drawn independently (modelling assumption).
     """
     hardness, stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     if hardness is None or stress is None:

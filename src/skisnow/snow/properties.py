@@ -13,7 +13,7 @@ from ..units import N_PER_MM2, N_PER_MM3
 Interval: TypeAlias = tuple[float, float]
 
 GREATEST_LIKELY_HARDNESS: Final = 1e4
-"""H_V (N/mm³) above which the number looks like N/m³: a hundred times the hardest that was measured (Choice)."""
+"""H_V (N/mm³) above which the number looks like N/m³: a hundred times the hardest that was measured (assumption)."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)

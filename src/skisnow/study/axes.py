@@ -18,7 +18,7 @@ from .study import Point
 FloatArray = npt.NDArray[np.float64]
 
 MOST_POINTS: Final = 1_000_000
-"""Of one study: a table of half a gigabyte (Choice)."""
+"""Of one study: a table of half a gigabyte (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

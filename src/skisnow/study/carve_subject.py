@@ -48,7 +48,7 @@ RESULTS: Final = (
 
 
 @dataclass(slots=True, repr=False)
-class CarveSubject(ShownFields):
+class CarveModel(ShownFields):
     """Answers points with one row each. Relative paths start at `folder`."""
 
     folder: Path

@@ -58,11 +58,11 @@ RESULTS: Final = (
 """Columns behind the keys; `outcome` is "error" where a run could not be asked for, and `reason` says why."""
 
 MOST_TRIED: Final = 100
-"""Points that are tried, before anything is computed, for one that can be asked (Choice: milliseconds each)."""
+"""Points that are tried, before anything is computed, for one that can be asked (assumption: milliseconds each)."""
 
 
 @dataclass(slots=True, repr=False)
-class ScenarioSubject(ShownFields):
+class ScenarioModel(ShownFields):
     """Runs a scenario with the values of each point. Relative paths start at `folder`.
 
     Attributes

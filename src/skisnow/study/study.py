@@ -18,7 +18,7 @@ from ..shown import Facts, Shown
 Point: TypeAlias = dict[str, Any]
 
 
-class Subject(Protocol):
+class StudyModel(Protocol):
     """What can be studied. It is pickled for each worker; one more subject is one more class."""
 
     @property
@@ -48,7 +48,7 @@ class Subject(Protocol):
         ...
 
 
-SubjectIn: TypeAlias = Callable[[Path], Subject]
+ModelReader: TypeAlias = Callable[[Path], StudyModel]
 """Makes a subject whose relative paths start at a folder."""
 
 
@@ -76,7 +76,7 @@ class Study(Shown):
 
     file: Path
     out: Path
-    subject: Subject
+    subject: StudyModel
     varied: tuple[str, ...]
     points: list[Point]
 

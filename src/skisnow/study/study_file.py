@@ -11,9 +11,9 @@ from ..errors import ParameterError
 from ..given import read_toml
 from ..inputs import InputValue, Quantity, checked_table, made, nearest
 from .axes import Axis, grid_points, hypercube_points
-from .carve_subject import CarveSubject
-from .scenario_subject import ScenarioSubject
-from .study import Point, Study, Subject, SubjectIn
+from .carve_subject import CarveModel
+from .scenario_subject import ScenarioModel
+from .study import ModelReader, Point, Study, StudyModel
 
 FORMS: Final = ("grid", "latin_hypercube")
 TOP_KEYS: Final = ("out", "scenario", "fixed", *FORMS)
@@ -27,7 +27,7 @@ class Sample:
     seed: Annotated[int, Quantity("seed", "a whole number that the points follow from", lowest=0)]
 
 
-def read_study(path: str | Path, *, subject: SubjectIn = CarveSubject) -> Study:
+def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
     """Read a study.
 
     Parameters
@@ -67,7 +67,7 @@ def read_study(path: str | Path, *, subject: SubjectIn = CarveSubject) -> Study:
         raise ParameterError(f"{path}: {error}") from error
 
 
-def _study(path: Path, values: Mapping[str, Any], subject: SubjectIn) -> Study:
+def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study:
     for key in values:
         if key not in TOP_KEYS:
             raise ParameterError(f"{key} is no key of a study. {nearest(key, TOP_KEYS)}")
@@ -86,13 +86,13 @@ def _study(path: Path, values: Mapping[str, Any], subject: SubjectIn) -> Study:
     return Study(path, _out(path, values), asked, tuple(axis.key.name for axis in axes), points)
 
 
-def _subject(path: Path, values: Mapping[str, Any], subject: SubjectIn) -> Subject:
+def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> StudyModel:
     if "scenario" not in values:
         return subject(path.parent)
     word = values["scenario"]
     if not isinstance(word, str) or not word.strip():
         raise ParameterError(f'scenario is {word!r}; it is a name or a file, such as scenario = "carved-46m"')
-    return ScenarioSubject(path.parent, word)
+    return ScenarioModel(path.parent, word)
 
 
 def _form(values: Mapping[str, Any]) -> str:

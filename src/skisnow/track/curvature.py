@@ -20,7 +20,8 @@ SpeedSource: TypeAlias = Literal["recorded", "fitted"]
 WaySource: TypeAlias = Literal["odometer", "recorded speed", "places"]
 
 LEAST_SPEED: Final = 1.0
-"""Speed (m/s) below which a heading is not asked for. Choice: slower than walking; places wander at rest."""
+"""Speed (m/s) below which a heading is not asked for. Modelling assumption: slower than walking; places wander at
+rest."""
 CERTAIN: Final = 3.0
 """A heading needs a speed of so many of its standard errors."""
 INTERVAL_FACTOR: Final = float(norm.ppf(0.5 + CONFIDENCE / 2.0))

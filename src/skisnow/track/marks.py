@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     FloatArray = npt.NDArray[np.float64]
 
 FASTEST: Final = 75.0
-"""Speed (m/s) above which a step is impossible: the fastest run ever skied had 71 m/s (Choice)."""
+"""Speed (m/s) above which a step is impossible: the fastest run ever skied had 71 m/s (modelling assumption)."""
 GAP_FACTOR: Final = 5.0
-"""A pause of more than so many usual intervals is a gap (Choice)."""
+"""A pause of more than so many usual intervals is a gap (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,19 +19,20 @@ from .track import Track
 FloatArray = npt.NDArray[np.float64]
 
 LEAST_HEIGHT: Final = 15.0
-"""Height (m) that makes a descent a run and an ascent a lift. Choice: above the wander of a receiver's height."""
+"""Height (m) that makes a descent a run and an ascent a lift. Modelling assumption: above the wander of a receiver's
+height."""
 HEIGHT_WINDOW: Final = 15.0
-"""Length (s) of the running mean over the height that finds tops and bottoms (Choice)."""
+"""Length (s) of the running mean over the height that finds tops and bottoms (modelling assumption)."""
 STANDING: Final = 1.0
-"""Speed (m/s) below which someone stands or shuffles (Choice)."""
+"""Speed (m/s) below which someone stands or shuffles (modelling assumption)."""
 LONGEST_STOP: Final = 30.0
-"""Without heights, a stop (s) after which another run begins (Choice)."""
+"""Without heights, a stop (s) after which another run begins (modelling assumption)."""
 LEAST_DISTANCE: Final = 10.0
-"""A run's length (m) at least (Choice)."""
+"""A run's length (m) at least (modelling assumption)."""
 _ZONE: Final = 0.02
 """Share of a descent that counts as its top and as its bottom, at least 1 m of height."""
 _SPARSE: Final = 10
-"""One height in so many points is enough to tell tops from bottoms (Choice)."""
+"""One height in so many points is enough to tell tops from bottoms (modelling assumption)."""
 _LEVEL_SHARE: Final = 0.01
 """Heights that differ by less than this share of the way are none: the slope's own third axis."""
 

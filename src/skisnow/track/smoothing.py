@@ -21,9 +21,10 @@ BoolArray = npt.NDArray[np.bool_]
 IntArray = npt.NDArray[np.int64]
 
 SHORTEST_WINDOW: Final = 0.8
-"""Default length (s) of the window where points are dense. Choice: a slalom turn takes 0.8 to 1 s."""
+"""Default length (s) of the window where points are dense. Modelling assumption: a slalom turn takes 0.8 to 1 s."""
 POINTS_IN_WINDOW: Final = 8.0
-"""Default length of the window in intervals between points, where that is longer. Choice: five points to spare."""
+"""Default length of the window in intervals between points, where that is longer. Modelling assumption: five points
+to spare."""
 _SURPRISING: Final = 0.999
 """A window that scatters more than noise does in all but this share of cases is taken at its own scatter."""
 _LOWEST_PLACE_NOISE: Final = 1e-9

@@ -17,13 +17,13 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 SURE: Final = 3.0
-"""Standard errors by which a curvature differs from 0 where it counts as that of a turn (Choice)."""
+"""Standard errors by which a curvature differs from 0 where it counts as that of a turn (modelling assumption)."""
 STRAIGHT: Final = 500.0
-"""Radius (m) beyond which a path is straight, however exact it is known (Choice)."""
+"""Radius (m) beyond which a path is straight, however exact it is known (modelling assumption)."""
 LEAST_ANGLE: Final = 10.0 * DEGREE
-"""Turned angle (rad) that makes a turn (Choice)."""
+"""Turned angle (rad) that makes a turn (modelling assumption)."""
 LONGEST_STRAIGHT: Final = 2.0
-"""A straight stretch (s) after which a turn has ended, at least two lengths of the smoothing's window (Choice)."""
+"""A straight stretch (s) after which a turn has ended, at least two lengths of the smoothing's window (assumption)."""
 
 
 @dataclass(frozen=True, slots=True)

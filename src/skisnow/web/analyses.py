@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 MOST_CAMPAIGNS: Final = 6
 MOST_CHOICES: Final = 4
-"""How many are kept in memory (Choice): those of a day's work, not of a season's."""
+"""How many are kept in memory (modelling assumption): those of a day's work, not of a season's."""
 
 
 @dataclass(eq=False)
@@ -42,7 +42,7 @@ class Analysed:
     drawing: asyncio.Lock = field(default_factory=asyncio.Lock)
 
 
-class Subject:
+class CampaignSource:
     """A campaign as it stands, in memory, and what was computed of it.
 
     Reports that were asked for lie in a folder, which goes when nobody holds the subject any more.
@@ -93,10 +93,10 @@ class Analyses:
     def __init__(self, lab: Lab, worker: Worker) -> None:
         self._lab = lab
         self._worker = worker
-        self._subjects = OrderedDict[tuple[str, str], tuple[int, Subject]]()
+        self._subjects = OrderedDict[tuple[str, str], tuple[int, CampaignSource]]()
         self._opening = asyncio.Lock()
 
-    def known(self, kind: str, id_: str) -> Subject | None:
+    def known(self, kind: str, id_: str) -> CampaignSource | None:
         """The campaign, where it was looked at before and nothing was entered since; None otherwise.
 
         Raises
@@ -107,7 +107,7 @@ class Analyses:
         found, state = self._subjects.get((kind, id_)), self._state(kind, id_)
         return found[1] if found is not None and found[0] == state else None
 
-    async def subject(self, kind: str, id_: str) -> Subject:
+    async def subject(self, kind: str, id_: str) -> CampaignSource:
         """The campaign in the state that the store has it in.
 
         Raises
@@ -120,7 +120,7 @@ class Analyses:
                 self._subjects.move_to_end((kind, id_))
                 return known
             state = self._state(kind, id_)  # before it is read: what comes meanwhile is looked at again
-            made = await run.io_bound(Subject, self._lab, kind, id_)
+            made = await run.io_bound(CampaignSource, self._lab, kind, id_)
             if made is None:
                 raise StoreError("The lab is about to end.")
             self._subjects[(kind, id_)] = (state, made)

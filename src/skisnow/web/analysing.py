@@ -16,7 +16,7 @@ from ..report import write_report
 from ..report.figures import DRAWERS
 from ..report.figures.drawing import Drawing, svg_of
 from ..report.figures.style import journal_style, site_styles
-from ..report.material import Material
+from ..report.report_data import ReportData
 from ..report.table_html import table_html
 from ..report.tables import tables_of
 
@@ -32,7 +32,7 @@ SHOWN_TABLES: Final = ("sites", "models", "model_tests", "regressions", "penetra
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What takes part.
+    """Included data.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
         analysis = analyse(_chosen(campaign_of_files(files.contents, others=files.others), choice))
     except SkisnowError as error:
         return Refusal(str(error))
-    tables = tables_of(Material(analysis))
+    tables = tables_of(ReportData(analysis))
     present = [tables[name] for name in SHOWN_TABLES if name in tables and tables[name].rows]
     html = {table.name: str(table_html(table, number=number)) for number, table in enumerate(present, start=1)}
     return Numbers(analysis, html)
@@ -95,9 +95,9 @@ def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
 
 def figure(analysis: Analysis, number: int) -> Shown | None:
     """Draw one of the report's figures, counted from 0, of what `numbers_of` gave; None: there are no data for it."""
-    material = Material(analysis)
+    data = ReportData(analysis)
     with journal_style():
-        drawn = DRAWERS[number](material, site_styles(material))
+        drawn = DRAWERS[number](data, site_styles(data))
         if not isinstance(drawn, Drawing):
             return None
         return Shown(drawn.name, drawn.alt, str(drawn.whole_caption), svg_of(drawn))

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from nicegui.events import ValueChangeEventArguments
 
-    from .analyses import Analysed, Analyses, Subject
+    from .analyses import Analysed, Analyses, CampaignSource
     from .analysing import Shown
 
     Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
@@ -36,7 +36,7 @@ MOST_LISTED: Final = 400
 class OpenAnalysis:
     """One open page: which campaign, as it was when the page was opened, what was chosen last, what came of it."""
 
-    def __init__(self, kind: str, id_: str, subject: Subject | None) -> None:
+    def __init__(self, kind: str, id_: str, subject: CampaignSource | None) -> None:
         self.kind = kind
         self.id = id_
         self.subject = subject
@@ -56,7 +56,7 @@ class AnalysisView:
         self._analyses = analyses
         self._asked = 0
         self._status = ui.label("Computing …").classes("status").props("role=status aria-live=polite")
-        self._choices = ui.element("section").props('aria-label="What takes part"')
+        self._choices = ui.element("section").props('aria-label="Included data"')
         self._tables = ui.element("section").props('aria-label="Tables"')
         self._figures = ui.element("section").props('aria-label="Figures"')
 
@@ -139,9 +139,9 @@ class AnalysisView:
 
     def _show_choices(self, found: Numbers) -> None:
         with self._choices:
-            heading("What takes part")
-            _behind("Leave out experiments with these marks", lambda: self._list_marks(found))
-            _behind("Experiments that take part", lambda: self._list_experiments(found))
+            heading("Included data")
+            _behind("Exclude experiments with these quality flags", lambda: self._list_marks(found))
+            _behind("Included experiments", lambda: self._list_experiments(found))
 
     def _list_marks(self, found: Numbers) -> None:
         for code, words in choosable_marks().items():

@@ -29,7 +29,7 @@ LONGEST: Final = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class PageRequest:
     """What the browser says of what it sends.
 
     Attributes
@@ -47,13 +47,13 @@ class Asked:
     text: str | None = None
 
 
-_NOTHING: Final = Asked()
-_ASKED: ContextVar[Asked] = ContextVar("asked", default=_NOTHING)
+_NOTHING: Final = PageRequest()
+_ASKED: ContextVar[PageRequest] = ContextVar("asked", default=_NOTHING)
 _ANSWERS: Final = WeakKeyDictionary[Client, dict[int, bool]]()
 """Of each page the answers to its questions: what was asked again is answered again, and not done again."""
 
 
-def asked() -> Asked:
+def asked() -> PageRequest:
     """What is being answered now."""
     return _ASKED.get()
 
@@ -82,7 +82,7 @@ def answering(act: Act) -> Callable[[GenericEventArguments], None]:
     return answered
 
 
-def _done(act: Act, what: Asked) -> bool:
+def _done(act: Act, what: PageRequest) -> bool:
     before = _ASKED.set(what)
     try:
         return act() is not False
@@ -90,18 +90,18 @@ def _done(act: Act, what: Asked) -> bool:
         _ASKED.reset(before)
 
 
-def _tell(client: Client, what: Asked, *, fine: bool) -> None:
+def _tell(client: Client, what: PageRequest, *, fine: bool) -> None:
     if what.number is not None:
         client.run_javascript(f"lab.answered({what.number}, {'true' if fine else 'false'})")
     elif what.once is not None:
         client.run_javascript(f"lab.told({json.dumps(what.once)})")
 
 
-def _asked_of(said: Any) -> Asked:
+def _asked_of(said: Any) -> PageRequest:
     """What came from the browser; anything else than expected counts as not said."""
     given = said if isinstance(said, dict) else {}
     number, once, text = (given.get(key) for key in ("number", "once", "text"))
-    return Asked(
+    return PageRequest(
         number if isinstance(number, int) else None,
         once if isinstance(once, str) and len(once) <= LONGEST else None,
         text if isinstance(text, str) else None,

@@ -27,7 +27,7 @@ _LAST_WORDS: Final = 4000
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """What reading may take (Choice: the largest campaign foreseen takes 20 s and 1 GB on a field laptop)."""
+    """What reading may take (assumption: the largest campaign foreseen takes 20 s and 1 GB on a field laptop)."""
 
     seconds: float = 120.0
     memory_bytes: int = 3_000_000_000

@@ -15,7 +15,7 @@ MEGABYTE: Final = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What an upload may hold (Choice: the largest campaign foreseen, a million readings, is 60 MB).
+    """What an upload may hold (modelling assumption: the largest campaign foreseen, a million readings, is 60 MB).
 
     Attributes
     ----------

@@ -54,7 +54,7 @@ class SkiEditor:
                 ui.label("The file of the ski")
             sentence(
                 "With units in its keys. Draw the file takes it as it is written here; factors and values at stations "
-                "begin anew from it.",
+                "start again from it.",
                 "quiet",
             )
             written = ui.textarea("File of the edited ski", value=text).props("outlined autogrow").classes("code")

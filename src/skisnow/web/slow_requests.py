@@ -11,9 +11,9 @@ else:
     from uvicorn.protocols.http.auto import AutoHTTPProtocol as _Protocol
 
 HEAD_S: Final = 20.0
-"""For the head of a request, from the connection or from its first byte on (Choice)."""
+"""For the head of a request, from the connection or from its first byte on (modelling assumption)."""
 BODY_S: Final = 120.0
-"""For the next piece of a body (Choice): a phone that sleeps while it sends."""
+"""For the next piece of a body (modelling assumption): a phone that sleeps while it sends."""
 HEAD_BYTES: Final = 65_536
 
 

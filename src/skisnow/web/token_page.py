@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 TOKEN_PATH: Final = "/token"
 _LONGEST: Final = 2000
 _WAIT_S: Final = 0.5
-"""After a wrong token, so that guessing takes long (Choice)."""
+"""After a wrong token, so that guessing takes long (modelling assumption)."""
 TRIES: Final = 10
 WITHIN_S: Final = 60.0
-"""An address may try so many tokens in so many seconds (Choice)."""
+"""An address may try so many tokens in so many seconds (modelling assumption)."""
 _MOST_ADDRESSES: Final = 10_000
 
 _PAGE: Final = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Token · skisnow</title>

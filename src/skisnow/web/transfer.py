@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from fastapi import FastAPI
 
-    from ..field.store import GrownCampaign, GrownTest
+    from ..field.store import ReplayedCampaign, ReplayedTest
     from .settings import Lab
 
 IMPORT: Final = "/import"
@@ -94,7 +94,7 @@ def entry_files(lab: Lab, id_: str) -> FilesInMemory:
     return grown_in_memory(grown(Journals(lab.store).entries(required_id(id_))))
 
 
-def grown_in_memory(campaign: GrownCampaign, *, of: Iterable[GrownTest] | None = None) -> FilesInMemory:
+def grown_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> FilesInMemory:
     """What `write_campaign` would write into a folder."""
     return FilesInMemory({name: text.encode("utf-8") for name, text in campaign_files(campaign, of=of).items()})
 

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 CHUNK_BYTES: Final = 1 << 18
 DEEPEST: Final = 32
-"""Folders within one another (Choice: a campaign has two)."""
+"""Folders within one another (modelling assumption: a campaign has two)."""
 
 _METHODS: Final = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _END_RECORD: Final = struct.Struct("<4s4H2LH")
 _LONGEST_COMMENT: Final = 0xFFFF
 _BYTES_PER_NAME: Final = 2_000
-_DAMAGED: Final = "the zip file is damaged or of a kind that is not read; pack the folder anew"
+_DAMAGED: Final = "the zip file is damaged or of a kind that is not read; pack the folder again"
 
 
 class Unpacking:

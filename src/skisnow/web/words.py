@@ -12,7 +12,7 @@ LABELS: Final = {
     "test": "Name of the test",
     "repeat": "Repeat",
     "site": "Site",
-    "spot": "Spot",
+    "spot": "Measurement point",
     "tool": "Tool",
     "plate": "Plate",
     "edge_angle_deg": "Edge angle (°)",

@@ -18,7 +18,7 @@ from skisnow.report.figures.regression_line import regression_line
 from skisnow.report.figures.residuals import residuals
 from skisnow.report.figures.stress_angle import stress_angle
 from skisnow.report.figures.style import SiteStyle, journal_style, site_styles, thinned
-from skisnow.report.material import Material
+from skisnow.report.report_data import ReportData
 
 from ..conftest import Reported
 
@@ -29,25 +29,25 @@ Draw = Callable[..., Drawing | LeftOut]
 
 
 @pytest.fixture(scope="module")
-def material(reference: Reported) -> Material:
-    return Material(reference.analysis)
+def data(reference: Reported) -> ReportData:
+    return ReportData(reference.analysis)
 
 
-def _axes(material: Material, draw: Draw) -> list[Axes]:
+def _axes(data: ReportData, draw: Draw) -> list[Axes]:
     with journal_style():
-        drawn = draw(material, site_styles(material))
+        drawn = draw(data, site_styles(data))
     assert isinstance(drawn, Drawing)
     return drawn.figure.axes
 
 
-def test_flat_and_the_most_frequent_edge_are_shown(material: Material) -> None:
-    angles = [row["edge_angle_deg"] for row in material.penetration if row["edge_angle_deg"] > 0]
-    assert shown_angles(material) == [0.0, max(set(angles), key=angles.count)]
+def test_flat_and_the_most_frequent_edge_are_shown(data: ReportData) -> None:
+    angles = [row["edge_angle_deg"] for row in data.penetration if row["edge_angle_deg"] > 0]
+    assert shown_angles(data) == [0.0, max(set(angles), key=angles.count)]
 
 
-def test_laws_of_fig_5_meet_the_last_reading(material: Material) -> None:
+def test_laws_of_fig_5_meet_the_last_reading(data: ReportData) -> None:
     """F = H_V V with Eqn 2 written out: at the largest depth it is the largest load."""
-    flat, edged = _axes(material, force_depth)
+    flat, edged = _axes(data, force_depth)
     for axes, slope in ((flat, 1.0), (edged, 2.0)):
         laws = [line for line in axes.lines if line.get_linestyle() == "-"]
         assert laws
@@ -58,28 +58,28 @@ def test_laws_of_fig_5_meet_the_last_reading(material: Material) -> None:
             assert np.diff(np.log(F)) == pytest.approx(slope * np.diff(np.log(e)), rel=1e-9)
 
 
-def test_dots_of_the_rmse_chart_are_the_rows(material: Material) -> None:
-    (axes,) = _axes(material, model_rmse)
+def test_dots_of_the_rmse_chart_are_the_rows(data: ReportData) -> None:
+    (axes,) = _axes(data, model_rmse)
     printed, own = axes.lines
-    assert np.asarray(own.get_xdata()).tolist() == [row["rmse_N"] for row in material.results["penetration"]["models"]]
+    assert np.asarray(own.get_xdata()).tolist() == [row["rmse_N"] for row in data.results["penetration"]["models"]]
     assert np.asarray(printed.get_xdata()).tolist() == [140.0, 58.4, 53.6, 207.0, 75.2, 54.8, 53.8, 54.9, 56.1]
 
 
-def test_residuals_have_the_rmse_of_the_selected_row(material: Material) -> None:
-    (axes,) = _axes(material, residuals)
+def test_residuals_have_the_rmse_of_the_selected_row(data: ReportData) -> None:
+    (axes,) = _axes(data, residuals)
     cloud = max(axes.lines, key=lambda line: len(np.asarray(line.get_xdata())))
     departure = np.asarray(cloud.get_ydata(), float)
-    selected = material.results["penetration"]["selected"]["id"]
-    row = next(row for row in material.results["penetration"]["models"] if row["id"] == selected)
+    selected = data.results["penetration"]["selected"]["id"]
+    row = next(row for row in data.results["penetration"]["models"] if row["id"] == selected)
     assert len(departure) == row["n"]
     assert math.sqrt(float(np.mean(departure**2))) == pytest.approx(row["rmse_N"], rel=1e-12)
 
 
-def test_a_line_is_drawn_only_where_the_slope_is_significant(material: Material) -> None:
-    rows = [row for row in material.results["regressions"] if row["terms"][1] == "edge_angle_rad"]
+def test_a_line_is_drawn_only_where_the_slope_is_significant(data: ReportData) -> None:
+    rows = [row for row in data.results["regressions"] if row["terms"][1] == "edge_angle_rad"]
     expected = sum(row["group"] != "all" and row["p"] < 0.05 for row in rows)
     assert 0 < expected < len(rows) - 1
-    (axes,) = _axes(material, stress_angle)
+    (axes,) = _axes(data, stress_angle)
     lines = [line for line in axes.lines if line.get_linestyle() == "-"]
     assert len(lines) == expected
     row = next(row for row in rows if row["group"] != "all" and row["p"] < 0.05)
@@ -87,11 +87,11 @@ def test_a_line_is_drawn_only_where_the_slope_is_significant(material: Material)
     assert stress == pytest.approx(row["b"][0] + row["b"][1] * np.radians(degrees), rel=1e-12)
 
 
-def test_machining_meets_the_regression_at_90_degrees(material: Material) -> None:
+def test_machining_meets_the_regression_at_90_degrees(data: ReportData) -> None:
     """Eqn 10 with β = 0: 2 S cot 45° = 2 S; at 60° it is 2 S cot 30° = 2 S √3."""
-    (axes,) = _axes(material, machining)
+    (axes,) = _axes(data, machining)
     thick, thin = (line for line in axes.lines if line.get_linestyle() == "-")
-    row = next(row for row in material.results["regressions"] if row["group"] == "site J")
+    row = next(row for row in data.results["regressions"] if row["group"] == "site J")
     upright = row["b"][0] + row["b"][1] * math.pi / 2
     theta, stress = np.asarray(thick.get_xdata()), np.asarray(thick.get_ydata())
     assert stress[-1] == pytest.approx(upright, rel=1e-12)
@@ -114,9 +114,9 @@ def test_the_band_is_that_of_statsmodels() -> None:
     assert line.high == pytest.approx(frame["mean_ci_upper"].to_numpy(), rel=1e-10)
 
 
-def test_sites_differ_by_symbol_and_many_share_one(material: Material) -> None:
-    styles = site_styles(material)
-    assert sorted(site for style in styles for site in style.sites) == sorted(material.sites)
+def test_sites_differ_by_symbol_and_many_share_one(data: ReportData) -> None:
+    styles = site_styles(data)
+    assert sorted(site for style in styles for site in style.sites) == sorted(data.sites)
     looks = [(style.marker, style.colour) for style in styles]
     assert len(set(looks)) == len(looks)
     assert len({style.marker for style in styles}) == len(styles)

@@ -20,7 +20,7 @@ from skisnow.report.figures.run_motion import run_motion
 from skisnow.report.figures.seating_offsets import seating_offsets
 from skisnow.report.figures.shear_force_depth import shear_force_depth
 from skisnow.report.figures.style import journal_style, site_styles
-from skisnow.report.material import Material
+from skisnow.report.report_data import ReportData
 from skisnow.track.comparison import compare_tracks
 
 from ..conftest import Reported, altered
@@ -35,8 +35,8 @@ Line = tuple[np.ndarray, np.ndarray]
 
 
 @pytest.fixture(scope="module")
-def material(reference: Reported) -> Material:
-    return Material(reference.analysis)
+def data(reference: Reported) -> ReportData:
+    return ReportData(reference.analysis)
 
 
 def points_of(axes: Axes) -> Line:
@@ -69,9 +69,9 @@ def require_in_sight(figure: Figure, *, least: float = 0.2) -> None:
 
 
 @pytest.mark.parametrize("draw", DRAWERS, ids=lambda draw: draw.__name__)
-def test_figures_of_a_campaign(material: Material, draw: Callable[..., Drawing]) -> None:
+def test_figures_of_a_campaign(data: ReportData, draw: Callable[..., Drawing]) -> None:
     with journal_style():
-        figure = draw(material, site_styles(material)).figure
+        figure = draw(data, site_styles(data)).figure
     require_in_sight(figure)
 
 
@@ -115,17 +115,17 @@ def test_motion_begins_at_no_speed_and_marks_the_fall_line_and_the_straight() ->
         assert np.asarray(axes.lines[1].get_ydata()).tolist() == [0.0, 0.0]
 
 
-def with_rmse(material: Material, values: list[float]) -> Material:
-    penetration = material.results["penetration"]
+def with_rmse(data: ReportData, values: list[float]) -> ReportData:
+    penetration = data.results["penetration"]
     models = [row | {"rmse_N": value} for row, value in zip(penetration["models"], values, strict=True)]
-    return Material(altered(material.analysis, material.results | {"penetration": penetration | {"models": models}}))
+    return ReportData(altered(data.analysis, data.results | {"penetration": penetration | {"models": models}}))
 
 
 @pytest.mark.parametrize(("value", "scale"), [(100.0, "linear"), (1000.0, "linear"), (1080.0, "log"), (2.0, "log")])
-def test_rmse_of_another_size_are_drawn_by_their_logarithm(material: Material, value: float, scale: str) -> None:
+def test_rmse_of_another_size_are_drawn_by_their_logarithm(data: ReportData, value: float, scale: str) -> None:
     """The paper's are 53.6 N to 207 N: twenty times as much is 1072 N, a twentieth of the greatest 10.35 N."""
     with journal_style():
-        drawing = model_rmse(with_rmse(material, [value] * 9), [])
+        drawing = model_rmse(with_rmse(data, [value] * 9), [])
     assert isinstance(drawing, Drawing)
     (axes,) = drawing.figure.axes
     assert axes.get_xscale() == scale
@@ -133,18 +133,18 @@ def test_rmse_of_another_size_are_drawn_by_their_logarithm(material: Material, v
         assert axes.get_xlim() == pytest.approx((0.0, 1.06 * max(207.0, value)))
 
 
-def test_a_force_of_nothing_has_an_axis(material: Material) -> None:
+def test_a_force_of_nothing_has_an_axis(data: ReportData) -> None:
     """A moment of 0 at every test: a force of 0, which a range of no width would not show."""
-    results = material.results
+    results = data.results
     shear = results["shear"] | {"experiments": [row | {"F_t_N": 0.0} for row in results["shear"]["experiments"]]}
-    nothing = Material(altered(material.analysis, results | {"shear": shear}))
+    nothing = ReportData(altered(data.analysis, results | {"shear": shear}))
     with journal_style():
         drawing = shear_force_depth(nothing, site_styles(nothing))
     assert isinstance(drawing, Drawing)
     assert drawing.figure.axes[0].get_ylim() == (0.0, 1.0)
 
 
-def test_offsets_are_drawn_beside_a_line_of_none(material: Material) -> None:
+def test_offsets_are_drawn_beside_a_line_of_none(data: ReportData) -> None:
     with journal_style():
-        (axes,) = seating_offsets(material, site_styles(material)).figure.axes  # type: ignore[union-attr]
+        (axes,) = seating_offsets(data, site_styles(data)).figure.axes  # type: ignore[union-attr]
     assert [0.0, 0.0] in [np.asarray(line.get_ydata()).tolist() for line in axes.lines]

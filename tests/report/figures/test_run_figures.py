@@ -141,7 +141,7 @@ def test_energies_stack_to_a_level_rim(run: Run) -> None:
         figure = run_energies(replace(run, energies=less))
     missing = 0.1 * run.energies["friction"][-1]
     over = run.energies["kinetic"][0] - 2.0 * run.energies["potential"][-1] - missing
-    assert f"within {100.0 * missing / over:.2f} %" in axes_of(figure)[0].get_title(loc="left")
+    assert f"residual {100.0 * missing / over:.2f} %" in axes_of(figure)[0].get_title(loc="left")
 
 
 def test_share_of_the_shear_strength(run: Run) -> None:

@@ -69,7 +69,7 @@ def energies() -> str:
     for ratio in RATIOS:
         run = carved(**{"snow.unloading_ratio": ratio})
         lost = (f"{run.energies[name][-1]:.0f}" for name in ("penetration", "shear", "friction", "drag", "damping"))
-        rows.append((f"{ratio:g}", f"{run.energy_turned_over:.0f}", *lost, per_cent(run.energy_balance_error)))
+        rows.append((f"{ratio:g}", f"{run.energy_exchanged:.0f}", *lost, per_cent(run.energy_balance_error)))
     names = (f"{name} (J)" for name in ("groove", "shear", "friction", "drag", "damping"))
     return table(("k_u/H_V", "turned over (J)", *names, "open (%)"), rows, words=0)
 

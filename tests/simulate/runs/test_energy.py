@@ -1,4 +1,4 @@
-"""Energy of whole runs: stored and lost close within half a percent of what was turned over."""
+"""Energy of whole runs: stored and lost close within half a percent of the energy exchanged."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def closes(run: Run, changes: object) -> None:
     assert run.energy_balance_error < SHARE, changes
     # nothing is given back that was not stored; rounding and steps leave a thousandth
     for name in LOST:
-        assert run.energies[name].min() > -1e-3 * run.energy_turned_over, name
+        assert run.energies[name].min() > -1e-3 * run.energy_exchanged, name
 
 
 @pytest.mark.parametrize("contact", CONTACTS)
@@ -65,7 +65,7 @@ def drawn(seed: int, duration: float) -> dict[str, float]:
 def loses_everywhere(changes: dict[str, float]) -> None:
     run = simulate(read_scenario("carved-46m", changes=changes))
     for name in LOST:
-        assert run.energies[name].min() > -1e-3 * run.energy_turned_over, (name, changes)
+        assert run.energies[name].min() > -1e-3 * run.energy_exchanged, (name, changes)
 
 
 @pytest.mark.slow

@@ -81,5 +81,5 @@ def test_other_laws_run_in_a_turn(laws: Laws) -> None:
     """To the end, elsewhere than the scenario's laws, and every joule is somewhere."""
     run, usual = carve(0.5, laws), carve(0.5)
     assert run.outcome == "finished"
-    assert not run.is_open_by(0.02)
+    assert not run.has_residual_above(0.02)
     assert 1e-4 < np.linalg.norm(run.place[-1] - usual.place[-1]) < 0.5

@@ -172,12 +172,12 @@ def test_open_energy_is_no_finish(monkeypatch: pytest.MonkeyPatch) -> None:
     record = Record(setup)
     record.advance(0.05)
     closed = computed_run(setup, record, "finished", 0.1)
-    assert (closed.outcome, closed.is_open_by(0.02)) == ("finished", False)
+    assert (closed.outcome, closed.has_residual_above(0.02)) == ("finished", False)
     kept = Record.histories
 
     def opened(self: Record) -> dict[str, Any]:
         found = kept(self)
-        found["energies"]["damping"] += 0.12 * closed.energy_turned_over * found["time"] / found["time"][-1]
+        found["energies"]["damping"] += 0.12 * closed.energy_exchanged * found["time"] / found["time"][-1]
         return found
 
     monkeypatch.setattr(Record, "histories", opened)

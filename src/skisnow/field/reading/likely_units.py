@@ -43,7 +43,7 @@ LIKELY: Final = {
     "snow_density_kg_per_m3": LikelyColumn(20.0, 917.0, "kg/m³", "g/cm³", "g/m³"),
     "drop_cone_depth_mm": LikelyColumn(0.5, 300.0, "mm", "m", "µm"),
 }
-"""Wide limits (Choice): what the paper measured lies well inside, with 12-492 N, 2-12 mm and 420-740 kg/m³."""
+"""Wide limits (assumption): what the paper measured lies well inside, with 12-492 N, 2-12 mm and 420-740 kg/m³."""
 
 
 def check_likely_units(table: Table) -> Iterator[Problem]:

@@ -127,7 +127,7 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
     loads. Readings are recorded as they come: where depths shrink, screening marks the series.
 
     A series planned flat whose snow would let the flat tool no deeper than 0.2 mm at the largest load is done at one of
-    the other angles instead (Choice: nobody measures 0.0004 mm).
+    the other angles instead (modelling assumption: nobody measures 0.0004 mm).
 
     Shear. S_f is 0.25 N/mm² at every angle on the hard snow, Eqn 13 on the soft snow, Eqn 14 of the spot's own density
     for the 58 tests at 90° (redrawn where S_f leaves 0.04-0.40 N/mm²), each plus its scatter. Depths are

@@ -1,7 +1,7 @@
 """Design of the synthetic reference campaign: sites, tools, angles, loads, group sizes.
 
 The paper (Mössner and others 2013) gives the totals, the ranges and the regressions; what it does not print is ours and
-is called a Choice here. Nothing in this file was adjusted to what an analysis of the campaign gives.
+is called a modelling assumption here. Nothing in this file was adjusted to what an analysis of the campaign gives.
 
 From the paper: 236 penetration series of seven loads between 12 and 492 N at edge angles of 0-60° with a piece of ski
 of 200 mm x 62 mm; H_V of 0.04-90 N/mm³; densities of 420-620 kg/m³ (mean 556) and drop-cone depths of 7.4-21.2 mm
@@ -9,7 +9,8 @@ of 200 mm x 62 mm; H_V of 0.04-90 N/mm³; densities of 420-620 kg/m³ (mean 556)
 at varied angle, the others at 90°, there with densities of 420-740 kg/m³ and S_f of 0.04-0.40 N/mm²; 35 pairs of shear
 and penetration tests at two sites; Eqns 13 and 14 with their rmse.
 
-Choice: all else, namely the sites and how many tests each has, evenly spaced loads, which angles, the hard snow's
+Modelling assumption: all else, namely the sites and how many tests each has, evenly spaced loads, which angles, the
+hard snow's
 0.25 N/mm² and its scatter, plate length, lever arm, depths and the largest moment of a person, densities and drop-cone
 depths of each site and their scatter, and that the pairs are among the tests at 90°.
 """
@@ -55,7 +56,8 @@ SKI_PIECE: Final = SkiPiece(length=moessner_2013.TOOL_LENGTH_MM * MM, width=moes
 LOADS: Final = (12.0, 92.0, 172.0, 252.0, 332.0, 412.0, 492.0)
 EDGE_ANGLES_DEG: Final = (0.0, 15.0, 30.0, 45.0, 60.0)
 SHALLOWEST_FLAT_DEPTH: Final = 0.2 * MM
-"""Choice: 20 steps of the gauge. Where the flat tool would not go deeper at the largest load, it is set on edge."""
+"""Modelling assumption: 20 steps of the gauge. Where the flat tool would not go deeper at the largest load, it is set
+on edge."""
 
 HARDNESS_RANGE: Final = tuple(limit * N_PER_MM3 for limit in moessner_2013.SNOW_HARDNESS_RANGE_N_PER_MM3)
 DENSITY_RANGE: Final = (420.0, 620.0)
@@ -66,10 +68,10 @@ DROP_CONE_SD: Final = 0.8 * MM
 DROP_CONE_TESTS: Final = 3
 DROP_CONE_REPEATS: Final = 3
 
-# Choice: eight sites, their medians evenly spaced in ln H_V so that the spread within the first and the last reaches
-# the ends of the paper's range. As the paper found no relation, mean ρ and H_p of the sites are arranged to have none
-# with the medians (correlations of 0.01): eight sites drawn at random would often show one by chance. The two sites
-# with pairs have nearly the same density, so that S_f has no relation with H_V between them either.
+# Modelling assumption: eight sites, their medians evenly spaced in ln H_V so that the spread within the first and the
+# last reaches the ends of the paper's range. As the paper found no relation, mean ρ and H_p of the sites are arranged
+# to have none with the medians (correlations of 0.01): eight sites drawn at random would often show one by chance.
+# The two sites with pairs have nearly the same density, so that S_f has no relation with H_V between them either.
 PENETRATION_SITES: Final = tuple(
     PenetrationSite(f"site {letter}", series, hardness * N_PER_MM3, density, cone * MM, spots)
     for letter, series, hardness, density, cone, spots in zip(

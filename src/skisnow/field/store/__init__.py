@@ -1,6 +1,6 @@
 """The embedded store: campaigns byte for byte, and journals of campaigns that are being entered."""
 
-from .grown import GrownCampaign, GrownRow, GrownTest, grown
+from .grown import ReplayedCampaign, ReplayedRow, ReplayedTest, grown
 from .grown_files import campaign_files, write_campaign
 from .journal import JournalHead, Journals, OvertakenError
 from .journal_entry import JournalEntry, NewEntry
@@ -12,15 +12,15 @@ __all__ = [
     "AddedCampaign",
     "ExportedCampaign",
     "Finding",
-    "GrownCampaign",
-    "GrownRow",
-    "GrownTest",
     "JournalEntry",
     "JournalHead",
     "Journals",
     "KeptTable",
     "NewEntry",
     "OvertakenError",
+    "ReplayedCampaign",
+    "ReplayedRow",
+    "ReplayedTest",
     "Store",
     "StoredCampaign",
     "StoredFile",

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True)
-class GrownRow:
+class ReplayedRow:
     """A row of a table: as it was entered, what was corrected since, and what its cells are now."""
 
     entered: JournalEntry
@@ -30,12 +30,12 @@ class GrownRow:
 
 
 @dataclass(slots=True)
-class GrownTest:
+class ReplayedTest:
     """A test, sample or experiment: its rows in order, why it was cancelled if it was, every entry about it."""
 
     file: str
     name: str
-    rows: list[GrownRow] = field(default_factory=list)
+    rows: list[ReplayedRow] = field(default_factory=list)
     cancelling: JournalEntry | None = None
     history: list[JournalEntry] = field(default_factory=list)
     undone: set[int] = field(default_factory=set)
@@ -56,7 +56,7 @@ class GrownTest:
         counting = (each for each in reversed(self.history) if each.action != "undo" and not each.is_from_file)
         return next((each for each in counting if each.sequence not in self.undone), None)
 
-    def row_under(self, load: str) -> GrownRow | None:
+    def row_under(self, load: str) -> ReplayedRow | None:
         """The reading of a series under a load (N)."""
         return next((row for row in self.rows if float(row.cells["load_N"]) == float(load)), None)
 
@@ -67,23 +67,23 @@ class GrownTest:
 
 
 @dataclass(slots=True)
-class GrownCampaign:
+class ReplayedCampaign:
     """A campaign that is being entered, as it is now. ``tests`` are keyed by file and name, in the order of entry."""
 
     description: str = ""
     described: int = 0
-    tests: dict[tuple[str, str], GrownTest] = field(default_factory=dict)
+    tests: dict[tuple[str, str], ReplayedTest] = field(default_factory=dict)
 
-    def of_file(self, file: str) -> list[GrownTest]:
+    def of_file(self, file: str) -> list[ReplayedTest]:
         """The tests of one table that have a row."""
         return [test for test in self.tests.values() if test.file == file and test.rows]
 
-    def test(self, file: str, name: str) -> GrownTest:
+    def test(self, file: str, name: str) -> ReplayedTest:
         """A test by its name; an empty one where there is none yet."""
-        return self.tests.get((file, name)) or GrownTest(file, name)
+        return self.tests.get((file, name)) or ReplayedTest(file, name)
 
 
-def grown(entries: Iterable[JournalEntry], *, before: GrownCampaign | None = None) -> GrownCampaign:
+def grown(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None = None) -> ReplayedCampaign:
     """Put a journal's entries, oldest first, together. What was undone is left out, but stays in the history.
 
     Parameters
@@ -93,7 +93,7 @@ def grown(entries: Iterable[JournalEntry], *, before: GrownCampaign | None = Non
     before
         What the entries up to there came to; it is not changed. Only tests that are spoken of are put together anew.
     """
-    campaign = replace(before, tests=dict(before.tests)) if before is not None else GrownCampaign()
+    campaign = replace(before, tests=dict(before.tests)) if before is not None else ReplayedCampaign()
     added: dict[tuple[str, str], list[JournalEntry]] = {}
     for entry in entries:
         if entry.file == DESCRIPTION:
@@ -106,10 +106,10 @@ def grown(entries: Iterable[JournalEntry], *, before: GrownCampaign | None = Non
     return campaign
 
 
-def _test(key: tuple[str, str], history: list[JournalEntry]) -> GrownTest:
-    test = GrownTest(*key, history=history)
+def _test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
+    test = ReplayedTest(*key, history=history)
     test.undone = {entry.about for entry in history if entry.action == "undo" and entry.about is not None}
-    rows: dict[int, GrownRow] = {}
+    rows: dict[int, ReplayedRow] = {}
     for entry in history:
         if entry.sequence not in test.undone:
             _take(test, rows, entry)
@@ -117,15 +117,15 @@ def _test(key: tuple[str, str], history: list[JournalEntry]) -> GrownTest:
     return test
 
 
-def _order(row: GrownRow) -> tuple[float, int, int]:
+def _order(row: ReplayedRow) -> tuple[float, int, int]:
     """Readings that were entered stand in the order of their loads, whichever came first; rows of a file stay."""
     position, load = row.entered.position, row.cells.get("load_N")
     return float(load) if load and position is not None else 0.0, position or 0, row.entered.sequence
 
 
-def _take(test: GrownTest, rows: dict[int, GrownRow], entry: JournalEntry) -> None:
+def _take(test: ReplayedTest, rows: dict[int, ReplayedRow], entry: JournalEntry) -> None:
     if entry.action == "add":
-        rows[entry.sequence] = GrownRow(entry)
+        rows[entry.sequence] = ReplayedRow(entry)
         test.rows.append(rows[entry.sequence])
     elif entry.action == "correct" and entry.about in rows:
         rows[entry.about].corrections.append(entry)

@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..reading.table_forms import TableForm
-    from .grown import GrownCampaign, GrownRow, GrownTest
+    from .grown import ReplayedCampaign, ReplayedRow, ReplayedTest
 
 _TIME = "time"
 
 
-def campaign_files(campaign: GrownCampaign, *, of: Iterable[GrownTest] | None = None) -> dict[str, str]:
+def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> dict[str, str]:
     """The text of each file of the campaign's folder, by name.
 
     Parameters
@@ -46,13 +46,13 @@ def campaign_files(campaign: GrownCampaign, *, of: Iterable[GrownTest] | None = 
     return files
 
 
-def write_campaign(campaign: GrownCampaign, folder: Path, *, of: Iterable[GrownTest] | None = None) -> None:
+def write_campaign(campaign: ReplayedCampaign, folder: Path, *, of: Iterable[ReplayedTest] | None = None) -> None:
     """Write these files into a folder that exists, without waiting for the disk: they can be made again at any time."""
     for name, text in campaign_files(campaign, of=of).items():
         (folder / name).write_text(text, encoding="utf-8", newline="")
 
 
-def _table(form: TableForm, tests: Sequence[GrownTest]) -> str:
+def _table(form: TableForm, tests: Sequence[ReplayedTest]) -> str:
     rows = [row for test in tests for row in test.rows]
     present = {column for row in rows for column in row.entered.cells} | {_TIME}
     present |= {column for row in rows for correction in row.corrections for column in correction.cells}
@@ -60,12 +60,12 @@ def _table(form: TableForm, tests: Sequence[GrownTest]) -> str:
     return csv_text([columns, *(_cells(row, columns) for row in rows)])
 
 
-def _cells(row: GrownRow, columns: Sequence[str]) -> list[str]:
+def _cells(row: ReplayedRow, columns: Sequence[str]) -> list[str]:
     entered = {_TIME: row.entered.at, **row.entered.cells}
     return [entered.get(column, "") for column in columns]
 
 
-def _corrections(tests: Sequence[GrownTest]) -> Iterator[tuple[str, ...]]:
+def _corrections(tests: Sequence[ReplayedTest]) -> Iterator[tuple[str, ...]]:
     line = 1  # of the header
     for test in tests:
         if test.cancelling is not None:

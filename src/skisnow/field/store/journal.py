@@ -1,7 +1,7 @@
 """Journals: campaigns that are being entered. Each entry is on the disk before it is said to be stored.
 
-A journal is a list of entries that only grows. A reading is an entry; so is its correction, a cancelling, an undoing:
-nothing is overwritten, and what the campaign holds now follows from all of them (`grown`).
+A journal is a list of entries that only grows (event sourcing). A reading is an entry; so is its correction, a
+cancelling, an undoing: nothing is overwritten, and what the campaign holds now follows from all of them (`grown`).
 
 What is corrected in a campaign that is kept byte for byte stands in a journal too, which has that campaign's id. Its
 first entry about a test says what the file says.

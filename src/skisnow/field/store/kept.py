@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from .folder import Progress
-    from .grown import GrownTest
+    from .grown import ReplayedTest
     from .journal_entry import JournalEntry
     from .store import Store, StoredCampaign
 
@@ -123,7 +123,7 @@ def _rows(entries: Iterable[JournalEntry]) -> Iterator[dict[str, str]]:
             yield from _rows_of(test)
 
 
-def _rows_of(test: GrownTest) -> Iterator[dict[str, str]]:
+def _rows_of(test: ReplayedTest) -> Iterator[dict[str, str]]:
     """The rows about one test, in the order of the entries."""
     now = dict(test.rows[0].entered.cells)
     first = min(cell_of(key)[0] for key in now)

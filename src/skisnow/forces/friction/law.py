@@ -15,7 +15,8 @@ from ..measured_ranges import GLIDE_FRICTION
 FloatArray = npt.NDArray[np.float64]
 
 COMPARISON_SPEED: Final = 10.0
-"""Speed (m/s) at which a law is held against the measured range when it is made (Choice: an ordinary speed on skis)."""
+"""Speed (m/s) at which a law is held against the measured range when it is made (modelling assumption: an ordinary
+speed on skis)."""
 
 
 class FrictionLaw(abc.ABC):

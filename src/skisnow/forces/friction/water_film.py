@@ -34,7 +34,7 @@ class WaterFilmFriction(FrictionLaw):
     -----
     Range: μ from 0.023 to 0.139 on skis (Wolfsperger and others 2021). Source: Colbeck (1988, J. Glaciol. 34) describes
     the two parts and the minimum between them; he computes them from the heat and gives no such formula. The formula is
-    ours (Choice): the simplest with both parts and a minimum that can be stated exactly,
+    ours (modelling assumption): the simplest with both parts and a minimum that can be stated exactly,
     v = v_0 (√(a/(c v_0)) - 1) if a > c v_0, where μ = μ_∞ + 2 √(a c v_0) - c v_0. Otherwise μ grows from the start.
 
     References

@@ -16,7 +16,8 @@ from .law import FloatArray, PenetrationLaw
 class ElementCountLaw(PenetrationLaw):
     """F_n = N f, with N the elements of the microstructure that resist and f the force of each.
 
-    Here N = n V: the elements that were in the snow that the tool displaces, n of them in a unit of volume (Choice).
+    Here N = n V: the elements that were in the snow that the tool displaces, n of them in a unit of volume (modelling
+    assumption).
 
     Attributes
     ----------

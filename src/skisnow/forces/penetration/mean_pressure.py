@@ -43,7 +43,7 @@ class MeanPressureLaw(PenetrationLaw):
     A = H_V cos²ϑ/2 and B = S_f sin²ϑ, so that A and B belong to the edge angle of their measurement.
     The pressure at zero depth is B, not 0; the force is 0 all the same as long as the edge is inclined, because the
     area is. Flat, the formula with sin ϑ is singular: the whole base touches at once, and the force starts at B L W.
-    Deeper than the upper edge of the base, e > W sin ϑ, the whole base is taken as loaded (Choice).
+    Deeper than the upper edge of the base, e > W sin ϑ, the whole base is taken as loaded (modelling assumption).
 
     References
     ----------

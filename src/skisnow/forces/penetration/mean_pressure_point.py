@@ -14,7 +14,8 @@ from ..parameter_checks import require_above_zero, require_not_below_zero
 from .point_law import FloatArray, PointLaw
 
 RAMP_DEPTH: Final = 0.5e-3
-"""Depth (m) over which B comes in (Choice: not measured; the law of the paper, all of it at once, is its limit 0)."""
+"""Depth (m) over which B comes in (modelling assumption: not measured; the law of the paper, all of it at once, is
+its limit 0)."""
 
 
 @dataclass(frozen=True, slots=True)

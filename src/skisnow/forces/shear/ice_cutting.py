@@ -36,7 +36,8 @@ class IceCuttingShear(ShearLaw):
     -----
     Range: cuts in ice less than 1 mm deep, rake angles -60° to -15°, that is edge angles 30-75°; 0.01-1 m/s, the force
     about independent of the speed. Source: Lieu and Mote (1984, 1985). Their empirical formula is not reproduced: we
-    have not seen it printed. The polynomial is ours (Choice); it starts with the first power of the depth because an
+    have not seen it printed. The polynomial is ours (modelling assumption); it starts with the first power of the
+    depth because an
     edge that is not in the snow feels no force. They found the force about normal to the cutting face, so the thrust is
     F_t cot ϑ, as in machining without friction.
 

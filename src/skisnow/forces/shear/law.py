@@ -20,7 +20,7 @@ class ShearLaw(abc.ABC):
 
     A rival law is one frozen dataclass in a file of its own, entered in ``LAWS``; it gives ``_stress`` and, where it
     fails one of the shared checks of physics, says so in ``exceptions``. The force acts against the side on which the
-    edge presses; it is the same to both sides (Choice).
+    edge presses; it is the same to both sides (modelling assumption).
     """
 
     __slots__ = ()

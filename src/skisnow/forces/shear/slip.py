@@ -10,9 +10,9 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 RESIDUAL_RATIO: Final = 1.0
-"""Strength after slip over that before it (Choice: the paper measured where shearing starts, and no slip)."""
+"""Strength after slip over that before it (modelling assumption: the paper measured where shearing starts, and no slip)."""
 SLIP_WEAKENING: Final = 1e-3
-"""Slip (m) over which it is reached (Choice)."""
+"""Slip (m) over which it is reached (modelling assumption)."""
 
 
 def strength_left(
@@ -33,7 +33,7 @@ def strength_left(
     -----
     Range: r and d are not measured for groomed snow. Mössner and others (2013) presume that snow that is being sheared
     is weaker than S_f. McClung (1977, J. Glaciol. 19(81)) found softening after the peak in direct shear of snow. To
-    fall in proportion to the slip is the plainest form of slip weakening (Choice).
+    fall in proportion to the slip is the plainest form of slip weakening (modelling assumption).
 
     Examples
     --------

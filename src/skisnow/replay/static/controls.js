@@ -84,7 +84,7 @@ export function laidOut(root, parts, run) {
       { className: "replay-controls", role: "group", "aria-label": "Controls of the replay" },
       made("div", { className: "replay-row replay-playing" }, parts.play, parts.time, parts.speed),
       made("div", { className: "replay-row" }, parts.views, field("Bending and twist", parts.exaggeration, parts.exaggerated)),
-      made("div", { className: "replay-row" }, parts.shown, field("Take away", ...takeAway)),
+      made("div", { className: "replay-row" }, parts.shown, field("Export", ...takeAway)),
       parts.message,
       made("details", {}, made("summary", { textContent: "Keys, and what this run is" }), keys, facts),
     ),

@@ -20,7 +20,7 @@ from .style import journal_style, site_styles
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ..material import Material
+    from ..report_data import ReportData
 
 __all__ = ["DRAWERS", "LeftOut", "Picture", "figures_of"]
 
@@ -40,15 +40,15 @@ DRAWERS = (
 
 
 def figures_of(
-    material: Material, *, progress: Callable[[str], None] | None = None
+    data: ReportData, *, progress: Callable[[str], None] | None = None
 ) -> tuple[list[Picture], list[LeftOut]]:
     """All figures that the campaign has data for, and why the others are left out."""
     pictures: list[Picture] = []
     missing: list[LeftOut] = []
     with journal_style():
-        styles = site_styles(material)
+        styles = site_styles(data)
         for draw in DRAWERS:
-            drawn = draw(material, styles)
+            drawn = draw(data, styles)
             if isinstance(drawn, Drawing):
                 if progress:
                     progress(f"figure {drawn.name}")

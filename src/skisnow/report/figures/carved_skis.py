@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 _PANELS: Final = (
     ("edge_depth_mm", "edge depth $e$ (mm)"),
     ("force_per_length_N_per_m", "force per length (N/m)"),
-    ("bending_mm", "bending (mm)"),
+    ("bending_mm", "deflection (mm)"),
     ("twist_deg", "twist (°)"),
 )
 BOOT_REACH: Final = 0.4
@@ -95,7 +95,7 @@ def _along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> None:
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylabel(label)
-    axes.set_xlabel("station from the boot (m)")
+    axes.set_xlabel("position along the ski (m), boot = 0")
     if key == "edge_depth_mm":
         _surface(axes, answers)
 
@@ -123,7 +123,7 @@ def _plan(axes: Axes, answers: list[Json]) -> None:
             x, y = arc_through(station, line, rear, front)
             axes.plot(x, y / MM, color=_colour(place), linestyle=style, linewidth=0.9)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
-    axes.set_xlabel("station from the boot (m); tail left, tip right")
+    axes.set_xlabel("position along the ski (m); boot = 0, tail left, tip right")
     axes.set_ylabel("edge towards the\ninside of the turn (mm)")
 
 

@@ -43,7 +43,7 @@ _LEAST: Final = 1e-3  # a flat ski draws no side force; its logarithm must exist
 
 
 def grip_map(table: StudyTable) -> Figure:
-    """Draw the share of the side force in what the snow can hold, and the line at which the edge lets go.
+    """Draw the side force over the shear capacity, and the line at which the edge lets go.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def _colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
     scale = ScalarMappable(BoundaryNorm(bounds, len(_COLOURS)), ListedColormap(_COLOURS))
     bar = figure.colorbar(scale, ax=list(panels), pad=0.01, aspect=35, spacing="uniform")
     bar.set_ticks(list(LEVELS), labels=[plain_number(level) for level in LEVELS])
-    bar.set_label("side force / what the snow can hold")
+    bar.set_label("side force / shear capacity")
     bar.ax.axhline(1.0, color=BLACK, linewidth=1.8)
 
 
@@ -163,5 +163,5 @@ def _handles(layout: MapLayout, rows: Sequence[Json]) -> list[Line2D]:
         if any(row["holds"] is holds for row in rows)
     ]
     if not layout.sampled:
-        handles.append(Line2D([], [], color=BLACK, linewidth=1.8, label="the edge lets go"))
+        handles.append(Line2D([], [], color=BLACK, linewidth=1.8, label="the edge loses grip"))
     return handles

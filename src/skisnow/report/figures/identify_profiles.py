@@ -38,7 +38,7 @@ def profiles_drawn(found: Identification) -> Figure:
         axes.set_visible(False)
     panels[0].set_ylabel("rise of the sum of squares")
     handles = [
-        Line2D([], [], color=BLUE, marker="o", markerfacecolor="none", label="others fitted anew"),
+        Line2D([], [], color=BLUE, marker="o", markerfacecolor="none", label="others refitted"),
         Line2D([], [], color=ORANGE, linestyle=(0, (4, 2)), label="from the curvature"),
         Line2D([], [], color=GREY, linestyle=(0, (1, 1.2)), label="limit of the 95 % interval"),
     ]

@@ -19,7 +19,7 @@ from .style import BLACK, legend_below, mark_synthetic, new_figure, scatter
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..material import Json, Material
+    from ..report_data import Json, ReportData
     from .style import SiteStyle
 
 NAME: Final = "fig09_machining"
@@ -29,9 +29,9 @@ _CURVES: Final = ((0.0, 1.6, "machining, β = 0"), (FRICTION, 0.7, "β = arctan 
 _HEADROOM: Final = 2.5
 
 
-def softest_varied(material: Material) -> tuple[Json, float] | None:
+def softest_varied(data: ReportData) -> tuple[Json, float] | None:
     """The regression of the site of varied angle with the least stress at 90°, and that stress (N/mm²)."""
-    upright = [(row["b"][0] + row["b"][1] * math.pi / 2.0, row) for row in varied_sites(material)]
+    upright = [(row["b"][0] + row["b"][1] * math.pi / 2.0, row) for row in varied_sites(data)]
     positive = [pair for pair in upright if pair[0] > 0]
     if not positive:
         return None
@@ -39,18 +39,18 @@ def softest_varied(material: Material) -> tuple[Json, float] | None:
     return row, stress
 
 
-def machining(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def machining(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """F_t/(L e) with Eqn 10 for two frictions, S half of the regression's value at 90°."""
-    found = softest_varied(material)
+    found = softest_varied(data)
     if found is None:
         reason = "no site has five used shear experiments at three edge angles with a positive stress at 90°"
         return LeftOut(NAME, "Shear stress against machining theory", reason)
     row, upright = found
-    mine = material.shear_site == row["group"]
-    angle, stress = shear_angles_deg(material)[mine], material.stress[mine]
+    mine = data.shear_site == row["group"]
+    angle, stress = shear_angles_deg(data)[mine], data.stress[mine]
     figure = new_figure(height_mm=70.0)
     axes = figure.add_subplot()
-    handles = scatter(axes, angle, stress, material.shear_site[mine], styles)
+    handles = scatter(axes, angle, stress, data.shear_site[mine], styles)
     theta = np.linspace(2.0, 90.0, 400)
     for friction, width, label in _CURVES:
         curve = cutting_stress(upright / 2.0, theta * DEGREE, transverse_friction=friction)
@@ -61,7 +61,7 @@ def machining(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Left
     axes.set_ylim(0.0, _HEADROOM * max(float(stress.max()), upright))
     axes.set_xlabel(r"edge angle $\vartheta$ (°)")
     axes.set_ylabel(r"$F_\mathrm{t}/(L\,e)$ (N/mm²)")
-    mark_synthetic(material, axes)
+    mark_synthetic(data, axes)
     legend_below(figure, handles)
     caption = prose(
         "Tangential stress F_t/(L e) at {site}, the softest site of varied edge angle, against machining theory (Eqn "

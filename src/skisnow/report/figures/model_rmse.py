@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 
     from markupsafe import Markup
 
-    from ..material import Json, Material
+    from ..report_data import Json, ReportData
     from .style import SiteStyle
 
 NAME: Final = "model_rmse"
 _WIDE_RATIO: Final = 20.0
 
 
-def model_rmse(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
+def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
     """Own rmse over n, filled; the paper's, open; the selected law marked."""
-    rows = [row for row in material.results["penetration"]["models"] if row["n"]]
+    rows = [row for row in data.results["penetration"]["models"] if row["n"]]
     if not rows:
         return LeftOut(NAME, "rmse of the nine laws", "no penetration experiment is used")
     own = [row["rmse_N"] for row in rows]
@@ -38,7 +38,7 @@ def model_rmse(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Lef
     axes.hlines(places, own, printed, color=PALE, linewidth=0.7, zorder=1)
     axes.plot(printed, places, linestyle="none", marker="D", color=VERMILLION, markerfacecolor="white", zorder=3)
     axes.plot(own, places, linestyle="none", marker="o", color=BLUE, markersize=4.4, zorder=4)
-    axes.set_yticks(list(places), [_label(row, material) for row in rows])
+    axes.set_yticks(list(places), [_label(row, data) for row in rows])
     axes.invert_yaxis()
     if max(known) > _WIDE_RATIO * max(min(known), 1e-9):
         axes.set_xscale("log")
@@ -48,13 +48,13 @@ def model_rmse(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Lef
     axes.tick_params(axis="y", length=0)
     axes.grid(axis="x", color="#E6E6E6", linewidth=0.5)
     axes.set_axisbelow(True)
-    mark_synthetic(material, axes)
+    mark_synthetic(data, axes)
     legend_below(figure, _handles())
-    return Drawing(NAME, _caption(), "Dot chart of the rmse of nine laws, this campaign beside the paper.", figure)
+    return Drawing(NAME, _caption(), "Dot chart of the rmse of nine laws, this campaign and the paper.", figure)
 
 
-def _label(row: Json, material: Material) -> str:
-    selected = material.results["penetration"]["selected"]
+def _label(row: Json, data: ReportData) -> str:
+    selected = data.results["penetration"]["selected"]
     text = f"${row['hardness'][0]}_\\mathrm{{{row['hardness'][2]}}}$: {_form(row)}"
     return f"▸ {text}" if selected and selected["id"] == row["id"] else text
 
@@ -74,6 +74,6 @@ def _handles() -> list[Line2D]:
 
 def _caption() -> Markup:
     return prose(
-        "Root-mean-square error of the nine laws over all readings, beside the values printed by Mössner and others "
+        "Root-mean-square error of the nine laws over all readings, with the values printed by Mössner and others "
         "(2013) for their data, which are not public. The pointer marks the selected law."
     )

@@ -13,7 +13,7 @@ from ...statistics.combined_uncertainty import expanded_factor
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..material import FloatArray, Json
+    from ..report_data import FloatArray, Json
 
 
 @dataclass(frozen=True)

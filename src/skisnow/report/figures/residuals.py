@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 
     from ...estimate.models import ModelFit
     from ...estimate.readings import Readings
-    from ..material import FloatArray, Material
+    from ..report_data import FloatArray, ReportData
     from .style import SiteStyle
 
 NAME: Final = "residuals"
 MOST_GROUPS: Final = 12
 
 
-def residuals(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
+def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
     """F of the law minus F applied, all used readings, with medians and 90 % ranges along the load."""
-    found = material.analysis.penetration
+    found = data.analysis.penetration
     if found is None or found.selected is None:
         return LeftOut(NAME, "Residuals of the selected law", "no penetration experiment is used")
     used = found.readings.of(found.screened.used)
@@ -53,7 +53,7 @@ def residuals(material: Material, styles: Sequence[SiteStyle]) -> Drawing | Left
     axes.set_xlabel("load $F$ (N)")
     axes.set_ylabel("law − load (N)")
     axes.set_xlim(0.0, float(used.load.max()) * 1.05)
-    mark_synthetic(material, axes)
+    mark_synthetic(data, axes)
     caption = prose(
         "Residuals of the selected law, F = {law}, against the load: {n} readings of {m} series. Blue: median and the "
         "range of 90 % of the readings along the load; red: mean. The last reading of each series defines its "

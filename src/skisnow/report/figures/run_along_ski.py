@@ -63,4 +63,4 @@ def label_maps(grid: npt.NDArray[np.object_]) -> None:
     for axes in grid[-1]:
         axes.set_xlabel("time (s)")
     for axes in grid[:, 0]:
-        axes.set_ylabel("station (m);\nboot at 0, tip up")
+        axes.set_ylabel("position along the ski (m);\nboot = 0, tip up")

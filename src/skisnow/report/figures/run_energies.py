@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-_LOOKS: Final = {
+_STYLES: Final = {
     "kinetic": (BLUE, "kinetic"),
-    "potential": (SKY, "potential, above its least"),
+    "potential": (SKY, "potential, above its minimum"),
     "elastic_ski": (GREY, "in the bent skis"),
     "elastic_snow": (PALE, "in the pressed snow"),
     "penetration": (GREEN, "lost: groove"),
-    "shear": (VERMILLION, "lost: sliding across"),
+    "shear": (VERMILLION, "lost: side-slip"),
     "friction": (ORANGE, "lost: friction"),
     "drag": (PURPLE, "lost: air"),
     "damping": (BLACK, "lost: damping"),
@@ -47,7 +47,7 @@ _LOOKS: Final = {
 
 
 def run_energies(run: Run) -> Figure:
-    """Draw what is stored and lost on top of each other: a level upper rim is a closed balance. Right: losses alone."""
+    """Draw what is stored and lost on top of each other: a level upper rim is a zero residual. Right: losses alone."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=80.0)
     every, losses = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     shares = stacked_energies(run)
@@ -58,13 +58,13 @@ def run_energies(run: Run) -> Figure:
     _stack(losses, run, shares, LOST)
     losses.set_title("losses alone", loc="left", fontsize=7.5)
     legend_below(
-        figure, [Line2D([], [], color=colour, linewidth=5.0, label=label) for colour, label in _LOOKS.values()]
+        figure, [Line2D([], [], color=colour, linewidth=5.0, label=label) for colour, label in _STYLES.values()]
     )
     return figure
 
 
 def stacked_energies(run: Run) -> dict[str, FloatArray]:
-    """Each energy and each loss over time (J); the potential one from its least."""
+    """Each energy and each loss over time (J); the potential one from its minimum."""
     found = {name: run.energies[name] for name in (*STORED, *LOST)}
     found["potential"] = found["potential"] - np.nanmin(found["potential"])
     return found
@@ -72,7 +72,7 @@ def stacked_energies(run: Run) -> dict[str, FloatArray]:
 
 def _stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str, ...]) -> None:
     axes.stackplot(
-        run.time, [shares[name] for name in names], colors=[_LOOKS[name][0] for name in names], linewidth=0.0
+        run.time, [shares[name] for name in names], colors=[_STYLES[name][0] for name in names], linewidth=0.0
     )
     axes.set_xlim(float(run.time[0]), float(run.time[-1]))
     axes.set_xlabel("time (s)")
@@ -82,6 +82,6 @@ def _stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str
 def _closing(run: Run) -> str:
     error = run.energy_balance_error
     if error is None or not np.isfinite(error):
-        return "nothing was turned over" if error is None else "not finite at the end"
-    over = significant(run.energy_turned_over)
-    return f"closes within {significant(100.0 * error, 2)} % of {over} J turned over; dashed: the start"
+        return "no energy was exchanged" if error is None else "not finite at the end"
+    over = significant(run.energy_exchanged)
+    return f"residual {significant(100.0 * error, 2)} % of {over} J exchanged; dashed: the start"

@@ -29,14 +29,14 @@ def run_grip(run: Run) -> Figure:
     share = used_share(run)
     for ski, axes in enumerate(maps):
         mesh = along_ski_map(axes, run, share[:, ski], 1.0)
-    figure.colorbar(mesh, ax=maps, label="share of the shear\nstrength used", pad=0.01, aspect=20)
+    figure.colorbar(mesh, ax=maps, label="grip utilisation", pad=0.01, aspect=20)
     label_maps(np.array([maps]))
     below = figure.add_subplot(grid[1, :], sharex=maps[0])
     for ski, colour in enumerate(SKI_COLOURS):
         below.plot(run.time, used_share_of_skis(run)[:, ski], color=colour)
     below.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
     below.set_ylim(-0.02, 1.12)
-    below.set_ylabel("share of the whole ski\n(1: it slides across)")
+    below.set_ylabel("grip utilisation of\nthe ski (1: side-slip)")
     below.set_xlabel("time (s)")
     legend_below(
         figure, [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]

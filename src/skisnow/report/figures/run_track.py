@@ -130,7 +130,7 @@ def _groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
         axes.set_xlim(-CUTOUT / 2.0, CUTOUT / 2.0)
         axes.set_xticks(np.linspace(-CUTOUT / 2.0, CUTOUT / 2.0, 5))
         axes.set_ylim(-reach, reach)
-        axes.set_xlabel(f"way from the place at {run.time[len(run.time) // 2]:.2f} s (m)")
+        axes.set_xlabel(f"distance from the place at {run.time[len(run.time) // 2]:.2f} s (m)")
         axes.set_title(f"groove of the {('left', 'right')[ski]} ski, stretched across", loc="left", fontsize=7.5)
     row[0].set_ylabel("to the left of\nthe track (mm)")
     figure.colorbar(drawn, ax=list(row), label="depth that\nstays (mm)", pad=0.01, aspect=12)

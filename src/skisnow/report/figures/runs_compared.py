@@ -1,4 +1,4 @@
-"""Several runs side by side: tracks, distance between them, depth along the ski that carries most."""
+"""Several runs side by side: tracks, distance between them, depth along the more heavily loaded ski."""
 
 from __future__ import annotations
 
@@ -78,12 +78,12 @@ def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
         axes.plot(way_along(run.place), distance_beside(run.place, reference.place), **_look(place))
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("way along the track (m)")
+    axes.set_xlabel("distance travelled (m)")
     axes.set_ylabel(f"distance from the track (m)\nof {mathtext(first)}")
 
 
 def _depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
-    """The ski that carries most in the first run, in all runs at one time."""
+    """The more heavily loaded ski in the first run, in all runs at one time."""
     reference = named[0][1]
     ski = loaded_ski(reference, moment)
     for place, (_, run) in enumerate(named):
@@ -93,7 +93,7 @@ def _depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylim(1.15 * max(deepest, 0.1), -0.35 * max(deepest, 0.1))
-    axes.set_xlabel("station from the boot (m); tail left, tip right")
+    axes.set_xlabel("position along the ski (m); boot = 0, tail left, tip right")
     axes.set_ylabel(f"edge depth (mm), {('left', 'right')[ski]} ski,\nat {moment:.2f} s")
 
 

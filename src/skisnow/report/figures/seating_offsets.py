@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..material import numbers, pairs, texts
 from ..numerals import whole
+from ..report_data import numbers, pairs, texts
 from ..symbols import prose
 from ..tables.seating import offsets_that_show
 from .drawing import Drawing, LeftOut
@@ -16,16 +16,16 @@ from .style import GREY, error_bars, legend_below, mark_synthetic, new_figure, p
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..material import Material
+    from ..report_data import ReportData
     from .style import SiteStyle
 
 NAME: Final = "seating"
 _THRESHOLD_MM: Final = 0.1
 
 
-def seating_offsets(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Offsets with their intervals in the order of the hardness, where their effect lies."""
-    rows = material.seating
+    rows = data.seating
     if not rows:
         return LeftOut(NAME, "Offsets of the depth zero", "no used series has the three readings that an offset needs")
     offset, ends = numbers(rows, "depth_offset_mm"), pairs(rows, "interval_mm")
@@ -43,7 +43,7 @@ def seating_offsets(material: Material, styles: Sequence[SiteStyle]) -> Drawing 
         axes.yaxis.set_major_formatter(plain_number)
     axes.set_xlabel(r"snow hardness $H_\mathrm{V}$ (N/mm³)")
     axes.set_ylabel(r"depth offset $\delta$ (mm)")
-    mark_synthetic(material, axes)
+    mark_synthetic(data, axes)
     legend_below(figure, handles)
     caption = prose(
         "Offset δ of the depth zero of each used series with its 95 % interval, against the hardness: a positive δ is "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ..material import numbers
+from ..report_data import numbers
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
 from .style import legend_below, mark_synthetic, new_figure, scatter
@@ -12,25 +12,25 @@ from .style import legend_below, mark_synthetic, new_figure, scatter
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..material import Material
+    from ..report_data import ReportData
     from .style import SiteStyle
 
 NAME: Final = "fig07_shear_force_depth"
 
 
-def shear_force_depth(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def shear_force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """F_t of every used test."""
-    if len(material.stress) == 0:
+    if len(data.stress) == 0:
         return LeftOut(NAME, "Failure shear force against depth", "no shear experiment is used")
-    force = numbers(material.shear, "F_t_N")[material.shear_used]
+    force = numbers(data.shear, "F_t_N")[data.shear_used]
     figure = new_figure(height_mm=76.0)
     axes = figure.add_subplot()
-    handles = scatter(axes, material.shear_depth, force, material.shear_site, styles)
-    axes.set_xlim(0.0, float(material.shear_depth.max()) * 1.06)
+    handles = scatter(axes, data.shear_depth, force, data.shear_site, styles)
+    axes.set_xlim(0.0, float(data.shear_depth.max()) * 1.06)
     axes.set_ylim(0.0, float(force.max()) * 1.08 or 1.0)
     axes.set_xlabel("penetration depth $e$ (mm)")
     axes.set_ylabel(r"failure shear force $F_\mathrm{t}$ (N)")
-    mark_synthetic(material, axes)
+    mark_synthetic(data, axes)
     legend_below(figure, handles)
     caption = prose(
         "Failure shear force F_t against penetration depth of the plate (the paper's Fig. 7), by site. With one plate, "

@@ -16,7 +16,7 @@ from .style import error_bars, legend_below, mark_synthetic, masks, new_figure, 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..material import FloatArray, Json, Material
+    from ..report_data import FloatArray, Json, ReportData
     from .style import SiteStyle
 
 NAME: Final = "fig08_stress_angle"
@@ -24,32 +24,32 @@ SIGNIFICANT: Final = 0.05
 MOST_SENTENCES: Final = 6
 
 
-def varied_sites(material: Material) -> list[Json]:
+def varied_sites(data: ReportData) -> list[Json]:
     """The regressions of S_f on edge angle of single sites."""
     return [
         row
-        for row in material.results["regressions"]
+        for row in data.results["regressions"]
         if row["terms"][1] == "edge_angle_rad" and row["group"] != "all" and row["b"] is not None
     ]
 
 
-def shear_angles_deg(material: Material) -> FloatArray:
+def shear_angles_deg(data: ReportData) -> FloatArray:
     """Edge angle of each used shear experiment (degrees)."""
-    return material.shear_angle / DEGREE
+    return data.shear_angle / DEGREE
 
 
-def stress_angle(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Points of the sites with varied angle; line and band only where the slope is significant."""
-    rows = varied_sites(material)
+    rows = varied_sites(data)
     if not rows:
         reason = "no site has five used shear experiments at three edge angles"
         return LeftOut(NAME, "Failure shear stress against edge angle", reason)
-    chosen = np.isin(material.shear_site, [row["group"] for row in rows])
-    theta, stress, site = material.shear_angle[chosen], material.stress[chosen], material.shear_site[chosen]
+    chosen = np.isin(data.shear_site, [row["group"] for row in rows])
+    theta, stress, site = data.shear_angle[chosen], data.stress[chosen], data.shear_site[chosen]
     angle = theta / DEGREE
     figure = new_figure(height_mm=70.0)
     axes = figure.add_subplot()
-    error_bars(axes, angle, material.stress_interval[chosen], site, styles)
+    error_bars(axes, angle, data.stress_interval[chosen], site, styles)
     handles = scatter(axes, angle, stress, site, styles)
     for style, mask in masks(styles, site):
         for row in rows:
@@ -62,7 +62,7 @@ def stress_angle(material: Material, styles: Sequence[SiteStyle]) -> Drawing | L
     axes.set_ylim(0.0, float(stress.max()) * 1.08 or 1.0)
     axes.set_xlabel(r"edge angle $\vartheta$ (°)")
     axes.set_ylabel(r"failure shear stress $S_\mathrm{f}$ (N/mm²)")
-    mark_synthetic(material, axes)
+    mark_synthetic(data, axes)
     legend_below(figure, handles)
     found = "; ".join(f"{row['group']}: n = {row['n']}, {_judged(row)}" for row in rows[:MOST_SENTENCES])
     caption = prose(

@@ -16,32 +16,32 @@ from .style import BLACK, legend_below, mark_synthetic, new_figure, scatter
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..material import Json, Material
+    from ..report_data import Json, ReportData
     from .style import SiteStyle
 
 NAME: Final = "fig10_stress_density"
 
 
-def stress_density(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def stress_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Points by site, the pooled line with its band, dashed where the slope is not significant."""
     what = "Failure shear stress against density"
-    if len(material.stress) == 0:
+    if len(data.stress) == 0:
         return LeftOut(NAME, what, "no shear experiment is used")
-    known = np.isfinite(material.shear_density)
+    known = np.isfinite(data.shear_density)
     if not known.any():
         return LeftOut(NAME, what, "the campaign gives no snow density at its shear experiments")
-    density, stress, site = material.shear_density[known], material.stress[known], material.shear_site[known]
+    density, stress, site = data.shear_density[known], data.stress[known], data.shear_site[known]
     figure = new_figure(height_mm=76.0)
     axes = figure.add_subplot()
     handles = scatter(axes, density, stress, site, styles)
-    row = material.regression("S_f_N_per_mm2", "snow_density_kg_per_m3")
+    row = data.regression("S_f_N_per_mm2", "snow_density_kg_per_m3")
     if row is not None:
         dashed = row["p"] is None or row["p"] >= SIGNIFICANT
         draw_line(axes, regression_line(row, density), colour=BLACK, dashed=dashed)
     axes.set_ylim(0.0, float(stress.max()) * 1.08 or 1.0)
     axes.set_xlabel(r"snow density $\rho$ (kg/m³)")
     axes.set_ylabel(r"failure shear stress $S_\mathrm{f}$ (N/mm²)")
-    mark_synthetic(material, axes)
+    mark_synthetic(data, axes)
     legend_below(figure, handles)
     caption = prose(
         "Failure shear stress S_f against density (the paper's Fig. 10), by site.{line}", line=_line(row) if row else ""

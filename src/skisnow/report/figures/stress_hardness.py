@@ -15,15 +15,15 @@ from .style import legend_below, logarithmic, mark_synthetic, new_figure, scatte
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..material import Material
+    from ..report_data import ReportData
     from .style import SiteStyle
 
 NAME: Final = "fig11_stress_hardness"
 
 
-def stress_hardness(material: Material, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+def stress_hardness(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """One point for each spot with both."""
-    spots = material.observations["spots"]
+    spots = data.observations["spots"]
     if not spots.site:
         reason = "no spot has both a used penetration and a used shear experiment"
         return LeftOut(NAME, "Failure shear stress against snow hardness", reason)
@@ -36,9 +36,9 @@ def stress_hardness(material: Material, styles: Sequence[SiteStyle]) -> Drawing 
     axes.set_ylim(0.0, float(stress.max()) * 1.08 or 1.0)
     axes.set_xlabel(r"snow hardness $H_\mathrm{V}$ (N/mm³)")
     axes.set_ylabel(r"failure shear stress $S_\mathrm{f}$ (N/mm²)")
-    mark_synthetic(material, axes)
+    mark_synthetic(data, axes)
     legend_below(figure, handles)
-    row = material.regression("S_f_N_per_mm2", "H_V_N_per_mm3")
+    row = data.regression("S_f_N_per_mm2", "H_V_N_per_mm3")
     caption = prose(
         "Failure shear stress S_f against snow hardness H_V at {spots} (the paper's Fig. 11): geometric mean of H_V "
         "and mean of S_f over the used experiments of a spot.{found}",

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from ..material import BoolArray, FloatArray, Material, TextArray
+    from ..report_data import BoolArray, FloatArray, ReportData, TextArray
 
 MM_PER_INCH: Final = 25.4
 SINGLE_MM: Final = 85.0
@@ -100,13 +100,13 @@ class SiteStyle:
     sites: tuple[str, ...]
 
 
-def site_styles(material: Material) -> tuple[SiteStyle, ...]:
+def site_styles(data: ReportData) -> tuple[SiteStyle, ...]:
     """A symbol and a colour for each site; with many, the ones with most experiments, the rest together in grey."""
-    counts = dict.fromkeys(material.sites, 0)
-    for names in (material.penetration_site, material.shear_site):
+    counts = dict.fromkeys(data.sites, 0)
+    for names in (data.penetration_site, data.shear_site):
         for name, count in zip(*np.unique(names, return_counts=True), strict=True):
             counts[str(name)] += int(count)
-    order = sorted(material.sites, key=lambda site: (-counts[site], site))
+    order = sorted(data.sites, key=lambda site: (-counts[site], site))
     named = sorted(order[: NAMED_SITES if len(order) > NAMED_SITES + 1 else NAMED_SITES + 1])
     styles = [
         SiteStyle(figure_text(site), COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)], (site,))
@@ -198,9 +198,9 @@ def _width(widths: list[float], columns: int) -> float:
     return sum(max(widths[start : start + rows]) for start in range(0, len(widths), rows))
 
 
-def mark_synthetic(material: Material, axes: Axes) -> None:
+def mark_synthetic(data: ReportData, axes: Axes) -> None:
     """Say inside the picture that nobody measured this."""
-    if material.synthetic:
+    if data.synthetic:
         axes.set_title("synthetic data", loc="right", fontsize=7.0, color=GREY, fontstyle="italic", pad=3.0)
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 WALKING: Final = 2.0
-"""Speed (m/s) from which a radius is drawn (Choice)."""
+"""Speed (m/s) from which a radius is drawn (modelling assumption)."""
 KILOMETRE: Final = 1000.0
 """Metres in a kilometre."""
 _IN_KILOMETRES: Final = 3000.0

@@ -108,7 +108,7 @@ def _along(axes: Axes, comparison: Comparison) -> None:
         axes.plot(*place, marker="o", markersize=3.0, linestyle="none", color=look["color"], clip_on=False, zorder=4)
     axes.set_xlim(0.0, comparison.measured.length)
     _scale(axes, comparison)
-    axes.set_xlabel("way along the measured track (m)")
+    axes.set_xlabel("distance along the measured track (m)")
     axes.set_ylabel("distance of the\nsimulated track (m)")
 
 
@@ -150,6 +150,6 @@ def _handles(comparison: Comparison) -> list[Line2D]:
         handles.append(Line2D([], [], label="simulated, before the fit", **BEFORE))
     for kind, look in LOOKS.items():
         numbers = getattr(comparison, kind).numbers
-        told = "none" if numbers is None else f"{significant(numbers.max)} m at most"
+        told = "none" if numbers is None else f"maximum {significant(numbers.max)} m"
         handles.append(Line2D([], [], label=f"{TITLES[kind]}: {told}", **look))
     return handles

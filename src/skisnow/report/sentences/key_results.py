@@ -14,34 +14,34 @@ from ..tables.models import law, row_name
 from ..tables.regressions import QUANTITY
 
 if TYPE_CHECKING:
-    from ..material import Json, Material, TextArray
+    from ..report_data import Json, ReportData, TextArray
 
 SIGNIFICANT: Final = 0.05
 LISTED: Final = 12
 
 
-def key_results(material: Material) -> list[Markup]:
+def key_results(data: ReportData) -> list[Markup]:
     """One sentence for each result that the campaign has."""
-    found = [_hardness(material), _stress(material), _law(material), _relations(material)]
+    found = [_hardness(data), _stress(data), _law(data), _relations(data)]
     return [sentence for sentence in found if sentence is not None]
 
 
-def own_value(material: Material, quantity: str) -> Json | None:
+def own_value(data: ReportData, quantity: str) -> Json | None:
     """The campaign's own mean, interval and range of a quantity, as they stand beside the published range."""
-    for row in material.results["comparisons"]:
+    for row in data.results["comparisons"]:
         if row["quantity"] == quantity and row["own"] is not None:
             return row
     return None
 
 
-def _hardness(material: Material) -> Markup | None:
+def _hardness(data: ReportData) -> Markup | None:
     quantity = Quantity("Snow hardness H_V: geometric mean", "H_V", "H_V_N_per_mm3", "N/mm³", "penetration experiment")
-    return _mean(material, quantity, material.penetration, len(material.hardness), material.penetration_site)
+    return _mean(data, quantity, data.penetration, len(data.hardness), data.penetration_site)
 
 
-def _stress(material: Material) -> Markup | None:
+def _stress(data: ReportData) -> Markup | None:
     quantity = Quantity("Failure shear stress S_f: mean", "S_f", "S_f_N_per_mm2", "N/mm²", "shear experiment")
-    return _mean(material, quantity, material.shear, len(material.stress), material.shear_site)
+    return _mean(data, quantity, data.shear, len(data.stress), data.shear_site)
 
 
 class Quantity(NamedTuple):
@@ -54,16 +54,16 @@ class Quantity(NamedTuple):
     experiment: str
 
 
-def _mean(material: Material, quantity: Quantity, experiments: list[Json], used: int, site: TextArray) -> Markup | None:
+def _mean(data: ReportData, quantity: Quantity, experiments: list[Json], used: int, site: TextArray) -> Markup | None:
     if not experiments:
         return None
     n = counted(len(experiments), quantity.experiment)
-    row = own_value(material, quantity.key)
+    row = own_value(data, quantity.key)
     if row is None:
         return prose("None of the {n} can be used, so there is no {symbol}.", n=n, symbol=html(quantity.symbol))
     sites = len(set(site.tolist()))
     if 1 < sites < FEWEST_SITES:
-        return _few_sites(material, quantity, row, prose("{used} of {n} used", used=whole(used), n=n))
+        return _few_sites(data, quantity, row, prose("{used} of {n} used", used=whole(used), n=n))
     return prose(
         "{begins} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used} of {n} used, at {sites}.",
         begins=html(quantity.begins),
@@ -78,10 +78,10 @@ def _mean(material: Material, quantity: Quantity, experiments: list[Json], used:
     )
 
 
-def _few_sites(material: Material, quantity: Quantity, pooled: Json, used: Markup) -> Markup:
+def _few_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup) -> Markup:
     """The sites first, then how they compare, then the mean over them, without an interval."""
-    sites = [row for row in material.results["site_means"] if row["quantity"] == quantity.key]
-    pairs = [row for row in material.results["site_comparisons"] if row["quantity"] == quantity.symbol]
+    sites = [row for row in data.results["site_means"] if row["quantity"] == quantity.key]
+    pairs = [row for row in data.results["site_comparisons"] if row["quantity"] == quantity.symbol]
     each = [
         prose(
             "{site} {value} {unit}{ends}, n = {n}",
@@ -133,23 +133,23 @@ def _ends(pair: list[float] | None, unit: str, sites: int) -> Markup:
     return prose(" (95 % interval {pair} {unit}, {source})", pair=interval(pair), unit=unit, source=source)
 
 
-def _law(material: Material) -> Markup | None:
-    selected = material.results["penetration"]["selected"]
+def _law(data: ReportData) -> Markup | None:
+    selected = data.results["penetration"]["selected"]
     if selected is None:
         return None
     same = " This is the law that the paper proposes (its Eqn 12)." if selected["id"] == "H_V:a=none,b=one" else ""
     return prose(
         "Selected law of the penetration force: {law}. {reason}{same}",
         law=_strong_law(selected["id"]),
-        reason=_reason(material),
+        reason=_reason(data),
         same=same,
     )
 
 
-def _reason(material: Material) -> Markup:
+def _reason(data: ReportData) -> Markup:
     """The reason of the results with the rows by their names in the tables."""
-    reason: str = material.results["penetration"]["selected"]["reason"]
-    for row in material.results["penetration"]["models"]:
+    reason: str = data.results["penetration"]["selected"]["reason"]
+    for row in data.results["penetration"]["models"]:
         reason = reason.replace(f"of {row['id']}", f"of the row {row_name(row['id'])}")
     return html(reason)
 
@@ -158,9 +158,9 @@ def _strong_law(model_id: str) -> Markup:
     return Markup("<strong>F = {}</strong>").format(html(law(model_id)))
 
 
-def _relations(material: Material) -> Markup | None:
-    judged = [row for row in material.results["regressions"] if row["p"] is not None]
-    withheld = [row for row in material.results["regressions"] if row["withheld"]]
+def _relations(data: ReportData) -> Markup | None:
+    judged = [row for row in data.results["regressions"] if row["p"] is not None]
+    withheld = [row for row in data.results["regressions"] if row["withheld"]]
     if not judged and not withheld:
         return None
     return prose(

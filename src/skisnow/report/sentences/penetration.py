@@ -1,4 +1,4 @@
-"""What the nine rows, their tests, both procedures and the seating say."""
+"""What the nine candidate models, their tests, both procedures and the seating say."""
 
 from __future__ import annotations
 
@@ -7,33 +7,33 @@ from typing import TYPE_CHECKING
 import numpy as np
 from markupsafe import Markup
 
-from ..material import numbers, pairs
 from ..numerals import counted, significant, whole
+from ..report_data import numbers, pairs
 from ..symbols import html, prose
 from ..tables.seating import offsets_that_show
 
 if TYPE_CHECKING:
-    from ..material import Material
+    from ..report_data import ReportData
 
 
-def readings_used(material: Material) -> Markup:
-    """How many readings and series the nine rows rest on."""
-    row = material.results["penetration"]["models"][0]
+def readings_used(data: ReportData) -> Markup:
+    """How many readings and series the nine candidate models rest on."""
+    row = data.results["penetration"]["models"][0]
     return prose(
-        "All nine rows are fitted to the same {n} of {m}. With b = 1 the last residual of a series is zero by "
-        "definition, because its reading defines the hardness: the rmse over the free points leaves these out and "
-        "divides by n − m = {free}.",
+        "All nine candidate models are fitted to the same {n} of {m}. With b = 1 the last residual of a series is zero "
+        "by definition, because its reading defines the hardness: the RMSE without the defining reading leaves these "
+        "out and divides by n − m = {free}.",
         n=counted(row["n"], "reading"),
         m=counted(row["n_series"], "series", "series"),
         free=whole(row["n"] - row["n_series"]),
     )
 
 
-def procedures_compared(material: Material) -> Markup:
+def procedures_compared(data: ReportData) -> Markup:
     """How H_V of the used series differs between the two procedures."""
-    own = numbers(material.penetration, "H_V_N_per_mm3")
-    fitted = numbers(material.results["penetration"]["errors_in_depth"]["experiments"], "H_V_N_per_mm3")
-    known = material.penetration_used & np.isfinite(own) & np.isfinite(fitted)
+    own = numbers(data.penetration, "H_V_N_per_mm3")
+    fitted = numbers(data.results["penetration"]["errors_in_depth"]["experiments"], "H_V_N_per_mm3")
+    known = data.penetration_used & np.isfinite(own) & np.isfinite(fitted)
     if not known.any():
         return html("")
     ratio = np.percentile(fitted[known] / own[known], (5.0, 50.0, 95.0))
@@ -43,14 +43,14 @@ def procedures_compared(material: Material) -> Markup:
         low=significant(float(ratio[0])),
         middle=significant(float(ratio[1])),
         high=significant(float(ratio[2])),
-        file=_file("hardness_by_procedure", material),
+        file=_file("hardness_by_procedure", data),
     )
 
 
-def seating_found(material: Material) -> list[Markup]:
+def seating_found(data: ReportData) -> list[Markup]:
     """How large the offsets are and how many of them show."""
-    rows = material.seating
-    without = int(material.penetration_used.sum()) - len(rows)
+    rows = data.seating
+    without = int(data.penetration_used.sum()) - len(rows)
     if not rows:
         return [html("No used series has the readings that an offset can be estimated from.")]
     half = np.diff(pairs(rows, "interval_mm"), axis=1) / 2.0
@@ -61,7 +61,7 @@ def seating_found(material: Material) -> list[Markup]:
             shown=whole(offsets_that_show(rows)),
             all=counted(len(rows), "used series", "used series"),
             half=significant(float(np.nanmedian(half))),
-            file=_file("seating", material),
+            file=_file("seating", data),
         )
     ]
     if without:
@@ -69,5 +69,5 @@ def seating_found(material: Material) -> list[Markup]:
     return found
 
 
-def _file(name: str, material: Material) -> Markup:
-    return Markup("<code>tables/{}{}.csv</code>").format(name, "_synthetic" if material.synthetic else "")
+def _file(name: str, data: ReportData) -> Markup:
+    return Markup("<code>tables/{}{}.csv</code>").format(name, "_synthetic" if data.synthetic else "")

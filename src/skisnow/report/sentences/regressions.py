@@ -13,7 +13,7 @@ from .key_results import SIGNIFICANT
 if TYPE_CHECKING:
     from markupsafe import Markup
 
-    from ..material import Json, Material
+    from ..report_data import Json, ReportData
 
 _STEP: Final = {
     "edge_angle_rad": (math.pi / 2.0, "from 0° to 90°"),
@@ -25,9 +25,9 @@ _STEP: Final = {
 MOST_SENTENCES: Final = 40
 
 
-def regression_sentences(material: Material) -> list[Markup]:
+def regression_sentences(data: ReportData) -> list[Markup]:
     """A sentence for each regression, those without data too."""
-    rows = material.results["regressions"]
+    rows = data.results["regressions"]
     found = [_sentence(row) for row in rows[:MOST_SENTENCES]]
     if len(rows) > MOST_SENTENCES:
         found.append(html(f"{len(rows) - MOST_SENTENCES} further regressions stand in the table alone."))

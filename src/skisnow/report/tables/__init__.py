@@ -15,7 +15,7 @@ from .seating import seating_largest_table, seating_quantiles_table, seating_tab
 from .sites import sites_table
 
 if TYPE_CHECKING:
-    from ..material import Material
+    from ..report_data import ReportData
     from ..table import Table
 
 BUILDERS = (
@@ -40,7 +40,7 @@ BUILDERS = (
 """In the order of the report. A further table is one more function here."""
 
 
-def tables_of(material: Material) -> dict[str, Table]:
+def tables_of(data: ReportData) -> dict[str, Table]:
     """All tables by name, those without a row too."""
-    built = (replace(build(material), synthetic=material.synthetic) for build in BUILDERS)
+    built = (replace(build(data), synthetic=data.synthetic) for build in BUILDERS)
     return {table.name: table for table in built}

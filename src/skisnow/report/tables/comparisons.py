@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ..material import Json, Material
+    from ..report_data import Json, ReportData
 
 _QUANTITY: Final = {
     "H_V_N_per_mm3": "H_V in N/mm³",
@@ -17,7 +17,7 @@ _QUANTITY: Final = {
 }
 
 
-def site_comparison_table(material: Material) -> Table:
+def site_comparison_table(data: ReportData) -> Table:
     """Every pair of sites."""
     rows = [
         (
@@ -28,7 +28,7 @@ def site_comparison_table(material: Material) -> Table:
             row["p"],
             row["n_for_10_percent"],
         )
-        for row in material.results["site_comparisons"]
+        for row in data.results["site_comparisons"]
     ]
     return Table(
         "site_comparisons",
@@ -47,7 +47,7 @@ def site_comparison_table(material: Material) -> Table:
     )
 
 
-def published_table(material: Material) -> Table:
+def published_table(data: ReportData) -> Table:
     """Each published value or range beside the campaign's own."""
     return Table(
         "comparisons",
@@ -62,7 +62,7 @@ def published_table(material: Material) -> Table:
             Column("own_range", "its range", "range"),
             Column("own_over_published", "own / published"),
         ),
-        [_row(row) for row in material.results["comparisons"]],
+        [_row(row) for row in data.results["comparisons"]],
     )
 
 

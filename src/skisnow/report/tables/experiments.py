@@ -8,10 +8,10 @@ from ...units import MM
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ..material import Material
+    from ..report_data import ReportData
 
 
-def penetration_table(material: Material) -> Table:
+def penetration_table(data: ReportData) -> Table:
     """Every penetration experiment with its three hardnesses."""
     rows = [
         (
@@ -26,7 +26,7 @@ def penetration_table(material: Material) -> Table:
             (row["H_A_N_per_mm2"], row["H_A_interval_N_per_mm2"]),
             (row["H_V_N_per_mm3"], row["H_V_interval_N_per_mm3"]),
         )
-        for row in material.penetration
+        for row in data.penetration
     ]
     return Table(
         "penetration_experiments",
@@ -38,7 +38,7 @@ def penetration_table(material: Material) -> Table:
             Column("edge_angle_deg", "ϑ", "angle", "°"),
             Column("n_loads", "loads", "count"),
             Column("used", "used", "yes"),
-            Column("flags", "marks", "codes"),
+            Column("flags", "flags", "codes"),
             Column("H_e_N_per_mm", "H_e", "estimate", "N/mm"),
             Column("H_A_N_per_mm2", "H_A", "estimate", "N/mm²"),
             Column("H_V_N_per_mm3", "H_V", "estimate", "N/mm³"),
@@ -47,9 +47,9 @@ def penetration_table(material: Material) -> Table:
     )
 
 
-def shear_table(material: Material) -> Table:
+def shear_table(data: ReportData) -> Table:
     """Every shear experiment."""
-    tests = material.campaign.shear
+    tests = data.campaign.shear
     depths = [] if tests is None else (tests.penetration_depth / MM).tolist()
     rows = [
         (
@@ -63,7 +63,7 @@ def shear_table(material: Material) -> Table:
             row["used"],
             row["flags"],
         )
-        for row, depth in zip(material.shear, depths, strict=True)
+        for row, depth in zip(data.shear, depths, strict=True)
     ]
     return Table(
         "shear_experiments",
@@ -78,7 +78,7 @@ def shear_table(material: Material) -> Table:
             Column("F_t_N", "F_t", unit="N"),
             Column("S_f_N_per_mm2", "S_f", "estimate", "N/mm²"),
             Column("used", "used", "yes"),
-            Column("flags", "marks", "codes"),
+            Column("flags", "flags", "codes"),
         ),
         rows,
     )

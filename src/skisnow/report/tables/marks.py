@@ -8,13 +8,13 @@ from ...field import MARKS
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ..material import Json, Material
+    from ..report_data import Json, ReportData
 
 
-def marks_table(material: Material) -> Table:
+def marks_table(data: ReportData) -> Table:
     """A row for each mark, those never set too."""
-    pressed, sheared = _by_code(material.penetration), _by_code(material.shear)
-    excluding = material.results["campaign"]["excluding"]
+    pressed, sheared = _by_code(data.penetration), _by_code(data.shear)
+    excluding = data.results["campaign"]["excluding"]
     rows = [
         (
             code,
@@ -28,7 +28,8 @@ def marks_table(material: Material) -> Table:
     ]
     return Table(
         "marks",
-        "Marks of the screening. A mark deletes nothing; one that excludes keeps its experiments out of the estimates.",
+        "Quality flags of the screening. A flag deletes nothing; one that excludes keeps its experiments out of the "
+        "estimates.",
         (
             Column("code", "Code", "text"),
             Column("sentence", "What it says", "words"),

@@ -1,4 +1,4 @@
-"""The nine rival laws: their table, the tests between them, and the fit with errors in depth beside it."""
+"""The nine candidate models: their table, the tests between them, and the fit with errors in depth beside it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ...snow.published.moessner_2013 import PRINTED_RMSE_N
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ..material import Json, Material
+    from ..report_data import Json, ReportData
 
 COEFFICIENTS = ("a0", "a1", "b0", "b1")
 _UNIT_NOTE = (
@@ -52,19 +52,19 @@ def _forms(model_id: str) -> tuple[str, dict[str, str]]:
     return hardness, dict(part.split("=") for part in terms.split(","))
 
 
-def models_table(material: Material) -> Table:
-    """The nine rows with the paper's printed rmse beside each."""
-    found = material.results["penetration"]
+def models_table(data: ReportData) -> Table:
+    """The nine candidate models with the paper's printed rmse beside each."""
+    found = data.results["penetration"]
     chosen = found["selected"]["id"] if found["selected"] else None
     columns = (
-        Column("row", "Row", "words"),
+        Column("row", "Model", "words"),
         Column("selected", "sel.", "tick"),
         *(Column(name, f"{name[0]}_{name[1]}", "estimate") for name in COEFFICIENTS),
         Column("at_bound", "on its bound", "codes"),
         Column("n_parameters", "fitted", "count"),
-        Column("rmse_N", "rmse over n", unit="N", digits=4),
-        Column("rmse_dof_N", "over n − p", unit="N", digits=4),
-        Column("rmse_free_N", "over free points", unit="N", digits=4),
+        Column("rmse_N", "RMSE with 1/n", unit="N", digits=4),
+        Column("rmse_dof_N", "RMSE with 1/(n − p)", unit="N", digits=4),
+        Column("rmse_free_N", "RMSE without the defining reading", unit="N", digits=4),
         Column("printed_rmse_N", "paper, printed", unit="N"),
     )
     rows = [
@@ -84,8 +84,8 @@ def models_table(material: Material) -> Table:
     ]
     return Table(
         "models",
-        "The nine rival laws F = H (a(ϑ) A + b(ϑ) V) of the penetration force (Eqn 6), with 95 % intervals from "
-        "resampling whole experiments, beside the rmse printed by Mössner and others (2013).",
+        "The nine candidate models F = H (a(ϑ) A + b(ϑ) V) of the penetration force (Eqn 6), with 95 % intervals from "
+        "resampling whole experiments, and the rmse printed by Mössner and others (2013).",
         columns,
         rows,
         note=_UNIT_NOTE + " b = 1 is fixed, not fitted. The paper's own data are not "
@@ -103,7 +103,7 @@ def _has(row: Json, coefficient: str) -> bool:
     return form == "linear" if coefficient.endswith("1") else form != "none"
 
 
-def nested_table(material: Material) -> Table:
+def nested_table(data: ReportData) -> Table:
     """F tests between nested rows."""
     rows = [
         (
@@ -115,28 +115,28 @@ def nested_table(material: Material) -> Table:
             row["rmse_change_percent"],
             row["valid_classically"],
         )
-        for row in material.results["penetration"]["tests"]
+        for row in data.results["penetration"]["tests"]
     ]
     return Table(
         "model_tests",
         "F tests of each simpler law against the fuller one that contains it, and the effect size.",
         (
-            Column("full", "Fuller row", "words"),
-            Column("reduced", "Simpler row", "words"),
+            Column("full", "Fuller model", "words"),
+            Column("reduced", "Simpler model", "words"),
             Column("F", "F"),
             Column("df1", "df 1", "count"),
             Column("df2", "df 2", "count"),
             Column("p", "p", "p"),
             Column("rmse_change_percent", "rmse grows by", unit="%"),
-            Column("valid_classically", "F distribution holds", "yes"),
+            Column("valid_classically", "F distribution valid", "yes"),
         ),
         rows,
     )
 
 
-def errors_in_depth_table(material: Material) -> Table:
+def errors_in_depth_table(data: ReportData) -> Table:
     """Each law by both procedures, one below the other."""
-    found = material.results["penetration"]
+    found = data.results["penetration"]
     rows = [
         (
             row_name(row["id"]),
@@ -155,12 +155,12 @@ def errors_in_depth_table(material: Material) -> Table:
         "The nine laws by two procedures: the paper's, with H from each series' largest load and all error in the "
         "load; and with errors in depth and load, H estimated from all readings of a series.",
         (
-            Column("row", "Row", "words"),
+            Column("row", "Model", "words"),
             Column("procedure", "procedure", "words"),
             *(Column(name, f"{name[0]}_{name[1]}", "estimate") for name in COEFFICIENTS),
             Column("at_bound", "on its bound", "codes"),
-            Column("rmse_N", "rmse over n", unit="N", digits=4),
-            Column("rmse_free_N", "over free points", unit="N", digits=4),
+            Column("rmse_N", "RMSE with 1/n", unit="N", digits=4),
+            Column("rmse_free_N", "RMSE without the defining reading", unit="N", digits=4),
         ),
         rows,
         note="No intervals with errors in depth: H of each series comes from the same readings, so a bootstrap of "
@@ -170,7 +170,7 @@ def errors_in_depth_table(material: Material) -> Table:
     )
 
 
-def fitted_hardness_table(material: Material) -> Table:
+def fitted_hardness_table(data: ReportData) -> Table:
     """H_V of each experiment by both procedures."""
     rows = [
         (
@@ -182,7 +182,7 @@ def fitted_hardness_table(material: Material) -> Table:
             fitted["relative_scatter"],
         )
         for own, fitted in zip(
-            material.penetration, material.results["penetration"]["errors_in_depth"]["experiments"], strict=True
+            data.penetration, data.results["penetration"]["errors_in_depth"]["experiments"], strict=True
         )
     ]
     return Table(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ..material import Json, Material
+    from ..report_data import Json, ReportData
 
 QUANTITY: Final = {
     "S_f_N_per_mm2": ("S_f", "N/mm²"),
@@ -19,7 +19,7 @@ QUANTITY: Final = {
 """Symbol and unit of each key that a regression knows."""
 
 
-def regressions_table(material: Material) -> Table:
+def regressions_table(data: ReportData) -> Table:
     """A row for each regression, those without data too."""
     return Table(
         "regressions",
@@ -32,13 +32,13 @@ def regressions_table(material: Material) -> Table:
             Column("intercept", "intercept", "estimate"),
             Column("slope", "slope", "estimate"),
             Column("slope_by_site", "sites as clusters", "interval"),
-            Column("rmse", "rmse over n"),
-            Column("rmse_dof", "over n − 2"),
+            Column("rmse", "RMSE with 1/n"),
+            Column("rmse_dof", "RMSE with 1/(n − 2)"),
             Column("r2", "R²"),
             Column("F", "F"),
             Column("p", "p", "p"),
         ),
-        [_row(row) for row in material.results["regressions"]],
+        [_row(row) for row in data.results["regressions"]],
         note="Intercept and rmse are in the unit of the response, slopes in that per unit of the predictor. Sites as "
         "clusters: the interval of the slope that knows that experiments of one site belong together; it is absent for "
         "a single site and where the sites do not tell. F and p are withheld where the predictor takes fewer than four "

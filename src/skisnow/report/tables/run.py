@@ -24,7 +24,7 @@ _OVER: Final = (
 )
 _LOST: Final = (
     ("lost_penetration_J", "lost to the grooves"),
-    ("lost_shear_J", "lost to sliding across"),
+    ("lost_shear_J", "lost to side-slip"),
     ("lost_friction_J", "lost to friction"),
     ("lost_drag_J", "lost to air drag"),
     ("lost_damping_J", "lost to damping of the skis"),
@@ -90,11 +90,11 @@ def energies_table(summary: Json) -> Table:
     rows += [(label, None, energies[key], energies[key]) for key, label in _LOST]
     error = summary["energy_balance_error"]
     note = (
-        "Nothing was turned over."
+        "No energy was exchanged."
         if error is None
-        else f"The balance is open by {significant(100.0 * error, 2)} % of the energy turned over, {_OVER}"
+        else f"The energy residual is {significant(100.0 * error, 2)} % of the energy exchanged, {_OVER}"
         if error > WARNED_SHARE
-        else f"The changes add up to 0 within {significant(100.0 * error, 2)} % of the energy turned over, {_OVER}"
+        else f"The changes add up to 0 within {significant(100.0 * error, 2)} % of the energy exchanged, {_OVER}"
     )
     return Table(
         "energies",

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..material import numbers, pairs
+from ..report_data import numbers, pairs
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ..material import FloatArray, Json, Material
+    from ..report_data import FloatArray, Json, ReportData
 
 QUANTILES: Final = (0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0)
 LARGEST: Final = 12
@@ -24,9 +24,9 @@ def offsets_that_show(rows: list[Json]) -> int:
     return int(np.sum((ends[:, 0] > 0) | (ends[:, 1] < 0)))
 
 
-def seating_quantiles_table(material: Material) -> Table:
+def seating_quantiles_table(data: ReportData) -> Table:
     """Quantiles over the used series."""
-    found = material.seating
+    found = data.seating
     offset, change = numbers(found, "depth_offset_mm"), numbers(found, "H_V_change_percent")
     rows = [(_quantile_name(share), _quantile(offset, share), _quantile(change, share)) for share in QUANTILES]
     return Table(
@@ -43,7 +43,7 @@ def seating_quantiles_table(material: Material) -> Table:
 
 
 def _quantile_name(share: float) -> str:
-    names = {0.0: "least", 50.0: "median", 100.0: "greatest"}
+    names = {0.0: "minimum", 50.0: "median", 100.0: "maximum"}
     return names.get(share, f"{share:g} %")
 
 
@@ -52,12 +52,12 @@ def _quantile(values: FloatArray, share: float) -> float | None:
     return float(np.percentile(known, share)) if known.size else None
 
 
-def seating_largest_table(material: Material) -> Table:
+def seating_largest_table(data: ReportData) -> Table:
     """The series whose hardness would move most."""
-    change = numbers(material.seating, "H_V_change_percent")
+    change = numbers(data.seating, "H_V_change_percent")
     by_factor = np.abs(np.log(np.maximum(1.0 + change / 100.0, 1e-6)))
     order = np.argsort(-by_factor, kind="stable")[: min(LARGEST, int(np.isfinite(by_factor).sum()))]
-    found = [material.seating[index] for index in order.tolist()]
+    found = [data.seating[index] for index in order.tolist()]
     rows = [
         (
             row["experiment"],
@@ -86,11 +86,11 @@ def seating_largest_table(material: Material) -> Table:
     )
 
 
-def seating_table(material: Material) -> Table:
+def seating_table(data: ReportData) -> Table:
     """Every experiment."""
     rows = [
         (own["experiment"], own["site"], own["used"], (row["depth_offset_mm"], row["interval_mm"]), row[_CHANGE.key])
-        for own, row in zip(material.penetration, material.results["penetration"]["seating"], strict=True)
+        for own, row in zip(data.penetration, data.results["penetration"]["seating"], strict=True)
     ]
     return Table(
         "seating",

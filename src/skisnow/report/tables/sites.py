@@ -10,7 +10,7 @@ from ...estimate.comparisons import OwnValue, own_mean
 from ..table import Column, Table
 
 if TYPE_CHECKING:
-    from ..material import FloatArray, Material, TextArray
+    from ..report_data import FloatArray, ReportData, TextArray
 
 COLUMNS = (
     Column("site", "Site", "text"),
@@ -25,23 +25,23 @@ COLUMNS = (
 )
 
 
-def sites_table(material: Material) -> Table:
+def sites_table(data: ReportData) -> Table:
     """A row for each site; with several sites a last row for all."""
-    pressed, sheared = _all_sites(material.penetration), _all_sites(material.shear)
-    hardness = _by_site(material.hardness, material.penetration_site)
-    stress = _by_site(material.stress, material.shear_site)
+    pressed, sheared = _all_sites(data.penetration), _all_sites(data.shear)
+    hardness = _by_site(data.hardness, data.penetration_site)
+    stress = _by_site(data.stress, data.shear_site)
     rows = [
         _row(site, pressed.get(site, 0), hardness.get(site), sheared.get(site, 0), stress.get(site))
-        for site in material.sites
+        for site in data.sites
     ]
-    if len(material.sites) > 1:
+    if len(data.sites) > 1:
         rows.append(
             _row(
                 "all sites",
-                len(material.penetration),
-                (material.hardness, material.penetration_site),
-                len(material.shear),
-                (material.stress, material.shear_site),
+                len(data.penetration),
+                (data.hardness, data.penetration_site),
+                len(data.shear),
+                (data.stress, data.shear_site),
             )
         )
     return Table(
@@ -82,10 +82,10 @@ def _row(
     return (site, n_pressed, *_summary(hardness, geometric=True), n_sheared, *_summary(stress, geometric=False))
 
 
-def _summary(data: tuple[FloatArray, TextArray] | None, *, geometric: bool) -> tuple[Any, ...]:
-    if data is None or len(data[0]) == 0:
+def _summary(values_by_site: tuple[FloatArray, TextArray] | None, *, geometric: bool) -> tuple[Any, ...]:
+    if values_by_site is None or len(values_by_site[0]) == 0:
         return 0, (None, None), None
-    values, site = data
+    values, site = values_by_site
     own: OwnValue = own_mean(values, site.tolist(), geometric=geometric)
     known = bool(np.isfinite(own.low) and np.isfinite(own.high))
     value = own.value if np.isfinite(own.value) else None

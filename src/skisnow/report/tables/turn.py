@@ -55,30 +55,30 @@ def contacts_table(runs: Mapping[str, Run]) -> Table:
         (
             Column("contact", "Contact", "words"),
             Column("outcome", "Outcome", "text"),
-            Column("run_length_m", "Way", unit="m"),
+            Column("run_length_m", "Distance travelled", unit="m"),
             Column("end_speed_m_per_s", "Speed at the end", unit="m/s"),
-            Column("turned_deg", "Turned", unit="°"),
+            Column("turned_deg", "Change of heading", unit="°"),
             Column("turn_radius_m", "Median radius", unit="m"),
-            Column("depth_mm", "Deepest edge", unit="mm"),
+            Column("depth_mm", "Maximum edge depth", unit="mm"),
             Column("afterbody_depth_ratio", "Afterbody / forebody"),
-            Column("grip", "Share of grip used"),
-            Column("slides", "Share of time sliding across"),
+            Column("grip", "Grip utilisation"),
+            Column("slides", "Share of time side-slipping"),
         ),
         [_contact(name, run) for name, run in runs.items()],
-        note="Afterbody / forebody: mean edge depth of the contact behind the boot over that before it, of the ski "
-        "that carries more, median over the second half. Share of grip: of S_f ∫ e ds of that ski, median over the "
-        "run; it slides across where the share is above 0.95.",
+        note="Afterbody / forebody: edge-depth ratio, the mean edge depth of the contact behind the boot over that "
+        "before it, of the more heavily loaded (outer) ski, median over the second half. Grip utilisation: side force "
+        "over the shear capacity S_f ∫ e ds of that ski, median over the run; it side-slips where that is above 0.95.",
     )
 
 
 def _contact(name: str, run: Run) -> tuple[Any, ...]:
-    turned = np.unwrap(run.heading)
+    heading = np.unwrap(run.heading)
     return (
         name,
         run.outcome.replace("_", " "),
         run.run_length,
         float(run.speed[-1]),
-        float(turned[-1] - turned[0]) / DEGREE,
+        float(heading[-1] - heading[0]) / DEGREE,
         median_radius(run),
         float(np.nanmax(run.skis.edge_depth)) / MM,
         afterbody_depth_ratio(run),

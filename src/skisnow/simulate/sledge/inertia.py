@@ -2,7 +2,8 @@
 
 Kinetic energy ½∫|v + ω × ρ + n ẇ|² dm over sledge and skis, and ½∫ρI (ω_x - φ̇)² ds for the skis' sections, with ρ
 the unbent place in the sledge's frame: in the matrix the deflection counts as velocity, not as change of place
-(Choice: w is far below the distances of the sledge), so that the matrix is constant. The equations of motion keep what
+(modelling assumption: w is far below the distances of the sledge), so that the matrix is constant. The equations of
+motion keep what
 of the bend's own place does not vanish with w: the skis feel v × ω. Energy and momenta then drift by no more than
 mass × w × v × ω.
 """

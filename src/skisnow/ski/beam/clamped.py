@@ -26,9 +26,10 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
 
 CLAMP_LENGTH: Final = 0.30
-"""Length of ski that boot and binding keep straight (m). Choice: about a boot's sole; limits are tested with 0."""
+"""Length of ski that boot and binding keep straight (m). Modelling assumption: about a boot's sole; limits are tested
+with 0."""
 MOST_ELEMENTS: Final = 4000
-"""Elements of 0.4 mm: finer ones would only cost time (Choice)."""
+"""Elements of 0.4 mm: finer ones would only cost time (modelling assumption)."""
 
 _STATION_POINT, _STATION_WEIGHT = (1.0 - 1.0 / np.sqrt(3.0)) / 2.0, 0.5
 

@@ -97,7 +97,7 @@ def named_snows() -> dict[str, SnowProperties]:
     Notes
     -----
     The paper names these snows as the ends of its ranges of H_V and of S_f, one after the other. That the two numbers
-    of one name belong to one snow is our reading (Choice): the paper found no relation between H_V and S_f.
+    of one name belong to one snow is our reading (assumption): the paper found no relation between H_V and S_f.
     """
     return {
         name: SnowProperties(

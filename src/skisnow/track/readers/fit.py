@@ -1,7 +1,8 @@
 """Tracks in FIT, the files of sports watches, read with fitdecode: the messages ``record``.
 
 Heights of FIT are above mean sea level as the watch has it, often barometric. ``gps_accuracy``, in whole metres, is
-taken as √(σ_east² + σ_north²), each with half of the variance (Choice; the profile names it and its unit and says no
+taken as √(σ_east² + σ_north²), each with half of the variance (modelling assumption; the profile names it and its
+unit and says no
 more); 0 says nothing.
 """
 

@@ -3,7 +3,8 @@
 NAV-PVT makes a point. Where NAV-HPPOSLLH of the same time of week is there, the place is that: to 0.1 mm, not 1 cm.
 Where NAV-COV is there, the standard deviations are the roots of its variances. Frames are found by their two sync bytes
 and their checksum, so that a damaged one costs itself alone. Heights are those above the ellipsoid. ``hAcc`` is taken
-as √(σ_east² + σ_north²), each with half of the variance (Choice; u-blox's manual calls it an estimate of the horizontal
+as √(σ_east² + σ_north²), each with half of the variance (modelling assumption; u-blox's manual calls it an estimate
+of the horizontal
 accuracy and says no more).
 """
 

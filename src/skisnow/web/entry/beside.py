@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from ...report.curves import SeriesCurve
-    from ..desk import AtOnce
-    from .sheet import Sheet
+    from ..edit_session import AtOnce
+    from .table_view import TableView
 
     _Values: TypeAlias = list[float | None]
 
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 class Beside:
     """Follows one test of a site."""
 
-    def __init__(self, sheet: Sheet) -> None:
-        self._sheet = sheet
+    def __init__(self, view: TableView) -> None:
+        self._view = view
         self._wanted: tuple[str, str] | None = None
         self._working = False
-        with ui.element("section").classes("beside").props('aria-label="What the readings say"'):
+        with ui.element("section").classes("beside").props('aria-label="Results of the readings"'):
             self._name = ui.label("").classes("quiet")
             self._value = ui.label("").classes("value").props("role=status")
             self._marks = ui.element("ul").classes("marks")
             self._chart: LineChart | None = None
-            if sheet.file == "penetration.csv":
+            if view.file == "penetration.csv":
                 words = "Load against depth of this series and the others of its site, load in N"
                 self._chart = LineChart(label("depth_mm"), label("load_N"), words, height=340)
 
@@ -50,7 +50,7 @@ class Beside:
             while self._wanted is not None:
                 (name, site), self._wanted = self._wanted, None
                 try:
-                    found = await run.io_bound(self._sheet.desk.at_once, site)
+                    found = await run.io_bound(self._view.session.at_once, site)
                 except (FieldDataError, StoreError) as error:
                     self._value.set_text(told(error))
                     continue
@@ -61,13 +61,13 @@ class Beside:
             self._working = False
 
     def _show(self, name: str, found: AtOnce) -> None:
-        pressed = self._sheet.file == "penetration.csv"
+        pressed = self._view.file == "penetration.csv"
         row = (found.penetration if pressed else found.shear).get(name)
         self._name.set_text(f"Test {name}" if row else "")
         self._value.set_text(_value(row, pressed=pressed))
         self._marks.clear()
         with self._marks:
-            for sentence in found.marks.get(f"{self._sheet.file}/{name}", ()):
+            for sentence in found.marks.get(f"{self._view.file}/{name}", ()):
                 with ui.element("li"):
                     ui.label(sentence)
         if self._chart is not None:

@@ -16,8 +16,8 @@ from ..words import label
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ...field.store import GrownTest, JournalEntry
-    from .sheet import Sheet
+    from ...field.store import JournalEntry, ReplayedTest
+    from .table_view import TableView
 
 USUAL_REASON: Final = "typing error"
 _SAME: Final = ("experiment", "sample", "test", "site", "spot", "tool", "plate")
@@ -91,13 +91,13 @@ def focus_button(button: ui.button) -> None:
 
 
 def changes(
-    sheet: Sheet, test: GrownTest, ask: ui.element, changed: Callable[[], object], *, cancelled: bool = False
+    view: TableView, test: ReplayedTest, ask: ui.element, changed: Callable[[], object], *, cancelled: bool = False
 ) -> None:
     """The buttons and the history of a test.
 
     Parameters
     ----------
-    sheet, test
+    view, test
         Which one.
     ask
         Where a reason is asked for.
@@ -108,17 +108,17 @@ def changes(
     """
 
     def undo() -> None:
-        sheet.undo(test)
+        view.undo(test)
         changed()
 
     def cancel(why: str) -> bool:
-        if not sheet.cancel(test, why):
+        if not view.cancel(test, why):
             return False
         changed()
         return True
 
     def ask_cancel() -> None:
-        words = f"Cancel {test.name}? Its readings are kept and take no part."
+        words = f"Cancel {test.name}? Its readings are kept but not included."
         ask_reason(ask, words, ("Cancel the test", cancel), leave=lambda: focus_button(asks))
 
     with ui.element("div").classes("acts"):
@@ -129,7 +129,7 @@ def changes(
     _history(test)
 
 
-def _history(test: GrownTest) -> None:
+def _history(test: ReplayedTest) -> None:
     if not test.history:
         return
     with ui.element("details"):

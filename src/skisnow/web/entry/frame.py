@@ -11,12 +11,12 @@ from ..fields import choice, field
 from ..words import TABLES
 from .beside import Beside
 from .changes import Places
-from .sheet import WHO, Sheet
+from .table_view import WHO, TableView
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from ..desk import Desk
+    from ..edit_session import EditSession
 
 
 def table_links(tables: Mapping[str, str], here: str, further: Mapping[str, str]) -> None:
@@ -31,29 +31,31 @@ def table_links(tables: Mapping[str, str], here: str, further: Mapping[str, str]
 
 
 @contextmanager
-def sheet_of(desk: Desk, file: str, *, form: str, below: str) -> Iterator[tuple[Sheet, Beside, Places]]:
-    """The sheet of a table with its places on the page; what follows stands below the changes.
+def table_view_of(
+    session: EditSession, file: str, *, form: str, below: str
+) -> Iterator[tuple[TableView, Beside, Places]]:
+    """The view of a table with its places on the page; what follows stands below the changes.
 
     Parameters
     ----------
-    desk, file
+    session, file
         Campaign and table.
     form, below
         What the sections of the form and of the changes are called, for who cannot see them.
     """
-    who = _who(desk)
+    who = _who(session)
     status = ui.label("").classes("status").props("role=status aria-live=polite")
-    sheet = Sheet(desk, file, who, status)
+    view = TableView(session, file, who, status)
     with ui.element("div").classes("two"):
         place = ui.element("section").props(f'aria-label="{form}"')
-        beside = Beside(sheet)
+        beside = Beside(view)
         with ui.element("section").classes("below").props(f'aria-label="{below}"'):
-            yield sheet, beside, Places(place, ui.element("div"))
+            yield view, beside, Places(place, ui.element("div"))
 
 
-def _who(desk: Desk) -> ui.select | ui.input:
+def _who(session: EditSession) -> ui.select | ui.input:
     """Who writes: one of the campaign's observers, or a name."""
-    observers = list(desk.described.observers)
+    observers = list(session.described.observers)
     with ui.element("div").classes("who") as place:
         made = choice(WHO, observers, observers[0]) if observers else field(WHO)
 

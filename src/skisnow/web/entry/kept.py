@@ -18,10 +18,10 @@ from .checking import Field, checked_fields, faults
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from ...field.store import GrownTest
-    from ..kept_desk import KeptDesk
+    from ...field.store import ReplayedTest
+    from ..correction_session import CorrectionSession
     from .beside import Beside
-    from .sheet import Sheet
+    from .table_view import TableView
 
 ONCE: Final = ("site", "spot", "tool", "plate", "edge_angle_deg")
 """Columns that a test has once, though every row of it says them."""
@@ -32,19 +32,19 @@ FEW: Final = 40
 class KeptForm:
     """The form of one test: each column that it has once, and each row."""
 
-    def __init__(self, desk: KeptDesk, sheet: Sheet, beside: Beside, places: Places) -> None:
-        self._desk = desk
-        self._sheet = sheet
+    def __init__(self, session: CorrectionSession, view: TableView, beside: Beside, places: Places) -> None:
+        self._desk = session
+        self._view = view
         self._beside = beside
         self._places = places
-        self._table = desk.tables[sheet.file]
-        known = (column for column in sheet.form.known if column in self._table.columns)
-        self._columns = [column for column in known if column not in (sheet.form.key, *LEFT_ALONE)]
+        self._table = session.tables[view.file]
+        known = (column for column in view.form.known if column in self._table.columns)
+        self._columns = [column for column in known if column not in (view.form.key, *LEFT_ALONE)]
         self._fields: dict[tuple[int, ...], dict[str, Field]] = {}
 
     def show(self, name: str) -> None:
         """Show a test as it is now."""
-        test, rows = self._sheet.test(name), self._table.tests[name]
+        test, rows = self._view.test(name), self._table.tests[name]
         now = test.rows[0].cells
         cancelled = next(filter(None, (now.get(cell_key(line, "status"), "") for line in rows)), "")
         self._places.clear()
@@ -57,7 +57,7 @@ class KeptForm:
             self._ask = ui.element("div")
             asking_button("Correct", lambda: self._ask_correction(name), "main")
         with self._places.below:
-            changes(self._sheet, test, self._ask, lambda: self.show(name), cancelled=bool(cancelled))
+            changes(self._view, test, self._ask, lambda: self.show(name), cancelled=bool(cancelled))
         self._beside.follow(name, now[cell_key(min(rows), "site")])
 
     def _draw(self, lines: tuple[int, ...], now: Mapping[str, str]) -> None:
@@ -83,21 +83,21 @@ class KeptForm:
         if column in ("tool", "plate"):
             names = sorted({text, *(described.tools if column == "tool" else described.plates)})
             return choice(words, names, text)
-        numeric = any(rule.name == column for rule in self._sheet.form.numbers)
+        numeric = any(rule.name == column for rule in self._view.form.numbers)
         return field(words, text, numeric=numeric, optional=not text)
 
     def _ask_correction(self, name: str) -> bool:
-        test = self._sheet.test(name)
+        test = self._view.test(name)
         now = test.rows[0].cells
         changed = self._changed(now)
         if changed is None:
             return False
         if not changed:
-            self._sheet.say("Nothing is different.")
+            self._view.say("Nothing is different.")
             return True
 
         def correct(why: str) -> bool:
-            if not self._sheet.correct(test, test.rows[0].entered.sequence, changed, why):
+            if not self._view.correct(test, test.rows[0].entered.sequence, changed, why):
                 return False
             self.show(name)
             return True
@@ -120,19 +120,19 @@ class KeptForm:
                 for column, each in fields.items()
                 if str(each.value or "").strip() != now[cell_key(lines[0], column)]
             }
-            cells = checked_fields(self._sheet.form, typed)
+            cells = checked_fields(self._view.form, typed)
             refused += faults(typed.values())
             changed |= {cell_key(line, column): text for column, text in (cells or {}).items() for line in lines}
         if refused:
-            self._sheet.say(f"Not corrected: {'; '.join(refused)}.", "bad")
+            self._view.say(f"Not corrected: {'; '.join(refused)}.", "bad")
             return None
         return changed
 
 
-def list_tests(desk: KeptDesk, file: str) -> None:
+def list_tests(session: CorrectionSession, file: str) -> None:
     """Links to the tests of a table, site by site; those that were spoken of are marked."""
     sites: dict[str, list[str]] = {}
-    for name, rows in desk.tables[file].tests.items():
+    for name, rows in session.tables[file].tests.items():
         sites.setdefault(next(iter(rows.values())).get("site", ""), []).append(name)
     heading("Tests")
     for site, names in sites.items():
@@ -141,10 +141,10 @@ def list_tests(desk: KeptDesk, file: str) -> None:
                 ui.label(f"{site or 'No site'}: {len(names)}")
             with ui.element("div").classes("acts so-far"):
                 for name in names:
-                    link(_name(desk.test(file, name)), correcting(desk.id, table=file, test=name), "small")
+                    link(_name(session.test(file, name)), correcting(session.id, table=file, test=name), "small")
 
 
-def _name(test: GrownTest) -> str:
+def _name(test: ReplayedTest) -> str:
     if test.cancelled:
         return f"{test.name} (cancelled)"
     return f"{test.name} (corrected)" if test.rows[0].corrections else test.name

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from nicegui.events import GenericEventArguments
 
-    from ..desk import Desk
+    from ..edit_session import EditSession
 
 FILE: Final = "penetration.csv"
 HEAD: Final = ("experiment", "site", "spot", "tool", "edge_angle_deg")
@@ -26,12 +26,12 @@ READING: Final = ("load_N", "depth_mm")
 MOST: Final = 10_000
 
 
-def take_resent(desk: Desk, changed: Callable[[set[str]], object]) -> None:
+def take_resent(session: EditSession, changed: Callable[[set[str]], object]) -> None:
     """Let the page take readings that were typed before it was loaded.
 
     Parameters
     ----------
-    desk
+    session
         The campaign.
     changed
         Called with the names of the series that have a reading more.
@@ -44,7 +44,7 @@ def take_resent(desk: Desk, changed: Callable[[set[str]], object]) -> None:
         for record in given[:MOST]:
             once, why = _once(record), "this is no reading"
             try:
-                series.add(_stored(desk, record, once))
+                series.add(_stored(session, record, once))
                 why = ""
             except (StoreError, ParameterError) as error:
                 why = str(error)
@@ -70,15 +70,15 @@ def _words(record: Any) -> str:
     return f"{cells['depth_mm']} mm under {cells['load_N']} N in series {cells['experiment']}" if cells else "a reading"
 
 
-def _stored(desk: Desk, record: Any, once: str) -> str:
+def _stored(session: EditSession, record: Any, once: str) -> str:
     """Store a reading; gives the name of its series."""
     said = _cells(record)
     if not once or not said:
         raise ParameterError("this is no reading")
     cells = {column: checked_cell(FORMS[FILE], column, text) for column, text in said.items()}
-    if cells["tool"] not in desk.described.tools:
+    if cells["tool"] not in session.described.tools:
         raise ParameterError(f"the campaign has no tool {cells['tool']!r}")
-    test = desk.test(FILE, cells["experiment"])
+    test = session.test(FILE, cells["experiment"])
     there = test.row_under(cells["load_N"])
     if there is not None and there.entered.once != once:
         raise ParameterError(f"a reading of {there.cells['depth_mm']} mm is there already")
@@ -87,5 +87,5 @@ def _stored(desk: Desk, record: Any, once: str) -> str:
     who = str(record.get("who") or "")[:LONGEST]
     place = test.next_position
     entry = NewEntry(action="add", file=FILE, test=test.name, cells=cells, position=place, who=who, once=once)
-    desk.write_down(entry, seen=test.last)
+    session.write_down(entry, seen=test.last)
     return test.name

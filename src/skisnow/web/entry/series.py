@@ -18,9 +18,9 @@ from .checking import Field, checked_fields, faults, refuse
 from .resent import HEAD
 
 if TYPE_CHECKING:
-    from ...field.store import GrownRow, GrownTest
+    from ...field.store import ReplayedRow, ReplayedTest
     from .beside import Beside
-    from .sheet import Sheet
+    from .table_view import TableView
 
 TOLD: Final = "(event) => lab.reading(event, emit)"
 LEFT: Final = "(event) => lab.leaving(event, emit)"
@@ -38,8 +38,8 @@ class _Reading:
 class SeriesForm:
     """The form of one series at a time. Its readings are told apart by their loads (N, as text)."""
 
-    def __init__(self, sheet: Sheet, beside: Beside, places: Places) -> None:
-        self._sheet = sheet
+    def __init__(self, view: TableView, beside: Beside, places: Places) -> None:
+        self._view = view
         self._beside = beside
         self._places = places
         self._head: dict[str, str] = {}
@@ -52,15 +52,15 @@ class SeriesForm:
 
     def begin(self) -> None:
         """Ask for what a series has once."""
-        ui.navigate.history.replace(entering(self._sheet.desk.id, table=self._sheet.file))
+        ui.navigate.history.replace(entering(self._view.session.id, table=self._view.file))
         self._shown = ""
-        described = self._sheet.desk.described
-        before = self._sheet.tests()[-1].rows[0].cells if self._sheet.tests() else {}
+        described = self._view.session.described
+        before = self._view.tests()[-1].rows[0].cells if self._view.tests() else {}
         self._places.clear()
         with self._places.form:
             heading("New series")
             with form(sends=lambda: self._begun(typed)):
-                name = field(label("experiment"), self._sheet.next_name())
+                name = field(label("experiment"), self._view.next_name())
                 site = field(label("site"), before.get("site", ""))
                 tools = sorted(described.tools)
                 last = before.get("tool")
@@ -74,14 +74,14 @@ class SeriesForm:
         first.run_method("select")  # what stands there from the last series is written over
 
     def _begun(self, typed: dict[str, Field]) -> bool:
-        head = checked_fields(self._sheet.form, typed)
-        if head is not None and self._sheet.test(head["experiment"]).history:
+        head = checked_fields(self._view.form, typed)
+        if head is not None and self._view.test(head["experiment"]).history:
             refuse(typed["experiment"], f"there is a test {head['experiment']} already; give this one another name")
             head = None
         if head is None:
-            self._sheet.say(f"Not begun: {'; '.join(faults(typed.values()))}.", "bad")
+            self._view.say(f"Not begun: {'; '.join(faults(typed.values()))}.", "bad")
             return False
-        self._sheet.say(f"Series {head['experiment']}: enter the depth under each load.")
+        self._view.say(f"Series {head['experiment']}: enter the depth under each load.")
         self.show(head["experiment"], head)
         return True
 
@@ -94,25 +94,25 @@ class SeriesForm:
 
     def show(self, name: str, head: dict[str, str] | None = None) -> None:
         """Show a series with its readings, to be gone on with."""
-        test = self._sheet.test(name)
+        test = self._view.test(name)
         if head is None:
             head = {column: test.rows[0].cells.get(column, "") for column in HEAD}
         self._head = head
         begun = None if test.rows else {column: text for column, text in head.items() if column != "experiment"}
-        ui.navigate.history.replace(entering(self._sheet.desk.id, table=self._sheet.file, test=name, head=begun))
+        ui.navigate.history.replace(entering(self._view.session.id, table=self._view.file, test=name, head=begun))
         self._draw(test)
         self._focus_next(test)
         if test.rows:
             self._beside.follow(name, head["site"])
 
-    def _focus_next(self, test: GrownTest) -> None:
+    def _focus_next(self, test: ReplayedTest) -> None:
         empty = [each.depth for each in self._readings.values() if not each.depth.value]
         if empty and not test.cancelled:
             empty[0].run_method("focus")
         else:
             focus_button(self._then)
 
-    def _draw(self, test: GrownTest) -> None:
+    def _draw(self, test: ReplayedTest) -> None:
         """Draw the series; what is typed and not stored stays."""
         unstored = self._unstored() if self._shown == test.name else {}
         self._shown = test.name
@@ -144,31 +144,31 @@ class SeriesForm:
         missing = self._unstored()
         if missing:
             loads = ", ".join(f"{load} N" for load in missing)
-            self._sheet.say(f"Not stored yet: {loads}. Put it right or empty the field, then go on.", "bad")
+            self._view.say(f"Not stored yet: {loads}. Put it right or empty the field, then go on.", "bad")
             self._readings[next(iter(missing))].depth.run_method("focus")
             return False
         self.begin()
         return True
 
     @property
-    def _test(self) -> GrownTest:
-        return self._sheet.test(self._head["experiment"])
+    def _test(self) -> ReplayedTest:
+        return self._view.test(self._head["experiment"])
 
     def _show_changes(self) -> None:
         """Undo, cancel and history as they are now; the fields of the readings stay as they are."""
         test = self._test
         self._changes.clear()
         with self._changes:
-            changes(self._sheet, test, self._ask, lambda: self.show(test.name, self._head))
+            changes(self._view, test, self._ask, lambda: self.show(test.name, self._head))
 
-    def _loads(self, test: GrownTest) -> list[str]:
+    def _loads(self, test: ReplayedTest) -> list[str]:
         """The disc set's loads, and those that were entered beyond or instead of them, rising."""
-        steps = [f"{load:g}" for load in self._sheet.desk.described.load_steps]
+        steps = [f"{load:g}" for load in self._view.session.described.load_steps]
         entered = [row.cells["load_N"] for row in test.rows]
         also = [load for load in steps if test.row_under(load) is None]
         return sorted(dict.fromkeys([*entered, *also]), key=float)
 
-    def _reading(self, test: GrownTest, load: str, typed: str) -> _Reading:
+    def _reading(self, test: ReplayedTest, load: str, typed: str) -> _Reading:
         row = test.row_under(load)
         with ui.element("div").classes("reading") as made:
             made.props["data-load"] = load
@@ -185,7 +185,7 @@ class SeriesForm:
         depth.on("blur", answering(lambda: self._entered(load, left=True)), js_handler=LEFT)
         return _Reading(depth, stored, made)
 
-    def _further(self, test: GrownTest) -> None:
+    def _further(self, test: ReplayedTest) -> None:
         if test.cancelled:
             return
 
@@ -238,16 +238,16 @@ class SeriesForm:
         """Store a reading; what cannot be is said at its field, and stays there."""
         test = self._test
         given = {"depth_mm": depth} if isinstance(load, str) else {"load_N": load, "depth_mm": depth}
-        cells = checked_fields(self._sheet.form, given)
+        cells = checked_fields(self._view.form, given)
         if cells is not None and not isinstance(load, str) and test.row_under(cells["load_N"]) is not None:
             refuse(load, f"there is a reading under {cells['load_N']} N already; correct it in its own field")
             cells = None
         if cells is None:
-            self._sheet.say(f"Not stored: {'; '.join(faults(given.values()))}.", "bad")
+            self._view.say(f"Not stored: {'; '.join(faults(given.values()))}.", "bad")
             return False
         cells = {**self._head, **({"load_N": load} if isinstance(load, str) else {}), **cells}
         said = f"Stored: {cells['depth_mm']} mm under {cells['load_N']} N."
-        stored = self._sheet.add(test.name, cells, position=test.next_position, seen=test.last, said=said)
+        stored = self._view.add(test.name, cells, position=test.next_position, seen=test.last, said=said)
         if stored:
             self._show_changes()
             self._beside.follow(test.name, self._head["site"])
@@ -255,15 +255,15 @@ class SeriesForm:
             self._draw(self._test)
         return stored
 
-    def _ask_correction(self, row: GrownRow, load: str, *, focus: bool) -> bool:
+    def _ask_correction(self, row: ReplayedRow, load: str, *, focus: bool) -> bool:
         test, entered, depth = self._test, row.entered, self._readings[load].depth
-        cells = checked_fields(self._sheet.form, {"depth_mm": depth})
+        cells = checked_fields(self._view.form, {"depth_mm": depth})
         if cells is None:
-            self._sheet.say(f"Not corrected: {'; '.join(faults([depth]))}.", "bad")
+            self._view.say(f"Not corrected: {'; '.join(faults([depth]))}.", "bad")
             return False
 
         def correct(why: str) -> bool:
-            if not self._sheet.correct(test, entered.sequence, cells, why):
+            if not self._view.correct(test, entered.sequence, cells, why):
                 return False
             self.show(test.name, self._head)
             return True

@@ -14,9 +14,9 @@ from .changes import USUAL_REASON, Places, ask_reason, changes
 from .checking import checked_fields, faults, refuse
 
 if TYPE_CHECKING:
-    from ...field.store import GrownRow, GrownTest
+    from ...field.store import ReplayedRow, ReplayedTest
     from .beside import Beside
-    from .sheet import Sheet
+    from .table_view import TableView
 
 OPTIONAL: Final = {"shear.csv": ("spot",)}
 KEPT: Final = ("site", "plate", "edge_angle_deg", "lever_arm_mm")
@@ -26,11 +26,11 @@ KEPT: Final = ("site", "plate", "edge_angle_deg", "lever_arm_mm")
 class SingleForm:
     """The form of one row at a time, and the rows so far."""
 
-    def __init__(self, sheet: Sheet, beside: Beside, places: Places) -> None:
-        self._sheet = sheet
+    def __init__(self, view: TableView, beside: Beside, places: Places) -> None:
+        self._view = view
         self._beside = beside
         self._places = places
-        table = sheet.form
+        table = view.form
         required = [column.name for column in table.numbers if column.needed]
         self._columns = (*table.names, *OPTIONAL.get(table.file, ()), *required)
         self._numeric = {column.name for column in table.numbers}
@@ -45,7 +45,7 @@ class SingleForm:
 
     def show(self, name: str) -> None:
         """Show a test's first row, to be corrected."""
-        test = self._sheet.test(name)
+        test = self._view.test(name)
         if test.rows:
             self._draw(test.rows[0].cells, (test, test.rows[0]))
             self._beside.follow(name, test.rows[0].cells["site"])
@@ -53,16 +53,16 @@ class SingleForm:
             self.begin()
 
     def _prefilled(self) -> dict[str, str]:
-        tests, key = self._sheet.tests(), self._sheet.form.key
+        tests, key = self._view.tests(), self._view.form.key
         before = tests[-1].rows[-1].cells if tests else {}
         cells = {column: before.get(column, "") for column in KEPT}
-        cells[key] = self._sheet.next_name()
+        cells[key] = self._view.next_name()
         if "repeat" in self._columns:
             cells[key] = before.get(key, cells[key])
             cells["repeat"] = str(len(tests[-1].rows) + 1) if tests else "1"
         return cells
 
-    def _draw(self, cells: dict[str, str], correcting: tuple[GrownTest, GrownRow] | None) -> None:
+    def _draw(self, cells: dict[str, str], correcting: tuple[ReplayedTest, ReplayedRow] | None) -> None:
         if self._is_new and correcting is not None:
             typed = {column: str(each.value) for column, each in self._fields.items() if each.value}
             self._begun = typed if typed.items() - self._prefilled().items() else None
@@ -82,19 +82,19 @@ class SingleForm:
                     asking_button("New test", self.begin)
         with self._places.below:
             if correcting is not None:
-                changes(self._sheet, correcting[0], self._ask, lambda: self.show(correcting[0].name))
+                changes(self._view, correcting[0], self._ask, lambda: self.show(correcting[0].name))
             self._list()
         self._focus_first()
 
     def _field(self, column: str, cells: dict[str, str], *, fixed: bool) -> ui.input | ui.select:
         if column == "plate":
-            plates, value = sorted(self._sheet.desk.described.plates), cells.get(column)
+            plates, value = sorted(self._view.session.described.plates), cells.get(column)
             if not plates:
                 sentence("This campaign has no plate yet: name one under Campaign.", "bad")
             return choice(label(column), plates, value if value in plates else next(iter(plates), None))
-        optional = column in OPTIONAL.get(self._sheet.file, ())
+        optional = column in OPTIONAL.get(self._view.file, ())
         made = field(label(column), cells.get(column, ""), numeric=column in self._numeric, optional=optional)
-        if fixed and column == self._sheet.form.key:
+        if fixed and column == self._view.form.key:
             made.props("readonly")
         return made
 
@@ -105,35 +105,35 @@ class SingleForm:
             wanted[0].run_method("focus")
 
     def _cells(self) -> dict[str, str] | None:
-        cells = checked_fields(self._sheet.form, self._fields)
+        cells = checked_fields(self._view.form, self._fields)
         if cells is None:
-            self._sheet.say(f"Not stored: {'; '.join(faults(self._fields.values()))}.", "bad")
+            self._view.say(f"Not stored: {'; '.join(faults(self._fields.values()))}.", "bad")
         return cells
 
     def _store(self) -> bool:
         cells = self._cells()
         if cells is None:
             return False
-        key = self._sheet.form.key
-        test = self._sheet.test(cells[key])
-        if (before := self._sheet.stored_before()) is not None:
+        key = self._view.form.key
+        test = self._view.test(cells[key])
+        if (before := self._view.stored_before()) is not None:
             return self._stored(before, cells["site"])
         if test.history and (fault := self._second_row_fault(test, cells)):
             refuse(self._fields[key], fault)
-            self._sheet.say(f"Not stored: {fault}.", "bad")
+            self._view.say(f"Not stored: {fault}.", "bad")
             return False
-        if not self._sheet.add(test.name, cells, position=len(test.rows), seen=test.last, said=""):
+        if not self._view.add(test.name, cells, position=len(test.rows), seen=test.last, said=""):
             return False
         return self._stored(test.name, cells["site"])
 
     def _stored(self, name: str, site: str) -> bool:
-        self._sheet.say(f"Stored: test {name}.")
+        self._view.say(f"Stored: test {name}.")
         self._beside.follow(name, site)
         self._begun = None
         self.begin()
         return True
 
-    def _second_row_fault(self, test: GrownTest, cells: dict[str, str]) -> str:
+    def _second_row_fault(self, test: ReplayedTest, cells: dict[str, str]) -> str:
         if "repeat" not in cells:
             return f"there is a test {test.name} already; give this one another name"
         if any(row.cells["repeat"] == cells["repeat"] for row in test.rows):
@@ -142,18 +142,18 @@ class SingleForm:
             return f"test {test.name} is at the site {test.rows[0].cells['site']}"
         return ""
 
-    def _ask_correction(self, test: GrownTest, row: GrownRow) -> bool:
+    def _ask_correction(self, test: ReplayedTest, row: ReplayedRow) -> bool:
         cells = self._cells()
         if cells is None:
             return False
         now = row.cells
         changed = {column: text for column, text in cells.items() if text != now.get(column, "")}
         if not changed:
-            self._sheet.say("Nothing is different.")
+            self._view.say("Nothing is different.")
             return True
 
         def correct(why: str) -> bool:
-            if not self._sheet.correct(test, row.entered.sequence, changed, why):
+            if not self._view.correct(test, row.entered.sequence, changed, why):
                 return False
             self.show(test.name)
             return True
@@ -163,7 +163,7 @@ class SingleForm:
         return True
 
     def _list(self) -> None:
-        tests = self._sheet.tests()
+        tests = self._view.tests()
         if not tests:
             return
         heading("So far", 3)
@@ -173,7 +173,7 @@ class SingleForm:
                     with ui.element("li"):
                         self._so_far(test, row)
 
-    def _so_far(self, test: GrownTest, row: GrownRow) -> None:
+    def _so_far(self, test: ReplayedTest, row: ReplayedRow) -> None:
         words = [f"{label(column)} {row.cells[column]}" for column in self._columns if row.cells.get(column)]
         ui.label(" · ".join(words) + (f" · cancelled: {test.cancelled}" if test.cancelled else ""))
 

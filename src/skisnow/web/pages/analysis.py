@@ -23,7 +23,7 @@ from ..unpacking import files_below, write_zip
 from ..worker import Worker
 
 if TYPE_CHECKING:
-    from ..analyses import Subject
+    from ..analyses import CampaignSource
     from ..settings import Lab
 
 HERE: Final = "/"
@@ -72,7 +72,7 @@ def add_page(lab: Lab) -> None:
         return Response(content, media_type="application/zip", headers=headers)
 
 
-def _packed(subject: Subject, report: Path) -> bytes:
+def _packed(subject: CampaignSource, report: Path) -> bytes:
     """Campaign and report as one zip file."""
     packed = io.BytesIO()
     with TemporaryDirectory(prefix="skisnow-export-") as name:

@@ -9,7 +9,7 @@ from nicegui import ui
 from ...errors import StoreError
 from ...field.store import Journals
 from ...report.numerals import counted
-from ..desk import Desk
+from ..edit_session import EditSession
 from ..fields import link
 from ..layout import framed, heading, sentence
 from ..names import analysis, correcting, entering, export
@@ -30,7 +30,7 @@ def add_page(lab: Lab) -> None:
     def campaigns(added: str = "") -> None:
         with framed("Campaigns", here=PATH):
             if added:
-                sentence("The campaign is kept, byte for byte.", "good").props("role=status")
+                sentence("The campaign is imported, byte for byte.", "good").props("role=status")
             link("New campaign", "/describe", "main")
             _in_entry(lab)
             _kept(lab)
@@ -39,19 +39,19 @@ def add_page(lab: Lab) -> None:
 
 def _in_entry(lab: Lab) -> None:
     heads = Journals(lab.store).list()
-    heading("Being entered")
+    heading("Drafts")
     if not heads:
         sentence("None. Begin one with New campaign.", "quiet")
     for head in reversed(heads):
         try:
-            desk = Desk(lab, head.id)
+            session = EditSession(lab, head.id)
         except StoreError as error:
             _damaged(head.id, error)
             continue
-        tests = [test for test in desk.campaign.tests.values() if test.rows]
+        tests = [test for test in session.campaign.tests.values() if test.rows]
         with ui.element("section").classes("card"):
-            heading(desk.described.name or "(no name)", 3)
-            words = [desk.described.place, counted(len(tests), "test"), f"last entry {_minute(head.last_at)}"]
+            heading(session.described.name or "(no name)", 3)
+            words = [session.described.place, counted(len(tests), "test"), f"last entry {_minute(head.last_at)}"]
             sentence(" · ".join(filter(None, words)), "quiet")
             with ui.element("div").classes("acts"):
                 link("Enter tests", entering(head.id), "main")
@@ -66,7 +66,7 @@ def _damaged(id_: str, error: StoreError) -> None:
 
 
 def _kept(lab: Lab) -> None:
-    heading("Kept")
+    heading("Imported")
     stored = lab.store.list()
     if not stored:
         sentence("None. Import one below.", "quiet")
@@ -93,7 +93,7 @@ def _minute(at: str) -> str:
 def _import_form(lab: Lab) -> None:
     heading("Import")
     sentence(
-        "A campaign's folder, its files, or a zip of it. It is kept byte for byte; corrections stand beside it. "
+        "A campaign's folder, its files, or a zip of it. It is stored byte for byte; corrections stand beside it. "
         f"At most {counted(lab.limits.files, 'file')}.",
         "quiet",
     )

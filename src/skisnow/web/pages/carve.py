@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 
 PATH: Final = "/carve"
 TITLE: Final = "Carve"
-ALONG: Final = "Station from the boot (m)"
+ALONG: Final = "Position along the ski (m), boot = 0"
 PANELS: Final = {
     "edge_depth_mm": "Depth of the edge (mm)",
     "force_per_length_N_per_m": "Force per length (N/m)",
-    "bending_mm": "Bending (mm)",
+    "bending_mm": "Deflection (mm)",
     "twist_deg": "Twist (°)",
 }
-# Stops of the sliders and where they stand first (Choice): whole numbers of the field, over what was measured.
+# Stops of the sliders and where they stand first (assumption): whole numbers of the field, over what was measured.
 ANGLES: Final = tuple(str(angle) for angle in range(0, 86))
 LOADS: Final = tuple(str(load) for load in range(100, 3001, 50))
 _SOFT: Final = (0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.2, 1.5, 2)
@@ -62,8 +62,8 @@ FACTS: Final = {
     "turn_radius_chord_m": ("Turn radius of the contact", "m"),
     "contact_length_m": ("Contact length", "m"),
     "side_force_N": ("Side force", "N"),
-    "side_force_limit_N": ("What the snow holds", "N"),
-    "boot_pitch_moment_Nm": ("What the boot holds about the cross axis", "N m"),
+    "side_force_limit_N": ("Shear capacity of the snow", "N"),
+    "boot_pitch_moment_Nm": ("Moment at the boot about the cross axis", "N m"),
 }
 
 

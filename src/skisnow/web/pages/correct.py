@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from nicegui import run, ui
 
 from ...errors import ParameterError
-from ..entry.frame import sheet_of, table_links
+from ..correction_session import CorrectionSession
+from ..entry.frame import table_links, table_view_of
 from ..entry.kept import KeptForm, list_tests
 from ..fields import link
-from ..kept_desk import KeptDesk
 from ..layout import framed, sentence
 from ..names import analysis, correcting, export, required_id
 from ..patience import BUILD_S
@@ -26,26 +26,26 @@ def add_page(lab: Lab) -> None:
 
     @ui.page("/correct/{id_}", response_timeout=BUILD_S)
     async def correct(id_: str, table: str = "", test: str = "") -> None:
-        desk = await run.io_bound(KeptDesk, lab, required_id(id_))
-        if desk is None:  # the lab is being closed
+        session = await run.io_bound(CorrectionSession, lab, required_id(id_))
+        if session is None:  # the lab is being closed
             return
-        file = table or next(iter(desk.tables), "")
-        if file not in desk.tables:
+        file = table or next(iter(session.tables), "")
+        if file not in session.tables:
             raise ParameterError("this campaign has no such table")
-        with framed(desk.stored.name or "Campaign", here=HERE, keeps=True):
-            sentence("Kept: its files stay as they came in. What is corrected here stands beside them.", "quiet")
-            further = {"Analysis": analysis("kept", desk.id), "Export": export("kept", desk.id)}
-            table_links({each: correcting(desk.id, table=each) for each in desk.tables}, file, further)
-            if test in desk.tables[file].tests:
-                _test(desk, file, test)
+        with framed(session.stored.name or "Campaign", here=HERE, keeps=True):
+            sentence("Imported: its files stay as they came in. What is corrected here stands beside them.", "quiet")
+            further = {"Analysis": analysis("kept", session.id), "Export": export("kept", session.id)}
+            table_links({each: correcting(session.id, table=each) for each in session.tables}, file, further)
+            if test in session.tables[file].tests:
+                _test(session, file, test)
             else:
-                list_tests(desk, file)
+                list_tests(session, file)
 
 
-def _test(desk: KeptDesk, file: str, name: str) -> None:
+def _test(session: CorrectionSession, file: str, name: str) -> None:
     with (
-        sheet_of(desk, file, form="Cells", below="Changes") as (sheet, beside, places),
+        table_view_of(session, file, form="Cells", below="Changes") as (view, beside, places),
         ui.element("div").classes("acts"),
     ):
-        link("Another test", correcting(desk.id, table=file))
-    KeptForm(desk, sheet, beside, places).show(name)
+        link("Another test", correcting(session.id, table=file))
+    KeptForm(session, view, beside, places).show(name)

@@ -13,7 +13,7 @@ from ...field.store.description import Description, description_text
 from ...field.store.journal_entry import DESCRIPTION
 from ...given import toml_values
 from ..answering import asked, asking_button, form, go_on, row_button
-from ..desk import Desk
+from ..edit_session import EditSession
 from ..fields import choice, field
 from ..layout import framed, heading, sentence
 from ..names import entering, required_id
@@ -44,15 +44,15 @@ def add_page(lab: Lab) -> None:
 
     @ui.page("/describe")
     def describe(entry: str = "") -> None:
-        desk = Desk(lab, required_id(entry)) if entry else None
-        with framed("Campaign" if desk else "New campaign", here=HERE, ahead=True):
+        session = EditSession(lab, required_id(entry)) if entry else None
+        with framed("Campaign" if session else "New campaign", here=HERE, ahead=True):
             status = ui.label("").classes("status").props("role=status")
             with form(""):
-                described = DescriptionForm(toml_values(desk.campaign.description) if desk else {})
+                described = DescriptionForm(toml_values(session.campaign.description) if session else {})
 
             def done() -> bool:
                 try:
-                    id_ = _stored(lab, desk, described.text(), asked().once)
+                    id_ = _stored(lab, session, described.text(), asked().once)
                 except SkisnowError as error:
                     status.set_text(f"Not stored: {error}")
                     status.classes(add="bad")
@@ -77,21 +77,21 @@ def _take_kept(described: DescriptionForm) -> None:
     ui.on("grow", grow)
 
 
-def _stored(lab: Lab, desk: Desk | None, text: str, once: str | None) -> str:
-    if desk is None:
+def _stored(lab: Lab, session: EditSession | None, text: str, once: str | None) -> str:
+    if session is None:
         return Journals(lab.store).begin(text, once=once)
-    _require_used_names(desk, toml_values(text))
-    if text != desk.campaign.description:
+    _require_used_names(session, toml_values(text))
+    if text != session.campaign.description:
         entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: text})
-        desk.write_down(entry, seen=desk.campaign.described)
-    return desk.id
+        session.write_down(entry, seen=session.campaign.described)
+    return session.id
 
 
-def _require_used_names(desk: Desk, described: dict[str, Any]) -> None:
+def _require_used_names(session: EditSession, described: dict[str, Any]) -> None:
     """Refuse a description without the tools and plates that tests were made with."""
     for kind in ("tool", "plate"):
         known = {each["name"] for each in described.get(kind, ())}
-        for test in desk.campaign.tests.values():
+        for test in session.campaign.tests.values():
             gone = {row.cells[kind] for row in test.rows if kind in row.cells} - known
             if gone:
                 raise ParameterError(

@@ -8,8 +8,8 @@ from nicegui import ui
 
 from ...errors import ParameterError
 from ...field.store.cells import checked_cell
-from ..desk import Desk
-from ..entry.frame import sheet_of, table_links
+from ..edit_session import EditSession
+from ..entry.frame import table_links, table_view_of
 from ..entry.resent import FILE, take_resent
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
@@ -21,7 +21,7 @@ from ..words import TABLES
 if TYPE_CHECKING:
     from ..entry.beside import Beside
     from ..entry.changes import Places
-    from ..entry.sheet import Sheet
+    from ..entry.table_view import TableView
     from ..settings import Lab
 
 HERE = "/"
@@ -42,50 +42,54 @@ def add_page(lab: Lab) -> None:
     ) -> None:
         if table not in TABLES:
             raise ParameterError("this address names no table of a campaign")
-        desk = Desk(lab, required_id(id_))
-        with framed(desk.described.name or "Campaign", here=HERE, ahead=True):
+        session = EditSession(lab, required_id(id_))
+        with framed(session.described.name or "Campaign", here=HERE, ahead=True):
             further = {"Analysis": analysis("entry", id_), "Campaign": f"/describe?entry={id_}"}
             table_links({file: entering(id_, table=file) for file in TABLES}, table, further)
-            with sheet_of(desk, table, form="Entry", below="Changes, and what was entered") as (sheet, beside, places):
-                _others(sheet, test)
+            with table_view_of(session, table, form="Entry", below="Changes, and what was entered") as (
+                view,
+                beside,
+                places,
+            ):
+                _others(view, test)
             head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
-            _begin(sheet, test, head, (beside, places))
+            _begin(view, test, head, (beside, places))
 
 
-def _begin(sheet: Sheet, test: str, head: dict[str, str], where: tuple[Beside, Places]) -> None:
+def _begin(view: TableView, test: str, head: dict[str, str], where: tuple[Beside, Places]) -> None:
     """Show the form of a test, or of a new one."""
     entry: SeriesForm | SingleForm
-    if sheet.file == FILE:
-        entry = series = SeriesForm(sheet, *where)
-        take_resent(sheet.desk, series.follow_resent)
-        if test and not sheet.test(test).history and _is_head(sheet, head):
+    if view.file == FILE:
+        entry = series = SeriesForm(view, *where)
+        take_resent(view.session, series.follow_resent)
+        if test and not view.test(test).history and _is_head(view, head):
             series.show(test, head)  # begun, and loaded anew before its first reading
             return
     else:
-        entry = SingleForm(sheet, *where)
-        take_resent(sheet.desk, lambda _: None)
-    if test and sheet.test(test).rows:
+        entry = SingleForm(view, *where)
+        take_resent(view.session, lambda _: None)
+    if test and view.test(test).rows:
         entry.show(test)
     else:
         entry.begin()
 
 
-def _is_head(sheet: Sheet, head: dict[str, str]) -> bool:
+def _is_head(view: TableView, head: dict[str, str]) -> bool:
     try:
-        said = {column: checked_cell(sheet.form, column, text) for column, text in head.items()}
+        said = {column: checked_cell(view.form, column, text) for column, text in head.items()}
     except ParameterError:
         return False
-    return said == head and head["tool"] in sheet.desk.described.tools
+    return said == head and head["tool"] in view.session.described.tools
 
 
-def _others(sheet: Sheet, test: str) -> None:
+def _others(view: TableView, test: str) -> None:
     """Links to the series so far, the last ones first."""
-    if sheet.file != "penetration.csv" or not sheet.tests():
+    if view.file != "penetration.csv" or not view.tests():
         return
     heading("Series so far", 3)
     with ui.element("div").classes("acts so-far"):
-        for other in reversed(sheet.tests()[-40:]):
+        for other in reversed(view.tests()[-40:]):
             words = f"{other.name}{' (cancelled)' if other.cancelled else ''}"
-            made = link(words, entering(sheet.desk.id, table=sheet.file, test=other.name), "small")
+            made = link(words, entering(view.session.id, table=view.file, test=other.name), "small")
             if other.name == test:
                 made.props('aria-current="page"')

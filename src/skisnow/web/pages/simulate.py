@@ -10,7 +10,7 @@ from nicegui import app, background_tasks, run, ui
 from ...errors import ParameterError, SkisnowError
 from ...field.store import Journals
 from ...replay.of_file import RUN_FILE
-from ..desk import Desk
+from ..edit_session import EditSession
 from ..fields import button, choice, field, link
 from ..lab_skis import LabSkis
 from ..layout import framed, heading, sentence
@@ -156,7 +156,9 @@ class _Form:
 
 def _snows(lab: Lab) -> dict[str, str]:
     """Campaigns that can give the snow, by kind and id."""
-    entered = {f"entry-{head.id}": Desk(lab, head.id).described.name or head.id for head in Journals(lab.store).list()}
+    entered = {
+        f"entry-{head.id}": EditSession(lab, head.id).described.name or head.id for head in Journals(lab.store).list()
+    }
     return entered | {f"kept-{stored.id}": f"{stored.name} ({stored.id})" for stored in lab.store.list()}
 
 

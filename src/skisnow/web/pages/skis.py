@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 PATH: Final = "/skis"
 TITLE: Final = "Skis"
-ALONG: Final = "Station from the boot (m)"
+ALONG: Final = "Position along the ski (m), boot = 0"
 PANELS: Final = {
     "half_width_mm": "Edge (mm)",
     "base_height_mm": "Base (mm)",

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 FOLDER: Final = "tracks"
 ABOUT: Final = "about.json"
 LARGEST_BYTES: Final = 20_000_000
-"""Of one track (Choice): an hour at 100 points a second as GPX."""
+"""Of one track (modelling assumption): an hour at 100 points a second as GPX."""
 MOST_POINTS: Final = 20_000
 MOST: Final = 200
 LONGEST_WAIT_S: Final = 36_000.0

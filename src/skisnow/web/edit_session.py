@@ -1,4 +1,4 @@
-"""A campaign on the desk: what its journal comes to, and what its tests say at once."""
+"""A campaign being entered: what its journal comes to, and what its tests say at once."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..field import Campaign
     from ..field.problems import Problem
     from ..field.reading.campaign_file import CampaignFile
-    from ..field.store import GrownCampaign, GrownTest, JournalEntry, NewEntry
+    from ..field.store import JournalEntry, NewEntry, ReplayedCampaign, ReplayedTest
     from .settings import Lab
 
 
@@ -32,18 +32,18 @@ class AtOnce:
     marks: dict[str, tuple[str, ...]]
 
 
-class Desk:
+class EditSession:
     """The journal of one campaign as one page sees it; what others wrote comes with `refresh`."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
         self.id = id_
         self._journals = Journals(lab.store)
         self._last = 0
-        self._campaign: GrownCampaign | None = None
+        self._campaign: ReplayedCampaign | None = None
         self.refresh()
 
     @property
-    def campaign(self) -> GrownCampaign:
+    def campaign(self) -> ReplayedCampaign:
         """The campaign as it was at the last look."""
         assert self._campaign is not None  # looked at since the beginning
         return self._campaign
@@ -72,11 +72,11 @@ class Desk:
         self.refresh()
         return written
 
-    def test(self, file: str, name: str) -> GrownTest:
+    def test(self, file: str, name: str) -> ReplayedTest:
         """A test as it was at the last look; an empty one where there is none yet."""
         return self.campaign.test(file, name)
 
-    def tests_of_site(self, site: str) -> list[GrownTest]:
+    def tests_of_site(self, site: str) -> list[ReplayedTest]:
         """Every test made at a site, and the snow data of that site."""
         return [test for test in self.campaign.tests.values() if test.rows and test.rows[0].cells["site"] == site]
 

@@ -15,29 +15,29 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ...field.reading.table_forms import TableForm
-    from ...field.store import GrownTest
-    from ..desk import Desk
+    from ...field.store import ReplayedTest
+    from ..edit_session import EditSession
 
-WHO: Final = "Who enters"
+WHO: Final = "Operator"
 
 
-class Sheet:
+class TableView:
     """Writes about the tests of one table, and says aloud what came of it."""
 
-    def __init__(self, desk: Desk, file: str, who: ui.select | ui.input, status: ui.label) -> None:
-        self.desk = desk
+    def __init__(self, session: EditSession, file: str, who: ui.select | ui.input, status: ui.label) -> None:
+        self.session = session
         self.file = file
         self.form: TableForm = FORMS[file]
         self._who = who
         self._status = status
 
-    def test(self, name: str) -> GrownTest:
+    def test(self, name: str) -> ReplayedTest:
         """A test as it was at the last look."""
-        return self.desk.test(self.file, name)
+        return self.session.test(self.file, name)
 
-    def tests(self) -> list[GrownTest]:
+    def tests(self) -> list[ReplayedTest]:
         """All tests of the table, in the order of entry."""
-        return self.desk.campaign.of_file(self.file)
+        return self.session.campaign.of_file(self.file)
 
     def next_name(self) -> str:
         """The number behind the largest one among the names."""
@@ -63,7 +63,7 @@ class Sheet:
         sent = (entry for test in self.tests() for entry in test.history if once is not None and entry.once == once)
         return next((entry.test for entry in sent), None)
 
-    def correct(self, test: GrownTest, row: int, cells: Mapping[str, str], why: str) -> bool:
+    def correct(self, test: ReplayedTest, row: int, cells: Mapping[str, str], why: str) -> bool:
         """Store a correction of the row that was entered under this sequence."""
         if not why.strip():
             self.say("A correction needs a reason.", "bad")
@@ -79,7 +79,7 @@ class Sheet:
         )
         return self._write(entry, test.last, "Corrected; the first reading is kept.")
 
-    def cancel(self, test: GrownTest, why: str) -> bool:
+    def cancel(self, test: ReplayedTest, why: str) -> bool:
         """Store that a test does not count, and why."""
         if not why.strip():
             self.say("A test is cancelled with a reason.", "bad")
@@ -89,7 +89,7 @@ class Sheet:
         )
         return self._write(entry, test.last, f"{test.name} is cancelled; its readings are kept.")
 
-    def undo(self, test: GrownTest) -> bool:
+    def undo(self, test: ReplayedTest) -> bool:
         """Store that the last entry was not meant."""
         last = test.undoable
         if last is None:
@@ -105,9 +105,9 @@ class Sheet:
 
     def _write(self, entry: NewEntry, seen: int, said: str) -> bool:
         try:
-            self.desk.write_down(entry, seen=seen)
+            self.session.write_down(entry, seen=seen)
         except OvertakenError as error:
-            self.desk.refresh()
+            self.session.refresh()
             self.say(str(error), "bad")
             return False
         except (StoreError, ParameterError) as error:

@@ -1,4 +1,4 @@
-"""A kept campaign on the desk: its files stay as they came in, and what is corrected stands beside them."""
+"""Corrections of an imported campaign: its files stay as they came in, and what is corrected stands beside them."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from ..field.reading import CAMPAIGN_FILES, FilesInMemory
 from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..field.reading.text import UnreadableTextError, decode
 from ..field.store import corrected_files, kept_tables
-from ..field.store.grown import GrownRow, GrownTest
+from ..field.store.grown import ReplayedRow, ReplayedTest
 from ..field.store.journal_entry import JournalEntry
 from ..field.store.kept_tables import cell_key
-from .desk import AtOnce, Desk, said_at_once
+from .edit_session import AtOnce, EditSession, said_at_once
 
 if TYPE_CHECKING:
     from ..field.problems import Problem
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .settings import Lab
 
 
-class KeptDesk(Desk):
+class CorrectionSession(EditSession):
     """A kept campaign as one page sees it."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
@@ -55,13 +55,13 @@ class KeptDesk(Desk):
         self._entries += new
         return new
 
-    def test(self, file: str, name: str) -> GrownTest:
+    def test(self, file: str, name: str) -> ReplayedTest:
         """A test with its cells by line and column as they are now, whether or not it was ever spoken of."""
         corrected = self.campaign.test(file, name)
         if corrected.rows or name not in self.tables[file].tests:
             return corrected
         said = JournalEntry(action="add", file=file, test=name, cells=self.standing(file, name), sequence=0, at="")
-        return GrownTest(file, name, rows=[GrownRow(said)])
+        return ReplayedTest(file, name, rows=[ReplayedRow(said)])
 
     def standing(self, file: str, name: str) -> dict[str, str]:
         """Every cell of a test as the files say it."""

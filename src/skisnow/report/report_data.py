@@ -52,7 +52,7 @@ def texts(rows: Sequence[Json], key: str) -> TextArray:
 
 
 @dataclass(frozen=True)
-class Material:
+class ReportData:
     """An analysis with columns of its *used* experiments in the units that the report prints.
 
     What is computed with comes from the analysis, in SI; what is printed as it stands comes from its results.

@@ -1,0 +1,27 @@
+"""Words that people search for stand on the page of the method that does it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parents[2] / "docs"
+SEARCHED = (
+    ("history", "methods/contact.md"),
+    ("internal variable", "methods/contact.md"),
+    ("return mapping", "methods/contact.md"),
+    ("stick-slip", "methods/contact.md"),
+    ("regularised Coulomb friction", "methods/contact.md"),
+    ("penalty stiffness", "methods/contact.md"),
+    ("Kelvin–Voigt", "methods/dynamics.md"),
+    ("Schur complement", "methods/dynamics.md"),
+    ("Savitzky", "methods/tracks.md"),
+    ("Rosenbrock method", "decisions/time-steps.md"),
+    ("event sourcing", "decisions/lab.md"),
+)
+
+
+@pytest.mark.parametrize(("words", "page"), SEARCHED)
+def test_what_is_searched_for_is_found(words: str, page: str) -> None:
+    assert words in " ".join((DOCS / page).read_text(encoding="utf-8").split())
