@@ -51,10 +51,12 @@ FINE: Final[Mapping[str, object]] = MappingProxyType(
         "solver.groove_tolerance": 3e-6,
     }
 )
-"""What a reference has: twice the elements, half the line spacing, a thirtieth of both tolerances."""
+"""What a reference has: twice the elements, half the line spacing, a hundredth of the tolerance of a step and a
+thirtieth of the groove's."""
 SOFT: Final = {"snow.H_V_N_per_mm3": 0.04}
 FIRM: Final = {"snow.H_V_N_per_mm3": 1.0}
 SKID: Final = FIRM | {"snow.S_f_N_per_mm2": 0.25}
+SOFT_EDGE: Final = {"snow.shear_displacement_mm": 0.5}
 STIFF_EDGE: Final = {"snow.shear_displacement_mm": 0.05}
 
 
@@ -67,6 +69,8 @@ DEFAULT: Final = _case("default", "50", {})
 CASES: Final = (
     FAST,
     DEFAULT,
+    _case("fast, u_y = 0.5 mm", "100", SOFT_EDGE, method="fast"),
+    _case("default, u_y = 0.5 mm", "50", SOFT_EDGE),
     _case("fast, u_y = 0.05 mm", "100", STIFF_EDGE, method="fast"),
     _case("default, u_y = 0.05 mm", "50", STIFF_EDGE),
     _case("default, H_V = 0.04 N/mm³", "40", SOFT),

@@ -248,7 +248,7 @@ def test_marks_come_by_experiment_and_say_what_follows() -> None:
         ("shear.csv", 2, "below_resolution", "0"),
         ("shear.csv", 3, "cancelled", "rain"),
     ]
-    assert ["no part" in each.action for each in problems] == [True, True, False, True]
+    assert ["not included" in each.action for each in problems] == [True, True, False, True]
 
 
 def test_a_mark_that_was_added_is_told_at_the_largest_load() -> None:

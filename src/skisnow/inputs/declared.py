@@ -20,6 +20,7 @@ skisnow.errors.ParameterError: air.density_kg_per_m3 is -1.0; allowed is 0 or mo
 
 from __future__ import annotations
 
+import textwrap
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
@@ -174,6 +175,10 @@ def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
     return found
 
 
+_WIDEST: Final = 160
+"""Characters of a line of `declared_text`."""
+
+
 def declared_text(thing: Any) -> str:
     """A dataclass by the names of its quantities, which tell the units: what its ``__repr__`` gives.
 
@@ -186,8 +191,10 @@ def declared_text(thing: Any) -> str:
     <Step: step_ms = 0.5>
     """
     told = ((name.rpartition(".")[2], value) for name, value in values_of(thing).items() if value is not None)
-    values = ", ".join(f"{name} = {_in_short(value)}" for name, value in told)
-    return f"<{type(thing).__name__}: {values}>"
+    glue = "\xa0"  # a name stays beside its value
+    values = ", ".join(f"{name} = {_in_short(value)}".replace(" ", glue) for name, value in told)
+    lines = textwrap.wrap(f"<{type(thing).__name__}: {values}>", _WIDEST, subsequent_indent="    ")
+    return "\n".join(lines).replace(glue, " ")
 
 
 def _in_short(value: Any) -> str:

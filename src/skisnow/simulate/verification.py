@@ -31,7 +31,8 @@ NUDGED: Final = (
 NUDGE: Final = 1e-3
 """Share by which each of them is changed, up and down."""
 NEAR: Final = 5.0
-"""Times the share of the run by which its end may move for the same share of an input (modelling assumption: carves move by once)."""
+"""Times the share of the run by which its end may move for the same share of an input (modelling assumption: carves
+move by once)."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)

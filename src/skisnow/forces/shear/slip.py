@@ -10,7 +10,7 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 RESIDUAL_RATIO: Final = 1.0
-"""Strength after slip over that before it (modelling assumption: the paper measured where shearing starts, and no slip)."""
+"""Strength after slip over that before it (modelling assumption: the paper measured where shearing starts)."""
 SLIP_WEAKENING: Final = 1e-3
 """Slip (m) over which it is reached (modelling assumption)."""
 
