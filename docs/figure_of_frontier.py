@@ -26,6 +26,8 @@ PANELS: Final = {
     "snow.shear_displacement_mm": "shear displacement (mm)",
 }
 MARKS: Final = "osD^v"
+EDGE: Final = {"default": "black", "fast": "grey"}
+TICKS: Final = (0.3, 0.5, 1.0, 2.0)
 
 
 def points(path: Path) -> list[dict[str, str]]:
@@ -56,12 +58,15 @@ def _panel(axes: Axes, rows: list[dict[str, str]], key: str) -> None:
     for mark, group in zip(MARKS, groups, strict=False):
         of = [row for row in rows if row["method" if of_edge else "snow"] == group]
         x, y = [float(row["cpu_s"]) for row in of], [float(row["end_off_mm"]) for row in of]
-        (line,) = axes.plot(x, y, marker=mark, markersize=3, linewidth=0.9, label=group)
+        (line,) = axes.plot(x, y, marker=mark, markersize=3, linewidth=0.9, label=group,
+                             color=EDGE.get(group))  # fmt: skip
         for row, a, b in zip(of, x, y, strict=True):
             if row is of[0] or row is of[-1]:
                 axes.annotate(f"{float(row['value']):g}", (a, b), (3, 3), textcoords="offset points", fontsize=5.5,
                               color=line.get_color())  # fmt: skip
     axes.set(xscale="log", yscale="log")
+    axes.set_xticks(TICKS, labels=[f"{tick:g}" for tick in TICKS])
+    axes.minorticks_off()
 
 
 def main() -> None:

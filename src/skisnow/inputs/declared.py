@@ -20,8 +20,8 @@ skisnow.errors.ParameterError: air.density_kg_per_m3 is -1.0; allowed is 0 or mo
 
 from __future__ import annotations
 
-import textwrap
 import sys
+import textwrap
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
 from types import NoneType, UnionType
