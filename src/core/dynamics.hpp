@@ -11,10 +11,10 @@ namespace skisnow {
 struct StepRule {
   double first = 1e-4;  // step (s), with `fixed` every step
   bool fixed = false;
-  double tolerance = 1e-6;                  // error of place (m) of one step, by its own estimate
+  double tolerance = 1e-6;                 // error of place (m) of one step, by its own estimate
   double shortest = 1e-7, longest = 6e-3;  // (s)
-  double closeness = 0.03;                  // share of a step's own error to which Newton's method solves it
-  int keep = 8;                             // steps over which the matrix may be kept
+  double closeness = 0.03;                 // share of a step's own error to which Newton's method solves it
+  int keep = 8;                            // steps over which the matrix may be kept
 };
 
 enum class Advance { REACHED = 0, STEP_TOO_SMALL = 1, NOT_FINITE = 2, PAUSED = 3 };
