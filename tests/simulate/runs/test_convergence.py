@@ -39,13 +39,13 @@ def test_carving(hardness: float, strength: float) -> None:
     assert min(found.values()) > 0.0  # the choice reached the solver
 
 
-HALF_OF_THE_SPACING = pytest.mark.xfail(strict=True, reason="lines half as far apart move the end by 2.5 cm")
+TREMBLES = pytest.mark.xfail(strict=True, reason="a finer choice moves the end of a skid on ice by 5.7 cm")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("hardness", "strength"),
-    [pytest.param(*each, marks=[HALF_OF_THE_SPACING] if each == (1.0, 0.25) else []) for each in SKIDS],
+    [pytest.param(*each, marks=[TREMBLES] if each == (90.0, 0.3) else []) for each in SKIDS],
 )
 def test_skidding(hardness: float, strength: float) -> None:
     """An edge that gives way by half a millimetre; nearer to the limit a skid hangs on its last decimetres."""
