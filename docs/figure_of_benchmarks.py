@@ -41,8 +41,11 @@ def rows(text: str) -> Iterator[Measured]:
 
 
 def _of_table(head: list[str], body: list[list[str]], goal: int) -> Iterator[Measured]:
+    """The value is in the column that the goal's heading names, as "to reach (fast)", else in the second."""
+    named = re.search(r"\((\w+)\)$", head[goal])
+    column = head.index(named[1]) if named and named[1] in head else 1
     for row in body:
-        value, aim = _amount(row[1]), _amount(row[goal])
+        value, aim = _amount(row[column]), _amount(row[goal])
         if value is None or aim is None:
             continue
         speed = head[1] in SPEEDS or row[0].startswith(SPEEDS)

@@ -45,6 +45,9 @@ def test_chart_of_the_benchmarks_has_every_row_with_a_goal() -> None:
     head = "| what | time | goal |\n| --- | --- | --- |\n"
     head += "| slow | 20 ms | 10 ms |\n| quick | 0.5 s | 1 s |\n| free | 3 s | |\n"
     speed = "\n| run | times real time | to reach |\n| --- | --- | --- |\n| default | 50 | 100 on 2 cores |\n"
-    found = [(row.what, row.share) for row in chart.rows(head + speed)]
-    assert found == [("slow", pytest.approx(2.0)), ("quick", pytest.approx(0.5)), ("turn: default", pytest.approx(2.0))]
+    named = "\n| 64 runs | default | fast | to reach (fast) |\n| --- | --- | --- | --- |\n"
+    named += "| simulated seconds per second | 10 | 40 | 80 |\n"
+    found = {row.what: row.share for row in chart.rows(head + speed + named)}
+    shares = {"slow": 2.0, "quick": 0.5, "turn: default": 2.0, "simulated seconds per second": 2.0}
+    assert found == pytest.approx(shares)
     assert len(list(chart.rows(text_of("benchmarks.md")))) > 40
