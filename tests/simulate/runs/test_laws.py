@@ -10,6 +10,7 @@ import pytest
 
 from skisnow import scenario, simulate
 from skisnow.contact import Laws
+from skisnow.errors import ParameterError
 from skisnow.forces.friction import FrictionLaw, WaterFilmFriction
 from skisnow.forces.penetration import HypoplasticPoint, MeanPressurePoint, PointLaw, VolumeWithAnglePoint
 from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear
@@ -83,3 +84,9 @@ def test_other_laws_run_in_a_turn(laws: Laws) -> None:
     assert run.outcome == "finished"
     assert not run.has_residual_above(0.02)
     assert 1e-4 < np.linalg.norm(run.place[-1] - usual.place[-1]) < 0.5
+
+
+def test_a_law_that_gives_no_strength_ends_the_run_with_its_name() -> None:
+    """A wild pose of a step that is tried does not (the machining above meets one)."""
+    with pytest.raises(ParameterError, match=r"MachiningShear.*no finite strength at an edge angle of"):
+        carve(0.5, Laws(shear=MachiningShear(1e5, 1.0)))
