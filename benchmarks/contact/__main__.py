@@ -107,7 +107,7 @@ def _built(folder: Path, literal: Literal, value: str) -> Path:
 
 
 def _other(package: Path) -> tuple[dict[str, Answer], dict[str, End]]:
-    """The answers and the ends of turns of another core, in a process of its own, which knows of no editable installation."""
+    """The answers and the ends of turns of another core, in a process that knows of no editable installation."""
     paths = os.pathsep.join([str(package), str(ROOT), str(Path(np.__file__).parents[1])])
     command = [sys.executable, "-S", "-m", "benchmarks.contact", "--answers"]
     said = subprocess.run(
@@ -130,8 +130,8 @@ def main() -> None:
     base = all_answers({})
     if options.answers:
         lists = {name: each.as_lists() for name, each in base.items()}
-        ends = {name: [each.place, each.looks] for name, each in all_ends().items()}
-        print(json.dumps({"core": core.__file__, "ends": ends, **lists}))
+        turns = {name: [each.place, each.looks] for name, each in all_ends().items()}
+        print(json.dumps({"core": core.__file__, "ends": turns, **lists}))
         return
     print(f"| constant | as it is | varied to | {' | '.join(base)} |\n| --- | --- | --- |{' --- |' * len(base)}")
     for name, standard, values in KEYS:
