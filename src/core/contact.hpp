@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bearing.hpp"
+#include "rate.hpp"
 #include "tangent.hpp"
 
 namespace skisnow {
@@ -23,9 +24,10 @@ struct Reaction {
   std::vector<double> beam;
 };
 
-// What the snow does to a runner (W): across the edge, along it by friction, and all else of the force on the base.
+// What the snow does to a runner (W): across the edge, along it by friction, and all else of the force on the base; and
+// what of the last the snow's dashpot c takes.
 struct ContactPower {
-  double shear, friction, normal;
+  double shear, friction, normal, damping;
 };
 
 // Laws from outside: they may rewrite EDGE_STRENGTH, EDGE_THRUST and FRICTION of a runner's sections before forces are
@@ -74,13 +76,15 @@ class SnowContact {
   double groove_energy() const;   // lost in grooves, those under the runners included (J)
   double held_energy() const;     // in the displaced shear of the edges at the last situation looked at (J)
   double elastic_energy() const;  // in the snow at the last situation looked at (J)
+  double delayed_energy() const { return state_.delayed_energy; }  // that its delayed depth has taken so far (J)
 
   // All that the contact remembers, but for the tracks of others.
   struct State {
     std::vector<GrooveLines> lines;
     std::vector<Pose> accepted;  // empty before the first update
     std::vector<int> strips;
-    Archive::Mark tracks{0, 0, 0.0};
+    double time = 0.0, delayed_energy = 0.0;  // (s); (J)
+    Archive::Mark tracks{0, 0, 0.0, 0.0};
   };
   State state() const;
   void restore(const State& state);
@@ -95,6 +99,8 @@ class SnowContact {
   std::vector<Wrench> wrenches_;
   SectionDifferences differences_;
   std::shared_ptr<Bearing> bearing_;  // null: the core's own law
+  std::vector<RatedBase> rated_;      // of each runner, where the snow takes time
+  double dt_ = 0.0;                   // since the last accepted pose, of what is looked at (s)
   std::vector<std::int64_t> needed_;  // lines, the foremost first
   struct Before {                     // of one runner, what `begin` has changed
     std::int64_t first, end;
@@ -108,6 +114,7 @@ class SnowContact {
   void differ(int k, double sense);
   Reaction reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion);
   void settle_history(int k, const Pose& pose);
+  void pass_time(double dt);
   void lay_anew(int k, const Pose& pose);
   int parts(int k, const Situation& at) const;
   void march(int k, GrooveLines& lines, const Situation& to);

@@ -67,6 +67,7 @@ GrooveLines::GrooveLines(const Runner& runner, double spacing) : spacing_(spacin
   values.resize(size);
   for (Column* each : {&place, &depth, &slope}) each->assign(std::size_t(size) * KNOTS, 0.0);
   knots.assign(std::size_t(size), 0);
+  delayed.resize(std::size_t(size));
   filled_.assign(std::size_t(size / BLOCK), 1);
   recalled_energy.assign(std::size_t(size), 0.0);
   for (int slot = 0; slot < size; slot++) {  // lanes beside the lines that are laid must hold numbers
@@ -159,7 +160,9 @@ void GrooveLines::lay(std::int64_t number, const Pose& pose, double station, con
   values[EXCESS][at] = (snow.unloading_ratio - 1.0) * hardness;
   values[STRENGTH][at] = snow.strength.at(origin[0], origin[1]).value;
   Ground older;
-  snow.archive.recall(origin, lateral(at), -REACH, REACH, older);
+  DelayedRecall springing{snow.rate.retardation, {snow.rate.spacing}};
+  snow.archive.recall(origin, lateral(at), -REACH, REACH, older, snow.rate.is_delayed() ? &springing : nullptr);
+  delayed[std::size_t(at)] = std::move(springing.ground);
   older.simplify(0.0, KNOTS);
   keep(at, older);
   recalled_energy[std::size_t(at)] = groove_energy(at);
@@ -181,9 +184,11 @@ void GrooveLines::leave(std::int64_t number, Archive* archive, int strip) {
   const int at = slot(number);
   if (archive == nullptr) return;
   const Ground left = ground(at);
-  Track track{origin(at), get(*this, AHEAD_X, at), lateral(at), strip, number, left.count, {}, {}};
+  Track track{origin(at), get(*this, AHEAD_X, at), lateral(at), strip, number, left.count, {}, {}, {}, archive->time};
   std::copy_n(left.place, left.count, track.place);
   std::copy_n(left.depth, left.count, track.depth);
+  const DelayedGround& springing = delayed[std::size_t(at)];
+  for (int j = 0; j < left.count && !springing.empty(); j++) track.delayed[j] = springing.depth_at(left.place[j]);
   archive->add(track, groove_energy(at) - recalled_energy[std::size_t(at)]);
 }
 

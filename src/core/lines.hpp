@@ -8,6 +8,7 @@
 
 #include "archive.hpp"
 #include "columns.hpp"
+#include "delayed.hpp"
 #include "groove.hpp"
 #include "lanes.hpp"
 #include "runner.hpp"
@@ -50,6 +51,7 @@ class GrooveLines {
   int tile(int slot, int knot) const { return ((slot / BLOCK) * KNOTS + knot) * BLOCK + slot % BLOCK; }
   Column place, depth, slope;
   std::vector<std::uint8_t> knots;
+  std::vector<DelayedGround> delayed;  // (capacity,), empty where the snow has none
 
   Vector3 origin(int slot) const;
   Vector3 lateral(int slot) const;  // unit vector along the line, to the left
