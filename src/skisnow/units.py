@@ -43,6 +43,7 @@ class Unit(NamedTuple):
 _NONE: Final = Unit("", 1.0)
 _BY_ENDING: Final = {
     "N_per_mm3": Unit("N/mm³", N_PER_MM3),
+    "N_s_per_mm3": Unit("N s/mm³", N_PER_MM3),
     "N_per_mm2": Unit("N/mm²", N_PER_MM2),
     "N_per_mm": Unit("N/mm", N_PER_MM),
     "kg_per_m3": Unit("kg/m³", 1.0),

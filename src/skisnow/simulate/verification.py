@@ -70,15 +70,18 @@ def refined_solvers(run: Run) -> dict[str, Solver]:
     """Solvers that are finer in one choice each, by the scenario's key.
 
     A run with control of the error gets half the tolerance, one with a fixed step half the step; twice the elements,
-    half the spacing of the snow's lines, and half the tolerance of the groove.
+    half the spacing of the snow's lines, and half the tolerance of the groove; where the snow has a delayed depth, half
+    the spacing of its places.
     """
     solver = run.scenario.solver
+    nearer = replace(solver, delayed_spacing=solver.delayed_spacing / FINER)
     shorter, stricter = replace(solver, step=solver.step / FINER), replace(solver, tolerance=solver.tolerance / FINER)
     return {
         **({"solver.step_ms": shorter} if solver.fixed else {"solver.tolerance_mm": stricter}),
         "solver.elements": replace(solver, elements=round(run.numbers["elements"] * FINER)),
         "solver.line_spacing_mm": replace(solver, line_spacing=run.numbers["line_spacing_m"] / FINER),
         "solver.groove_tolerance": replace(solver, groove_tolerance=solver.groove_tolerance / FINER),
+        **({"solver.delayed_spacing_mm": nearer} if run.scenario.contact.delayed_share else {}),
     }
 
 
