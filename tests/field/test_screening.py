@@ -27,6 +27,8 @@ CODES = [
     "zero_depth",
     "beyond_tool",
     "below_resolution",
+    "unloading_not_falling",
+    "unloading_sinks",
 ]
 
 
@@ -98,7 +100,7 @@ def marked(campaign: Campaign, index: int = 0, geometry: GeometryForm = "extende
 
 
 def test_the_marks_and_their_default() -> None:
-    assert list(MARKS) == [*CODES, "layered", "hardness_outlier"]
+    assert sorted(MARKS) == sorted([*CODES, "layered", "rebound_unresolved", "hardness_outlier"])
     assert [code for code, mark in MARKS.items() if mark.excludes_by_default] == CODES[:5]
     assert all(mark.code == code and mark.sentence.endswith(".") for code, mark in MARKS.items())
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from skisnow.field.store import Journals, Store, grown
+from skisnow.field.store.grown_files import campaign_files
 
 from .conftest import Served, fill, has_text, ready
 from .test_day import correct_the_typing_error, create, enter_series, next_series
@@ -46,6 +47,38 @@ def test_the_curve_follows_the_readings(page: Page, served: Served) -> None:
     left, top = zip(*(map(float, each.removesuffix("h0").split()) for each in own.split("M")[1:]), strict=True)
     assert sorted(left) == list(left)  # deeper and deeper
     assert sorted(top, reverse=True) == list(top)  # under more and more load, which counts upwards
+
+
+def test_discs_that_are_taken_off_have_fields_of_their_own(page: Page, served: Served) -> None:
+    """They come behind the loading, are told from it everywhere, and give k_u/H_V beside the same H_V."""
+    create(page, served)
+    enter_series(page, "1")
+    correct_the_typing_error(page)
+    hardness = page.locator(".beside .value")
+    page.wait_for_function("document.querySelector('.beside .value').innerText.includes('H_V = ')")
+    before = hardness.inner_text()
+    assert "k_u" not in before
+    page.locator("summary", has_text="Discs taken off one by one").press("Enter")
+    ready(page)
+    page.get_by_label("Depth back under 60 N (mm)").focus()
+    page.keyboard.type("2.95\n2.89\n2,8\n")
+    page.get_by_text("Stored: 2.8 mm under 20 N on the way back.").wait_for()
+    page.wait_for_function("document.querySelector('.beside .value').innerText.includes('k_u/H_V = ')")
+    assert hardness.inner_text().startswith(before)
+    page.reload()
+    has_text(page.get_by_label("Depth back under 20 N (mm)"), "2.8")
+    has_text(page.get_by_label("Depth under 20 N (mm)"), "1.5")
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        campaign = grown(Journals(store).entries(head.id))
+    rows = [row.split(",") for row in campaign_files(campaign)["penetration.csv"].splitlines()]
+    load, depth, branch = (rows[0].index(name) for name in ("load_N", "depth_mm", "branch"))
+    assert [(row[load], row[depth], row[branch]) for row in rows[-3:]] == [
+        ("60", "2.95", "unloading"),
+        ("40", "2.89", "unloading"),
+        ("20", "2.8", "unloading"),
+    ]
+    assert [row[branch] for row in rows[1:-3]] == [""] * 4
 
 
 def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .screening import Screened
     from .shear_stress import ShearStress
     from .sites import SiteMean
+    from .unloading import SiteUnloading, Unloading
 
 FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
@@ -152,9 +153,10 @@ def _penetration(analysis: Analysis) -> Json:
             "warnings": [],
             "seating": [],
             "errors_in_depth": {"models": _no_models(), "experiments": []},
+            "unloading": [],
         }
     return {
-        "experiments": penetration_experiments(tests, found.screened, found.hardness),
+        "experiments": penetration_experiments(tests, found.screened, found.hardness, found.unloading),
         "models": _models(found.table),
         "tests": [_nested(row) for row in found.nested],
         "selected": _selected(found),
@@ -164,13 +166,14 @@ def _penetration(analysis: Analysis) -> Json:
             "models": _models(found.errors_in_depth),
             "experiments": _fitted_hardness(tests.experiment, found),
         },
+        "unloading": [_site_unloading(row) for row in found.site_unloading],
     }
 
 
 def penetration_experiments(
-    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness]
+    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness], unloading: Unloading
 ) -> list[Json]:
-    """The rows ``penetration.experiments``: of each series what it was, its marks, its hardness by each definition."""
+    """The rows ``penetration.experiments``: of each series what it was, its marks, its hardness, its unloading."""
     columns: dict[str, list[Any]] = {
         "experiment": list(tests.experiment),
         "site": list(tests.site),
@@ -184,7 +187,31 @@ def penetration_experiments(
         columns[definition.key] = _numbers(hardness[symbol].value / definition.si)
     for symbol, definition in DEFINITIONS.items():
         columns[f"{symbol}_interval_{definition.unit_key}"] = _numbers(hardness[symbol].interval / definition.si)
-    return _rows(columns)
+    return _rows(columns | _unloading(unloading))
+
+
+def _unloading(found: Unloading) -> dict[str, list[Any]]:
+    return {
+        "n_unloading": found.n_readings.tolist(),
+        "unloading_ratio": _numbers(found.unloading_ratio),
+        "unloading_ratio_interval": _numbers(found.unloading_ratio_interval),
+        "rebound_ratio": _numbers(found.rebound_ratio),
+        "rebound_ratio_interval": _numbers(found.rebound_ratio_interval),
+        "k_u_N_per_mm3": _numbers(found.unloading_stiffness / N_PER_MM3),
+        "k_u_interval_N_per_mm3": _numbers(found.unloading_stiffness_interval / N_PER_MM3),
+    }
+
+
+def _site_unloading(row: SiteUnloading) -> Json:
+    return {
+        "site": row.site,
+        "n": row.n,
+        "unloading_ratio": row.ratio,
+        "unloading_ratio_interval": [row.low, row.high],
+        "rebound_ratio_interval": [row.low_rebound, row.high_rebound],
+        "k_u_N_per_mm3": row.stiffness / N_PER_MM3,
+        "k_u_interval_N_per_mm3": [row.stiffness_low / N_PER_MM3, row.stiffness_high / N_PER_MM3],
+    }
 
 
 def _degrees(angle: FloatArray) -> list[float]:

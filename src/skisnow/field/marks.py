@@ -47,6 +47,19 @@ _ALL: Final = (
         False,
     ),
     Mark(
+        "unloading_not_falling",
+        "A load of the unloading is not below the one before it, so that no unloading ratio follows.",
+        False,
+    ),
+    Mark(
+        "unloading_sinks", "The tool went deeper while the discs were taken off: the snow was still giving way.", False
+    ),
+    Mark(
+        "rebound_unresolved",
+        "The tool came back by too little to tell how steep the unloading is: the ratio is only known from below.",
+        False,
+    ),
+    Mark(
         "hardness_outlier",
         "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's median.",
         False,
@@ -55,5 +68,5 @@ _ALL: Final = (
 MARKS: Final[Mapping[str, Mark]] = MappingProxyType({mark.code: mark for mark in _ALL})
 """Every mark by its code, in the order in which they are listed."""
 
-NEED_HARDNESS: Final = frozenset({"layered", "hardness_outlier"})
+NEED_HARDNESS: Final = frozenset({"layered", "rebound_unresolved", "hardness_outlier"})
 """Marks that are set where hardness is estimated."""

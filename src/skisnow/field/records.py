@@ -56,8 +56,42 @@ class PenetrationSeries(Shown):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
+class UnloadingReadings(Shown):
+    """Readings while the discs were taken off, series after series, each in the order in which they were read.
+
+    Attributes
+    ----------
+    first
+        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
+    load, penetration_depth
+        Load that is left F (N) and depth e (m), one per reading.
+    row
+        Line of the file of each reading.
+    """
+
+    first: IntArray
+    load: FloatArray
+    penetration_depth: FloatArray
+    row: IntArray
+
+    def _facts(self) -> Facts:
+        series = int(np.count_nonzero(np.diff(self.first)))
+        return Facts(f"of {series} experiments, {len(self.load)} readings, loads {ends(self.load, 'N')}")
+
+    @property
+    def count(self) -> IntArray:
+        """How many readings each experiment has."""
+        return np.diff(self.first)
+
+    @property
+    def series_of_reading(self) -> IntArray:
+        """Index of the experiment that each reading belongs to."""
+        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int64), self.count)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
 class PenetrationTests(Shown):
-    """All m penetration experiments of a campaign, n readings in the order of the file.
+    """All m penetration experiments of a campaign, n readings under rising loads in the order of the file.
 
     Attributes
     ----------
@@ -78,6 +112,8 @@ class PenetrationTests(Shown):
         Line of the file of each reading; the header is line 1.
     further
         Every further column of the file as text, one cell per reading: kept, not interpreted.
+    unloading
+        Readings while the discs were taken off, which no estimate of hardness knows of; None where there are none.
     """
 
     experiment: tuple[str, ...]
@@ -93,6 +129,7 @@ class PenetrationTests(Shown):
     penetration_depth: FloatArray
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    unloading: UnloadingReadings | None = None
 
     def __len__(self) -> int:
         """Count the experiments."""

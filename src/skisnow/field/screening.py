@@ -12,6 +12,7 @@ import numpy as np
 from .largest_load import greatest_depths, reading_at_largest_load
 from .mark_problems import mark_problems
 from .marks import FEWEST_LOADS, MARKS, NEED_HARDNESS, RESOLUTIONS, Mark
+from .wrong_unloading import wrong_unloading
 
 if TYPE_CHECKING:
     from ..geometry import GeometryForm
@@ -57,7 +58,15 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
         "zero_depth": largest_depth == 0,
         "beyond_tool": deepest > greatest_depths(campaign, tests, geometry) * (1 + _ROUNDING),
         "below_resolution": _is_below_resolution(largest_depth, campaign.gauge_resolution),
+        **{code: _marked_series(tests, bad) for code, bad in wrong_unloading(campaign, tests).items()},
     }
+
+
+def _marked_series(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
+    found = np.zeros(len(tests), dtype=np.bool_)
+    if tests.unloading is not None:
+        found[tests.unloading.series_of_reading[bad]] = True
+    return found
 
 
 def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:

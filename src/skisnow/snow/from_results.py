@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..given import GivenError, read_json
-from .mean_snow import known_sites, mean_snow, site_in_words, site_named
-from .properties import SnowProperties
+from .mean_snow import known_sites, mean_snow, site_in_words, site_named, with_measured_unloading
+from .properties import Interval, SnowProperties
 
 
 def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowProperties:
@@ -31,7 +31,8 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     Returns
     -------
     SnowProperties
-        With intervals where there are two experiments or more, without an unloading ratio.
+        With intervals where there are two experiments or more, and with k_u/H_V where the unloading readings say both
+        ends of its interval.
 
     Raises
     ------
@@ -63,7 +64,28 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
         sites = sorted({str(row["site"]) for row in results["penetration"]["experiments"] if row["used"]})
         raise ParameterError(f"{path} has no used penetration experiment{known_sites(site, sites)}")
     source = f"{path}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
-    return mean_snow(hardness, stress, source=source, where=str(path))
+    snow = mean_snow(hardness, stress, source=source, where=str(path))
+    ratio, interval = _unloading(results, site, path)
+    return snow if ratio is None or interval is None else with_measured_unloading(snow, ratio, interval)
+
+
+def _unloading(results: dict[str, Any], site: str | None, path: str | Path) -> tuple[float | None, Interval | None]:
+    """k_u/H_V of the site and its interval; files of earlier versions have none."""
+    try:
+        rows = [row for row in results["penetration"].get("unloading", ()) if row["site"] == site]
+        ratio, interval = (
+            (rows[0][key] for key in ("unloading_ratio", "unloading_ratio_interval")) if rows else (None, None)
+        )
+        return (
+            (None, None)
+            if ratio is None or interval is None
+            else (float(ratio), (float(interval[0]), float(interval[1])))
+        )
+    except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
+        raise ParameterError(
+            f"{path}: penetration.unloading is not a list with site, unloading_ratio and its interval ({error!r}); "
+            "give the results.json that `skisnow analyse` wrote"
+        ) from error
 
 
 def _results(path: Path) -> dict[str, Any]:

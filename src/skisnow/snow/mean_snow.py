@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +24,6 @@ def mean_snow(
     *,
     source: str,
     where: str,
-    unloading_ratio: float | None = None,
 ) -> SnowProperties:
     """The snow of experiments: the geometric mean of H_V, one value or more, and the mean of S_f, which may be missing.
 
@@ -38,8 +38,6 @@ def mean_snow(
         Where the numbers come from, for `SnowProperties.source`.
     where
         The same for messages.
-    unloading_ratio
-        k_u/H_V, where it is known.
 
     Raises
     ------
@@ -61,8 +59,13 @@ def mean_snow(
             H_V_interval and (math.exp(H_V_interval[0]), math.exp(H_V_interval[1])), N_PER_MM3
         ),
         failure_shear_stress_interval=_scaled(S_f_interval, N_PER_MM2),
-        unloading_ratio=unloading_ratio,
     )
+
+
+def with_measured_unloading(snow: SnowProperties, ratio: float, interval: Interval) -> SnowProperties:
+    """The snow with its k_u/H_V and its 95 % interval, cut at 1: below, unloading would give energy away."""
+    low, high = (max(1.0, end) for end in interval)
+    return replace(snow, unloading_ratio=max(1.0, ratio), unloading_ratio_interval=(low, high))
 
 
 def site_named(site: str | None, sites: Iterable[str]) -> str | None:

@@ -34,6 +34,8 @@ class SnowProperties(Shown):
         experiments or the source gives none.
     unloading_ratio
         k_u/H_V ≥ 1 where it is known, which `Scenario.with_` then takes over; 1 is elastic snow, which springs back.
+    unloading_ratio_interval
+        95 % interval of it where it was measured.
 
     See Also
     --------
@@ -87,6 +89,7 @@ class SnowProperties(Shown):
     snow_hardness_interval: Interval | None = None
     failure_shear_stress_interval: Interval | None = None
     unloading_ratio: float | None = None
+    unloading_ratio_interval: Interval | None = None
 
     def __post_init__(self) -> None:
         require_declared(self)
@@ -98,7 +101,8 @@ class SnowProperties(Shown):
         """Both values with their intervals, the unloading ratio where it is known, and the source."""
         hardness = _told(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")
         stress = _told(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")
-        ratio = "" if self.unloading_ratio is None else f", k_u/H_V {amount(self.unloading_ratio)}"
+        ratio = _told(self.unloading_ratio, self.unloading_ratio_interval, 1.0, "")
+        ratio = "" if self.unloading_ratio is None else f", k_u/H_V {ratio}"
         return f"H_V {hardness}, S_f {stress}{ratio}: {self.source}"
 
     def _facts(self) -> Facts:

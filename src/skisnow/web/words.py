@@ -18,6 +18,7 @@ LABELS: Final = {
     "edge_angle_deg": "Edge angle (°)",
     "load_N": "Load (N)",
     "depth_mm": "Depth (mm)",
+    "branch": "Branch (loading or unloading)",
     "lever_arm_mm": "Lever arm (mm)",
     "moment_Nm": "Moment (N m)",
     "snow_density_kg_per_m3": "Density (kg/m³)",
@@ -44,6 +45,13 @@ def label(column: str) -> str:
 def hardness_words(row: dict[str, Any]) -> str:
     """H_V with its interval, from a row of ``penetration.experiments``."""
     return _estimate(row["H_V_N_per_mm3"], row["H_V_interval_N_per_mm3"], "N/mm³")
+
+
+def unloading_words(row: dict[str, Any]) -> str:
+    """k_u/H_V with its interval, from a row of ``penetration.experiments``; nothing where none was measured."""
+    if not row["n_unloading"]:
+        return ""
+    return f"k_u/H_V = {_estimate(row['unloading_ratio'], row['unloading_ratio_interval'], '').replace(' ,', ',')}"
 
 
 def stress_words(row: dict[str, Any]) -> str:

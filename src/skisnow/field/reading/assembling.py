@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...units import DEGREE, MM
-from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
+from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, UnloadingReadings
+from .branches import is_unloading
 from .experiments import Blocks
+from .table_forms import BRANCH
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ..records import BoolArray
     from .columns import NameColumn
     from .table import Table
 
@@ -19,6 +25,9 @@ def penetration_tests(table: Table) -> PenetrationTests:
     """Make the penetration experiments; their rows stand together and agree."""
     blocks = Blocks.of_runs(table.names["experiment"])
     spot = table.names["spot"]
+    taken_off = is_unloading(table.names[BRANCH])
+    is_unloaded = bool(taken_off.any())
+    laid_on = ~taken_off if is_unloaded else slice(None)
     return PenetrationTests(
         experiment=_at(table.names["experiment"], blocks.start),
         site=_at(table.names["site"], blocks.start),
@@ -28,11 +37,25 @@ def penetration_tests(table: Table) -> PenetrationTests:
         snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
         drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
         cancelled=blocks.texts(table.names["status"]),
-        first=blocks.first,
-        load=table.numbers["load_N"],
-        penetration_depth=table.numbers["depth_mm"] * MM,
-        row=table.row,
-        further=table.further,
+        first=blocks.first_of(~taken_off),
+        load=table.numbers["load_N"][laid_on],
+        penetration_depth=table.numbers["depth_mm"][laid_on] * MM,
+        row=table.row[laid_on],
+        further=_of_rows(table.further, ~taken_off) if is_unloaded else table.further,
+        unloading=_unloading(table, blocks, taken_off) if is_unloaded else None,
+    )
+
+
+def _of_rows(further: Mapping[str, tuple[str, ...]], chosen: BoolArray) -> dict[str, tuple[str, ...]]:
+    return {name: tuple(compress(cells, chosen.tolist())) for name, cells in further.items()}
+
+
+def _unloading(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingReadings:
+    return UnloadingReadings(
+        first=blocks.first_of(taken_off),
+        load=table.numbers["load_N"][taken_off],
+        penetration_depth=table.numbers["depth_mm"][taken_off] * MM,
+        row=table.row[taken_off],
     )
 
 

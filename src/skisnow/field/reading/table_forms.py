@@ -131,6 +131,13 @@ class CorrectionRow:
     row: Annotated[float, Quantity("row", "line of the file", lowest=1.0)]
 
 
+BRANCH: Final = "branch"
+"""Column that tells whether a disc was laid on or taken off."""
+LOADING: Final = "loading"
+UNLOADING: Final = "unloading"
+BRANCHES: Final = ("", LOADING, UNLOADING)
+"""What may stand in it; a blank cell is loading."""
+
 _REMARKS: Final = ("time", "air_temperature_C", "snow_temperature_C", "snow_type", "remark")
 
 PENETRATION: Final = TableForm(
@@ -138,7 +145,7 @@ PENETRATION: Final = TableForm(
     key="experiment",
     names=("experiment", "site", "tool"),
     numbers=own_quantities(PenetrationRow),
-    optional=("spot", "status"),
+    optional=("spot", "status", BRANCH),
     further=_REMARKS,
 )
 SHEAR: Final = TableForm(

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..problems import error
 from .angles import check_flat_tools, check_steepness, check_unit
+from .branches import check_branches
 from .campaign_file import CAMPAIGN_FILE
 from .experiments import Blocks, check_one_site, check_series, check_single_rows
 from .likely_units import check_likely_units
@@ -38,6 +39,7 @@ def check_together(table: Table, described: CampaignFile | None) -> Iterator[Pro
 def _check_penetration(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
     blocks = Blocks.of_runs(table.names["experiment"])
     yield from check_series(table, blocks)
+    yield from check_branches(table, blocks)
     yield from check_unit(table)
     yield from check_steepness(table, blocks)
     if described is not None:

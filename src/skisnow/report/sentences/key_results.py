@@ -22,7 +22,7 @@ LISTED: Final = 12
 
 def key_results(data: ReportData) -> list[Markup]:
     """One sentence for each result that the campaign has."""
-    found = [_hardness(data), _stress(data), _law(data), _relations(data)]
+    found = [_hardness(data), _unloading(data), _stress(data), _law(data), _relations(data)]
     return [sentence for sentence in found if sentence is not None]
 
 
@@ -37,6 +37,24 @@ def own_value(data: ReportData, quantity: str) -> Json | None:
 def _hardness(data: ReportData) -> Markup | None:
     quantity = Quantity("Snow hardness H_V: geometric mean", "H_V", "H_V_N_per_mm3", "N/mm³", "penetration experiment")
     return _mean(data, quantity, data.penetration, len(data.hardness), data.penetration_site)
+
+
+def _unloading(data: ReportData) -> Markup | None:
+    """Of all sites, or of the only one: one sentence."""
+    found = data.results["penetration"]["unloading"]
+    if not found:
+        return None
+    row = found[-1]
+    if row["unloading_ratio_interval"] is None:
+        least = row["rebound_ratio_interval"] and row["rebound_ratio_interval"][1]
+        known = prose("above {least}", least=significant(1.0 / least)) if least and least > 0 else html("not resolved")
+        return prose("Unloading ratio k_u/H_V: {known}, from {n} series.", known=known, n=whole(row["n"]))
+    return prose(
+        "Unloading ratio k_u/H_V {value} (95 % interval {ends}), from {n} series that were unloaded step by step.",
+        value=_strong(row["unloading_ratio"]),
+        ends=interval(row["unloading_ratio_interval"]),
+        n=whole(row["n"]),
+    )
 
 
 def _stress(data: ReportData) -> Markup | None:
