@@ -20,7 +20,7 @@ NAME: Final = "unloading"
 
 
 def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
-    """k_u/H_V of each used series with its interval, against the hardness."""
+    """k_u / H_V of each used series with its interval, against the hardness."""
     rows = [row for row in data.unloaded if row["used"] and row["unloading_ratio_interval"] is not None]
     if not rows:
         return LeftOut(NAME, "Unloading", "no used series was read while its discs were taken off one by one")
@@ -41,7 +41,7 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
     mark_synthetic(data, axes)
     legend_below(figure, handles)
     caption = prose(
-        "Unloading ratio k_u/H_V of {n} used series with its 95 % interval, against the hardness: 1 is elastic snow, "
+        "Unloading ratio k_u / H_V of {n} used series with its 95 % interval, against the hardness: 1 is elastic snow, "
         "which springs back; the larger, the more of the groove stays.",
         n=whole(len(rows)),
     )

@@ -48,9 +48,9 @@ def _unloading(data: ReportData) -> Markup | None:
     if row["unloading_ratio_interval"] is None:
         least = row["rebound_ratio_interval"] and row["rebound_ratio_interval"][1]
         known = prose("above {least}", least=significant(1.0 / least)) if least and least > 0 else html("not resolved")
-        return prose("Unloading ratio k_u/H_V: {known}, from {n} series.", known=known, n=whole(row["n"]))
+        return prose("Unloading ratio k_u / H_V: {known}, from {n} series.", known=known, n=whole(row["n"]))
     return prose(
-        "Unloading ratio k_u/H_V {value} (95 % interval {ends}), from {n} series that were unloaded step by step.",
+        "Unloading ratio k_u / H_V {value} (95 % interval {ends}), from {n} series that were unloaded step by step.",
         value=_strong(row["unloading_ratio"]),
         ends=interval(row["unloading_ratio_interval"]),
         n=whole(row["n"]),

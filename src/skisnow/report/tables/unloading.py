@@ -1,4 +1,4 @@
-"""The way back: k_u/H_V and k_u by site and by experiment."""
+"""The way back: k_u / H_V and k_u by site and by experiment."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from ..table import Column, Table
 if TYPE_CHECKING:
     from ..report_data import ReportData
 
-_RATIO = Column("unloading_ratio", "k_u/H_V", "estimate")
+_RATIO = Column("unloading_ratio", "k_u / H_V", "estimate")
 _STIFFNESS = Column("k_u_N_per_mm3", "k_u", "estimate", "N/mm³")
-_REBOUND = Column("rebound_ratio_interval", "H_V/k_u, 95 %", "interval")
+_REBOUND = Column("rebound_ratio_interval", "H_V / k_u, 95 %", "interval")
 
 
 def unloading_sites_table(data: ReportData) -> Table:
@@ -31,10 +31,10 @@ def unloading_sites_table(data: ReportData) -> Table:
     columns = (Column("site", "Site", "text"), Column("n", "series", "count"), _RATIO, _REBOUND, _STIFFNESS)
     return Table(
         "unloading_sites",
-        "Unloading by site: k_u/H_V and k_u with 95 % intervals.",
+        "Unloading by site: k_u / H_V and k_u with 95 % intervals.",
         columns,
         rows,
-        note="k_u/H_V is the harmonic mean over the series, which keeps the mean rebound, with the scatter between the "
+        note="k_u / H_V is the harmonic mean over the series, which keeps the mean rebound, with the scatter between the "
         "series and that within each in its interval; k_u is the geometric mean. Over all sites the series count as "
         "draws from one snow for the ratio, and k_u has an interval from four sites on.",
     )
