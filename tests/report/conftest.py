@@ -74,7 +74,8 @@ def first_shear(campaign: Campaign, count: int) -> ShearTests:
     """The first shear experiments."""
     tests = campaign.shear
     assert tests is not None
-    columns: dict[str, Any] = {name: getattr(tests, name)[:count] for name in ShearTests.__slots__ if name != "further"}
+    whole = ("further", "turning")
+    columns: dict[str, Any] = {name: getattr(tests, name)[:count] for name in ShearTests.__slots__ if name not in whole}
     return replace(tests, **columns, further={})
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from skisnow.field import Campaign
+from skisnow.field.records import TurningReadings
 from skisnow.report.report_data import ReportData
 
 from .conftest import Reported, analysis_of, first_series, first_shear, reported
@@ -291,6 +292,25 @@ def test_a_mark_says_its_sentence_its_count_and_whom_it_concerns(campaign: Campa
     cancelled = next(row for row in rows if row[0] == "cancelled")
     assert cancelled[1].startswith("The experiment was cancelled")
     assert cancelled[2:] == ["yes", "1", "0", tests.experiment[0]]
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_what_was_not_measured_has_no_section_and_what_was_has(campaign: Campaign, tmp_path: Path) -> None:
+    """Two tests turned by 1° up to 80 % of their moment: u_y = 1°/0.8 × 250 mm = 5.45 mm."""
+    shear = first_shear(campaign, 2)
+    share = np.tile([0.2, 0.4, 0.8, 1.0], 2)
+    angle = np.radians(np.tile([0.25, 0.5, 1.0, 1.25], 2))
+    turning = TurningReadings(np.array([0, 4, 8]), angle, share * np.repeat(shear.moment, 4))
+    plain = reported(replace(campaign, penetration=None, shear=shear), tmp_path / "plain").html
+    both = reported(
+        replace(campaign, penetration=first_series(campaign, 40), shear=replace(shear, turning=turning)), tmp_path
+    ).html
+    for title in ("Shear displacement: how far", "Unloading: how much of the groove"):
+        assert title not in plain
+        assert title in both
+    text = " ".join(" ".join(_Reader(both).text).split())
+    assert "from 2 shear experiments with turning angles" in text
+    assert _Reader(both).tables["shear_displacement_sites"][0][2].startswith("5.45")
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -90,6 +90,8 @@ HEADS = {
     "seating": "experiment site used depth_offset_mm H_V_change_percent",
     "unloading_sites": "site n unloading_ratio rebound_ratio_interval k_u_N_per_mm3",
     "unloading": "experiment site edge_angle_deg n_unloading used unloading_ratio rebound_ratio_interval k_u_N_per_mm3",
+    "shear_displacement_sites": "site n shear_displacement_mm",
+    "shear_displacement": "experiment site edge_angle_deg n_turning used shear_displacement_mm",
     "regressions": "response predictor group n intercept slope slope_by_site rmse rmse_dof r2 F p",
     "site_comparisons": "quantity site_a site_b ratio p n_for_10_percent",
     "comparisons": "source quantity value range own own_range own_over_published",

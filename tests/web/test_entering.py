@@ -81,6 +81,33 @@ def test_discs_that_are_taken_off_have_fields_of_their_own(page: Page, served: S
     assert [row[branch] for row in rows[1:-3]] == [""] * 4
 
 
+def test_a_moment_for_each_turning_angle(page: Page, served: Served) -> None:
+    """Rows of one shear test: the next angle is asked for by itself, what a test has once stays, S_f is the largest's.
+
+    30 N m/0.25 m/(100 mm × 6 mm) = 0.2 N/mm²; 20 N m take 2°, so u_y = 30/20 × 2° × 250 mm = 13.1 mm.
+    """
+    create(page, served)
+    page.get_by_role("link", name="Shear").press("Enter")
+    page.get_by_role("heading", name="New test").wait_for()
+    fill(page, {"Site": "A", "Turning angle (°)": "0", "Edge angle (°)": "90", "Depth (mm)": "6"})
+    fill(page, {"Lever arm (mm)": "250", "Moment (N m)": "5"})
+    page.keyboard.press("Enter")
+    page.get_by_text("Stored: test 1.").wait_for()
+    page.get_by_label("Turning angle (°)").and_(page.locator(":focus")).wait_for()
+    has_text(page.get_by_label("Depth (mm)"), "6")
+    page.keyboard.type("1\n15\n")
+    page.locator(".so-far li").nth(1).wait_for()
+    page.keyboard.type("2\n25\n")
+    page.locator(".so-far li").nth(2).wait_for()
+    page.keyboard.type("3\n30\n")
+    page.get_by_text("S_f = 0.200 N/mm²").wait_for()
+    page.get_by_text("u_y = 13.1 mm").wait_for()
+    ready(page)
+    fill(page, {"Depth (mm)": "7", "Turning angle (°)": "4", "Moment (N m)": "30"})
+    page.keyboard.press("Enter")
+    page.get_by_text("Not stored: the rows of test 1 have one Depth (mm).").wait_for()
+
+
 def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:
     create(page, served)
     fill(page, {"Site": "A", "Edge angle (°)": "95"})

@@ -37,6 +37,7 @@ from .readings import readings_of
 from .regressions import Regression, Source, regressions
 from .screening import screened_penetration, screened_shear
 from .seating import seating
+from .shear_displacement import shear_displacement, site_displacement
 from .shear_stress import shear_stress
 from .site_snow import site_snow
 from .sites import SiteComparison, SiteMean, compare_sites, site_means
@@ -105,7 +106,8 @@ class Analysis(Shown):
     def snow(self, site: str | None = None, *, unloading_ratio: float | None = None) -> SnowProperties:
         """The snow of a site: the geometric mean of H_V and the mean of S_f over the used experiments, with intervals.
 
-        k_u/H_V is that of the site's unloading readings, where they say both ends of its interval.
+        k_u/H_V is that of the site's unloading readings, where they say both ends of its interval; the shear
+        displacement u_y the geometric mean of its shear tests with turning angles.
 
         The same numbers as `skisnow.snow_from_results` reads from results.json.
 
@@ -281,7 +283,9 @@ def _penetration(
 def _shear(campaign: Campaign) -> ShearAnalysis | None:
     if campaign.shear is None:
         return None
-    return ShearAnalysis(screened_shear(campaign), shear_stress(campaign, campaign.shear))
+    screened, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
+    by_site = site_displacement(displacement, screened.used, campaign.shear.site)
+    return ShearAnalysis(screened, shear_stress(campaign, campaign.shear), displacement, by_site)
 
 
 def _observations(

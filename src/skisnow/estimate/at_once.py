@@ -11,6 +11,7 @@ from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_lar
 from .readings import readings_of
 from .results import penetration_experiments, shear_experiments, without_nan
 from .screening import screened_both
+from .shear_displacement import shear_displacement
 from .shear_stress import shear_stress
 from .unloading import NOT_FALLING, unloading
 
@@ -50,7 +51,7 @@ def experiments_at_once(
         back = unloading(tests, readings, found["H_V"], uncertainty, pressed.marks[NOT_FALLING])
         penetration = penetration_experiments(tests, pressed, found, back)
     if (sheared := campaign.shear) is not None:
-        shear = shear_experiments(sheared, cut, shear_stress(campaign, sheared))
+        shear = shear_experiments(sheared, cut, shear_stress(campaign, sheared), shear_displacement(campaign, sheared))
     answer: Json = without_nan({"penetration": {"experiments": penetration}, "shear": {"experiments": shear}})
     return answer
 

@@ -15,6 +15,7 @@ from .models import Model, ModelFit
 from .readings import Readings
 from .screening import Screened
 from .seating import Seating
+from .shear_displacement import ShearDisplacement, SiteDisplacement
 from .shear_stress import ShearStress
 from .unloading import SiteUnloading, Unloading
 
@@ -65,6 +66,8 @@ class ShearAnalysis(Shown):
 
     screened: Screened
     stress: ShearStress
+    displacement: ShearDisplacement
+    site_displacement: tuple[SiteDisplacement, ...]
 
     def _facts(self) -> Facts:
         return Facts(used_of(self.screened))

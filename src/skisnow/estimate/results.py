@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
+from ..units import DEGREE, MM, MM2, MM3, N_PER_MM2, N_PER_MM3
 from .hardness import DEFINITIONS
 from .remarks import remarks
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis
     from .regressions import Regression
     from .screening import Screened
+    from .shear_displacement import ShearDisplacement
     from .shear_stress import ShearStress
     from .sites import SiteMean
     from .unloading import SiteUnloading, Unloading
@@ -135,6 +136,7 @@ def _campaign(analysis: Analysis) -> Json:
         "lever_arm_uncertainty_mm": None
         if campaign.lever_arm_uncertainty is None
         else campaign.lever_arm_uncertainty / MM,
+        "pole_stiffness_Nm_per_deg": None if campaign.pole_stiffness is None else campaign.pole_stiffness * DEGREE,
         "excluding": sorted(campaign.excluding),
         "warnings": [problem.as_dict() for problem in campaign.problems],
         "corrections": [asdict(correction) for correction in campaign.corrections],
@@ -341,11 +343,24 @@ def _shear(analysis: Analysis) -> Json:
     found: ShearAnalysis | None = analysis.shear
     tests = analysis.campaign.shear
     if found is None or tests is None:
-        return {"experiments": []}
-    return {"experiments": shear_experiments(tests, found.screened, found.stress)}
+        return {"experiments": [], "displacement": []}
+    return {
+        "experiments": shear_experiments(tests, found.screened, found.stress, found.displacement),
+        "displacement": [
+            {
+                "site": row.site,
+                "n": row.n,
+                "shear_displacement_mm": row.value / MM,
+                "shear_displacement_interval_mm": [row.low / MM, row.high / MM],
+            }
+            for row in found.site_displacement
+        ],
+    }
 
 
-def shear_experiments(tests: ShearTests, screened: Screened, stress: ShearStress) -> list[Json]:
+def shear_experiments(
+    tests: ShearTests, screened: Screened, stress: ShearStress, displacement: ShearDisplacement
+) -> list[Json]:
     """The rows ``shear.experiments``: of each test what it was, its marks, its force and stress."""
     return _rows(
         {
@@ -358,6 +373,9 @@ def shear_experiments(tests: ShearTests, screened: Screened, stress: ShearStress
             "S_f_interval_N_per_mm2": _numbers(stress.interval / N_PER_MM2),
             "used": screened.used.tolist(),
             "flags": screened.flags(),
+            "n_turning": displacement.n_readings.tolist(),
+            "shear_displacement_mm": _numbers(displacement.value / MM),
+            "shear_displacement_interval_mm": _numbers(displacement.interval / MM),
         }
     )
 

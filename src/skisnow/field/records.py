@@ -164,8 +164,34 @@ class PenetrationTests(Shown):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
+class TurningReadings(Shown):
+    """Moments over turning angles of the shear experiments, test after test, each in the order of reading.
+
+    Attributes
+    ----------
+    first
+        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
+    turning_angle, moment
+        φ (rad) from any zero, and M (N m), one per reading.
+    """
+
+    first: IntArray
+    turning_angle: FloatArray
+    moment: FloatArray
+
+    def _facts(self) -> Facts:
+        tests = int(np.count_nonzero(np.diff(self.first)))
+        return Facts(f"of {tests} experiments, {len(self.moment)} readings, {ends(self.moment, 'N m')}")
+
+    @property
+    def test_of_reading(self) -> IntArray:
+        """Index of the experiment that each reading belongs to."""
+        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int64), np.diff(self.first))
+
+
+@dataclass(frozen=True, slots=True, repr=False)
 class ShearTests(Shown):
-    """All shear experiments of a campaign, one row each.
+    """All shear experiments of a campaign; one of several rows has what its row of the largest moment says.
 
     Attributes
     ----------
@@ -177,6 +203,8 @@ class ShearTests(Shown):
         The experiment's own ρ (kg/m³) and H_p (m), NaN where absent.
     row
         Line of the file.
+    turning
+        Moments over turning angles; None where the campaign has none.
     """
 
     experiment: tuple[str, ...]
@@ -192,6 +220,7 @@ class ShearTests(Shown):
     cancelled: tuple[str, ...]
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    turning: TurningReadings | None = None
 
     def __len__(self) -> int:
         """Count the experiments."""
@@ -311,6 +340,8 @@ class Campaign(Shown):
         What corrections.csv changed, in its order.
     unread_files
         Names of files in the folder that are no part of a campaign.
+    pole_stiffness
+        Moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
 
     See Also
     --------
@@ -337,6 +368,7 @@ class Campaign(Shown):
     file_hashes: Mapping[str, str]
     corrections: tuple[AppliedCorrection, ...] = ()
     unread_files: tuple[str, ...] = ()
+    pole_stiffness: float | None = None
 
     def _facts(self) -> Facts:
         tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}

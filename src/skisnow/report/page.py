@@ -29,6 +29,7 @@ SECTIONS: Final = {
     "law": "The law of the penetration force",
     "seating": "Seating: offsets of the depth zero",
     "unloading": "Unloading: how much of the groove stays",
+    "displacement": "Shear displacement: how far until the snow holds",
     "relations": "Relations between snow parameters",
     "sites": "Sites compared",
     "published": "Compared with published values",
@@ -72,6 +73,8 @@ def _frame(data: ReportData) -> dict[str, Any]:
     ids = [name for name in SECTIONS if has_penetration or name not in _ONLY_WITH_PENETRATION]
     if has_penetration and not data.unloaded:
         ids.remove("unloading")
+    if not data.results["shear"]["displacement"]:
+        ids.remove("displacement")
     return {
         "campaign": results["campaign"],
         "provenance": results["provenance"],
@@ -83,6 +86,7 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "counts": _counts(data),
         "has_penetration": has_penetration,
         "has_unloading": bool(data.unloaded),
+        "has_displacement": bool(results["shear"]["displacement"]),
         "selected": results["penetration"]["selected"],
         "sections": [(name, SECTIONS[name]) for name in ids],
         "titles": SECTIONS,

@@ -38,6 +38,7 @@ def _lines(results: Json) -> Iterator[str]:
     yield from _measured(results, "H_V_N_per_mm3", f"H_V{tag}", "N/mm³", "geometric mean")
     yield from _unloading(results, tag)
     yield from _measured(results, "S_f_N_per_mm2", f"S_f{tag}", "N/mm²", "mean")
+    yield from _displacement(results, tag)
     yield from _not_stated(results["campaign"])
     if results["penetration"]["selected"]:
         yield ""
@@ -97,6 +98,14 @@ def _unloading(results: Json, tag: str) -> Iterator[str]:
     for row in found if len(found) > 2 else found[:1]:
         where = "over all" if row["site"] is None else f"at {row['site']}"
         yield f"k_u/H_V{tag} {where}: {_ratio_in_words(row)}, n = {row['n']} series"
+
+
+def _displacement(results: Json, tag: str) -> Iterator[str]:
+    """u_y over all tests with turning angles."""
+    for row in results["shear"]["displacement"][-1:]:
+        ends = row["shear_displacement_interval_mm"]
+        known = f", 95 % interval {interval(ends, style='plain')}" if ends else ""
+        yield f"u_y{tag}: {significant(row['shear_displacement_mm'], style='plain')} mm{known}, n = {row['n']} tests"
 
 
 def _ratio_in_words(row: Json) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,14 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..given import GivenError, read_json
-from .mean_snow import known_sites, mean_snow, site_in_words, site_named, with_measured_unloading
+from .mean_snow import (
+    known_sites,
+    mean_snow,
+    site_in_words,
+    site_named,
+    with_measured_displacement,
+    with_measured_unloading,
+)
 from .properties import Interval, SnowProperties
 
 
@@ -65,25 +73,28 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
         raise ParameterError(f"{path} has no used penetration experiment{known_sites(site, sites)}")
     source = f"{path}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
     snow = mean_snow(hardness, stress, source=source, where=str(path))
-    ratio, interval = _unloading(results, site, path)
-    return snow if ratio is None or interval is None else with_measured_unloading(snow, ratio, interval)
+    ratio, interval = _of_site(
+        results, ("penetration", "unloading"), ("unloading_ratio", "unloading_ratio_interval"), site, path
+    )
+    snow = snow if ratio is None or interval is None else with_measured_unloading(snow, ratio, interval)
+    way, ends = _of_site(
+        results, ("shear", "displacement"), ("shear_displacement_mm", "shear_displacement_interval_mm"), site, path
+    )
+    return snow if way is None else with_measured_displacement(snow, way, ends or (math.nan, math.nan))
 
 
-def _unloading(results: dict[str, Any], site: str | None, path: str | Path) -> tuple[float | None, Interval | None]:
-    """k_u/H_V of the site and its interval; files of earlier versions have none."""
+def _of_site(
+    results: dict[str, Any], place: tuple[str, str], keys: tuple[str, str], site: str | None, path: str | Path
+) -> tuple[float | None, Interval | None]:
+    """A mean of the site and its interval; files of earlier versions have none."""
     try:
-        rows = [row for row in results["penetration"].get("unloading", ()) if row["site"] == site]
-        ratio, interval = (
-            (rows[0][key] for key in ("unloading_ratio", "unloading_ratio_interval")) if rows else (None, None)
-        )
-        return (
-            (None, None)
-            if ratio is None or interval is None
-            else (float(ratio), (float(interval[0]), float(interval[1])))
-        )
+        rows = [row for row in results[place[0]].get(place[1], ()) if row["site"] == site]
+        value, interval = (rows[0][key] for key in keys) if rows else (None, None)
+        ends = None if interval is None else (float(interval[0]), float(interval[1]))
+        return None if value is None else float(value), ends
     except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
         raise ParameterError(
-            f"{path}: penetration.unloading is not a list with site, unloading_ratio and its interval ({error!r}); "
+            f"{path}: {'.'.join(place)} is not a list with site, {' and '.join(keys)} ({error!r}); "
             "give the results.json that `skisnow analyse` wrote"
         ) from error
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..constants import CONFIDENCE
 from ..errors import ParameterError
-from ..units import N_PER_MM2, N_PER_MM3
+from ..units import MM, N_PER_MM2, N_PER_MM3
 from .properties import Interval, SnowProperties
 
 FloatArray = npt.NDArray[np.float64]
@@ -66,6 +66,12 @@ def with_measured_unloading(snow: SnowProperties, ratio: float, interval: Interv
     """The snow with its k_u/H_V and its 95 % interval, cut at 1: below, unloading would give energy away."""
     low, high = (max(1.0, end) for end in interval)
     return replace(snow, unloading_ratio=max(1.0, ratio), unloading_ratio_interval=(low, high))
+
+
+def with_measured_displacement(snow: SnowProperties, displacement_mm: float, ends_mm: Interval) -> SnowProperties:
+    """The snow with its shear displacement, and the 95 % interval of it where both ends are known."""
+    interval = (ends_mm[0] * MM, ends_mm[1] * MM) if all(map(math.isfinite, ends_mm)) else None
+    return replace(snow, shear_displacement=displacement_mm * MM, shear_displacement_interval=interval)
 
 
 def site_named(site: str | None, sites: Iterable[str]) -> str | None:

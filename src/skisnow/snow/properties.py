@@ -8,7 +8,7 @@ from typing import Annotated, Final, TypeAlias
 from ..errors import ParameterError
 from ..inputs import Quantity, Search, Word, require_declared
 from ..shown import Facts, Shown, amount, span
-from ..units import N_PER_MM2, N_PER_MM3
+from ..units import MM, N_PER_MM2, N_PER_MM3
 
 Interval: TypeAlias = tuple[float, float]
 
@@ -36,6 +36,9 @@ class SnowProperties(Shown):
         k_u/H_V ≥ 1 where it is known, which `Scenario.with_` then takes over; 1 is elastic snow, which springs back.
     unloading_ratio_interval
         95 % interval of it where it was measured.
+    shear_displacement, shear_displacement_interval
+        u_y (m), the way of an edge across until the snow holds it with all of S_f, and its 95 % interval, where they
+        were measured; `Scenario.with_` then takes u_y over.
 
     See Also
     --------
@@ -90,6 +93,8 @@ class SnowProperties(Shown):
     failure_shear_stress_interval: Interval | None = None
     unloading_ratio: float | None = None
     unloading_ratio_interval: Interval | None = None
+    shear_displacement: float | None = None
+    shear_displacement_interval: Interval | None = None
 
     def __post_init__(self) -> None:
         require_declared(self)
@@ -103,7 +108,9 @@ class SnowProperties(Shown):
         stress = _told(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")
         ratio = _told(self.unloading_ratio, self.unloading_ratio_interval, 1.0, "")
         ratio = "" if self.unloading_ratio is None else f", k_u/H_V {ratio}"
-        return f"H_V {hardness}, S_f {stress}{ratio}: {self.source}"
+        way = _told(self.shear_displacement, self.shear_displacement_interval, MM, "mm")
+        way = "" if self.shear_displacement is None else f", u_y {way}"
+        return f"H_V {hardness}, S_f {stress}{ratio}{way}: {self.source}"
 
     def _facts(self) -> Facts:
         return Facts(self.in_words)

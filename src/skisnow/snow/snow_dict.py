@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..units import N_PER_MM2, N_PER_MM3
+from ..units import MM, N_PER_MM2, N_PER_MM3
 from .properties import SnowProperties
 
 
@@ -21,4 +21,6 @@ def snow_dict(snow: SnowProperties) -> dict[str, Any]:
     }
     if snow.unloading_ratio_interval is not None:
         told["unloading_ratio_interval"] = list(snow.unloading_ratio_interval)
+    if snow.shear_displacement_interval is not None:
+        told["shear_displacement_interval_mm"] = interval(snow.shear_displacement_interval, MM)
     return told

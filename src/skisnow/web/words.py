@@ -21,6 +21,7 @@ LABELS: Final = {
     "branch": "Branch (loading or unloading)",
     "lever_arm_mm": "Lever arm (mm)",
     "moment_Nm": "Moment (N m)",
+    "turning_angle_deg": "Turning angle (°)",
     "snow_density_kg_per_m3": "Density (kg/m³)",
     "drop_cone_depth_mm": "Drop-cone depth (mm)",
     "remark": "Remark",
@@ -57,6 +58,13 @@ def unloading_words(row: dict[str, Any]) -> str:
 def stress_words(row: dict[str, Any]) -> str:
     """S_f with its interval, from a row of ``shear.experiments``."""
     return _estimate(row["S_f_N_per_mm2"], row["S_f_interval_N_per_mm2"], "N/mm²")
+
+
+def displacement_words(row: dict[str, Any]) -> str:
+    """u_y with its interval, from a row of ``shear.experiments``; nothing where none was measured."""
+    if row["shear_displacement_mm"] is None:
+        return ""
+    return f"u_y = {_estimate(row['shear_displacement_mm'], row['shear_displacement_interval_mm'], 'mm')}"
 
 
 def _estimate(value: float | None, pair: list[float] | None, unit: str) -> str:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...units import DEGREE, MM
-from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, UnloadingReadings
+from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, TurningReadings, UnloadingReadings
 from .branches import is_unloading
 from .experiments import Blocks
 from .table_forms import BRANCH
+from .turning import shear_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -60,21 +61,29 @@ def _unloading(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingR
 
 
 def shear_tests(table: Table) -> ShearTests:
-    """Make the shear experiments, one a row."""
+    """Make the shear experiments, one a row, or one of the rows of its turning: that of the largest moment."""
+    blocks = shear_blocks(table)
+    moment, angle = table.numbers["moment_Nm"], table.numbers["turning_angle_deg"]
+    largest = blocks.first_given(moment == np.maximum.reduceat(moment, blocks.start)[blocks.of_row])
+    is_turned = ~np.isnan(angle)
+    spot = table.names["spot"]
     return ShearTests(
-        experiment=table.names["experiment"].cells(),
-        site=table.names["site"].cells(),
-        plate=table.names["plate"].cells(),
-        spot=table.names["spot"].cells(),
-        edge_angle=table.numbers["edge_angle_deg"] * DEGREE,
-        penetration_depth=table.numbers["depth_mm"] * MM,
-        lever_arm=table.numbers["lever_arm_mm"] * MM,
-        moment=table.numbers["moment_Nm"],
-        snow_density=table.numbers["snow_density_kg_per_m3"],
-        drop_cone_depth=table.numbers["drop_cone_depth_mm"] * MM,
-        cancelled=table.names["status"].cells(),
-        row=table.row,
-        further=table.further,
+        experiment=_at(table.names["experiment"], largest),
+        site=_at(table.names["site"], largest),
+        plate=_at(table.names["plate"], largest),
+        spot=_at(spot, blocks.first_given(~spot.is_blank)),
+        edge_angle=table.numbers["edge_angle_deg"][largest] * DEGREE,
+        penetration_depth=table.numbers["depth_mm"][largest] * MM,
+        lever_arm=table.numbers["lever_arm_mm"][largest] * MM,
+        moment=moment[largest],
+        snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
+        drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
+        cancelled=blocks.texts(table.names["status"]),
+        row=table.row[largest],
+        further={name: tuple(cells[row] for row in largest.tolist()) for name, cells in table.further.items()},
+        turning=TurningReadings(blocks.first_of(is_turned), angle[is_turned] * DEGREE, moment[is_turned])
+        if is_turned.any()
+        else None,
     )
 
 

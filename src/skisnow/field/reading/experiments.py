@@ -95,12 +95,6 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
         yield _mixed(table, row, int(reference[row]), "edge_angle_deg", f"{angle[row]:.12g}", f"{other:.12g}")
 
 
-def check_single_rows(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Find experiments that should be one row and are several."""
-    if table.form.key not in table.absent:
-        yield from _told_again(table, blocks)
-
-
 def check_one_site(table: Table) -> Iterator[Problem]:
     """Find tests that stand at two sites."""
     key, site = table.names[table.form.key], table.names["site"]

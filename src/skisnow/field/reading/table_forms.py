@@ -98,6 +98,15 @@ class ShearRow:
     depth: Annotated[float, _DEPTH]
     lever_arm: Annotated[float, Quantity("lever_arm_mm", "lever arm", lowest=0.0, above=True)]
     moment: Annotated[float, Quantity("moment_Nm", "moment", lowest=0.0)]
+    turning_angle: Annotated[
+        float | None,
+        Quantity(
+            "turning_angle_deg",
+            "how far the device was turned under this moment, from any zero; an experiment may then have several rows",
+            lowest=-360.0,
+            highest=360.0,
+        ),
+    ] = None
     snow_density: Annotated[float | None, _DENSITY] = None
     drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
     air_temperature: Annotated[float | None, _AIR] = None

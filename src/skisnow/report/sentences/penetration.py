@@ -75,8 +75,8 @@ def unloading_found(data: ReportData) -> list[Markup]:
     told = [row for row in used if row["unloading_ratio_interval"] is not None]
     found = [
         prose(
-            "{told} of {all} tell both ends of k_u / H_V; of the others only the lower end is known, the inverse of the "
-            "upper end of H_V / k_u. Every series stands in {file}.",
+            "{told} of {all} tell both ends of k_u / H_V; of the others only the lower end is known, the "
+            "inverse of the upper end of H_V / k_u. Every series stands in {file}.",
             told=whole(len(told)),
             all=counted(len(used), "used series with unloading", "used series with unloading"),
             file=_file("unloading", data),

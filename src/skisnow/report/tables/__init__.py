@@ -12,6 +12,7 @@ from .models import errors_in_depth_table, fitted_hardness_table, models_table, 
 from .provenance import corrections_table, files_table, warnings_table
 from .regressions import regressions_table
 from .seating import seating_largest_table, seating_quantiles_table, seating_table
+from .shear_displacement import displacement_sites_table, displacement_table
 from .sites import sites_table
 from .unloading import unloading_sites_table, unloading_table
 
@@ -32,6 +33,8 @@ BUILDERS = (
     seating_table,
     unloading_sites_table,
     unloading_table,
+    displacement_sites_table,
+    displacement_table,
     regressions_table,
     site_comparison_table,
     published_table,

@@ -34,9 +34,9 @@ def unloading_sites_table(data: ReportData) -> Table:
         "Unloading by site: k_u / H_V and k_u with 95 % intervals.",
         columns,
         rows,
-        note="k_u / H_V is the harmonic mean over the series, which keeps the mean rebound, with the scatter between the "
-        "series and that within each in its interval; k_u is the geometric mean. Over all sites the series count as "
-        "draws from one snow for the ratio, and k_u has an interval from four sites on.",
+        note="k_u / H_V is the harmonic mean over the series, which keeps the mean rebound, with the scatter between "
+        "the series and that within each in its interval; k_u is the geometric mean. Over all sites the series count "
+        "as draws from one snow for the ratio, and k_u has an interval from four sites on.",
     )
 
 
