@@ -26,8 +26,8 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     """Read the snow of an analysed campaign from its results.json.
 
     H_V is the geometric mean over the used penetration experiments, S_f the mean over the used shear experiments, of
-    one site or of all. With two experiments or more each mean has its 95 % interval by Student's t: that of H_V on
-    logarithms, that of S_f on the values themselves (its lower end may lie below 0 with few experiments).
+    one site or of all. With two experiments or more each mean has its 95 % interval by Student's t on logarithms; for
+    the mean m of S_f with the half-width h that is m exp(± h/m), as in site_means.
 
     Parameters
     ----------

@@ -27,8 +27,8 @@ def mean_snow(
 ) -> SnowProperties:
     """The snow of experiments: the geometric mean of H_V, one value or more, and the mean of S_f, which may be missing.
 
-    With two experiments or more each mean has its 95 % interval by Student's t: that of H_V on logarithms, that of S_f
-    on the values themselves.
+    With two experiments or more each mean has its 95 % interval by Student's t, both on logarithms: for the mean m of
+    S_f with the half-width h, m exp(± h/m) (delta method), so that no end is below 0, as in `site_means`.
 
     Parameters
     ----------
@@ -51,6 +51,9 @@ def mean_snow(
         raise ParameterError(f"{where}: H_V and S_f of a used experiment must lie from 1e-9 to 1e9 N/mm³ and N/mm²")
     H_V, H_V_interval = _mean(np.log(hardness))
     S_f, S_f_interval = _mean(stress) if stress.size else (None, None)
+    if S_f is not None and S_f_interval is not None:
+        ratio = math.exp((S_f_interval[1] - S_f) / S_f)
+        S_f_interval = (S_f / ratio, S_f * ratio)
     return SnowProperties(
         snow_hardness=math.exp(H_V) * N_PER_MM3,
         failure_shear_stress=None if S_f is None else S_f * N_PER_MM2,
