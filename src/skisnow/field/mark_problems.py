@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..units import MM
+from .creep import creeping
 from .largest_load import greatest_depths, reading_at_largest_load
-from .marks import FEWEST_LOADS, MARKS, RESOLUTIONS
+from .marks import CREEP_SHARE, CREEP_STEPS, FEWEST_LOADS, MARKS, RESOLUTIONS
 from .problems import Problem
 from .reading.table_forms import PENETRATION, SHEAR
 from .wrong_unloading import wrong_unloading
@@ -146,6 +147,14 @@ class _PenetrationPlaces:
 
     def _layered(self, index: int) -> tuple[int, str, None, str]:
         return int(self._largest[index]), "depth_mm", None, _UNMARKED_LAYERED
+
+    def _creeps(self, index: int) -> tuple[int, str, str, str]:
+        first, end = self._tests.first[index : index + 2].tolist()
+        reading = first + int(np.flatnonzero(creeping(self._campaign, self._tests)[first:end])[0])
+        assert self._tests.depth_after is not None
+        value = f"{self._tests.depth_after[reading] / MM:.10g}"
+        allowed = f"at most {CREEP_STEPS:g} steps of the gauge or {CREEP_SHARE:.0%} more than {self._depth(reading)} mm"
+        return reading, "depth_after_mm", value, allowed
 
     def _unloading_not_falling(self, index: int) -> tuple[int, str, str, str]:
         reading = self._first_wrong(index, "unloading_not_falling")

@@ -14,6 +14,11 @@ FEWEST_LOADS: Final = 3
 RESOLUTIONS: Final = 5.0
 """A depth of fewer gauge resolutions is read with more than some 6 % of standard uncertainty: 1/(5 √12) (modelling
 assumption)."""
+CREEP_STEPS: Final = 2.0
+"""Growth under a constant load that a gauge tells from its own rounding (modelling assumption)."""
+CREEP_SHARE: Final = 0.01
+"""The same as a share of the depth: of an edged tool it moves H_V by 2 %, as much as its readings scatter (modelling
+assumption). The paper cancelled a series whose depth "constantly and slowly increased", without a number."""
 
 
 ALWAYS_EXCLUDE: Final = frozenset({"cancelled", "zero_depth"})
@@ -44,6 +49,11 @@ _ALL: Final = (
     Mark(
         "layered",
         "The hardness of the snow changes with depth, or the depth zero is off by several tenths of a millimetre.",
+        False,
+    ),
+    Mark(
+        "creeps",
+        f"Under one load the depth grew by more than {CREEP_STEPS:g} steps of the gauge and {CREEP_SHARE:.0%} of it.",
         False,
     ),
     Mark(

@@ -114,6 +114,9 @@ class PenetrationTests(Shown):
         Every further column of the file as text, one cell per reading: kept, not interpreted.
     unloading
         Readings while the discs were taken off, which no estimate of hardness knows of; None where there are none.
+    depth_after
+        e (m) read once more under the same load after waiting, one per reading, NaN where it was not; None where the
+        campaign has none.
     """
 
     experiment: tuple[str, ...]
@@ -130,6 +133,7 @@ class PenetrationTests(Shown):
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     unloading: UnloadingReadings | None = None
+    depth_after: FloatArray | None = None
 
     def __len__(self) -> int:
         """Count the experiments."""

@@ -18,6 +18,7 @@ LABELS: Final = {
     "edge_angle_deg": "Edge angle (°)",
     "load_N": "Load (N)",
     "depth_mm": "Depth (mm)",
+    "depth_after_mm": "Depth after waiting (mm)",
     "branch": "Branch (loading or unloading)",
     "lever_arm_mm": "Lever arm (mm)",
     "moment_Nm": "Moment (N m)",

@@ -47,6 +47,18 @@ def test_both_branches_stand_apart_with_their_rows(tmp_path: Path) -> None:
     assert "2 experiments, 3 readings" in repr(back)
 
 
+def test_a_depth_read_once_more_stands_beside_its_reading(tmp_path: Path) -> None:
+    folder = written(tmp_path, *UP, *DOWN)
+    lines = (folder / "penetration.csv").read_text("utf-8").splitlines()
+    cells = ["depth_after_mm", "", "2.05", "", "9", ""]
+    text = "\n".join(f"{line},{cell}" for line, cell in zip(lines, cells, strict=True))
+    (folder / "penetration.csv").write_text(text + "\n", encoding="utf-8")
+    tests = read_campaign(folder).penetration
+    assert tests is not None
+    assert tests.depth_after is not None
+    np.testing.assert_allclose(tests.depth_after, [np.nan, 2.05e-3, np.nan])
+
+
 def test_without_unloading_there_is_none(tmp_path: Path) -> None:
     tests = read_campaign(written(tmp_path, *UP)).penetration
     assert tests is not None

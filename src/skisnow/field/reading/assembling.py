@@ -29,6 +29,7 @@ def penetration_tests(table: Table) -> PenetrationTests:
     taken_off = is_unloading(table.names[BRANCH])
     is_unloaded = bool(taken_off.any())
     laid_on = ~taken_off if is_unloaded else slice(None)
+    after = table.numbers["depth_after_mm"][laid_on]
     return PenetrationTests(
         experiment=_at(table.names["experiment"], blocks.start),
         site=_at(table.names["site"], blocks.start),
@@ -44,6 +45,7 @@ def penetration_tests(table: Table) -> PenetrationTests:
         row=table.row[laid_on],
         further=_of_rows(table.further, ~taken_off) if is_unloaded else table.further,
         unloading=_unloading(table, blocks, taken_off) if is_unloaded else None,
+        depth_after=None if np.isnan(after).all() else after * MM,
     )
 
 

@@ -84,6 +84,10 @@ class PenetrationRow:
     ]
     load: Annotated[float, Quantity("load_N", "load", lowest=0.0, above=True)]
     depth: Annotated[float, _DEPTH]
+    depth_after: Annotated[
+        float | None,
+        Quantity("depth_after_mm", "depth read once more under the same load, after waiting: creep", lowest=0.0),
+    ] = None
     snow_density: Annotated[float | None, _DENSITY] = None
     drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
     air_temperature: Annotated[float | None, _AIR] = None
