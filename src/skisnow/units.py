@@ -54,6 +54,7 @@ _BY_ENDING: Final = {
     "per_rad": Unit("1/rad", 1.0),
     "kg_m2": Unit("kg m²", 1.0),
     "N_m2": Unit("N m²", 1.0),
+    "Nm_per_deg": Unit("N m/°", 1.0 / DEGREE),
     "deg": Unit("°", DEGREE),
     "mm": Unit("mm", MM),
     "ms": Unit("ms", MS),

@@ -69,6 +69,19 @@ def test_the_chain_asks_for_the_turn_with_each_contact_and_on_each_snow(
     assert "<" not in "".join(found.sentences)
 
 
+def test_a_measured_unloading_ratio_is_the_one_of_the_turn(analysis: Analysis, asked: list[Scenario]) -> None:
+    """Over all sites of the reference campaign it is measured; a given one comes first."""
+    measured = analysis.snow().unloading_ratio
+    assert measured is not None
+    found = skisnow.chain(analysis, scenario=skisnow.scenario("carved-46m", changes=TURN), runs=3, workers=1)
+    assert found.snow.unloading_ratio == measured
+    assert [each.contact.unloading_ratio for each in asked[:2]] == [measured, 1.0]
+    assert next(iter(found.runs)) == f"hypoplastic, k_u / H_V = {measured:.3g}"
+    turn = skisnow.scenario("carved-46m", changes=TURN)
+    given = skisnow.chain(analysis, scenario=turn, unloading_ratio=4.0, runs=3, workers=1)
+    assert given.snow.unloading_ratio == 4.0
+
+
 @pytest.mark.usefixtures("asked", "undrawn")
 def test_the_report_is_that_of_the_chain(analysis: Analysis, tmp_path: Path) -> None:
     found = skisnow.chain(analysis, "C", runs=3, workers=1)
@@ -133,4 +146,4 @@ def test_the_command_refuses_in_words(tmp_path: Path, capsys: Printed) -> None:
 
 def test_defaults_of_the_command_are_those_of_the_call() -> None:
     defaults = {name: each.default for name, each in inspect.signature(skisnow.chain).parameters.items()}
-    assert (defaults["runs"], defaults["unloading_ratio"], defaults["scenario"]) == (32, 10.0, "carved-46m")
+    assert (defaults["runs"], defaults["unloading_ratio"], defaults["scenario"]) == (32, None, "carved-46m")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -26,7 +27,7 @@ from ..snow.mean_snow import site_in_words
 from .ensemble import ensemble_of
 
 UNLOADING_RATIO: Final = 10.0
-"""k_u/H_V of hypoplastic snow (modelling assumption: none is published)."""
+"""k_u/H_V of hypoplastic snow whose unloading was not measured (modelling assumption: none is published)."""
 RUNS: Final = 32
 """Of the ensemble (modelling assumption: the band of 90 % then leaves three out)."""
 
@@ -37,7 +38,7 @@ def chain(
     scenario: Scenario | str | Path = "carved-46m",
     *,
     ski: Ski | str | Path | None = None,
-    unloading_ratio: float = UNLOADING_RATIO,
+    unloading_ratio: float | None = None,
     runs: int = RUNS,
     seed: int = 1,
     workers: int | None = None,
@@ -56,7 +57,8 @@ def chain(
     ski
         In place of the scenario's: a ski, a name of the catalogue, or a file.
     unloading_ratio
-        k_u/H_V > 1 of the hypoplastic contact; the other contact is elastic.
+        k_u/H_V > 1 of the hypoplastic contact; left out: the measured one of the site, or 10 where none is. The other
+        contact is elastic.
     runs
         Of the ensemble, 3 or more: H_V and S_f are drawn from their intervals.
     seed
@@ -101,11 +103,13 @@ def chain(
     say = progress or _silent
     found = campaign if isinstance(campaign, Analysis) else analyse(campaign, progress=progress)
     snow = found.snow(site, unloading_ratio=unloading_ratio)
+    if snow.unloading_ratio is None:
+        snow = replace(snow, unloading_ratio=UNLOADING_RATIO)
     snows = drawn_snows(snow, runs, np.random.default_rng(seed))
     turn = (scenario if isinstance(scenario, Scenario) else read_scenario(scenario)).with_(snow=snow)
     turn = turn if ski is None else turn.with_(ski=ski)
     contacts = {
-        f"hypoplastic, k_u / H_V = {unloading_ratio:g}": turn,
+        f"hypoplastic, k_u / H_V = {snow.unloading_ratio:.3g}": turn,
         "elastic": turn.with_(unloading_ratio=ELASTIC),
     }
     simulated = {name: _run(name, each, say) for name, each in contacts.items()}
@@ -131,8 +135,8 @@ def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
     return run
 
 
-def _require(unloading_ratio: float, runs: int) -> None:
-    if not unloading_ratio > ELASTIC:
+def _require(unloading_ratio: float | None, runs: int) -> None:
+    if unloading_ratio is not None and not unloading_ratio > ELASTIC:
         raise ParameterError(
             f"unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
         )

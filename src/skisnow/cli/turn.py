@@ -42,7 +42,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--unloading-ratio",
         type=number("", lowest=1.0, highest=1000.0, above=True),
         metavar="RATIO",
-        help="k_u/H_V of the hypoplastic contact; left out: 10",
+        help="k_u/H_V of the hypoplastic contact; left out: what the site's unloading says, else 10",
     )
     parser.add_argument(
         "--runs", type=whole_number(3, MOST_RUNS), metavar="N", help="of the ensemble, 3 or more; left out: 32"

@@ -15,7 +15,9 @@ from .models import Model, ModelFit
 from .readings import Readings
 from .screening import Screened
 from .seating import Seating
+from .shear_displacement import ShearDisplacement, SiteDisplacement
 from .shear_stress import ShearStress
+from .unloading import SiteUnloading, Unloading
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,7 +38,8 @@ class ModelTable(Shown):
 class PenetrationAnalysis(Shown):
     """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
 
-    ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say. ``table``,
+    ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say,
+    ``unloading`` what those say that were read while discs were taken off. ``table``,
     ``errors_in_depth`` and ``selected`` are None where no experiment is used; ``warnings`` are those of `fit_warnings`.
     """
 
@@ -45,6 +48,8 @@ class PenetrationAnalysis(Shown):
     hardness: dict[str, Hardness]
     seating: Seating
     fitted: FittedHardness
+    unloading: Unloading
+    site_unloading: tuple[SiteUnloading, ...]
     table: ModelTable | None
     nested: tuple[NestedRows, ...]
     selected: ModelFit | None
@@ -61,6 +66,8 @@ class ShearAnalysis(Shown):
 
     screened: Screened
     stress: ShearStress
+    displacement: ShearDisplacement
+    site_displacement: tuple[SiteDisplacement, ...]
 
     def _facts(self) -> Facts:
         return Facts(used_of(self.screened))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
+from ..units import DEGREE, MM, MM2, MM3, N_PER_MM2, N_PER_MM3
 from .hardness import DEFINITIONS
 from .remarks import remarks
 
@@ -30,8 +30,10 @@ if TYPE_CHECKING:
     from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis
     from .regressions import Regression
     from .screening import Screened
+    from .shear_displacement import ShearDisplacement
     from .shear_stress import ShearStress
     from .sites import SiteMean
+    from .unloading import SiteUnloading, Unloading
 
 FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
@@ -134,6 +136,7 @@ def _campaign(analysis: Analysis) -> Json:
         "lever_arm_uncertainty_mm": None
         if campaign.lever_arm_uncertainty is None
         else campaign.lever_arm_uncertainty / MM,
+        "pole_stiffness_Nm_per_deg": None if campaign.pole_stiffness is None else campaign.pole_stiffness * DEGREE,
         "excluding": sorted(campaign.excluding),
         "warnings": [problem.as_dict() for problem in campaign.problems],
         "corrections": [asdict(correction) for correction in campaign.corrections],
@@ -152,9 +155,10 @@ def _penetration(analysis: Analysis) -> Json:
             "warnings": [],
             "seating": [],
             "errors_in_depth": {"models": _no_models(), "experiments": []},
+            "unloading": [],
         }
     return {
-        "experiments": penetration_experiments(tests, found.screened, found.hardness),
+        "experiments": penetration_experiments(tests, found.screened, found.hardness, found.unloading),
         "models": _models(found.table),
         "tests": [_nested(row) for row in found.nested],
         "selected": _selected(found),
@@ -164,13 +168,14 @@ def _penetration(analysis: Analysis) -> Json:
             "models": _models(found.errors_in_depth),
             "experiments": _fitted_hardness(tests.experiment, found),
         },
+        "unloading": [_site_unloading(row) for row in found.site_unloading],
     }
 
 
 def penetration_experiments(
-    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness]
+    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness], unloading: Unloading
 ) -> list[Json]:
-    """The rows ``penetration.experiments``: of each series what it was, its marks, its hardness by each definition."""
+    """The rows ``penetration.experiments``: of each series what it was, its marks, its hardness, its unloading."""
     columns: dict[str, list[Any]] = {
         "experiment": list(tests.experiment),
         "site": list(tests.site),
@@ -184,7 +189,31 @@ def penetration_experiments(
         columns[definition.key] = _numbers(hardness[symbol].value / definition.si)
     for symbol, definition in DEFINITIONS.items():
         columns[f"{symbol}_interval_{definition.unit_key}"] = _numbers(hardness[symbol].interval / definition.si)
-    return _rows(columns)
+    return _rows(columns | _unloading(unloading))
+
+
+def _unloading(found: Unloading) -> dict[str, list[Any]]:
+    return {
+        "n_unloading": found.n_readings.tolist(),
+        "unloading_ratio": _numbers(found.unloading_ratio),
+        "unloading_ratio_interval": _numbers(found.unloading_ratio_interval),
+        "rebound_ratio": _numbers(found.rebound_ratio),
+        "rebound_ratio_interval": _numbers(found.rebound_ratio_interval),
+        "k_u_N_per_mm3": _numbers(found.unloading_stiffness / N_PER_MM3),
+        "k_u_interval_N_per_mm3": _numbers(found.unloading_stiffness_interval / N_PER_MM3),
+    }
+
+
+def _site_unloading(row: SiteUnloading) -> Json:
+    return {
+        "site": row.site,
+        "n": row.n,
+        "unloading_ratio": row.ratio,
+        "unloading_ratio_interval": [row.low, row.high],
+        "rebound_ratio_interval": [row.low_rebound, row.high_rebound],
+        "k_u_N_per_mm3": row.stiffness / N_PER_MM3,
+        "k_u_interval_N_per_mm3": [row.stiffness_low / N_PER_MM3, row.stiffness_high / N_PER_MM3],
+    }
 
 
 def _degrees(angle: FloatArray) -> list[float]:
@@ -314,11 +343,24 @@ def _shear(analysis: Analysis) -> Json:
     found: ShearAnalysis | None = analysis.shear
     tests = analysis.campaign.shear
     if found is None or tests is None:
-        return {"experiments": []}
-    return {"experiments": shear_experiments(tests, found.screened, found.stress)}
+        return {"experiments": [], "displacement": []}
+    return {
+        "experiments": shear_experiments(tests, found.screened, found.stress, found.displacement),
+        "displacement": [
+            {
+                "site": row.site,
+                "n": row.n,
+                "shear_displacement_mm": row.value / MM,
+                "shear_displacement_interval_mm": [row.low / MM, row.high / MM],
+            }
+            for row in found.site_displacement
+        ],
+    }
 
 
-def shear_experiments(tests: ShearTests, screened: Screened, stress: ShearStress) -> list[Json]:
+def shear_experiments(
+    tests: ShearTests, screened: Screened, stress: ShearStress, displacement: ShearDisplacement
+) -> list[Json]:
     """The rows ``shear.experiments``: of each test what it was, its marks, its force and stress."""
     return _rows(
         {
@@ -331,6 +373,9 @@ def shear_experiments(tests: ShearTests, screened: Screened, stress: ShearStress
             "S_f_interval_N_per_mm2": _numbers(stress.interval / N_PER_MM2),
             "used": screened.used.tolist(),
             "flags": screened.flags(),
+            "n_turning": displacement.n_readings.tolist(),
+            "shear_displacement_mm": _numbers(displacement.value / MM),
+            "shear_displacement_interval_mm": _numbers(displacement.interval / MM),
         }
     )
 

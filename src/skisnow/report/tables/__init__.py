@@ -12,7 +12,9 @@ from .models import errors_in_depth_table, fitted_hardness_table, models_table, 
 from .provenance import corrections_table, files_table, warnings_table
 from .regressions import regressions_table
 from .seating import seating_largest_table, seating_quantiles_table, seating_table
+from .shear_displacement import displacement_sites_table, displacement_table
 from .sites import sites_table
+from .unloading import unloading_sites_table, unloading_table
 
 if TYPE_CHECKING:
     from ..report_data import ReportData
@@ -29,6 +31,10 @@ BUILDERS = (
     seating_quantiles_table,
     seating_largest_table,
     seating_table,
+    unloading_sites_table,
+    unloading_table,
+    displacement_sites_table,
+    displacement_table,
     regressions_table,
     site_comparison_table,
     published_table,
