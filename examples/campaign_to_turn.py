@@ -21,7 +21,7 @@ def main() -> None:
     parser.add_argument("campaign", type=Path)
     parser.add_argument("out", type=Path)
     parser.add_argument("--site", default="C")
-    parser.add_argument("--runs", type=int, default=32)
+    parser.add_argument("--runs", type=int, default=64)
     asked = parser.parse_args()
     turn = skisnow.scenario("carved-46m").with_(angle_deg=5, speed_m_per_s=4.5, edge_angle_deg=40)
     chain = skisnow.chain(

@@ -13,17 +13,15 @@ from ..errors import ParameterError
 from .properties import Interval, SnowProperties
 
 
-def drawn_snows(snow: SnowProperties, count: int, generator: np.random.Generator) -> list[SnowProperties]:
+def drawn_snows(snow: SnowProperties, shares: npt.NDArray[np.float64]) -> list[SnowProperties]:
     """Snows whose H_V is log-normal and whose S_f is normal, each with the 95 % interval of a measured snow.
 
     Parameters
     ----------
     snow
         With both values and both intervals, as `snow_from_results` gives it for two experiments or more of each kind.
-    count
-        How many, 0 or more.
-    generator
-        Of random numbers; the snows follow from its state.
+    shares
+        Shape (count, 2), between 0 and 1 and independent: where in the distributions of H_V and S_f each snow lies.
 
     Raises
     ------
@@ -36,6 +34,22 @@ def drawn_snows(snow: SnowProperties, count: int, generator: np.random.Generator
     distribution is cut there. The intervals are those of means, so the snows show how well the mean is known, not how
     much the snow of a slope changes from place to place. H_V and S_f are drawn independently (modelling assumption).
     """
+    hardness, stress = measured_intervals(snow)
+    middle, spread = _normal((math.log(hardness[0]), math.log(hardness[1])))
+    of_hardness = np.exp(middle + spread * ndtri(shares[:, 0]))
+    of_stress = _above_zero(_normal(stress), shares[:, 1])
+    source = f"drawn from the intervals of {snow.source}"
+    return [SnowProperties(H_V, S_f, source=source) for H_V, S_f in zip(of_hardness.tolist(), of_stress, strict=True)]
+
+
+def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
+    """The intervals of H_V and S_f.
+
+    Raises
+    ------
+    ParameterError
+        One is not known, or no S_f above 0 lies in its own.
+    """
     hardness, stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     if hardness is None or stress is None:
         raise ParameterError(
@@ -44,11 +58,7 @@ def drawn_snows(snow: SnowProperties, count: int, generator: np.random.Generator
         )
     if not stress[1] > 0.0:
         raise ParameterError(f"the interval of S_f ends at {stress[1]:g} N/m²; no snow above 0 can be drawn from it")
-    middle, spread = _normal((math.log(hardness[0]), math.log(hardness[1])))
-    of_hardness = np.exp(middle + spread * generator.standard_normal(count))
-    of_stress = _above_zero(_normal(stress), generator.random(count))
-    source = f"drawn from the intervals of {snow.source}"
-    return [SnowProperties(H_V, S_f, source=source) for H_V, S_f in zip(of_hardness.tolist(), of_stress, strict=True)]
+    return hardness, stress
 
 
 def _normal(interval: Interval) -> tuple[float, float]:
@@ -57,10 +67,10 @@ def _normal(interval: Interval) -> tuple[float, float]:
     return (interval[0] + interval[1]) / 2.0, (interval[1] - interval[0]) / 2.0 / half
 
 
-def _above_zero(normal: tuple[float, float], uniform: npt.NDArray[np.float64]) -> list[float]:
-    """Values above 0 of a normal distribution from uniform numbers in [0, 1)."""
+def _above_zero(normal: tuple[float, float], shares: npt.NDArray[np.float64]) -> list[float]:
+    """Values at shares of the part above 0 of a normal distribution."""
     mean, spread = normal
     if spread == 0.0:
-        return [mean] * len(uniform)
+        return [mean] * len(shares)
     below = ndtr(-mean / spread)
-    return np.asarray(mean + spread * ndtri(below + (1.0 - below) * (1.0 - uniform))).tolist()
+    return np.asarray(mean + spread * ndtri(below + (1.0 - below) * shares)).tolist()
