@@ -1,4 +1,4 @@
-"""From a campaign to a turn: each contact on the snow that was found, and a band over its uncertainty.
+"""From a campaign to a turn: each contact on the snow that was found, and a band over what is not known.
 
     python examples/campaign_to_turn.py CAMPAIGN OUT [--site SITE] [--runs N]
 

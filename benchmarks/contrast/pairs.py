@@ -78,6 +78,11 @@ class Pairs:
         nothing = dict.fromkeys(self.results)
         try:
             plastic = simulate(turn(point, fast=self.fast))
+            if plastic.outcome not in (
+                "distance_reached",
+                "interrupted",
+            ):  # no run of that length: nothing to hold against
+                return {**point, **nothing, "outcome": plastic.outcome, "reason": "hypoplastic"}
             elastic = simulate(turn(point | {"snow.unloading_ratio": 1.0}, fast=self.fast))
         except SkisnowError as error:
             return {**point, **nothing, "outcome": "error", "reason": str(error)}
@@ -120,14 +125,13 @@ def pair(elastic: Run, plastic: Run) -> dict[str, Any]:
     far = np.flatnonzero(beside > PARTED * length)
     way = _way(elastic)
     parted = float(way[far[0]]) if far.size else float(way[-1])
-    bad = [run.outcome for run in runs.values() if run.outcome != "distance_reached"]
     found = {
-        "outcome": bad[0] if bad else "complete",
+        "outcome": "complete" if elastic.outcome == "distance_reached" else elastic.outcome,
         "apart_m": json_number(float(np.nanmax(beside))),
         "ends_apart_m": json_number(float(np.linalg.norm(elastic.place[-1] - plastic.place[-1]))),
         "parted_m": parted if far.size else None,
         "outside_m": json_number(_outside(elastic, plastic)),
-        "reason": "; ".join(f"{contact}: {run.outcome}" for contact, run in runs.items()),
+        "reason": "" if elastic.outcome == "distance_reached" else "elastic",
     }
     for contact, run in runs.items():
         found |= {f"{contact}_{name}": value for name, value in of_run(run, parted).items()}

@@ -13,8 +13,8 @@ from skisnow.inputs import Quantity
 
 FloatArray = npt.NDArray[np.float64]
 
-BLOCKS: Final = 128
-"""Of the whole design, a power of 2: each has one point, another one, and the first with each group of inputs of the other."""
+POINTS: Final = 1024
+"""Of the whole design, a power of 2; each makes a pair with either ski."""
 SEED: Final = 20261123
 
 
@@ -27,12 +27,6 @@ class Unknown:
     high: float
     origin: str
     log: bool = False
-    group: str = ""
-
-    @property
-    def of(self) -> str:
-        """What it is varied with: its group, or itself."""
-        return self.group or self.name
 
     @property
     def key(self) -> Quantity:
@@ -47,56 +41,30 @@ class Unknown:
 
 
 UNKNOWNS: Final = (
-    Unknown("slope.angle_deg", 4.0, 20.0, "an easy to a steep piste"),
-    Unknown(
-        "snow.H_V_N_per_mm3", 0.02, 10.0, "spring snow of Federolf and others (2006) to hard winter snow", log=True
-    ),
-    Unknown(
-        "snow.S_f_N_per_mm2", 0.04, 0.52, "fresh snow (Mössner and others 2013) to Federolf's race piste", log=True
-    ),
+    Unknown("slope.angle_deg", 4.0, 18.0, "an easy piste to one of medium inclination"),
+    Unknown("snow.H_V_N_per_mm3", 0.02, 10.0, "Federolf's spring snow to hard winter snow", log=True),
+    Unknown("snow.S_f_N_per_mm2", 0.04, 0.52, "fresh snow to Federolf's race piste", log=True),
     Unknown("snow.unloading_ratio", 2.0, 50.0, "k_u/H_V of the hypoplastic run; none is published", log=True),
     Unknown("snow.shear_displacement_mm", 0.02, 0.5, "u_y; not measured", log=True),
-    Unknown("friction.mu_0", 0.023, 0.139, "over 200 runs of Wolfsperger and others (2021)", group="brakes"),
-    Unknown("drag.drag_area_m2", 0.1, 0.66, "half a tuck to a skier upright (Supej and others 2022)", group="brakes"),
-    Unknown("sledge.mass_kg", 40.0, 150.0, "a bare sledge to a loaded one"),
-    Unknown("inertia_factor", 0.5, 2.0, "of the scenario's three moments of inertia", log=True, group="build"),
-    Unknown("sledge.centre_of_mass_height_m", 0.08, 0.3, "a low sledge", group="build"),
-    Unknown("sledge.centre_of_mass_forward_m", -0.1, 0.1, "about the boots", group="build"),
-    Unknown("sledge.stance_width_m", 0.3, 0.7, "two skis beside each other", group="build"),
-    Unknown("sledge.edge_angle_deg", 5.0, 40.0, "from hardly edged to as far as such sledges are"),
-    Unknown("ski.clamp_length_m", 0.0, 0.4, "from a point to a long plate", group="ski"),
-    Unknown(
-        "stiffness_factor",
-        0.7,
-        1.4,
-        "of EI and GJ of the catalogue's ski; 140 skis of one market",
-        log=True,
-        group="ski",
-    ),
-    Unknown("sidecut_factor", 0.8, 1.25, "of the depth of that ski's sidecut", log=True, group="ski"),
-    Unknown("start.speed_m_per_s", 2.0, 12.0, "so that a run of some seconds fits the lengths"),
+    Unknown("friction.mu_0", 0.023, 0.139, "over 200 runs of Wolfsperger and others (2021)"),
+    Unknown("drag.drag_area_m2", 0.1, 0.66, "half a tuck to a skier upright (Supej and others 2022)"),
+    Unknown("sledge.mass_kg", 40.0, 140.0, "a bare sledge to a loaded one"),
+    Unknown("inertia_factor", 0.5, 2.0, "of the scenario's three moments of inertia", log=True),
+    Unknown("sledge.centre_of_mass_height_m", 0.08, 0.3, "a low sledge"),
+    Unknown("sledge.centre_of_mass_forward_m", -0.1, 0.1, "about the boots"),
+    Unknown("sledge.stance_width_m", 0.3, 0.7, "two skis beside each other"),
+    Unknown("sledge.edge_angle_deg", 5.0, 35.0, "from hardly edged to as far as such sledges are"),
+    Unknown("ski.clamp_length_m", 0.0, 0.4, "from a point to a long plate"),
+    Unknown("stiffness_factor", 0.7, 1.4, "of EI and GJ of the catalogue's ski", log=True),
+    Unknown("sidecut_factor", 0.8, 1.25, "of the depth of that ski's sidecut", log=True),
+    Unknown("start.speed_m_per_s", 3.0, 11.0, "so that a run of some seconds fits the lengths"),
     Unknown("start.heading_deg", -90.0, 0.0, "from a traverse to the fall line; the turn goes on to the left"),
 )
 """All that is varied; ours, and stated beside every number that follows from it."""
 
-GROUPS: Final = tuple(dict.fromkeys(each.of for each in UNKNOWNS))
-"""What has an index of its own: each unknown, or some of a kind together."""
 
-
-def design(blocks: int = BLOCKS) -> list[dict[str, Any]]:
-    """Points of Saltelli's design, block after block: A, B, and A with each group from B (radial), from a Sobol sequence.
-
-    Owen-scrambled with a fixed seed; the first blocks of a longer design are those of a shorter one.
-    """
-    count = len(UNKNOWNS)
-    both = qmc.Sobol(2 * count, scramble=True, rng=np.random.default_rng(SEED)).random(BLOCKS)[:blocks]
-    points: list[dict[str, Any]] = []
-    for row in both:
-        one, other = row[:count], row[count:]
-        shares = [one, other, *(np.where([each.of == group for each in UNKNOWNS], other, one) for group in GROUPS)]
-        points += [_point(share) for share in shares]
-    return points
-
-
-def _point(shares: FloatArray) -> dict[str, Any]:
-    return {each.name: float(each.at(share)) for each, share in zip(UNKNOWNS, shares, strict=True)}
+def design() -> list[dict[str, Any]]:
+    """Points of a Sobol sequence, Owen-scrambled: any number of the first ones fills the space evenly."""
+    shares = qmc.Sobol(len(UNKNOWNS), scramble=True, rng=np.random.default_rng(SEED)).random(POINTS)
+    columns = {each.name: each.at(shares[:, place]).tolist() for place, each in enumerate(UNKNOWNS)}
+    return [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]

@@ -18,7 +18,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "turn",
-        help="from a campaign to a turn: analysis, the snow of a site, a simulated turn, a band over the uncertainty",
+        help="from a campaign to a turn: analysis, the snow of a site, a simulated turn, a band over what is not known",
         description="Analyse a campaign and simulate a turn on the snow of a site, with hypoplastic and with "
         "elastic contact, and over what is not known of snow, friction and ski.",
     )
