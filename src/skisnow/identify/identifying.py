@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from ..errors import FitError, ParameterError
+from ..inputs import values_of
 from ..parallel.kept_rows import KeptRows
 from ..scenario import ScenarioFile
 from ..scenario.free_keys import free_keys
@@ -180,7 +181,7 @@ def _observations(
 ) -> tuple[Observations, ...]:
     found: list[Observations] = []
     if read.tracks:
-        found.append(TrackPositions(read.tracks, simulations, read.fixed, read.starts))
+        found.append(TrackPositions(read.tracks, simulations, read.fixed, read.starts, values_of(asked.scenario)))
     found += [PhotoCellTimes(each, asked, read.starts, clock_is_free) for each in read.cells]
     for each in read.marks:
         require_marks_can_be(asked)

@@ -13,17 +13,15 @@ from ..errors import ParameterError
 from .properties import Interval, SnowProperties
 
 
-def drawn_snows(snow: SnowProperties, count: int, generator: np.random.Generator) -> list[SnowProperties]:
+def drawn_snows(snow: SnowProperties, shares: npt.NDArray[np.float64]) -> list[SnowProperties]:
     """Snows whose H_V and S_f are log-normal, each with the 95 % interval of a measured snow.
 
     Parameters
     ----------
     snow
         With both values and both intervals, as `snow_from_results` gives it for two experiments or more of each kind.
-    count
-        How many, 0 or more.
-    generator
-        Of random numbers; the snows follow from its state.
+    shares
+        Shape (count, 2), between 0 and 1 and independent: where in the distributions of H_V and S_f each snow lies.
 
     Raises
     ------
@@ -36,6 +34,20 @@ def drawn_snows(snow: SnowProperties, count: int, generator: np.random.Generator
     snows show how well the mean is known, not how much the snow of a slope changes from place to place. H_V and S_f are
     drawn independently (modelling assumption).
     """
+    hardness, stress = measured_intervals(snow)
+    of_hardness, of_stress = _drawn(hardness, shares[:, 0]), _drawn(stress, shares[:, 1])
+    source = f"drawn from the intervals of {snow.source}"
+    return [SnowProperties(H_V, S_f, source=source) for H_V, S_f in zip(of_hardness, of_stress, strict=True)]
+
+
+def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
+    """The intervals of H_V and S_f.
+
+    Raises
+    ------
+    ParameterError
+        One is not known, or that of S_f does not begin above 0.
+    """
     hardness, stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     if hardness is None or stress is None:
         raise ParameterError(
@@ -44,15 +56,12 @@ def drawn_snows(snow: SnowProperties, count: int, generator: np.random.Generator
         )
     if not stress[0] > 0.0:
         raise ParameterError(f"the interval of S_f begins at {stress[0]:g} N/m²; no snow above 0 can be drawn from it")
-    of_hardness = _drawn(hardness, generator.standard_normal(count))
-    of_stress = _drawn(stress, ndtri(1.0 - generator.random(count)))
-    source = f"drawn from the intervals of {snow.source}"
-    return [SnowProperties(H_V, S_f, source=source) for H_V, S_f in zip(of_hardness, of_stress, strict=True)]
+    return hardness, stress
 
 
-def _drawn(interval: Interval, standard: npt.NDArray[np.float64]) -> list[float]:
-    """Log-normal values with this 95 % interval from standard normal ones."""
+def _drawn(interval: Interval, shares: npt.NDArray[np.float64]) -> list[float]:
+    """Quantiles of the log-normal distribution with this 95 % interval."""
     low, high = map(math.log, interval)
     half = float(ndtri(0.5 + CONFIDENCE / 2.0))
-    drawn: list[float] = np.exp((low + high) / 2.0 + (high - low) / 2.0 / half * standard).tolist()
+    drawn: list[float] = np.exp((low + high) / 2.0 + (high - low) / 2.0 / half * ndtri(shares)).tolist()
     return drawn
