@@ -160,6 +160,27 @@ class TestStraight:
         assert again.effort.simulations == 0
         assert again.values == first.values
 
+    def test_a_scenario_may_be_given_as_an_object(self, tmp_path: Path) -> None:
+        """The same answer as by its name; other tables of a ski of the same name are another scenario."""
+        kept = tmp_path / "simulations.partial"
+        turn = read_scenario("carved-46m", changes=SCENARIO)
+        found = identify(turn, track(seed=5), "mu_0,speed", workers=1, kept=kept)
+        assert found.values == pytest.approx(found_from(track(seed=5)).values, rel=1e-9)
+        assert found.scenario == "scenario given in Python"
+        again = identify(turn.with_(mass_kg=80.0), track(seed=5), "mu_0,speed", workers=1, kept=kept)
+        assert (again.effort.simulations, again.values) == (0, found.values)
+        stiffer = turn.with_(ski=replace(turn.ski, torsional_stiffness=2.0 * turn.ski.torsional_stiffness))
+        with pytest.raises(ParameterError, match="finished points of another study"):
+            identify(stiffer, track(seed=5), "mu_0,speed", workers=1, kept=kept)
+
+    def test_changes_of_an_object_are_those_of_with(self) -> None:
+        turn = read_scenario("carved-46m", changes=SCENARIO)
+        found = identify(turn, track(seed=5), "mu_0", changes={"speed_m_per_s": TRUE_SPEED}, workers=1)
+        other = identify(turn.with_(speed_m_per_s=TRUE_SPEED), track(seed=5), "mu_0", workers=1)
+        assert found.values == other.values != identify(turn, track(seed=5), "mu_0", workers=1).values
+        with pytest.raises(ParameterError, match=r"ski\.name is a word of a scenario's file"):
+            identify(turn, track(seed=5), "mu_0", changes={"ski.name": "slalom"}, workers=1)
+
     def test_an_interrupt_keeps_the_best_so_far(self, monkeypatch: pytest.MonkeyPatch) -> None:
         import sys
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..errors import FitError, ParameterError
 from ..parallel.kept_rows import KeptRows
-from ..scenario import ScenarioFile
+from ..scenario import Scenario, ScenarioFile
 from ..scenario.free_keys import free_keys
 from ..scenario.given import GivenScenario, given_scenario
 from ..scenario.identify_section import given_parameters
@@ -41,7 +41,7 @@ Told = Callable[[str], None]
 
 
 def identify(
-    scenario: str | Path | GivenScenario,
+    scenario: Scenario | str | Path | GivenScenario,
     data: Sequence[Data | str | Path] | Data | str | Path,
     free: str | Sequence[str] = (),
     *,
@@ -63,7 +63,7 @@ def identify(
     Parameters
     ----------
     scenario
-        A built-in name, the path of a file, or values as given.
+        A scenario, a built-in name, the path of a file, or values as given.
     data
         Tracks, photo-cell times, marks left in the snow, or paths of files with these; several together.
     free

@@ -22,7 +22,7 @@ from .symbols import html, prose
 from .tables.run import energies_table, scenario_table, verification_table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from ..simulate.run import Run
     from .figures.drawing import Picture
@@ -92,10 +92,18 @@ def _header(run: Run) -> Header:
     facts = [
         ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}")),
         ("Source of the snow", scenario.contact.snow.source),
+        *_laws(run),
         ("Skis", f"{scenario.ski.name}, edge angle {significant(scenario.sledge.edge_angle / DEGREE)}°"),
         ("Computed", f"skisnow {version('skisnow')}"),
     ]  # fmt: skip
     return Header("A simulated run of a sledge on two flexible skis", _title(run), facts)
+
+
+def _laws(run: Run) -> Iterator[tuple[str, str]]:
+    """What acted in place of the scenario's laws."""
+    for name, law in run.given_laws.items():
+        if law:
+            yield f"{name.replace('_', ' ').capitalize()}, given in Python", law
 
 
 def _title(run: Run) -> str:

@@ -14,6 +14,7 @@ from ..errors import ParameterError, RangeWarning
 from ..shown import ShownFields
 from ..sources import Sources
 from .building import built
+from .changed import changed_scenario
 from .given import GivenScenario, given_scenario
 from .scenario import Scenario
 from .suspicions import suspicions
@@ -121,7 +122,7 @@ def resolved(given: GivenScenario, *, sources: Sources | None = None) -> Scenari
         As `read_scenario`.
     """
     scenario, told = _built(given, sources or Sources())
-    own = _own_suspicions(given.title) if given.file is None else ()
+    own = _own_suspicions(given.title) if given.file is None and given.base is None else ()
     warned = (*told, *(each for each in suspicions(scenario) if each not in own))
     return ScenarioFile(given.title, _in_force(given, scenario), scenario, files_of(given), warned)
 
@@ -133,6 +134,8 @@ def _own_suspicions(name: str) -> tuple[str, ...]:
 
 
 def _built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, ...]]:
+    if given.base is not None:
+        return changed_scenario(given.base, given.values), ()
     try:
         return built(given, sources)
     except ParameterError as error:
@@ -142,6 +145,8 @@ def _built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str,
 def _in_force(given: GivenScenario, scenario: Scenario) -> dict[str, Any]:
     """As given where it was: there and back over the unit could change a last digit."""
     words = {name: list(value) if isinstance(value, tuple) else value for name, value in given.values.items()}
+    if given.base is not None:
+        return {**scenario_values(scenario), **words}
     of_ski = {"ski.name": words.get("ski.name"), "ski.file": words.get("ski.file")}
     return {**scenario_values(scenario), **words, **of_ski}
 
