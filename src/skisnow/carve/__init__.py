@@ -6,7 +6,8 @@ The room can be called: `skisnow.carve(ski, snow, …)` is `skisnow.carve.equili
 from __future__ import annotations
 
 from ..callable_rooms import make_callable
-from .equilibrium import Equilibrium, rest
+from .equilibrium import rest
+from .result import Equilibrium
 
 __all__ = ["Equilibrium", "rest"]
 

@@ -10,9 +10,10 @@ from ..snow import SnowProperties
 from ..snow.given_stress import require_stress, with_stress
 from ..snow.measured_range import with_range_warnings
 from ..sources import Sources
-from .equilibrium import Equilibrium, carve, rest
+from .equilibrium import carve, rest
 from .keys import CARVE_KEYS, CarveQuestion
 from .limits import require_clamp, suspicions
+from .result import Equilibrium
 
 
 @dataclass(frozen=True, slots=True, eq=False)

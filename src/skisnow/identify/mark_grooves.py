@@ -18,7 +18,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..carve.equilibrium import Equilibrium, carve
+from ..carve.equilibrium import carve
+from ..carve.result import Equilibrium
 from ..errors import ParameterError, SkisnowError
 from ..scenario import Plane, ScenarioFile
 from ..ski import Ski

@@ -111,7 +111,7 @@ def test_a_run_names_the_laws_that_it_was_given(tmp_path: Path) -> None:
     assert f"<dt>Shear, given in Python</dt><dd>{named['shear']}</dd>" in page
     assert "the run had another strength (shear, strength along, given in Python)" in page
     with netcdf_file(tmp_path / "run.nc", "r", mmap=False) as file:
-        assert json.loads(file.laws) == named
+        assert json.loads(file.laws) == named  # type: ignore[attr-defined]
     plain = simulate(turn)
     assert set(summary_dict(plain)["laws"].values()) == {None}
     assert "given in Python" not in repr(plain) + plain.report(tmp_path).read_text(encoding="utf-8")
