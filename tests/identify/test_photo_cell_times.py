@@ -204,7 +204,7 @@ def test_what_is_being_done_is_told() -> None:
         "mu_0,drag_area",
         changes=CHANGES,
         profile=True,
-        told=said.append,
+        progress=said.append,
     )
     assert [words for words in said if "profile of" in words] == ["profile of mu_0", "profile of drag_area"]
 

@@ -38,7 +38,7 @@ class TestStraight:
     def test_a_track_without_noise_gives_the_truth(self) -> None:
         """The search may end a fifth of a standard error (3e-4, 3e-3 m/s) off; a linear model ends far nearer."""
         said: list[str] = []
-        found = found_from(track(), told=said.append)
+        found = found_from(track(), progress=said.append)
         assert said[:2] == ["starting; 1 simulated runs", "starting; 2 simulated runs"]
         assert any("last steps with the scenario's own solver" in words for words in said)
         assert found.outcome == "converged"
@@ -154,8 +154,8 @@ class TestStraight:
 
     def test_simulations_are_kept_and_found_again(self, tmp_path: Path) -> None:
         kept = tmp_path / "simulations.partial"
-        first = found_from(track(seed=5), kept=kept)
-        again = found_from(track(seed=5), kept=kept)
+        first = found_from(track(seed=5), checkpoint=kept)
+        again = found_from(track(seed=5), checkpoint=kept)
         assert first.effort.simulations > 5
         assert again.effort.simulations == 0
         assert again.values == first.values
@@ -164,14 +164,14 @@ class TestStraight:
         """The same answer as by its name; other tables of a ski of the same name are another scenario."""
         kept = tmp_path / "simulations.partial"
         turn = read_scenario("carved-46m", changes=SCENARIO)
-        found = identify(turn, track(seed=5), "mu_0,speed", workers=1, kept=kept)
+        found = identify(turn, track(seed=5), "mu_0,speed", workers=1, checkpoint=kept)
         assert found.values == pytest.approx(found_from(track(seed=5)).values, rel=1e-9)
         assert found.scenario == "scenario given in Python"
-        again = identify(turn.with_(mass_kg=80.0), track(seed=5), "mu_0,speed", workers=1, kept=kept)
+        again = identify(turn.with_(mass_kg=80.0), track(seed=5), "mu_0,speed", workers=1, checkpoint=kept)
         assert (again.effort.simulations, again.values) == (0, found.values)
         stiffer = turn.with_(ski=replace(turn.ski, torsional_stiffness=2.0 * turn.ski.torsional_stiffness))
         with pytest.raises(ParameterError, match="finished points of another study"):
-            identify(stiffer, track(seed=5), "mu_0,speed", workers=1, kept=kept)
+            identify(stiffer, track(seed=5), "mu_0,speed", workers=1, checkpoint=kept)
 
     def test_changes_of_an_object_are_those_of_with(self) -> None:
         turn = read_scenario("carved-46m", changes=SCENARIO)

@@ -126,9 +126,9 @@ def _identified(options: argparse.Namespace) -> Identification:
             clock_is_free=None if options.clock is None else options.clock == "free",
             rng=np.random.default_rng(options.seed),
             workers=options.workers,
-            kept=None if options.out is None else options.out / KEPT,
-            anew=not options.resume,
-            told=progress,
+            checkpoint=None if options.out is None else options.out / KEPT,
+            restart=not options.resume,
+            progress=progress,
         )
 
 

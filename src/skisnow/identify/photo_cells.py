@@ -22,7 +22,7 @@ class Passage:
     """A row of a file of photo cells."""
 
     run: Annotated[str, Quantity("run", "name of the run")]
-    station: Annotated[float, Quantity("station_m", "length of the way from the start down, which no cell lies before")]
+    station: Annotated[float, Quantity("station_m", "distance from the start down, which no cell lies before")]
     time: Annotated[float, Quantity("time_s", "of the passage")]
     time_sd: Annotated[float | None, Quantity("time_sd_s", "standard deviation of it", lowest=0.0, above=True)] = None
 
@@ -40,7 +40,7 @@ class PhotoCellRun(ShownFields):
     name
         Of the run.
     station : (n,) m
-        Length of the way from the start down to the cell, along the slope's surface, rising.
+        Distance from the start down to the cell, along the slope's surface, rising.
     time : (n,) s
         Of the passage, rising.
     time_sd : (n,) s or None
