@@ -192,7 +192,7 @@ def test_track_of_a_run_is_what_its_file_says(folder: Path) -> None:
     track, read = circle_run().track, skisnow.read_track(folder / "track.csv")
     for name in ("time", "place", "speed"):
         assert np.array_equal(getattr(track, name), getattr(read, name)), name
-    assert track.marked == read.marked == {}
+    assert track.flagged == read.flagged == {}
     assert track.axes == "slope"
     assert skisnow.compare_tracks(track, read).nearest.numbers == skisnow.compare_tracks(read, read).nearest.numbers
 

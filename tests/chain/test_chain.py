@@ -146,8 +146,8 @@ def test_the_command_s_json_is_that_of_the_report(asked: list[Scenario], tmp_pat
 def test_the_json_keeps_to_its_schema(analysis: Analysis, asked: list[Scenario]) -> None:
     assert asked == []
     schemas = {
-        name: json.loads((PACKAGE / room / "schemas" / f"{name}.schema.json").read_text(encoding="utf-8"))
-        for room, name in (("report", "turn"), ("simulate", "summary"))
+        name: json.loads((PACKAGE / package / "schemas" / f"{name}.schema.json").read_text(encoding="utf-8"))
+        for package, name in (("report", "turn"), ("simulate", "summary"))
     }
     summary = schemas["summary"]
     known = Registry().with_resource(summary["$id"], Resource.from_contents(summary))

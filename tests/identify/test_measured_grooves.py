@@ -216,13 +216,13 @@ def test_the_strength_alone_from_marks_of_an_edge_that_held(stated: bool) -> Non
 
 
 def test_former_names_still_serve_and_warn(tmp_path: Path) -> None:
-    import skisnow.identify as room
+    import skisnow.identify as package
 
     path = tmp_path / "marks.csv"
     path.write_text("depth_mm,depth_sd_mm\n3,1\n", encoding="utf-8")
     with pytest.warns(DeprecationWarning, match="read_marks is called read_measured_grooves now"):
-        read = room.read_marks(path)
+        read = package.read_marks(path)
     with pytest.warns(DeprecationWarning, match="Marks is called MeasuredGrooves now"):
-        assert isinstance(read, room.Marks)
+        assert isinstance(read, package.Marks)
     with pytest.warns(DeprecationWarning, match="told= of identify is called progress= now"), pytest.raises(TypeError):
         identify(told=print)  # type: ignore[call-arg]

@@ -119,7 +119,7 @@ class TestStraight:
         place = one.place.copy()
         place[7] += 500.0
         jump = np.arange(len(one)) == 7
-        found = found_from(replace(one, place=place, marks={"jump": jump}))
+        found = found_from(replace(one, place=place, flags={"jump": jump}))
         assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
         assert any("1 points are marked" in text for text in found.warnings)
 
@@ -238,7 +238,7 @@ def test_east_north_up_is_turned_into_the_slope(tmp_path: Path, monkeypatch: pyt
     assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
     far = path.with_name("far.toml")
     far.write_text(scenario_text("carved-46m") + section + "latitude_deg = 11\nlongitude_deg = 47\n", encoding="utf-8")
-    with pytest.raises(ParameterError, match="latitude and longitude are the wrong way round"):
+    with pytest.raises(ParameterError, match="latitude and longitude are swapped"):
         identify(far, there, "mu_0,speed", changes=SCENARIO, workers=1)
     other = path.with_name("other.toml")  # Norway: 13.1° of latitude are 1459 km, straight through the earth 1456
     text = scenario_text("carved-46m") + section + "latitude_deg = 60.1\nlongitude_deg = 11\n"

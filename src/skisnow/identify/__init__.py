@@ -1,13 +1,13 @@
 """Parameters from tracks, photo-cell times, or the track left in the snow.
 
-The room can be called: `skisnow.identify(…)` is `skisnow.identify.identify`.
+The package can be called: `skisnow.identify(…)` is `skisnow.identify.identify`.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from ..callable_rooms import make_callable
+from ..callable_packages import make_callable
 from ..former_names import formerly, warn_of_former_name
 from .identification import Identification, Identified, identification_dict
 from .identifying import identify

@@ -1,4 +1,4 @@
-"""A body that glides straight down a slope: when it passes which station.
+"""A body that glides straight down a slope: when it passes which cell.
 
     m v' = m g sin α - μ(v) m (g cos α + κ v²) - ½ ρ C_dA v²,   s' = v,   μ(v) = μ_0 + μ_1 v
 
@@ -134,7 +134,7 @@ class Glide:
 
 
 def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: float) -> FloatArray:
-    """When each body passes each station.
+    """When each body passes each cell.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArr
 
 
 def _passages(time: FloatArray, arc_length: FloatArray, speed: FloatArray, station: FloatArray) -> FloatArray:
-    """Times (s) at the stations, infinite at those that are not reached."""
+    """Times (s) at the cells, infinite at those that are not reached."""
     number = np.searchsorted(arc_length, station, side="left") - 1
     reached = number < len(arc_length) - 1
     at = np.clip(number, 0, len(arc_length) - 2)

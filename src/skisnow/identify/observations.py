@@ -32,7 +32,7 @@ class Fit(ShownFields):
     name, kind
         Of the run.
     along : (n,)
-        What the points stand over: time (s) of a track, station (m) of photo cells, number of a place of a groove.
+        What the points stand over: time (s) of a track, distance (m) of photo cells, number of a place of a groove.
     labels
         Names of the k quantities, with units.
     measured, fitted, sd : (n, k)

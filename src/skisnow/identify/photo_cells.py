@@ -54,10 +54,10 @@ class PhotoCellRun(ShownFields):
 
     def __post_init__(self) -> None:
         if len(self.station) < 1 or self.station.shape != self.time.shape:
-            raise ParameterError(f"run {self.name}: {len(self.station)} stations and {len(self.time)} times")
+            raise ParameterError(f"run {self.name}: {len(self.station)} cells and {len(self.time)} times")
         if self.station[0] < 0.0:
             raise ParameterError(
-                f"run {self.name}: station {self.station[0]:g} m lies before the start; stations count from the "
+                f"run {self.name}: station {self.station[0]:g} m lies before the start; they count from the "
                 "scenario's start down"
             )
         for what, values, unit in (("station", self.station, "m"), ("time", self.time, "s")):
@@ -65,7 +65,7 @@ class PhotoCellRun(ShownFields):
             if wrong.size:
                 first, second = values[wrong[0]], values[wrong[0] + 1]
                 raise ParameterError(
-                    f"run {self.name}: {what} {second:g} {unit} follows {first:g} {unit}; stations and times must rise "
+                    f"run {self.name}: {what} {second:g} {unit} follows {first:g} {unit}; distances and times must rise "
                     "from cell to cell. Sort the rows of the run, and look for a clock that was set back"
                 )
         if self.time_sd is not None and not np.all(self.time_sd > 0.0):
@@ -86,7 +86,7 @@ def read_photo_cells(path: str | Path) -> PhotoCells:
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is missing, a cell is no number (row and column are named), stations or times
+        The file cannot be read, a column is missing, a cell is no number (row and column are named), distances or times
         do not rise, or only some rows of a run state a standard deviation.
     """
     return photo_cells_of(read_table(Path(path)))

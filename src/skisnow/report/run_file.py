@@ -43,7 +43,7 @@ def write_run_file(
     path
         Of the file, which is replaced where it exists.
     provenance
-        As in summary.json: the global attribute ``provenance``; left out: only the program's version is told.
+        As in summary.json: the global attribute ``provenance``; left out: only the program's version.
 
     Raises
     ------

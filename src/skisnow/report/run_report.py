@@ -60,11 +60,11 @@ def write_run_report(
     """
     folder = Path(folder)
     require_writable(folder)
-    say = progress or _silent
-    say("run.nc")
+    report = progress or _silent
+    report("run.nc")
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
-    pictures = write_pictures(run_drawings(run), folder / "figures", every=FIGURES, progress=say)
-    say("report.html")
+    pictures = write_pictures(run_drawings(run), folder / "figures", every=FIGURES, progress=report)
+    report("report.html")
     write_file(folder / "report.html", run_page(run, summary, pictures))
     return folder / "report.html"
 
@@ -147,8 +147,8 @@ def _balance(run: Run) -> list[Markup]:
     error = run.energy_balance_error
     if error is None or json_number(error) is None:
         return []
-    if told := run_warnings(run):
-        return [prose("Warning: {told}.", told=each) for each in told]
+    if warnings := run_warnings(run):
+        return [prose("Warning: {text}.", text=each) for each in warnings]
     return [prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from ..json_number import json_number
-from ..scenario.suspicions import suspicions
+from ..scenario.plausibility import implausible_values
 from ..simulate.run_summary import summary_dict
 from ..snow.snow_dict import snow_dict
 from ..units import N_PER_MM2, N_PER_MM3
@@ -52,7 +52,7 @@ def _run_dict(contact: str, run: Run, nominal: Run) -> dict[str, Any]:
         "grip_utilisation": json_number(grip),
         "side_slip_share": json_number(slips),
         "distance_from_first_m": None if run is nominal else json_number(maximum_distance(run, nominal)),
-        "summary": summary_dict(run, warnings=suspicions(run.scenario)),
+        "summary": summary_dict(run, warnings=implausible_values(run.scenario)),
     }
 
 
