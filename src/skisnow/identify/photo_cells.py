@@ -65,7 +65,7 @@ class PhotoCellRun(ShownFields):
             if wrong.size:
                 first, second = values[wrong[0]], values[wrong[0] + 1]
                 raise ParameterError(
-                    f"run {self.name}: {what} {second:g} {unit} follows {first:g} {unit}; distances and times must rise "
+                    f"run {self.name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise "
                     "from cell to cell. Sort the rows of the run, and look for a clock that was set back"
                 )
         if self.time_sd is not None and not np.all(self.time_sd > 0.0):

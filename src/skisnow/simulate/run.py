@@ -48,7 +48,7 @@ LOST: Final = ("penetration", "shear", "friction", "drag", "damping")
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
 class SkiHistory(Shown):
-    """The skis over time: index 0 the time (n), 1 the ski (0 left, 1 right), 2 the position along it (m) or the coordinate.
+    """The skis over time: index 0 the time (n), 1 the ski (0 left, 1 right), 2 the place along it or the coordinate.
 
     Attributes
     ----------

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from .lab_skis import LabSkis
 
-STATION: Final = "Station (m)"
+POSITION: Final = "Position (m)"
 ONE: Final = "1"
 
 
@@ -114,7 +114,7 @@ class SkiEditor:
         self._cells, self._shown = {}, dict(cells)
         with self._table, ui.element("table").classes("cells"):
             with ui.element("thead"), ui.element("tr"):
-                for words in (STATION, *CELLS.values()):
+                for words in (POSITION, *CELLS.values()):
                     with ui.element("th").props("scope=col"):
                         ui.label(words)
             with ui.element("tbody"):

@@ -63,7 +63,7 @@ FACTS: Final = {
     "contact_length_m": ("Contact length", "m"),
     "side_force_N": ("Side force", "N"),
     "side_force_limit_N": ("Shear capacity of the snow", "N"),
-    "boot_pitch_moment_Nm": ("Moment at the boot about the cross axis", "N m"),
+    "boot_pitch_moment_Nm": ("Moment at the boot about the cross axis", "N\u00a0m"),
 }
 
 
