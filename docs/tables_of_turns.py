@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
 from skisnow import Run, scenario, simulate
 
 DOCS = Path(__file__).resolve().parent
@@ -53,10 +55,10 @@ def apart(one: Run, other: Run) -> float:
     return math.dist(one.place[-1], other.place[-1])
 
 
-def mean_depth(run: Run) -> float:
-    """Median depth (mm) of the deeper edge under the boot over the second half."""
+def deepest(run: Run) -> float:
+    """Depth (mm) of the deepest place of an edge, median over the second half of the run."""
     late = run.time >= run.time[-1] / 2.0
-    return float(1e3 * sorted(run.skis.depth[late].max(axis=1))[int(late.sum()) // 2])
+    return 1e3 * float(np.median(run.skis.edge_depth[late].max(axis=(1, 2))))
 
 
 def shear_laws() -> Iterator[str]:
@@ -68,8 +70,8 @@ def shear_laws() -> Iterator[str]:
         first = turn("carved-46m", *changes)
         for law in laws:
             run = turn("carved-46m", *changes, *LAWS[law].items())
-            head = f"| {snow if law == laws[0] else ''} | {law} | {end(run)} | {apart(run, first):.1f} |"
-            yield f"{head} {run.speed[-1]:.2f} | {mean_depth(run):.2f} | {run.energies['shear'][-1]:.0f} |"
+            head = f"| {f'{snow} ' if law == laws[0] else ''}| {law} | {end(run)} | {apart(run, first):.1f} |"
+            yield f"{head} {run.speed[-1]:.2f} | {deepest(run):.2f} | {run.energies['shear'][-1]:.0f} |"
 
 
 def friction_loads() -> Iterator[str]:
