@@ -18,7 +18,7 @@ import numpy as np
 from skisnow import Run, scenario, simulate
 
 DOCS = Path(__file__).resolve().parent
-LAWS = {
+LAWS: dict[str, dict[str, object]] = {
     "S_f": {},
     "S_f (1 − 0.266 ϑ)": {"shear.law": "by-angle", "shear.relative_decrease_per_rad": 0.266},
     "cutting, μ_t = 0": {"shear.law": "machining", "shear.transverse_friction": 0.0},
@@ -106,20 +106,60 @@ PAGES = {
 }
 
 
+def spoken() -> Iterator[str]:
+    """Numbers of the sentences on these pages."""
+    carve, displacement = "carved-46m", "snow.shear_displacement_mm"
+    for name in TURNS:
+        loose, usual, tight = (turn(name, (displacement, value)) for value in (0.5, 0.02, 0.01))
+        yield f"{name}: 0.02 to 0.01 mm {apart(usual, tight):.3f} m, 0.5 to 0.02 mm {apart(loose, usual):.2f} m"
+        yield f"{name}: steps at 0.5, 0.02 and 0.01 mm {loose.steps}, {usual.steps}, {tight.steps}"
+    usual, tight = turn(carve), turn(carve, (displacement, 0.01))
+    elements, spacing = usual.numbers["elements"], 1e3 * usual.numbers["line_spacing_m"]
+    finer = (
+        ("solver.tolerance_mm", 1e-4),
+        ("solver.line_spacing_mm", spacing / 4.0),
+        ("solver.elements", int(2 * elements)),
+    )
+    for change in finer:
+        yield f"{carve}, {change[0]} {change[1]:g}: {1e3 * apart(usual, turn(carve, change)):.1f} mm"
+    yield f"at 0.01 mm, {finer[0][0]}: {1e3 * apart(tight, turn(carve, (displacement, 0.01), finer[0])):.1f} mm"
+    skid = turn(carve, *on_snow(0.2, 0.1))
+    fixed = [turn(carve, *on_snow(0.2, 0.1), ("solver.fixed", True), ("solver.step_ms", h)) for h in (0.25, 0.125)]
+    yield f"skid, fixed steps of 0.125 ms {apart(skid, fixed[1]):.2f} m, from 0.25 to 0.125 ms {apart(*fixed):.2f} m"
+    for share in (1.004, 0.996, 0.7):
+        yield f"skid, S_f times {share}: {apart(skid, turn(carve, *on_snow(0.2, 0.1 * share))):.2f} m"
+    for value in (0.05, 0.02):
+        run = turn(carve, *on_snow(1.0, 0.3), (displacement, value))
+        yield f"(1, 0.3) at {value} mm: slip angle {slip_angle(run):.0f}°, {run.energies['shear'][-1]:.0f} J to shear"
+    loads = [turn(carve, ("friction.acts_on", each), (displacement, 0.5)) for each in ("snow-normal", "base-normal")]
+    lost = [run.energies["friction"][-1] for run in loads]
+    yield f"friction base-normal over snow-normal at 0.5 mm: {lost[1] / lost[0]:.2f}"
+
+
+def slip_angle(run: Run) -> float:
+    """The largest angle (degrees) between skis and path."""
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    return float(np.degrees(np.abs(run.heading - path)).max())
+
+
 def written(page: str) -> str:
     """The text of a page with its tables computed."""
     text = (DOCS / page).read_text(encoding="utf-8")
     for name, rows in PAGES[page].items():
         mark = f"<!-- table {name} -->\n"
         pattern = re.compile(f"{re.escape(mark)}.*?<!-- end of table -->", re.DOTALL)
-        assert pattern.search(text), f"{page} has no table {name}"
+        found = pattern.search(text)
+        assert found, f"{page} has no table {name}"
         table = "\n".join(rows())
-        text = pattern.sub(lambda _, full=f"{mark}{table}\n<!-- end of table -->": full, text)
+        text = f"{text[: found.start()]}{mark}{table}\n<!-- end of table -->{text[found.end() :]}"
     return text
 
 
 def main() -> None:
-    """Write the pages that are named, or all."""
+    """Write the pages that are named, or all; with --spoken print the numbers of their sentences."""
+    if sys.argv[1:] == ["--spoken"]:
+        print(*spoken(), sep="\n")
+        return
     for page in sys.argv[1:] or PAGES:
         (DOCS / page).write_text(written(page), encoding="utf-8")
 
