@@ -23,6 +23,7 @@ import numpy as np
 
 from skisnow.compiled import core
 
+from .ends import End, all_ends
 from .paths import Answer, all_answers
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -53,9 +54,25 @@ LITERALS = [
     Literal("EDGE_ASIDE", "lines.cpp", "0.04", ("0.02", "0.08")),
     Literal("MOST_UNEVEN", "lines.cpp", "0.25", ("0.12", "0.5")),
     Literal("MOST_TURN", "lines.cpp", "0.3", ("0.15", "0.6")),
-    Literal("REACH", "lines.cpp", "2.0", ("1.0", "4.0")),
-    Literal("MOST_ASIDE", "lines.cpp", "1.9", ("0.95", "3.8")),
+    Literal("FURTHER", "lines.cpp", "0.03", ("0.01", "0.1")),
+    Literal("SPARE", "learn.cpp", "0.01", ("0.005", "0.05")),
     Literal("KNOTS", "groove.hpp", "16", ("12", "32")),
+    Literal("ALIKE", "groove.cpp", r"1.0 + 1e-4", ("1.0 + 1e-6", "1.0 + 1e-3")),
+    Literal("SLIPPING", "march.cpp", "0.999", ("0.99", "0.9999")),
+    Literal("EXACT", "archive.cpp", "1e-14", ("1e-15", "1e-12")),
+    Literal("AT_BORDER", "archive.cpp", "1e-9", ("1e-10", "1e-8")),
+    Literal("PARTS", "archive.cpp", "4", ("2", "8")),
+    Literal("TANGENT_STEP", "contact.cpp", "1e-8", ("1e-9", "1e-7")),
+    Literal("LEVEL", "contact.cpp", "1e-6", ("1e-7", "1e-5")),
+    Literal("SLOW", "dynamics.cpp", "0.15", ("0.08", "0.3")),
+    Literal("UNSEEN", "dynamics.cpp", "0.3", ("0.15", "0.6")),
+    Literal("LEAST_ERROR", "dynamics.cpp", "0.1", ("0.05", "0.2")),
+    Literal("SAME_REACH", "dynamics.cpp", "0.1", ("0.05", "0.2")),
+    Literal("FARTHEST", "dynamics.cpp", "1.0", ("0.5", "2.0")),
+    Literal("SAFETY", "dynamics.cpp", "0.85", ("0.75", "0.95")),
+    Literal("UP", "dynamics.cpp", "1.35", ("1.2", "1.5")),
+    Literal("DOWN", "dynamics.cpp", "0.93", ("0.85", "0.99")),
+    Literal("MILNE", "dynamics.cpp", "0.35", ("0.25", "0.5")),
 ]
 
 
@@ -78,7 +95,7 @@ def _built(folder: Path, literal: Literal, value: str) -> Path:
         subprocess.run(["cmake", "-S", tree, "-B", tree / "build", *tools], check=True, capture_output=True)
     source = tree / "src/core" / literal.file
     original = (ROOT / "src/core" / literal.file).read_text(encoding="utf-8")
-    changed, count = re.subn(rf"({literal.name} = ){re.escape(literal.before)}\b", rf"\g<1>{value}", original)
+    changed, count = re.subn(rf"\b({literal.name} = ){re.escape(literal.before)}\b", rf"\g<1>{value}", original)
     if count != 1:
         raise SystemExit(f"{literal.file} does not set {literal.name} to {literal.before}")
     source.write_text(changed, encoding="utf-8")
@@ -89,8 +106,8 @@ def _built(folder: Path, literal: Literal, value: str) -> Path:
     return package
 
 
-def _other(package: Path) -> dict[str, Answer]:
-    """The answers of another core, in a process of its own, which knows of no editable installation."""
+def _other(package: Path) -> tuple[dict[str, Answer], dict[str, End]]:
+    """The answers and the ends of turns of another core, in a process that knows of no editable installation."""
     paths = os.pathsep.join([str(package), str(ROOT), str(Path(np.__file__).parents[1])])
     command = [sys.executable, "-S", "-m", "benchmarks.contact", "--answers"]
     said = subprocess.run(
@@ -99,7 +116,10 @@ def _other(package: Path) -> dict[str, Answer]:
     answers = json.loads(said.stdout)
     if not Path(answers.pop("core")).is_relative_to(package):
         raise SystemExit("another core answered than the one that was built")
-    return {name: Answer.of(each) for name, each in answers.items()}
+    ends = answers.pop("ends")
+    return {name: Answer.of(each) for name, each in answers.items()}, {
+        name: End(place, looks) for name, (place, looks) in ends.items()
+    }
 
 
 def main() -> None:
@@ -110,7 +130,8 @@ def main() -> None:
     base = all_answers({})
     if options.answers:
         lists = {name: each.as_lists() for name, each in base.items()}
-        print(json.dumps({"core": core.__file__, **lists}))
+        turns = {name: [each.place, each.looks] for name, each in all_ends().items()}
+        print(json.dumps({"core": core.__file__, "ends": turns, **lists}))
         return
     print(f"| constant | as it is | varied to | {' | '.join(base)} |\n| --- | --- | --- |{' --- |' * len(base)}")
     for name, standard, values in KEYS:
@@ -118,11 +139,17 @@ def main() -> None:
             print(row(name, standard, value, all_answers(dict(changes)), base), flush=True)
     if not options.literals:
         return
+    ends, rows = all_ends(), []
     with tempfile.TemporaryDirectory() as folder:
         for literal in LITERALS:
             for value in literal.values:
-                found = _other(_built(Path(folder), literal, value))
-                print(row(literal.name, literal.before, value, found, base), flush=True)
+                found, moved = _other(_built(Path(folder), literal, value))
+                if literal.file != "dynamics.cpp":
+                    print(row(literal.name, literal.before, value, found, base), flush=True)
+                cells = [moved[name].moved(end) for name, end in ends.items()]
+                rows.append(f"| `{literal.name}` | {literal.before} | {value} | {' | '.join(cells)} |")
+    print(f"\n| constant | as it is | varied to | {' | '.join(ends)} |\n| --- | --- | --- |{' --- |' * len(ends)}")
+    print("\n".join(rows))
 
 
 if __name__ == "__main__":

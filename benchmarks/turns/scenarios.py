@@ -18,8 +18,8 @@ from typing import Any, Final
 import numpy as np
 
 from skisnow.errors import SkisnowError
+from skisnow.scenario import Scenario, read_scenario
 from skisnow.simulate.run import OPEN_SHARE, WARNED_SHARE
-from skisnow.simulate.scenario import Scenario, read_scenario
 from skisnow.simulate.simulated_run import simulate
 
 DURATION: Final = 2.0

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace skisnow {
 
@@ -71,7 +72,8 @@ struct Strip {
 };
 
 constexpr int MOST_TRIES = 60;
-constexpr double EXACT = 1e-14;  // (m)
+constexpr double EXACT = 1e-14;     // (m)
+constexpr double AT_BORDER = 1e-9;  // share of a strip that is rounding: a line along its border lies in it
 constexpr int PARTS = 4;  // between the places where either ground has a knot; a crossing groove is bilinear there
 
 // Where a rising or falling quantity passes a value between two places: false position, with half the weight of an end
@@ -98,10 +100,11 @@ template <class Quantity>
 bool clip(const Quantity& quantity, double& a, double& b) {
   const double at_a = quantity(a), at_b = quantity(b);
   if (!(std::isfinite(at_a) && std::isfinite(at_b))) return false;
-  if ((at_a < 0.0 && at_b < 0.0) || (at_a > 1.0 && at_b > 1.0)) return false;
+  if ((at_a < -AT_BORDER && at_b < -AT_BORDER) || (at_a > 1.0 + AT_BORDER && at_b > 1.0 + AT_BORDER)) return false;
   const double whole_a = a, whole_b = b;
-  if (at_a < 0.0 || at_a > 1.0) a = crossing(quantity, whole_a, whole_b, at_a < 0.0 ? 0.0 : 1.0);
-  if (at_b < 0.0 || at_b > 1.0) b = crossing(quantity, whole_a, whole_b, at_b < 0.0 ? 0.0 : 1.0);
+  const auto is_outside = [](double at) { return at < -AT_BORDER || at > 1.0 + AT_BORDER; };
+  if (is_outside(at_a)) a = crossing(quantity, whole_a, whole_b, at_a < 0.0 ? 0.0 : 1.0);
+  if (is_outside(at_b)) b = crossing(quantity, whole_a, whole_b, at_b < 0.0 ? 0.0 : 1.0);
   return b - a > THIN;
 }
 
@@ -143,6 +146,11 @@ double Track::depth_at(double share) const {
   return depth[j] + (depth[j + 1] - depth[j]) * std::clamp((where - place[j]) / step, 0.0, 1.0);
 }
 
+void press_between(const Track& before, const Track& after, const Vector3& origin, const Vector3& lateral, double from,
+                   double to, Ground& ground) {
+  press_strip({before, after}, origin, lateral, from, to, ground);
+}
+
 const Track* Archive::before(int later) const {
   const Track& track = tracks_[std::size_t(later)];
   for (int i = later - 1; i >= 0; i--) {
@@ -182,7 +190,7 @@ void Archive::enter_squares(int later) {
 void Archive::recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground) const {
   if (tracks_.empty()) return;
   std::vector<int> near;
-  std::uint64_t region = ~std::uint64_t(0);  // the one met last, and whether any track lies there
+  std::optional<std::uint64_t> region;  // the one met last, and whether any track lies there
   bool inhabited = false;
   walk_squares(along(origin, lateral, from), along(origin, lateral, to), SQUARE, [&](int x, int y) {
     const std::uint64_t here = region_of(x, y);

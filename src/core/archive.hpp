@@ -25,6 +25,10 @@ struct Track {
   double depth_at(double share) const;  // of the width, from 0 to 1
 };
 
+// Press the groove between two tracks, as far as a line crosses it between two places across it (m), into its ground.
+void press_between(const Track& before, const Track& after, const Vector3& origin, const Vector3& lateral, double from,
+                   double to, Ground& ground);
+
 class Archive {
  public:
   int new_strip() { return strips_++; }

@@ -165,7 +165,7 @@ GrooveLines& SnowContact::history(int k, const Situation& at) {
   GrooveLines& trial = trial_[std::size_t(k)];
   trial = standing;
   trial.drop_left(runner(k), pose, nullptr, 0);
-  trial.lay_ahead(runner(k), pose, *snow_);
+  prepare(k, trial, pose);
   march(k, trial, at);
   return trial;
 }
@@ -184,9 +184,9 @@ void SnowContact::begin(const Situation& foreseen) {
     Before& before = before_[std::size_t(k)];
     before.first = lines.first, before.end = lines.end;
     before.lines.clear();
-    lines.lay_ahead(runner(k), foreseen.poses[std::size_t(k)], *snow_);
-    march_where_needed(k, foreseen);
+    prepare(k, lines, foreseen.poses[std::size_t(k)]);
   }
+  for (int k = 0; k < runners(); k++) march_where_needed(k, foreseen);
   begun_ = true;
 }
 
@@ -202,30 +202,39 @@ void SnowContact::take_back() {
 void SnowContact::accept(const Situation& at) {
   begun_ = false;
   for (int k = 0; k < runners(); k++) settle_history(k, at.poses[std::size_t(k)]);
-  state_.accepted = at.poses;
+  stand(at.poses);
 }
 
 void SnowContact::update(const Situation& to) {
   for (int k = 0; k < runners(); k++) {
     GrooveLines& lines = state_.lines[std::size_t(k)];
+    lines.drop_left(runner(k), to.poses[std::size_t(k)], &snow_->archive, state_.strips[std::size_t(k)]);
+    prepare(k, lines, to.poses[std::size_t(k)]);
+  }
+  for (int k = 0; k < runners(); k++) {
+    GrooveLines& lines = state_.lines[std::size_t(k)];
     const Pose& pose = to.poses[std::size_t(k)];
-    lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
-    lines.lay_ahead(runner(k), pose, *snow_);
     march(k, lines, to);
     kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, sections_[std::size_t(k)]);
     settle_history(k, pose);
   }
-  state_.accepted = to.poses;
+  stand(to.poses);
 }
 
-// The end of a step, for which the sections stand, enters the history; lines that the ski has left are dropped, new
-// ones laid.
+void SnowContact::stand(const std::vector<Pose>& poses) {
+  for (int k = 0; k < runners(); k++) prepare(k, state_.lines[std::size_t(k)], poses[std::size_t(k)]);
+  state_.accepted = poses;
+}
+
+// The end of a step, for which the sections stand, enters the history; lines that the ski has left are dropped.
 void SnowContact::settle_history(int k, const Pose& pose) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   remember(k, lines);
-  if (lines.is_uneven(pose)) lay_anew(k, pose);
+  const Sections& s = sections(k);
+  for (std::int64_t n = lines.first; n < lines.end; n++)
+    if (s.touches(s.index(n))) lines.count_energy(lines.slot(n), s[SHARE][s.index(n)]);
+  if (lines.is_uneven(pose, *snow_)) lay_anew(k, pose);
   lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
-  lines.lay_ahead(runner(k), pose, *snow_);
 }
 
 // Leave all lines to the archive and lay others, on which the edge is displaced and has slipped as it had at the same
@@ -244,7 +253,7 @@ void SnowContact::lay_anew(int k, const Pose& pose) {
   std::sort(slipped.begin(), slipped.end());
   lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
   state_.strips[std::size_t(k)] = snow_->archive.new_strip();
-  lines.lay_ahead(runner(k), pose, *snow_);
+  prepare(k, lines, pose);
   kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
   remember(k, lines);
   for (std::int64_t n = lines.first; n < lines.end && !displaced.empty(); n++) {

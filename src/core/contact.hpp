@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bearing.hpp"
@@ -107,7 +108,11 @@ class SnowContact {
   const Wrench& evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, Sections& s);
   void differ(int k, double sense);
   Reaction reaction(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion);
+  class Standing;
+  void prepare(int k, GrooveLines& lines, const Pose& pose);
+  void learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const;
   void settle_history(int k, const Pose& pose);
+  void stand(const std::vector<Pose>& poses);
   void lay_anew(int k, const Pose& pose);
   int parts(int k, const Situation& at) const;
   void march(int k, GrooveLines& lines, const Situation& to);

@@ -12,9 +12,9 @@ constexpr double EDGE_ASIDE = 0.04;  // half a ski's width (m), about: where an 
 constexpr int NEWTON_STEPS = 3;      // to the place on a curved surface
 constexpr double MOST_UNEVEN = 0.25;  // of the spacing, between neighbours
 constexpr double MOST_TURN = 0.3;     // (rad) between a line's direction ahead and the ski
-constexpr double REACH = 2.0;         // (m) to both sides, over which a new line looks for older tracks
-constexpr double MOST_ASIDE =
-    0.2;  // (m) of the ski from a line's origin: beyond, it may run in a track that was left since
+constexpr double MOST_OFF = 2e-4;     // (m) between a line and the surface under the ski
+constexpr double MOST_OTHER = 0.01;   // share by which the snow under the ski is harder or softer than a line's
+constexpr double FURTHER = 0.03;      // (m) beyond what is needed, over which older tracks are looked for
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -68,7 +68,8 @@ GrooveLines::GrooveLines(const Runner& runner, double spacing) : spacing_(spacin
   for (Column* each : {&place, &depth, &slope}) each->assign(std::size_t(size) * KNOTS, 0.0);
   knots.assign(std::size_t(size), 0);
   filled_.assign(std::size_t(size / BLOCK), 1);
-  recalled_energy.assign(std::size_t(size), 0.0);
+  energy_.assign(std::size_t(size), 0.0);
+  counted_.assign(std::size_t(size), 0.0);
   for (int slot = 0; slot < size; slot++) {  // lanes beside the lines that are laid must hold numbers
     put(*this, AHEAD_X, slot, {1.0, 0.0, 0.0});
     put(*this, NORMAL_X, slot, {0.0, 0.0, 1.0});
@@ -158,33 +159,71 @@ void GrooveLines::lay(std::int64_t number, const Pose& pose, double station, con
   values[HARDNESS][at] = hardness;
   values[EXCESS][at] = (snow.unloading_ratio - 1.0) * hardness;
   values[STRENGTH][at] = snow.strength.at(origin[0], origin[1]).value;
-  Ground older;
-  snow.archive.recall(origin, lateral(at), -REACH, REACH, older);
-  older.simplify(0.0, KNOTS);
-  keep(at, older);
-  recalled_energy[std::size_t(at)] = groove_energy(at);
+  keep(at, Ground());
+  energy_[std::size_t(at)] = counted_[std::size_t(at)] = 0.0;
 }
 
-double GrooveLines::groove_energy(int slot) const {
-  if (lost) return lost(ground(slot)) * spacing_;
+double GrooveLines::aside(int slot, const Pose& pose) const {
+  const Vector3 ahead = pose.axis(0), lateral = this->lateral(slot), along = get(*this, AHEAD_X, slot);
+  Vector3 there = origin(slot);
+  for (int a = 0; a < 3; a++) there[a] = pose.position[a] - there[a];
+  return dot(there, lateral) - dot(there, along) * dot(ahead, lateral) / dot(ahead, along);
+}
+
+int GrooveLines::unknown(int slot, const Pose& pose, double room, double (&from)[2], double (&to)[2]) const {
+  const double at = aside(slot, pose), low = at - room, high = at + room;
+  const double known_from = values[KNOWN_FROM][slot], known_to = values[KNOWN_TO][slot];
+  int count = 0;
+  if (!(known_from < known_to)) {
+    from[0] = low - FURTHER, to[0] = high + FURTHER;
+    return 1;
+  }
+  if (low < known_from) from[count] = low - FURTHER, to[count++] = known_from;
+  if (high > known_to) from[count] = known_to, to[count++] = high + FURTHER;
+  return count;
+}
+
+double GrooveLines::energy_per_metre(int slot, const Ground& ground) const {
+  if (lost) return lost(ground);
   const double hardness = values[HARDNESS][slot], excess = values[EXCESS][slot];
-  return 0.5 * hardness * excess / (hardness + excess) * ground(slot).squared() * spacing_;
+  return 0.5 * hardness * excess / (hardness + excess) * ground.squared();
+}
+
+void GrooveLines::count_energy(int slot, double length) {
+  double& counted = counted_[std::size_t(slot)];
+  const double now = energy_per_metre(slot, ground(slot));
+  energy_[std::size_t(slot)] += (now - counted) * length;
+  counted = now;
+}
+
+void GrooveLines::press_older(int slot, const Ground& older) {
+  Ground ground = this->ground(slot);
+  const double before = energy_per_metre(slot, ground);
+  if (!ground.press(older.place, older.depth, older.count)) return;
+  ground.simplify(0.0, KNOTS);
+  keep(slot, ground);
+  counted_[std::size_t(slot)] += energy_per_metre(slot, ground) - before;
 }
 
 double GrooveLines::groove_energy() const {
   double total = 0.0;
-  for (std::int64_t n = first; n < end; n++) total += groove_energy(slot(n)) - recalled_energy[std::size_t(slot(n))];
+  for (std::int64_t n = first; n < end; n++) total += energy_[std::size_t(slot(n))];
   return total;
 }
 
-void GrooveLines::leave(std::int64_t number, Archive* archive, int strip) {
+Track GrooveLines::track(std::int64_t number, int strip) const {
   const int at = slot(number);
+  const Ground here = ground(at);
+  Track out{origin(at), get(*this, AHEAD_X, at), lateral(at), strip, number, here.count, {}, {}};
+  std::copy_n(here.place, here.count, out.place);
+  std::copy_n(here.depth, here.count, out.depth);
+  return out;
+}
+
+void GrooveLines::leave(std::int64_t number, Archive* archive, int strip) {
   if (archive == nullptr) return;
-  const Ground left = ground(at);
-  Track track{origin(at), get(*this, AHEAD_X, at), lateral(at), strip, number, left.count, {}, {}};
-  std::copy_n(left.place, left.count, track.place);
-  std::copy_n(left.depth, left.count, track.depth);
-  archive->add(track, groove_energy(at) - recalled_energy[std::size_t(at)]);
+  count_energy(slot(number), spacing_);
+  archive->add(track(number, strip), energy_[std::size_t(slot(number))]);
 }
 
 void GrooveLines::drop_left(const Runner& runner, const Pose& pose, Archive* archive, int strip) {
@@ -202,7 +241,7 @@ void GrooveLines::lay_ahead(const Runner& runner, const Pose& pose, const Snow& 
   while (at > runner.tail - MARGIN && count() < most) lay(--first, pose, at -= spacing_, snow);
 }
 
-bool GrooveLines::is_uneven(const Pose& pose) const {
+bool GrooveLines::is_uneven(const Pose& pose, const Snow& snow) const {
   if (count() == 0) return false;
   const Vector3 ahead = pose.axis(0), left = pose.axis(1);
   const Vector3 there = get(*this, AHEAD_X, slot(first));
@@ -213,9 +252,20 @@ bool GrooveLines::is_uneven(const Pose& pose) const {
     if (std::fabs(here - before - spacing_) > MOST_UNEVEN * spacing_) return true;
     before = here;
   }
-  Vector3 middle = origin(slot((first + end) / 2));
-  for (int a = 0; a < 3; a++) middle[a] -= pose.position[a];
-  return std::fabs(dot(middle, left)) > MOST_ASIDE;
+  return is_other_snow(slot((first + end) / 2), pose, snow);
+}
+
+// Whether the snow under the ski is not that of a line any more, because the ski has gone aside on it.
+bool GrooveLines::is_other_snow(int slot, const Pose& pose, const Snow& snow) const {
+  const double across = aside(slot, pose);
+  const Vector3 from = origin(slot), along = lateral(slot);
+  const double x = from[0] + across * along[0], y = from[1] + across * along[1], z = from[2] + across * along[2];
+  const auto differs = [&](const Grid& grid, LineField field) {
+    const double kept = values[field][slot];
+    return std::fabs(grid.at(x, y).value - kept) > MOST_OTHER * kept;
+  };
+  return std::fabs(snow.surface.at(x, y).value - z) > MOST_OFF || differs(snow.hardness, HARDNESS) ||
+         differs(snow.strength, STRENGTH);
 }
 
 void GrooveLines::leave_all(Archive& archive, int strip) {

@@ -25,6 +25,7 @@ enum LineField {
   ABOVE, EDGE_ABOVE, DEPTH_ABOVE,     // whether the base was just above at the last accepted pose; its edge then
   MARKED, EDGE_MARKED, DEPTH_MARKED,  // whether it was in the snow then; its edge then
   SLIPPED,                            // how far an edge has slipped across here (m)
+  KNOWN_FROM, KNOWN_TO,               // where across older tracks were looked for (m)
   LINE_FIELDS
 };
 // clang-format on
@@ -64,34 +65,47 @@ class GrooveLines {
   };
   Line line(int slot) const;
   void put_back(const Line& line);
+  Track track(std::int64_t number, int strip) const;
 
   // Position along the straight ski under which a line passes (m).
   double station(std::int64_t number, const Pose& pose) const;
 
-  // Lay the lines that the ski will meet.
+  // Place across a line (m) under the straight axis of a ski.
+  double aside(int slot, const Pose& pose) const;
+  // Whether older tracks are known as far as a ski reaches, `room` (m) to both sides of its axis; if not, where across
+  // a line they are to be looked for, up to two stretches.
+  int unknown(int slot, const Pose& pose, double room, double (&from)[2], double (&to)[2]) const;
+
+  // Lay the lines that the ski will meet. Nothing is known yet of older tracks there.
   void lay_ahead(const Runner& runner, const Pose& pose, const Snow& snow);
   // Drop those that it has left into the archive, or in a trial (`archive` null) for good. `strip`: the track of this
   // runner in the archive.
   void drop_left(const Runner& runner, const Pose& pose, Archive* archive, int strip);
 
-  // Whether they have come to lie unevenly or the ski has turned away from them.
-  bool is_uneven(const Pose& pose) const;
+  // Whether they have come to lie unevenly, the ski has turned away from them, or the snow is another one there.
+  bool is_uneven(const Pose& pose, const Snow& snow) const;
   void leave_all(Archive& archive, int strip);
 
   // Of a ground, for each metre of ski (J/m); empty: that of the core's own law.
   std::function<double(const Ground&)> lost;
-  // Energy lost in the grooves under the ski (J), older tracks' share taken off.
+  // Energy lost in the grooves under the ski (J): what pressed a line's ground since it was counted last counts for the
+  // length of ski that the line stands for.
   double groove_energy() const;
-  double groove_energy(int slot) const;
-  std::vector<double> recalled_energy;  // (capacity,) that an older track had taken (J)
+  void count_energy(int slot, double length);
+  // Press an older track into a line's ground; its energy was counted there.
+  void press_older(int slot, const Ground& older);
 
  private:
   double spacing_ = LINE_SPACING;
   std::vector<std::uint8_t> filled_;  // knots of each block's tile that are filled
+  std::vector<double> energy_;        // (capacity,) of each line (J)
+  std::vector<double> counted_;       // (capacity,) of its ground, up to when it was counted last (J/m)
 
   void fill(int slot, int from, int to);
+  double energy_per_metre(int slot, const Ground& ground) const;
   void lay(std::int64_t number, const Pose& pose, double station, const Snow& snow);
   void leave(std::int64_t number, Archive* archive, int strip);
+  bool is_other_snow(int slot, const Pose& pose, const Snow& snow) const;
 };
 
 }  // namespace skisnow

@@ -51,6 +51,10 @@ Runner Runner::of(const std::vector<double>& position, const std::vector<double>
   const int steps = std::max(2, int(std::ceil((out.tip - out.tail) / TABLE_STEP)));
   const double step = (out.tip - out.tail) / steps;
   out.places = steps + 1;
+  out.reach = *std::max_element(half_width.begin(), half_width.end());
+  double highest = 0.0;
+  for (const double each : base_height) highest = std::max(highest, std::fabs(each));
+  out.reach += highest;
   out.table.resize(std::size_t(4 * out.places));
   const auto at = [&](int row, int column) -> double& { return out.table[std::size_t(4 * row + column)]; };
   for (int i = 0; i <= steps; i++) {

@@ -13,6 +13,7 @@ using Vector3 = std::array<double, 3>;
 // Shape of a base along the ski. Positions along the ski count from the boot, positive ahead (m).
 struct Runner {
   double tail = 0.0, tip = 0.0;
+  double reach = 0.0;         // greatest half width and height of the base (m)
   int places = 0;             // of the table, evenly spaced from tail to tip
   std::vector<double> table;  // (places, 4): half width, its slope, height of the base, its slope
   std::vector<double> node;   // beam nodes, tip to tail; a rigid runner has the two ends

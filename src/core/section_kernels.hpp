@@ -1,6 +1,8 @@
 // Where the base of a runner lies over each line.
 #pragma once
 
+#include <algorithm>
+
 #include "lane_loops.hpp"
 
 namespace skisnow::SKISNOW_LANES {
@@ -83,19 +85,23 @@ void cross_edge(const Runner& runner, const GrooveLines& lines, Sections& s) {
   }
 }
 
-// [give_share] The length of ski that each line stands for: its spacing, less at tip and tail.
+// [give_share] The length of ski that each line stands for: halfway to its neighbours, and no farther than tip and
+// tail.
 template <class V>
 void give_share(const Runner& runner, const GrooveLines& lines, Sections& s) {
-  const double spacing = lines.spacing(), per_spacing = 1.0 / spacing;
-  for_lanes<V>(s, lines, [&](int i, int) {
-    const V station = load<V>(s[STATION] + i);
-    const V from_tail = (station - runner.tail) * per_spacing + 0.5,
-            from_tip = (runner.tip - station) * per_spacing + 0.5;
-    store(s[SHARE] + i, within(from_tail, 0.0, 1.0) * within(from_tip, 0.0, 1.0) * spacing);
-    store(s[STATION] + i, within(station, runner.tail, runner.tip));
-  });
-  for (int i = 0; i < s.count(); i++)
-    if (s.line(i) < lines.first || s.line(i) >= lines.end) s[SHARE][i] = 0.0;
+  const double half = 0.5 * lines.spacing();
+  const double* station = s[STATION];
+  const int first = std::max(s.index(lines.first), 0), end = std::min(s.index(lines.end), s.count());
+  const auto on_ski = [&](double place) { return std::min(std::max(place, runner.tail), runner.tip); };
+  for (int i = 0; i < s.count(); i++) s[SHARE][i] = 0.0;
+  double rear = first < end ? on_ski(station[first] - half) : 0.0;
+  for (int i = first; i < end; i++) {
+    const double front = on_ski(i + 1 < end ? 0.5 * (station[i] + station[i + 1]) : station[i] + half);
+    s[SHARE][i] = std::max(front - rear, 0.0);
+    rear = front;
+  }
+  for_lanes<V>(s, lines,
+               [&](int i, int) { store(s[STATION] + i, within(load<V>(s[STATION] + i), runner.tail, runner.tip)); });
 }
 
 // [look_up] Shape of the base and nodes of the beam at each section.

@@ -94,15 +94,24 @@ class ReferenceRunner:
     def force(self, pose: Pose) -> tuple[FloatArray, FloatArray]:
         """Wrench (6,) about the boot and beam loads (nodes, 3)."""
         wrench, loads = np.zeros(6), np.zeros((2 if self.runner.nodes is None else len(self.runner.nodes), 3))
-        for line in self.lines:
-            section = _Section(self, line, pose)
+        for section in self._sections(pose):
             if section.share > 0.0 and section.touch.deepest > 0.0:
                 section.add(wrench, loads)
         return wrench, loads
 
+    def _sections(self, pose: Pose) -> list[_Section]:
+        """Each stands for the ski halfway to its neighbours, between tail and tip."""
+        sections = [_Section(self, line, pose) for line in self.lines]
+        station = np.array([section.station for section in sections])
+        half = self.spacing / 2.0
+        borders = [station[0] - half, *(station[1:] + station[:-1]) / 2.0, station[-1] + half]
+        for section, share in zip(sections, np.diff(np.clip(borders, self.runner.tail, self.runner.tip)), strict=True):
+            section.share = float(share)
+        return sections
+
     def update(self, pose: Pose) -> None:
-        for line in self.lines:
-            section = _Section(self, line, pose)
+        for section in self._sections(pose):
+            line = section.line
             before, line.marked = line.marked, None
             if section.share <= 0.0:
                 continue
@@ -134,6 +143,8 @@ def _anchor(line: Line, touch: Touch) -> float:
 
 
 class _Section:
+    share: float
+
     def __init__(self, whole: ReferenceRunner, line: Line, pose: Pose) -> None:
         self.whole, self.line, self.pose = whole, line, pose
         self.x, across, up = pose.rotation.T
@@ -147,8 +158,7 @@ class _Section:
             half, height = (float(np.interp(s, whole.table, column)) for column in whole.columns[:2])
             s = gap - (down * half * float(across @ ahead) + height * float(up @ ahead)) / float(self.x @ ahead)
         tail, tip = whole.runner.tail, whole.runner.tip
-        ends = np.clip([(s - tail) / whole.spacing + 0.5, (tip - s) / whole.spacing + 0.5], 0.0, 1.0)
-        self.share = float(ends.prod()) * whole.spacing
+        self.station = s
         s = min(max(s, tail), tip)
         half, height, flare, slope = (float(np.interp(s, whole.table, column)) for column in whole.columns)
         self._bend(s)

@@ -27,13 +27,15 @@ def named(start: dict[str, Any]) -> str:
 @pytest.mark.parametrize("former", FORMER["starts"], ids=named)
 def test_the_start_is_that_of_the_former_solver(former: dict[str, Any]) -> None:
     """Height, roll, pitch and bend. Lines stand at multiples of the spacing from the boot as it rests, formerly as it
-    was set down: at 70° that moves tips by 0.7 µm and boots by 0.1 µm, in built-in scenarios a tenth of it."""
+    was set down: at 70° that moves tips by 0.7 µm and boots by 0.1 µm, in built-in scenarios a tenth of it. Each line
+    stands for the ski halfway to its neighbours, formerly for one spacing: that turns the ski by 5e-8, in built-in
+    scenarios a tenth of what lines four times as close do."""
     scenario = read_scenario(former["scenario"], changes=former["changes"])
     dynamics = sledge(scenario, elements=former["elements"], spacing=former["line_spacing"])
     assert dynamics.settle() < 1e-9
     within = 1e-6 if former["changes"] else 1e-7
     assert dynamics.position[2] == pytest.approx(former["height"], abs=0.2 * within)
-    assert dynamics.rotation[2] == pytest.approx(former["normal"], abs=0.3 * within)
+    assert dynamics.rotation[2] == pytest.approx(former["normal"], abs=0.6 * within)
     for unknown, both in former["bend"].items():
         assert dynamics.bend[:, int(unknown)] == pytest.approx(both, abs=within), unknown
 

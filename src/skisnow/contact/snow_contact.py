@@ -141,9 +141,10 @@ class SnowContact(Shown):
         self.snow, self.runners = snow, tuple(runners)
         self.compiled = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
         friction, shear = snow.friction_in_python, snow.shear_in_python
+        self._shear = None if shear is None else _strength(shear)
         if friction is not None or shear is not None:
             called = None if friction is None else _coefficient(friction)
-            self.compiled.set_laws(called, None if shear is None else _strength(shear), snow.fade_speed)
+            self.compiled.set_laws(called, self._shear, snow.fade_speed)
         if snow.penetration is not None:
             law = snow.penetration
             self.compiled.set_penetration(_Pressed(law), np.array(law.bends, float), law.along_base_normal)
@@ -168,6 +169,7 @@ class SnowContact(Shown):
     ) -> ContactForces:
         """Forces at a pose that may or may not be accepted later; nothing is remembered of it."""
         found, loads = self.compiled.force(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
+        self.require_finite_laws()
         return ContactForces(found, tuple(loads))
 
     def update(self, position: npt.ArrayLike, rotation: npt.ArrayLike, dt: float, *, beam_dofs: Beams = None) -> None:
@@ -191,7 +193,14 @@ class SnowContact(Shown):
         unsymmetric; by central differences of 10⁻⁷ m and rad and 10⁻⁴ m/s and rad/s. Where a branch of a law changes
         within that, the mean of both sides.
         """
-        return self.compiled.tangent(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
+        found = self.compiled.tangent(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
+        self.require_finite_laws()
+        return found
+
+    def require_finite_laws(self) -> None:
+        """ParameterError if a shear law in Python gave no finite strength at the pose looked at last."""
+        if self._shear is not None and self._shear.refused:
+            raise ParameterError(self._shear.refused)
 
     def sections(self, runner: int = 0) -> Sections:
         """What was found along a runner at the last ``force`` or ``update``."""
@@ -271,18 +280,23 @@ class _coefficient:  # noqa: N801 - a function that can be pickled
 
 
 class _strength:  # noqa: N801
-    """Strength and thrust of a law (2, n), for arrays of depths and edge angles."""
+    """Strength and thrust of a law (2, n), for arrays of depths and edge angles.
+
+    Where they are not finite ``refused`` says so: a step that is tried may look at a pose that no ski comes to.
+    """
 
     def __init__(self, law: ShearLaw) -> None:
         self.law = law
+        self.refused = ""
 
     def __call__(self, depth: FloatArray, angle: FloatArray) -> FloatArray:
         meets = depth > 0.0
         found = np.zeros((2, len(depth)))
         found[:, meets] = self.law.stress_and_thrust(depth[meets], angle[meets])
+        self.refused = ""
         if not np.all(np.isfinite(found)):
             worst = float(np.degrees(angle[meets][~np.isfinite(found[:, meets]).all(axis=0)][0]))
-            raise ParameterError(f"{self.law!r} gives no finite strength at an edge angle of {worst:.3g} degrees")
+            self.refused = f"{self.law!r} gives no finite strength at an edge angle of {worst:.3g} degrees"
         return found
 
 

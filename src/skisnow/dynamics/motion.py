@@ -135,10 +135,18 @@ class Dynamics:
         self._core.begin()
 
     def advance(self, until: float) -> Ended:
-        """Take steps until a time (s), which the last one meets; an interrupt is heard on the way."""
+        """Take steps until a time (s), which the last one meets; an interrupt is heard on the way.
+
+        Raises
+        ------
+        ParameterError
+            They end because a shear law in Python gives no finite strength.
+        """
         while True:
             ended = self._core.advance(until, STEPS_AT_ONCE)
             if ended <= max(Ended):
+                if ended != Ended.REACHED:
+                    self.contact.require_finite_laws()
                 return Ended(ended)
 
     @property

@@ -108,6 +108,7 @@ def simulate(
     if setup.height < -SINKING_DEPTH or (not setup.unrest <= AT_REST and setup.sinks):
         return replace(computed_run(setup, record, "sunk", 0.0), laws=laws, strength_along=strength_along)
     if not setup.unrest <= AT_REST:
+        setup.dynamics.contact.require_finite_laws()
         raise SolverError(why_no_start(setup))
     begin = time.perf_counter()
     try:

@@ -13,6 +13,7 @@ from scipy.io import netcdf_file
 
 from skisnow import scenario, simulate, verify
 from skisnow.contact import Laws
+from skisnow.errors import ParameterError
 from skisnow.forces.friction import ConstantFriction, FrictionLaw, WaterFilmFriction
 from skisnow.forces.penetration import HypoplasticPoint, MeanPressurePoint, PointLaw, VolumeWithAnglePoint
 from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear
@@ -124,3 +125,9 @@ def test_a_run_is_verified_on_its_own_laws() -> None:
     moved = {each.key: each.end_moves for each in verify(run)}
     assert moved["solver.tolerance_mm"] is not None
     assert moved["solver.tolerance_mm"] < 1e-3 < np.linalg.norm(run.place[-1] - carve(0.1).place[-1])
+
+
+def test_a_law_that_gives_no_strength_ends_the_run_with_its_name() -> None:
+    """A wild pose of a step that is tried does not (the machining above meets one)."""
+    with pytest.raises(ParameterError, match=r"MachiningShear.*no finite strength at an edge angle of"):
+        carve(0.5, Laws(shear=MachiningShear(1e5, 1.0)))

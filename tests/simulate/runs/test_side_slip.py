@@ -67,12 +67,11 @@ def test_virgin_snow_until_the_stance(ratio: float) -> None:
 def test_deeper_in_the_groove_of_the_other() -> None:
     """Where snow keeps its groove the grip grows by a fifth; where it springs back nothing changes.
 
-    The uphill ski falls into the groove at once and swings there, so the acceleration is looked at over many swings,
-    and lines are laid anew on every 0.2 m aside only: 8 %.
+    The uphill ski falls into the groove at once and swings there: that costs it 4 % over many swings.
     """
     run, elastic = slipping(10.0), slipping(1.0)
     before = (run.place[:, 0] > 0.2) & (run.place[:, 0] < 0.45)
     uphill, downhill = run.skis.edge_depth[before].mean(axis=(0, 2))
     deeper = math.sqrt(uphill**2 + downhill**2 * 0.9)
-    assert acceleration(run, 0.6, 1.0) == pytest.approx(slipping_down(run, downhill + deeper), rel=0.08)
+    assert acceleration(run, 0.6, 1.0) == pytest.approx(slipping_down(run, downhill + deeper), rel=0.05)
     assert acceleration(elastic, 0.6, 1.0) == pytest.approx(slipping_down(run, downhill + uphill), rel=0.01)
