@@ -1,7 +1,7 @@
-"""The picture of the rooms on docs/architecture.md: ``python docs/figure_of_house.py`` draws it anew.
+"""The picture of the packages on docs/architecture.md: ``python docs/figure_of_house.py`` draws it again.
 
-Which room stands above which comes from the contract in pyproject.toml that import-linter holds; what is in a room, and
-the two ways through the house, stand here.
+Which package stands above which comes from the contract in pyproject.toml that import-linter holds; what is in a
+package, and the two paths through them, stand here.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ INSIDE = {
     "sources": "named skis, snows",
     "contact": "history-dependent snow, any runners",
     "field": "campaign files, records, store",
-    "parallel": "processes, kept rows",
+    "parallel": "processes, stored rows",
     "ski": "shape, stiffness, beam",
     "track": "readers, curvature, turns, comparison of two tracks",
     "statistics": "least squares, tests, resampling",
@@ -40,7 +40,7 @@ INSIDE = {
     "inputs": "a quantity, declared once: name, unit, range, default, origin",
     "compiled": "the C++ core",
 }
-"""Rooms with a box of their own; all others are the ground."""
+"""Packages with a box of their own; all others are the lowest layer."""
 MEASURED, COMPUTED, BOTH = "#dcebf7", "#fde8d3", "#eef0ee"
 COLOURS = {
     **dict.fromkeys(("field", "estimate", "statistics"), MEASURED),
@@ -48,16 +48,16 @@ COLOURS = {
 }
 READING = ("cli", "field", "estimate", "snow", "report")
 TURN = ("cli", "scenario", "sources", "simulate", "contact", "dynamics", "compiled", "track", "report", "replay")
-"""The rooms that a reading and a turn come through, in this order."""
+"""The packages that a reading and a turn come through, in this order."""
 LEFT_TO_RIGHT = ("field", "estimate", "statistics", "identify", "report")
-"""Rooms that stand left of the others on their floor: what was measured."""
+"""Packages that stand left of the others in their layer: what was measured."""
 
 WIDTH, EDGE, FLOOR, ROOF, GAP = 960, 30, 46, 96, 6
 BLUE, ORANGE, INK, GREY = "#0b63a5", "#b85300", "#1c2430", "#55606b"
 
 
 def floors() -> list[list[str]]:
-    """The floors from the roof down, each with its rooms."""
+    """The layers from the top down, each with its packages."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
         "contracts"
     ]
@@ -68,10 +68,10 @@ def floors() -> list[list[str]]:
 def picture() -> str:
     """The SVG."""
     above = [floor for floor in floors() if set(floor) <= set(INSIDE)]
-    ground = [room for floor in floors() for room in floor if not set(floor) <= set(INSIDE)]
+    ground = [package for floor in floors() for package in floor if not set(floor) <= set(INSIDE)]
     parts, y = [], ROOF
     for floor in above[1:]:
-        parts.append(_floor(sorted(floor, key=lambda room: (room not in LEFT_TO_RIGHT, room)), y))
+        parts.append(_floor(sorted(floor, key=lambda package: (package not in LEFT_TO_RIGHT, package)), y))
         y += FLOOR + GAP
     parts.append(_ground(ground, y))
     height = y + FLOOR + 62
@@ -79,7 +79,7 @@ def picture() -> str:
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" role="img" aria-labelledby="t" '
             'font-family="Helvetica, Arial, sans-serif">',
-            '<title id="t">The rooms of skisnow: each may import what stands below it</title>',
+            '<title id="t">The packages of skisnow: each may import what stands below it</title>',
             f'<rect width="{WIDTH}" height="{height}" fill="#fff"/>',
             f'<path d="M {EDGE} {ROOF - GAP} L {WIDTH / 2} 8 L {WIDTH - EDGE} {ROOF - GAP} Z" fill="{BOTH}" '
             f'stroke="{INK}"/>',
@@ -92,22 +92,22 @@ def picture() -> str:
     )
 
 
-def _floor(rooms: list[str], y: float) -> str:
-    wanted = [60.0 + 6.2 * len(INSIDE[room]) for room in rooms]
-    room_for = WIDTH - 2 * EDGE - GAP * (len(rooms) - 1)
+def _floor(packages: list[str], y: float) -> str:
+    wanted = [60.0 + 6.2 * len(INSIDE[package]) for package in packages]
+    width_for = WIDTH - 2 * EDGE - GAP * (len(packages) - 1)
     parts, x = [], float(EDGE)
-    for room, width in zip(rooms, (each * room_for / sum(wanted) for each in wanted), strict=True):
-        parts.append(_box(x, y, width, FLOOR, COLOURS.get(room, BOTH)))
-        parts.append(_name(x + 12, y + 20, room, INSIDE[room]))
-        parts.append(_steps(room, x + width - 14, y + 15))
+    for package, width in zip(packages, (each * width_for / sum(wanted) for each in wanted), strict=True):
+        parts.append(_box(x, y, width, FLOOR, COLOURS.get(package, BOTH)))
+        parts.append(_name(x + 12, y + 20, package, INSIDE[package]))
+        parts.append(_steps(package, x + width - 14, y + 15))
         x += width + GAP
     return "\n".join(parts)
 
 
-def _ground(rooms: list[str], y: float) -> str:
+def _ground(packages: list[str], y: float) -> str:
     """The small files that everything stands on, with the compiled core among them."""
     core = 170
-    others = ", ".join(room for room in rooms if room != "compiled")
+    others = ", ".join(package for package in packages if package != "compiled")
     words, lines = others.split(", "), [""]
     for word in words:
         if len(lines[-1]) + len(word) > 88:
@@ -138,17 +138,17 @@ def _box(x: float, y: float, width: float, height: float, colour: str) -> str:
     )
 
 
-def _name(x: float, y: float, room: str, inside: str, *, middle: bool = False) -> str:
+def _name(x: float, y: float, package: str, inside: str, *, middle: bool = False) -> str:
     anchor = ' text-anchor="middle"' if middle else ""
     return (
-        f'<text x="{x:.1f}" y="{y:.1f}"{anchor} font-size="15" font-weight="bold" fill="{INK}">{room}</text>'
+        f'<text x="{x:.1f}" y="{y:.1f}"{anchor} font-size="15" font-weight="bold" fill="{INK}">{package}</text>'
         f'<text x="{x:.1f}" y="{y + 16:.1f}"{anchor} font-size="12" fill="{GREY}">{escape(inside)}</text>'
     )
 
 
-def _steps(room: str, right: float, y: float) -> str:
-    """The numbers of the ways that come through a room, from the right."""
-    found = [(way.index(room) + 1, colour) for way, colour in ((TURN, ORANGE), (READING, BLUE)) if room in way]
+def _steps(package: str, right: float, y: float) -> str:
+    """The numbers of the paths that come through a package, from the right."""
+    found = [(path.index(package) + 1, colour) for path, colour in ((TURN, ORANGE), (READING, BLUE)) if package in path]
     return "".join(_dot(right - 22 * i, y, number, colour) for i, (number, colour) in enumerate(found))
 
 
@@ -160,16 +160,16 @@ def _dot(x: float, y: float, number: int, colour: str) -> str:
 
 
 def _legend(y: float) -> str:
-    def told(x: float, text: str) -> str:
+    def label(x: float, text: str) -> str:
         return f'<text x="{x}" y="{y + 4}" font-size="12.5" fill="{INK}">{text}</text>'
 
     return "".join(
         [
-            _dot(EDGE + 9, y, 1, BLUE), told(EDGE + 24, "the way of a reading"),
-            _dot(EDGE + 174, y, 1, ORANGE), told(EDGE + 189, "the way of a turn"),
-            _box(EDGE + 320, y - 8, 16, 16, MEASURED), told(EDGE + 342, "what was measured"),
-            _box(EDGE + 480, y - 8, 16, 16, COMPUTED), told(EDGE + 502, "what is computed of a ski"),
-            _box(EDGE + 690, y - 8, 16, 16, BOTH), told(EDGE + 712, "both"),
+            _dot(EDGE + 9, y, 1, BLUE), label(EDGE + 24, "from a reading to the snow"),
+            _dot(EDGE + 212, y, 1, ORANGE), label(EDGE + 227, "from a scenario to a track"),
+            _box(EDGE + 410, y - 8, 16, 16, MEASURED), label(EDGE + 432, "what was measured"),
+            _box(EDGE + 565, y - 8, 16, 16, COMPUTED), label(EDGE + 587, "what is computed of a ski"),
+            _box(EDGE + 752, y - 8, 16, 16, BOTH), label(EDGE + 774, "both"),
         ]
     )  # fmt: skip
 

@@ -43,7 +43,7 @@ def turn(run: Run, elastic: Run) -> Figure:
 
 def _draw_along(axes: Axes, run: Run, elastic: Run) -> None:
     """Depth of the edge along the outer ski when half of the turn is done."""
-    for one, style, label in ((run, "-", "snow keeps its groove"), (elastic, (0, (5, 1.5)), "snow springs back")):
+    for one, style, label in ((run, "-", "hypoplastic snow"), (elastic, (0, (5, 1.5)), "elastic snow")):
         now = int(np.argmin(abs(one.time - MOMENT)))
         depth = 1e3 * one.skis.edge_depth[now, OUTER]
         axes.plot(one.skis.station, depth, color=SKI_COLOURS[OUTER], linestyle=style, label=label)
@@ -59,8 +59,8 @@ def _draw_depth(figure: Figure, axes: Axes, run: Run) -> None:
     depth = 1e3 * run.skis.edge_depth[:, OUTER]
     mesh = along_ski_map(axes, run, np.where(depth > 0.0, depth, np.nan), highest(depth))
     axes.set_xlabel("time (s)")
-    axes.set_ylabel("station (m),\nboot at 0, tip up")
-    axes.set_title("right ski over time, where the snow keeps its groove", loc="left", fontsize=7.5)
+    axes.set_ylabel("position along the\nski (m), boot = 0")
+    axes.set_title("right ski over time, hypoplastic snow", loc="left", fontsize=7.5)
     figure.colorbar(mesh, ax=axes, label="edge depth\n(mm)", pad=0.01, aspect=12)
 
 

@@ -174,7 +174,7 @@ def depths(runs: Runs) -> Figure:
     for axes in grid[:, 0]:
         axes.set_ylabel("edge depth\n(% of the greatest)")
     for axes in grid[1]:
-        axes.set_xlabel("station from the boot (m);\ntail left, tip right")
+        axes.set_xlabel("position along the ski (m);\nboot = 0, tail left, tip right")
     legend_below(figure, _handles())
     return figure
 

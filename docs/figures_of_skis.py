@@ -60,7 +60,7 @@ def draw_skis() -> None:
             axes.axvline(0.0, color=GREY, linewidth=0.5)
         for axes in rows[2:]:
             axes.set_ylim(bottom=0.0)
-        rows[3].set_xlabel("station from the boot (m), tip to the right")
+        rows[3].set_xlabel("position along the ski (m), boot = 0, tip to the right")
         rows[1].legend(loc="upper left", ncols=3)
         FOLDER.mkdir(parents=True, exist_ok=True)
         figure.savefig(FOLDER / "skis.png", dpi=200)

@@ -130,6 +130,7 @@ def take(page: Page, address: str) -> None:
     both_sizes(page, "campaigns")
     page.get_by_role("link", name="Analysis").first.click()
     page.get_by_role("heading", name="Figures").wait_for(timeout=120_000)
+    page.get_by_text("Drawing the figures").wait_for(state="hidden", timeout=120_000)
     picture(page, "analysis")
     page.goto(f"{address}skis")
     page.get_by_text("Running length", exact=True).wait_for()

@@ -19,7 +19,7 @@ from skisnow.carve.keys import CARVE_KEYS
 from skisnow.field.reading import campaign_schema
 from skisnow.field.reading.campaign_file import CAMPAIGN_KEYS
 from skisnow.field.reading.table_forms import PENETRATION, SHEAR
-from skisnow.inputs.json_schema import Schema, schema_text, told_schema
+from skisnow.inputs.json_schema import Schema, output_schema, schema_text
 from skisnow.inputs.page_table import page_table
 from skisnow.scenario import schema as scenario
 from skisnow.scenario.free_keys import FREE_KEYS
@@ -40,13 +40,13 @@ def with_inputs(file: str, place: Sequence[str], told: Schema) -> Schema:
 
 def summary_schema() -> Schema:
     """Of summary.json."""
-    return with_inputs(SUMMARY, (), {"scenario": scenario.told_scenario_schema()})
+    return with_inputs(SUMMARY, (), {"scenario": scenario.output_scenario_schema()})
 
 
 def carve_schema() -> Schema:
     """Of the JSON of ``skisnow carve``."""
     inputs = {"description": "Every input with the value in force; null where it plays no part."}
-    return with_inputs(CARVE, ("$defs", "answer"), {"inputs": {**inputs, **told_schema(CARVE_KEYS.values())}})
+    return with_inputs(CARVE, ("$defs", "answer"), {"inputs": {**inputs, **output_schema(CARVE_KEYS.values())}})
 
 
 SCHEMAS = {

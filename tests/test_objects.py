@@ -59,8 +59,17 @@ def no_disk(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.fixture(scope="module")
+def campaign_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of a campaign, written before anything listens."""
+    made = tmp_path_factory.mktemp("campaign")
+    skisnow.write_reference(made / "campaign", seed=1)
+    return made / "campaign"
+
+
 @pytest.mark.usefixtures("no_disk")
-def test_a_dozen_lines_without_the_disk(campaign: Campaign) -> None:
+def test_a_dozen_lines_without_the_disk(campaign_folder: Path) -> None:
+    campaign = skisnow.read_campaign(campaign_folder)
     analysis = skisnow.analyse(campaign, n_resamples=100)
     snow = analysis.snow("C", unloading_ratio=10)
     ski = skisnow.read_ski("carver")
@@ -72,6 +81,7 @@ def test_a_dozen_lines_without_the_disk(campaign: Campaign) -> None:
     assert run.scenario.ski is ski
     assert run.track.time[-1] == pytest.approx(0.1, rel=1e-12)
     assert len(run.to_dataframe()) == len(run.track) == 11
+    assert run.to_xarray().sizes["time"] == 11
     assert run.plot().axes
 
 
@@ -182,7 +192,7 @@ def test_track_of_a_run_is_what_its_file_says(folder: Path) -> None:
     track, read = circle_run().track, skisnow.read_track(folder / "track.csv")
     for name in ("time", "place", "speed"):
         assert np.array_equal(getattr(track, name), getattr(read, name)), name
-    assert track.marked == read.marked == {}
+    assert track.flagged == read.flagged == {}
     assert track.axes == "slope"
     assert skisnow.compare_tracks(track, read).nearest.numbers == skisnow.compare_tracks(read, read).nearest.numbers
 

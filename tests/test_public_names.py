@@ -36,7 +36,7 @@ for name in ("simulate", "scenario", "carve", "identify", "study", "chain"):
     assert callable(getattr(skisnow, name)), name
 assert skisnow.simulate.run.Run is skisnow.Run
 """
-ROOM_FIRST = """
+PACKAGE_FIRST = """
 import skisnow.simulate.run, skisnow.scenario.slope, skisnow.carve.answer
 import skisnow.identify.data, skisnow.study.axes, skisnow.chain.ensemble
 from skisnow import carve, chain, identify, scenario, simulate, study
@@ -46,7 +46,7 @@ assert skisnow.simulate is simulate and skisnow.simulate.run.Run is skisnow.Run
 """
 
 
-@pytest.mark.parametrize("lines", [IMPORT_ALONE, NAME_FIRST, ROOM_FIRST], ids=["alone", "name first", "room first"])
+@pytest.mark.parametrize("lines", [IMPORT_ALONE, NAME_FIRST, PACKAGE_FIRST], ids=["alone", "name", "package"])
 def test_names_in_either_order_of_imports(lines: str) -> None:
     subprocess.run([sys.executable, "-c", lines], check=True)
 
@@ -65,14 +65,14 @@ def test_type_checkers_see_the_same_names() -> None:
 
 
 def test_a_room_that_is_a_verb_is_its_function() -> None:
-    for room, function in (
+    for package, function in (
         (skisnow.simulate, simulate),
         (skisnow.scenario, read_scenario),
         (skisnow.carve, carve),
         (skisnow.identify, identify),
         (skisnow.study, run_study),
     ):
-        assert inspect.signature(room) == inspect.signature(function)
+        assert inspect.signature(package) == inspect.signature(function)
     with pytest.raises(TypeError, match="scenario"):
         skisnow.simulate()  # type: ignore[call-arg]
 
@@ -116,7 +116,7 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
 
 
 def test_only_these_places_reach_up() -> None:
-    """An object of a lower room may ask an upper one to draw and write it, through `from_above` alone."""
+    """An object of a lower package may ask an upper one to draw and write it, through `from_above` alone."""
     found, imports = {}, set()
     for path in PACKAGE.rglob("*.py"):
         place = path.relative_to(PACKAGE).as_posix()
@@ -124,9 +124,9 @@ def test_only_these_places_reach_up() -> None:
             if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
                 continue
             if node.func.id == "from_above":
-                room, name = (ast.literal_eval(argument) for argument in node.args)
-                found[f"{room}.{name}"] = place
-            if node.func.id in ("import_module", "__import__") and not place.startswith("web/"):  # the topmost room
+                package, name = (ast.literal_eval(argument) for argument in node.args)
+                found[f"{package}.{name}"] = place
+            if node.func.id in ("import_module", "__import__") and not place.startswith("web/"):  # the topmost package
                 imports.add(place)
     assert found == {
         "estimate.results.results_dict": "estimate/analysis.py",
@@ -138,7 +138,7 @@ def test_only_these_places_reach_up() -> None:
         "report.turn_sentences.contrast": "report/turn_chain.py",
         "scenario.changed.changed_scenario": "scenario/scenario.py",
     }
-    assert imports == {"__init__.py", "callable_rooms.py", "from_above.py", "report/run_frames.py"}
+    assert imports == {"__init__.py", "callable_packages.py", "from_above.py", "report/run_frames.py"}
     for each in found:
         module, _, name = each.rpartition(".")
         assert callable(getattr(import_module(f"skisnow.{module}"), name))

@@ -53,7 +53,7 @@ axes.plot(
     color="black",
     label="closed form",
 )
-axes.set(xlabel="station (m)", ylabel="depth (mm)")
+axes.set(xlabel="position along the ski (m)", ylabel="depth (mm)")
 axes.invert_yaxis()
 axes.legend()
 figure.savefig("beam_on_snow.png")

@@ -42,7 +42,7 @@ for name, one in kinds.items():
         one.apart is None or one.numbers is None
     ):  # nothing to compare: one.reason says why
         continue
-    beside.plot(one.apart.way, one.apart.distance, label=name)
+    beside.plot(one.apart.arc_length, one.apart.distance, label=name)
     largest[name] = one.numbers.max
     print(f"{name:17} largest {one.numbers.max:.3f} m, mean {one.numbers.mean:.3f} m")
 beside.set(xlabel="along the measured track (m)", ylabel="distance (m)", ylim=(0, None))

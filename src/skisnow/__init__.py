@@ -133,7 +133,7 @@ __all__ = [
     "write_report",
 ]
 
-_ROOMS = {
+_PACKAGES = {
     "carve": ("Equilibrium", "rest"),
     "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
     "estimate": ("Analysis", "analyse", "results_dict"),
@@ -167,14 +167,14 @@ _ROOMS = {
     "track.summary": ("TrackSummary", "track_summary"),
     "track.track": ("Track",),
 }
-_PLACES = {name: (room, name) for room, names in _ROOMS.items() for name in names}
-_CALLABLE_ROOMS = ("carve", "chain", "identify", "scenario", "simulate", "study")
-"""Rooms whose name is a verb: they can be called, see `skisnow.callable_rooms`."""
+_PLACES = {name: (package, name) for package, names in _PACKAGES.items() for name in names}
+_CALLABLE_PACKAGES = ("carve", "chain", "identify", "scenario", "simulate", "study")
+"""Packages whose name is a verb: they can be called, see `skisnow.callable_packages`."""
 _FORMER_NAMES = {"read_scenario": "scenario", "simulated_run": "simulate"}
 
 
 def __getattr__(name: str) -> Any:
-    if name in _CALLABLE_ROOMS:
+    if name in _CALLABLE_PACKAGES:
         return import_module(f".{name}", __name__)
     if name in _FORMER_NAMES:
         from .former_names import warn_of_former_name
@@ -183,8 +183,8 @@ def __getattr__(name: str) -> Any:
         return __getattr__(_FORMER_NAMES[name])
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    room, own_name = _PLACES[name]
-    return getattr(import_module(f".{room}", __name__), own_name)
+    package, own_name = _PLACES[name]
+    return getattr(import_module(f".{package}", __name__), own_name)
 
 
 def __dir__() -> list[str]:

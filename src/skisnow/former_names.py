@@ -42,3 +42,31 @@ def formerly(former: str, function: Callable[Given, Answer]) -> Callable[Given, 
 
     called.__name__ = called.__qualname__ = former
     return called
+
+
+def with_former_keywords(**names: str) -> Callable[[Callable[Given, Answer]], Callable[Given, Answer]]:
+    """Let a function be called with the former names of its keywords, by former name; each warns.
+
+    >>> import warnings
+    >>> @with_former_keywords(anew="restart")
+    ... def search(*, restart: bool = False) -> bool:
+    ...     return restart
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     search(anew=True)
+    True
+    >>> print(caught[0].message)
+    anew= of search is called restart= now; the former name goes with the next release
+    """
+
+    def decorated(function: Callable[Given, Answer]) -> Callable[Given, Answer]:
+        @functools.wraps(function)
+        def called(*args: Given.args, **named: Given.kwargs) -> Answer:
+            for former in names.keys() & named.keys():
+                warn_of_former_name(f"{former}= of {function.__name__}", f"{names[former]}=")
+                named[names[former]] = named.pop(former)
+            return function(*args, **named)
+
+        return called
+
+    return decorated

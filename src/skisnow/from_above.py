@@ -1,4 +1,4 @@
-"""The one way in which an object reaches what is done with it above, in an upper room or file, such as `run.plot()`.
+"""The one way in which an object reaches what is done with it above, in an upper package or file, such as `run.plot()`.
 
 Nothing is imported before it is called, so that the lower one works without the upper. A test lists all such places.
 """
@@ -9,14 +9,14 @@ from importlib import import_module
 from typing import Any
 
 
-def from_above(room: str, name: str) -> Any:
-    """A function of an upper room, by name.
+def from_above(package: str, name: str) -> Any:
+    """A function of an upper package, by name.
 
     Parameters
     ----------
-    room
+    package
         The module inside the package, such as "report.run_folder".
     name
         The function.
     """
-    return getattr(import_module(f"{__package__}.{room}"), name)
+    return getattr(import_module(f"{__package__}.{package}"), name)

@@ -99,6 +99,20 @@ def field_facts(thing: Any, units: dict[str, str], *, title: str = "") -> Facts:
     return Facts(title, tuple(rows))
 
 
+def name_with_values(thing: object) -> str:
+    """A dataclass by its name and values, all else by its name alone: no address in memory, the same each time.
+
+    >>> from skisnow.forces.friction import ConstantFriction
+    >>> name_with_values(ConstantFriction(0.04)), name_with_values(math.sqrt)
+    ('ConstantFriction(friction_coefficient=0.04)', 'sqrt')
+    """
+    if is_dataclass(thing) and not isinstance(thing, type):
+        values = ", ".join(f"{each.name}={getattr(thing, each.name)!r}" for each in fields(thing) if each.repr)
+        return f"{type(thing).__qualname__}({' '.join(values.split())})"
+    name: str = getattr(thing, "__qualname__", type(thing).__qualname__)
+    return name
+
+
 def _short(value: Any, unit: str) -> str:
     if isinstance(value, np.ndarray):
         size = " × ".join(map(str, value.shape))

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from skisnow.carve.equilibrium import Equilibrium
+from skisnow.carve.result import Equilibrium
 from skisnow.ski import Ski
 from skisnow.snow.properties import SnowProperties
 

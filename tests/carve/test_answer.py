@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,8 +13,9 @@ import pytest
 from skisnow import carve, published_snow, read_ski
 from skisnow.carve.answer import answered
 from skisnow.carve.answer_dict import answer_dict, answers_dict, equilibrium_dict
-from skisnow.carve.equilibrium import Equilibrium, rest
+from skisnow.carve.equilibrium import rest
 from skisnow.carve.question import carve_question
+from skisnow.carve.result import Equilibrium
 from skisnow.errors import ParameterError
 from skisnow.snow import SnowProperties
 
@@ -45,6 +47,18 @@ def test_every_input_reaches_the_turn() -> None:
     answer = answered(carve_question(ASKED | NUMBERS | CHOSEN | {"unloading_ratio": 10.0}))
     assert is_same(answer.equilibrium, chosen)
     assert not is_same(chosen, plain)
+
+
+def test_the_unloading_ratio_of_the_snow_is_taken_where_none_is_given() -> None:
+    ski = read_ski("slalom")
+    asked: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "elements": 80}
+    plain, known = (carve(ski, SNOW, unloading_ratio=ratio, **asked) for ratio in (10.0, 3.0))
+    snow = replace(SNOW, unloading_ratio=3.0)
+    assert is_same(carve(ski, snow, **asked), known)
+    assert is_same(carve(ski, snow, unloading_ratio=10.0, **asked), plain)
+    assert not is_same(plain, known)
+    with pytest.raises(ParameterError, match=r"unloading_ratio is missing, and the snow \(given as numbers\) has none"):
+        carve(ski, SNOW, **asked)
 
 
 def test_every_input_reaches_the_ski_at_rest() -> None:

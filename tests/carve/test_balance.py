@@ -11,7 +11,8 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_bvp
 
-from skisnow.carve.equilibrium import Equilibrium, GrooveForm, MomentBalance, _warnings, carve
+from skisnow.carve.equilibrium import GrooveForm, MomentBalance, carve
+from skisnow.carve.result import Equilibrium, _warnings
 from skisnow.errors import ParameterError
 from skisnow.ski import Ski, read_ski
 

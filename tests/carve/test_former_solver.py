@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 
-from skisnow.carve.equilibrium import Equilibrium, carve, rest
+from skisnow.carve.equilibrium import carve, rest
+from skisnow.carve.result import Equilibrium
 from skisnow.ski import read_ski
 
 from .synthetic import snow

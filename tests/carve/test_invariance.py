@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skisnow.carve.equilibrium import Equilibrium, carve, rest
+from skisnow.carve.equilibrium import carve, rest
+from skisnow.carve.result import Equilibrium
 from skisnow.ski import Ski, read_ski
 from skisnow.snow.properties import SnowProperties
 

@@ -8,7 +8,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from skisnow.carve.equilibrium import Equilibrium, GrooveForm, carve
+from skisnow.carve.equilibrium import GrooveForm, carve
+from skisnow.carve.result import Equilibrium
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam.clamped import CLAMP_LENGTH
 

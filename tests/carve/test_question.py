@@ -9,7 +9,7 @@ import pytest
 
 from skisnow import read_ski
 from skisnow.carve.keys import CarveQuestion
-from skisnow.carve.limits import require_clamp, suspicions
+from skisnow.carve.limits import implausible_values, require_clamp
 from skisnow.carve.question import carve_question
 from skisnow.errors import ParameterError
 from skisnow.snow.properties import GREATEST_LIKELY_HARDNESS
@@ -90,7 +90,7 @@ def test_a_clamp_in_millimetres_is_guessed_where_it_may_be_one(length: float, to
     ],
 )
 def test_a_number_that_looks_like_another_unit_is_told(changed: dict[str, float], told: str) -> None:
-    (said,) = suspicions(replace(carve_question(ASKED | SNOW), **changed))  # type: ignore[arg-type]
+    (said,) = implausible_values(replace(carve_question(ASKED | SNOW), **changed))  # type: ignore[arg-type]
     assert said.startswith(told)
 
 
@@ -99,4 +99,4 @@ def test_a_number_that_looks_like_another_unit_is_told(changed: dict[str, float]
     [{"load_N": 20.0}, {"load_N": 5000.0}, {"edge_angle_deg": 0.0}, {"H_V_N_per_mm3": GREATEST_LIKELY_HARDNESS}],
 )
 def test_the_last_usual_numbers_are_not_suspected(changed: dict[str, float]) -> None:
-    assert suspicions(replace(carve_question(ASKED | SNOW), **changed)) == ()  # type: ignore[arg-type]
+    assert implausible_values(replace(carve_question(ASKED | SNOW), **changed)) == ()  # type: ignore[arg-type]

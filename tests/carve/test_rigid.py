@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from skisnow.carve.equilibrium import Equilibrium, carve, rest
+from skisnow.carve.equilibrium import carve, rest
+from skisnow.carve.result import Equilibrium
 
 from .synthetic import boot_pose, rigid_ski, snow
 

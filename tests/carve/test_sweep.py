@@ -9,7 +9,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from skisnow.carve.equilibrium import SINKING_DEPTH, Equilibrium, carve, rest
+from skisnow.carve.equilibrium import carve, rest
+from skisnow.carve.result import SINKING_DEPTH, Equilibrium
 from skisnow.errors import ParameterError
 from skisnow.ski import read_ski
 

@@ -8,7 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from skisnow.carve.equilibrium import Equilibrium, carve
+from skisnow.carve.equilibrium import carve
+from skisnow.carve.result import Equilibrium
 from skisnow.ski import read_ski
 
 from .synthetic import snow

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from skisnow.carve.edge_line import EdgeLine, circle_radius
-from skisnow.carve.equilibrium import Equilibrium, _conditions, carve
+from skisnow.carve.equilibrium import _conditions, carve
+from skisnow.carve.result import Equilibrium
 from skisnow.carve.solve import solved
 from skisnow.ski import Ski
 from skisnow.ski.beam.clamped import clamped

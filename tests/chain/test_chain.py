@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
+from referencing import Registry, Resource
 
 import skisnow
 from skisnow import Analysis, Run, Scenario
@@ -19,10 +22,12 @@ from skisnow.cli import main
 from skisnow.errors import ParameterError
 from skisnow.field.reference import reference_campaign
 from skisnow.inputs import values_of
+from skisnow.report.turn_dict import turn_dict
 from skisnow.scenario.prior import prior_of
 
 from ..report.runs import circle_run
 
+PACKAGE = Path(skisnow.__file__).parent
 Printed = pytest.CaptureFixture[str]
 TURN = {"slope.angle_deg": 5.0, "start.speed_m_per_s": 4.5, "sledge.edge_angle_deg": 40.0}
 
@@ -176,6 +181,42 @@ def test_the_command_does_what_the_call_does(analysis: Analysis, tmp_path: Path,
     assert printed.out.splitlines() == [f"snow: {found.snow.in_words}", *found.sentences]
     assert printed.err.splitlines()[-1] == f"The whole chain: {tmp_path / 'turn' / 'report.html'}"
     assert (tmp_path / "turn" / "report.html").is_file()
+
+
+def test_the_command_s_json_is_that_of_the_report(asked: list[Scenario], tmp_path: Path, capsys: Printed) -> None:
+    """Alone on stdout, as the schema has it, each number that of its run; turn.json holds the same."""
+    skisnow.write_reference(tmp_path / "campaign", seed=1)
+    words = ["turn", str(tmp_path / "campaign"), "--site", "C", "--runs", "3", "--workers", "1"]
+    assert main([*words, "--json", "--out", str(tmp_path / "turn")]) == 0
+    told = json.loads(capsys.readouterr().out)
+    written = json.loads((tmp_path / "turn" / "turn.json").read_text(encoding="utf-8"))
+    for one, other in zip(told["runs"], written["runs"], strict=True):
+        assert one["summary"].pop("provenance").keys() == other["summary"].pop("provenance").keys()
+    assert told == written
+    assert told["snow"]["H_V_N_per_mm3"] * 1e9 == pytest.approx(asked[0].contact.snow.snow_hardness, rel=1e-12)
+    assert (told["site"], told["snow"]["unloading_ratio"], told["ensemble"]["seed"]) == ("site C", 10.0, 1)
+    assert [each["contact"] for each in told["runs"]] == ["hypoplastic, k_u / H_V = 10", "elastic"]
+    assert told["runs"][0]["distance_from_first_m"] is None
+    assert 0.0 < told["runs"][1]["distance_from_first_m"] < 2.0
+    assert [each["H_V_N_per_mm3"] * 1e9 for each in told["ensemble"]["runs"]] == pytest.approx(
+        [each.contact.snow.snow_hardness for each in asked[-3:]], rel=1e-12
+    )
+
+
+def test_the_json_keeps_to_its_schema(analysis: Analysis, asked: list[Scenario]) -> None:
+    assert asked == []
+    schemas = {
+        name: json.loads((PACKAGE / package / "schemas" / f"{name}.schema.json").read_text(encoding="utf-8"))
+        for package, name in (("report", "turn"), ("simulate", "summary"))
+    }
+    summary = schemas["summary"]
+    known = Registry().with_resource(summary["$id"], Resource.from_contents(summary))
+    found = turn_dict(skisnow.chain(analysis, "C", runs=3, workers=1))
+    checked = Draft202012Validator(schemas["turn"], registry=known)
+    checked.validate(found)
+    found["runs"][0]["summary"]["outcome"] = "well"
+    assert not checked.is_valid(found)
+    assert set(schemas["turn"]["properties"]) == set(found)
 
 
 def test_the_command_refuses_in_words(tmp_path: Path, capsys: Printed) -> None:

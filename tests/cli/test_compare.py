@@ -28,8 +28,8 @@ def answer(words: list[str], printed: Printed) -> Any:
 
 def write(path: Path, place: Any, *, first_time: float = 0.0, speed: float = 5.0) -> Path:
     """Places (n, 2 or 3), passed at one speed."""
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(place, axis=0), axis=1))])
-    rows = np.column_stack([first_time + way / speed, place])
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(place, axis=0), axis=1))])
+    rows = np.column_stack([first_time + along / speed, place])
     header = ",".join(["time_s", "x_m", "y_m", "z_m"][: rows.shape[1]])
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("\n".join([header, *(",".join(map(repr, row)) for row in rows.tolist())]) + "\n", encoding="utf-8")
@@ -61,7 +61,7 @@ def test_every_number_has_its_definition_beside_it(straight: Path, capsys: Print
     told = capsys.readouterr().out
     for words in (
         "nearest place: from each place of the measured track",
-        "equal arc length: between the places that both tracks reach after the same way",
+        "equal arc length: between the places that both tracks reach after the same arc length",
         "equal time: between the places where both are at the same time, counted from zero of the seconds",
         "integrals over the measured track's length",
         "largest 0.250 m, 0.62 % of the measured track's length",
@@ -81,8 +81,8 @@ def test_what_cannot_be_compared_is_null_with_a_reason(straight: Path, capsys: P
 
 
 def test_a_fit_is_told_with_what_was_before(straight: Path, capsys: Printed) -> None:
-    way = np.linspace(0.0, 40.0, 200)
-    place = np.column_stack([way, 3.0 * np.sin(way / 5.0), 0.1 * way])
+    along = np.linspace(0.0, 40.0, 200)
+    place = np.column_stack([along, 3.0 * np.sin(along / 5.0), 0.1 * along])
     one = write(straight.parent / "one.csv", place)
     two = write(straight.parent / "two.csv", place + np.array([1.0, -0.5, 0.25]), first_time=3.0)
     found = answer([str(one), str(two), "--fit-offset", "start,time"], capsys)

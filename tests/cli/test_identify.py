@@ -144,8 +144,8 @@ def test_the_strength_alone_from_marks(tmp_path: Path, capsys: Printed) -> None:
     path.write_text("turn_radius_m\n16.1\n16.3\n16.2\n", encoding="utf-8")
     assert main(["identify", "carved-46m", str(path), "--free", "S_f", "--out", str(tmp_path / "found")]) == 0
     printed = capsys.readouterr()
-    assert f"{path}: marks left in the snow (places: 3)\n" in printed.out
+    assert f"{path}: measured grooves (places: 3)\n" in printed.out
     assert "bounded from below" in printed.err
     found = json.loads((tmp_path / "found" / "identification.json").read_text(encoding="utf-8"))
     jsonschema.validate(found, SCHEMA)
-    assert found["data"] == [{"name": str(path), "taken_for": "marks left in the snow (places: 3)"}]
+    assert found["data"] == [{"name": str(path), "taken_for": "measured grooves (places: 3)"}]

@@ -1,4 +1,4 @@
-"""The page on the house names files that are there, and its picture shows the rooms as they stand."""
+"""The page on the house names files that are there, and its picture shows the packages as they stand."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 
 
-def test_the_picture_is_of_this_house() -> None:
+def test_the_picture_is_of_these_packages() -> None:
     drawn = runpy.run_path(str(ROOT / "docs" / "figure_of_house.py"))
     assert drawn["PICTURE"].read_text(encoding="utf-8") == drawn["picture"]()
-    rooms = {room for floor in drawn["floors"]() for room in floor}
-    assert set(drawn["INSIDE"]) | set(drawn["READING"]) | set(drawn["TURN"]) <= rooms
+    packages = {package for floor in drawn["floors"]() for package in floor}
+    assert set(drawn["INSIDE"]) | set(drawn["READING"]) | set(drawn["TURN"]) <= packages
 
 
 def test_every_file_is_there() -> None:
@@ -35,11 +35,11 @@ def test_every_file_is_there() -> None:
 
 
 def test_every_number_of_the_picture_is_told() -> None:
-    """As many numbered steps as the picture has, for each of the two ways, and each room is named in its step."""
+    """As many numbered steps as the picture has, for each of the two paths, and each package is named in its step."""
     drawn = runpy.run_path(str(ROOT / "docs" / "figure_of_house.py"))
-    ways = [part.split("\n## ")[0] for part in re.split(r"\n## The way of a \w+\n", PAGE)[1:]]
-    for way, rooms in zip(ways, (drawn["READING"], drawn["TURN"]), strict=True):
-        steps = re.findall(r"(?m)^\d+\. (.*(?:\n   .*)*)", way)
-        assert len(steps) == len(rooms)
-        for step, room in zip(steps, rooms, strict=True):
-            assert re.search(rf"`{room}\b", step) or room == "compiled", (room, step)
+    paths = [part.split("\n## ")[0] for part in re.split(r"\n## From a \w+ to \w+ \w+\n", PAGE)[1:]]
+    for path, packages in zip(paths, (drawn["READING"], drawn["TURN"]), strict=True):
+        steps = re.findall(r"(?m)^\d+\. (.*(?:\n   .*)*)", path)
+        assert len(steps) == len(packages)
+        for step, package in zip(steps, packages, strict=True):
+            assert re.search(rf"`{package}\b", step) or package == "compiled", (package, step)

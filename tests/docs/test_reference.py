@@ -18,7 +18,7 @@ LAWS = (*penetration.LAWS, *penetration.POINT_LAWS, *shear.LAWS, *friction.LAWS)
 
 
 def public_name(name: str) -> Any:
-    """The object itself, also where the name is a room that can be called: the imports for type checkers say where."""
+    """The object itself, also where the name is a callable package: the imports for type checkers say where."""
     for node in ast.walk(ast.parse(inspect.getsource(skisnow))):
         if isinstance(node, ast.ImportFrom) and node.level == 1:
             for each in node.names:

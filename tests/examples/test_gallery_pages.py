@@ -11,8 +11,8 @@ import skisnow
 
 from .gallery import builder
 
-PUBLIC_ROOMS = ("skisnow.forces", "skisnow.geometry", "skisnow.identify")
-"""Rooms whose names docs/api.md shows beside those of `skisnow`."""
+PUBLIC_PACKAGES = ("skisnow.forces", "skisnow.geometry", "skisnow.identify")
+"""Packages whose names docs/api.md shows beside those of `skisnow`."""
 NAMES = tuple(builder().names())
 
 
@@ -31,7 +31,7 @@ def test_short_and_of_public_names(name: str) -> None:
     tree = ast.parse(source)
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("skisnow"):
-            assert (node.module or "").startswith(PUBLIC_ROOMS)
+            assert (node.module or "").startswith(PUBLIC_PACKAGES)
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "skisnow":
             assert node.attr in skisnow.__all__
     assert not re.search(r"skisnow\S*\._", source)

@@ -59,7 +59,7 @@ def resampled(by: BootstrapBy, seed: int) -> tuple[Decay, Identification]:
     decay = Decay(seed)
     parameters = tuple(Parameter(key=key, name=key, start=1.0, lower=0.01, upper=20.0, size=1.0) for key in ("a", "b"))
     rng = np.random.default_rng(3)
-    plan = Request(title="", starts=1, profile=False, bootstrap=0, posterior=0, rng=rng, told=lambda _: None)
+    plan = Request(title="", starts=1, profile=False, bootstrap=0, posterior=0, rng=rng, progress=lambda _: None)
     solution = solution_of(problem_of(parameters, (decay,)), plan)
     found = identification_of(solution, "", (), ())
     return decay, bootstrapped(found, solution, 80, by, np.random.default_rng(4), lambda _: None)
@@ -142,7 +142,7 @@ class TestTracks:
         error = [each.standard_error for each in refit.parameters]
         assert np.max(np.abs(refit.bootstrap - linear.bootstrap) / error) < 0.01
         assert refit.effort.simulations >= linear.effort.simulations + 60
-        assert any("60 resamples" in text and "fitted anew" in text for text in refit.methods)
+        assert any("60 resamples" in text and "refitted" in text for text in refit.methods)
 
     def test_an_interrupt_keeps_values_and_runs(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         kept = tmp_path / "simulations.partial"
@@ -158,11 +158,11 @@ class TestTracks:
             return simulate(scenario)
 
         monkeypatch.setattr(module, "simulate", stopping)
-        stopped = found_from(track(seed=2), bootstrap=50, kept=kept)
+        stopped = found_from(track(seed=2), bootstrap=50, checkpoint=kept)
         assert stopped.outcome == "interrupted"
         assert stopped["mu_0"].value == whole["mu_0"].value
         assert stopped["mu_0"].bootstrap_interval is None
-        again = found_from(track(seed=2), bootstrap=50, kept=kept)
+        again = found_from(track(seed=2), bootstrap=50, checkpoint=kept)
         assert again.effort.simulations < 0.3 * whole.effort.simulations
         assert again["mu_0"].bootstrap_interval == whole["mu_0"].bootstrap_interval
 

@@ -88,7 +88,7 @@ def test_the_track_of_a_run_is_a_track(tmp_path: Path) -> None:
         ("time,lat,lon,turn_radius_m\n0,47,11,3\n1,47.0001,11,3\n", "a track (points: 2)"),
         ("time_s,x_m,y_m,station_m\n0,0,0,0\n1,5,0,5\n", "a track (points: 2)"),
         ("run,station_m,time_s,x_m,y_m\na,5,1,5,0\na,9,2,9,0\nb,5,1,5,0\n", "photo-cell times (runs: 2)"),
-        ("x_m,y_m,depth_mm,depth_sd_mm\n0,0,3,1\n1,1,3,1\n", "marks left in the snow (places: 2)"),
+        ("x_m,y_m,depth_mm,depth_sd_mm\n0,0,3,1\n1,1,3,1\n", "measured grooves (places: 2)"),
     ],
 )
 def test_what_a_table_is_taken_for(text: str, kind: str, tmp_path: Path) -> None:

@@ -190,9 +190,9 @@ def test_a_free_clock_is_set_by_the_times_that_are_known_best() -> None:
 
 
 def test_as_many_stations_as_times_and_at_least_one() -> None:
-    with pytest.raises(ParameterError, match="run a: 2 stations and 3 times"):
+    with pytest.raises(ParameterError, match="run a: 2 cells and 3 times"):
         PhotoCellRun("a", STATION[:2], truth()[:3])
-    with pytest.raises(ParameterError, match="run a: 0 stations and 0 times"):
+    with pytest.raises(ParameterError, match="run a: 0 cells and 0 times"):
         PhotoCellRun("a", STATION[:0], truth()[:0])
 
 
@@ -204,7 +204,7 @@ def test_what_is_being_done_is_told() -> None:
         "mu_0,drag_area",
         changes=CHANGES,
         profile=True,
-        told=said.append,
+        progress=said.append,
     )
     assert [words for words in said if "profile of" in words] == ["profile of mu_0", "profile of drag_area"]
 

@@ -44,7 +44,7 @@ class TestStraight:
     def test_a_track_without_noise_gives_the_truth(self) -> None:
         """The search may end a fifth of a standard error (3e-4, 3e-3 m/s) off; a linear model ends far nearer."""
         said: list[str] = []
-        found = found_from(track(), told=said.append)
+        found = found_from(track(), progress=said.append)
         assert said[:2] == ["starting; 1 simulated runs", "starting; 2 simulated runs"]
         assert any("last steps with the scenario's own solver" in words for words in said)
         assert found.outcome == "converged"
@@ -72,7 +72,7 @@ class TestStraight:
             assert any(text.startswith(told) for text in found.warnings) is near
 
     def test_ctrl_c_while_the_limit_is_looked_at_keeps_the_answer(self) -> None:
-        def stopped(_tasks: object) -> list[Row]:
+        def stopped(tasks: object) -> list[Row]:  # noqa: ARG001
             raise KeyboardInterrupt
 
         positions = track_positions.TrackPositions((track_positions.measured(track()),), stopped)
@@ -154,7 +154,7 @@ class TestStraight:
         place = one.place.copy()
         place[7] += 500.0
         jump = np.arange(len(one)) == 7
-        found = found_from(replace(one, place=place, marks={"jump": jump}))
+        found = found_from(replace(one, place=place, flags={"jump": jump}))
         assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
         assert any("1 points are marked" in text for text in found.warnings)
 
@@ -189,11 +189,32 @@ class TestStraight:
 
     def test_simulations_are_kept_and_found_again(self, tmp_path: Path) -> None:
         kept = tmp_path / "simulations.partial"
-        first = found_from(track(seed=5), kept=kept)
-        again = found_from(track(seed=5), kept=kept)
+        first = found_from(track(seed=5), checkpoint=kept)
+        again = found_from(track(seed=5), checkpoint=kept)
         assert first.effort.simulations > 5
         assert again.effort.simulations == 0
         assert again.values == first.values
+
+    def test_a_scenario_may_be_given_as_an_object(self, tmp_path: Path) -> None:
+        """The same answer as by its name; other tables of a ski of the same name are another scenario."""
+        kept = tmp_path / "simulations.partial"
+        turn = read_scenario("carved-46m", changes=SCENARIO)
+        found = identify(turn, track(seed=5), "mu_0,speed", workers=1, checkpoint=kept)
+        assert found.values == pytest.approx(found_from(track(seed=5)).values, rel=1e-9)
+        assert found.scenario == "scenario given in Python"
+        again = identify(turn.with_(mass_kg=80.0), track(seed=5), "mu_0,speed", workers=1, checkpoint=kept)
+        assert (again.effort.simulations, again.values) == (0, found.values)
+        stiffer = turn.with_(ski=replace(turn.ski, torsional_stiffness=2.0 * turn.ski.torsional_stiffness))
+        with pytest.raises(ParameterError, match="finished points of another study"):
+            identify(stiffer, track(seed=5), "mu_0,speed", workers=1, checkpoint=kept)
+
+    def test_changes_of_an_object_are_those_of_with(self) -> None:
+        turn = read_scenario("carved-46m", changes=SCENARIO)
+        found = identify(turn, track(seed=5), "mu_0", changes={"speed_m_per_s": TRUE_SPEED}, workers=1)
+        other = identify(turn.with_(speed_m_per_s=TRUE_SPEED), track(seed=5), "mu_0", workers=1)
+        assert found.values == other.values != identify(turn, track(seed=5), "mu_0", workers=1).values
+        with pytest.raises(ParameterError, match=r"ski\.name is a word of a scenario's file"):
+            identify(turn, track(seed=5), "mu_0", changes={"ski.name": "slalom"}, workers=1)
 
     def test_an_interrupt_keeps_the_best_so_far(self, monkeypatch: pytest.MonkeyPatch) -> None:
         import sys
@@ -252,7 +273,7 @@ def test_east_north_up_is_turned_into_the_slope(tmp_path: Path, monkeypatch: pyt
     assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
     far = path.with_name("far.toml")
     far.write_text(scenario_text("carved-46m") + section + "latitude_deg = 11\nlongitude_deg = 47\n", encoding="utf-8")
-    with pytest.raises(ParameterError, match="latitude and longitude are the wrong way round"):
+    with pytest.raises(ParameterError, match="latitude and longitude are swapped"):
         identify(far, there, "mu_0,speed", changes=SCENARIO, workers=1)
     other = path.with_name("other.toml")  # Norway: 13.1° of latitude are 1459 km, straight through the earth 1456
     text = scenario_text("carved-46m") + section + "latitude_deg = 60.1\nlongitude_deg = 11\n"

@@ -30,7 +30,7 @@ from skisnow.scenario import read_scenario, scenario_file, scenario_text
 from skisnow.scenario.free_keys import free_key
 from skisnow.scenario.given import change_of
 from skisnow.scenario.keys import SCENARIO_KEYS
-from skisnow.scenario.schema import scenario_schema, told_scenario_schema
+from skisnow.scenario.schema import scenario_schema, output_scenario_schema
 from skisnow.study.axes import Axis
 
 print(read_scenario("carved-46m", changes=dict([change_of("crust_mm=4")])).contact.crust)
@@ -42,7 +42,7 @@ for refused in (lambda: scenario_file("carved-46m", changes={"crust_mm": 40}), l
     except ParameterError as error:
         print(error)
 print(scenario_schema()["properties"]["snow"]["properties"]["crust_mm"])
-print(told_scenario_schema()["properties"]["snow"]["properties"]["crust_mm"]["type"])
+print(output_scenario_schema()["properties"]["snow"]["properties"]["crust_mm"]["type"])
 print([line for line in page_table(SCENARIO_KEYS.values()).splitlines() if "crust" in line])
 print([line for line in scenario_text("carved-46m").splitlines() if "crust" in line])
 print(free_key("crust"))

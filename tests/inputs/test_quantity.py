@@ -11,7 +11,7 @@ import pytest
 
 from skisnow.errors import ParameterError
 from skisnow.inputs import Quantity, Search, checked_table, made, own_quantities
-from skisnow.inputs.json_schema import schema_of, told_schema
+from skisnow.inputs.json_schema import output_schema, schema_of
 from skisnow.inputs.page_table import page_table
 from skisnow.units import unit_of_name, without_unit
 
@@ -119,8 +119,11 @@ def test_search_in_a_table_of_a_page() -> None:
 
 def test_schema_of_what_is_written_allows_null_where_nothing_may_be_in_force() -> None:
     first, n = (schema_of(each) for each in own_quantities(Range))
-    assert told_schema(own_quantities(Range))["properties"] == {"from": first, "n": {**n, "type": ["integer", "null"]}}
-    told = told_schema(own_quantities(Range), every_null=True)
+    assert output_schema(own_quantities(Range))["properties"] == {
+        "from": first,
+        "n": {**n, "type": ["integer", "null"]},
+    }
+    told = output_schema(own_quantities(Range), every_null=True)
     assert (told["additionalProperties"], told["required"]) == (False, ["from", "n"])
     assert told["properties"]["from"]["type"] == ["number", "null"]
     assert schema_of(ANGLE)["exclusiveMaximum"] == 90.0

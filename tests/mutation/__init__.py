@@ -1,1 +1,1 @@
-"""Errors planted one at a time: how many of them do the tests of a room find? `python -m tests.mutation --help`."""
+"""Errors planted one at a time: how many of them do the tests of a package find? `python -m tests.mutation --help`."""

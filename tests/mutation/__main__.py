@@ -1,6 +1,6 @@
-"""Plant errors in a room one at a time, run its tests on each, and report those that no test found.
+"""Plant errors in a package one at a time, run its tests on each, and report those that no test found.
 
-    python -m tests.mutation --room track -n 50 --seed 1 --workers 2
+    python -m tests.mutation --package track -n 50 --seed 1 --workers 2
 
 The errors are drawn with a seed from all that can be planted; the same seed on the same files plants the same ones.
 Nothing in this tree is changed: the tests run in copies.
@@ -34,17 +34,17 @@ SOURCE: Final = Path("src/skisnow")
 EQUIVALENTS: Final = Path(__file__).with_name("equivalents.toml")
 
 
-def files_of(room: str, *, root: Path = ROOT) -> list[Path]:
-    """Python files of a room, or the one file that a room is, from the tree's top."""
-    found = sorted((root / SOURCE / room).rglob("*.py")) or sorted((root / SOURCE).glob(f"{room}.py"))
+def files_of(package: str, *, root: Path = ROOT) -> list[Path]:
+    """Python files of a package, or the one file that a package is, from the tree's top."""
+    found = sorted((root / SOURCE / package).rglob("*.py")) or sorted((root / SOURCE).glob(f"{package}.py"))
     if not found:
-        sys.exit(f"no room {room!r}: give a folder or file of {SOURCE}, such as track, field/store or units")
+        sys.exit(f"no package {package!r}: give a folder or file of {SOURCE}, such as track, field/store or units")
     return [path.relative_to(root) for path in found]
 
 
-def room_tests(room: str, *, root: Path = ROOT) -> tuple[str, ...]:
-    """The room's tests and the examples in its docstrings."""
-    named = [f"tests/{room}", f"tests/test_{room}.py", f"{SOURCE}/{room}", f"{SOURCE}/{room}.py"]
+def package_tests(package: str, *, root: Path = ROOT) -> tuple[str, ...]:
+    """The package's tests and the examples in its docstrings."""
+    named = [f"tests/{package}", f"tests/test_{package}.py", f"{SOURCE}/{package}", f"{SOURCE}/{package}.py"]
     return tuple(name for name in named if (root / name).exists())
 
 
@@ -120,7 +120,7 @@ def verdicts(planted: list[Planted], trials: list[Trials]) -> Iterator[tuple[Pla
 def asked_of(words: list[str] | None) -> argparse.Namespace:
     """What the command line asks."""
     parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=(__doc__ or "").split("\n", 1)[0])
-    parser.add_argument("--room", required=True, help="folder or file of src/skisnow: track, field/store, units")
+    parser.add_argument("--package", required=True, help="folder or file of src/skisnow: track, field/store, units")
     parser.add_argument("-n", type=int, default=50, help="number of errors (50)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1, help="copies of the tree that are tested at once (1)")
@@ -129,9 +129,12 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--reach", type=Path, help="file of which test reaches what; kept for the next time")
     parser.add_argument("--tests", nargs="*", default=[], help="further test files and folders that count")
     parser.add_argument(
-        "--leave-out", nargs="*", default=[], help="folders and files of the room that count no more, with their tests"
+        "--leave-out",
+        nargs="*",
+        default=[],
+        help="folders and files of the package that count no more, with their tests",
     )
-    parser.add_argument("--file", default="", help="only files of the room whose path contains this")
+    parser.add_argument("--file", default="", help="only files of the package whose path contains this")
     parser.add_argument(
         "--limit-s", type=float, help="time for each (default: a minute and five times what all tests take)"
     )
@@ -141,10 +144,10 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
 def main(words: list[str] | None = None) -> int:
     """Number of errors that survived."""
     asked = asked_of(words)
-    files = files_beside(asked.leave_out, [path for path in files_of(asked.room) if asked.file in str(path)])
+    files = files_beside(asked.leave_out, [path for path in files_of(asked.package) if asked.file in str(path)])
     planted = drawn(files, asked.n, asked.seed)
     planted = [one for number, one in enumerate(planted, 1) if number in (asked.only or [number])]
-    tests, left_out = (*room_tests(asked.room), *asked.tests), left_out_tests(asked.leave_out)
+    tests, left_out = (*package_tests(asked.package), *asked.tests), left_out_tests(asked.leave_out)
     with ExitStack() as kept:
         trees = [kept.enter_context(copied_tree(ROOT)) for _ in range(asked.workers)]
         reach = asked.reach.resolve() if asked.reach else trees[0] / ".reach.json"
@@ -162,9 +165,7 @@ def main(words: list[str] | None = None) -> int:
                 survivors.append(one)
                 print(f"{changed_lines(*one)}\n", flush=True)
     found = len(planted) - len(survivors)
-    print(
-        f"{asked.room}: {found} of {len(planted)} caught ({found / max(len(planted), 1):.0%}), {late} of them by time"
-    )
+    print(f"{asked.package}: {found} of {len(planted)} caught ({found / max(len(planted), 1):.0%}), {late} by time")
     return len(survivors)
 
 

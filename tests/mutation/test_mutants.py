@@ -1,4 +1,4 @@
-"""Each kind of error is planted where it belongs, and the tests of a room are what finds it."""
+"""Each kind of error is planted where it belongs, and the tests of a package are what finds it."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from tests.mutation.__main__ import (
     files_beside,
     files_of,
     left_out_tests,
+    package_tests,
     place_of,
-    room_tests,
     verdicts,
 )
 from tests.mutation.mutants import Mutant, mutants
@@ -68,13 +68,13 @@ def test_errors_of_a_real_room_are_small_and_drawn_by_seed() -> None:
     assert few == drawn(files, 12, 3) != drawn(files, 12, 4)
     for path, mutant in few:
         assert len([line for line in changed_lines(path, mutant).splitlines() if line[0] == "+"]) == 2  # file, line
-    assert room_tests("track") == ("tests/track", "src/skisnow/track")
+    assert package_tests("track") == ("tests/track", "src/skisnow/track")
 
 
 def test_parts_that_are_left_out_have_no_tests_either() -> None:
     files = files_of("track")
-    left = files_beside(["track/marks.py"], files)
-    assert [path for path in files if path not in left] == [Path("src/skisnow/track/marks.py")]
+    left = files_beside(["track/flags.py"], files)
+    assert [path for path in files if path not in left] == [Path("src/skisnow/track/flags.py")]
     assert files_beside(["track"], files) == []
     assert left_out_tests(["simulate/motion", "parallel/batch.py"]) == (
         "tests/simulate/motion",
@@ -105,7 +105,7 @@ def test_test_files_that_call_a_function_come_first_the_quick_ones_before(tmp_pa
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    """A program with a room of one function, tests that know half of it, and a file that git does not have."""
+    """A program with a package of one function, tests that know half of it, and a file that git does not have."""
     for name, text in {
         "src/skisnow/__init__.py": "",
         "src/skisnow/toy/area.py": "def area(a, b):\n    if a > 9:\n        return 0\n    return a * b\n",
@@ -123,7 +123,7 @@ def tree(tmp_path: Path) -> Path:
 def trials(tree: Path) -> Iterator[Trials]:
     with copied_tree(tree) as copy:
         assert not (copy / "left_out").exists()
-        yield Trials(copy, room_tests("toy", root=tree), 60.0)
+        yield Trials(copy, package_tests("toy", root=tree), 60.0)
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""The tests of a room on a copy of the tree in which one error is planted."""
+"""The tests of a package on a copy of the tree in which one error is planted."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from skisnow import carve, read_ski
-from skisnow.carve.equilibrium import Equilibrium
+from skisnow.carve.result import Equilibrium
 from skisnow.files import write_file
 from skisnow.ski import Ski
 from skisnow.snow import published_snow

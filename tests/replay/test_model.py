@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges, write_replay_model
-from skisnow.replay.looks import linear, round_above
+from skisnow.replay.colours import linear, round_above
 from skisnow.units import DEGREE
 
 from ..report.runs import circle_run

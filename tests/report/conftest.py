@@ -1,4 +1,4 @@
-"""One synthetic campaign of the paper's design, analysed and reported once for all tests of this room."""
+"""One synthetic campaign of the paper's design, analysed and reported once for all tests of this package."""
 
 from __future__ import annotations
 

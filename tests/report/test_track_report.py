@@ -97,7 +97,7 @@ def test_name_with_markup_is_text(tmp_path: Path) -> None:
 def test_text_counts_and_defines() -> None:
     values = summary_dict(slalom())
     values["marked"] = {"repeated_time": 2}
-    text = track_text(values, mark_sentences={"repeated_time": "Twice the same."})
+    text = track_text(values, flag_sentences={"repeated_time": "Twice the same."})
     assert "flagged repeated time: 2. Twice the same." in text
     assert re.search(r"\n4 turns\nA turn is", text)
     assert len(re.findall(r"^ +\d+\.\d +\d+\.\d +(left|right)", text, flags=re.MULTILINE)) == 4

@@ -42,9 +42,11 @@ def arc(radius: float, angle: FloatArray) -> FloatArray:
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
 
 
-def slalom(way: FloatArray) -> FloatArray:
+def slalom(along: FloatArray) -> FloatArray:
     """A winding, falling line without any symmetry, (n, 3)."""
-    return np.column_stack([way, 5.0 * np.sin(way / 6.0) + 0.02 * way**1.5, -0.2 * way + 0.3 * np.cos(way / 9.0)])
+    return np.column_stack(
+        [along, 5.0 * np.sin(along / 6.0) + 0.02 * along**1.5, -0.2 * along + 0.3 * np.cos(along / 9.0)]
+    )
 
 
 def turned(place: FloatArray, angle: float, move: Sequence[float]) -> FloatArray:

@@ -12,7 +12,7 @@ from skisnow.track.polyline import Polyline, polyline
 
 from .made_tracks import FloatArray, slalom, turned
 
-WAY = np.linspace(0.0, 60.0, 500)
+ALONG = np.linspace(0.0, 60.0, 500)
 
 
 def line_of(place: FloatArray, *, duration: float = 6.0) -> Polyline:
@@ -23,8 +23,8 @@ def line_of(place: FloatArray, *, duration: float = 6.0) -> Polyline:
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_a_moved_copy_is_found_whatever_way_it_was_turned(angle: float, dimensions: int) -> None:
     move = (40.0, -7.0, 2.5)
-    simulated = line_of(slalom(WAY)[:, :dimensions])
-    measured = line_of(turned(slalom(WAY), angle, move)[:, :dimensions])
+    simulated = line_of(slalom(ALONG)[:, :dimensions])
+    measured = line_of(turned(slalom(ALONG), angle, move)[:, :dimensions])
     motion = fitted_motion(simulated, measured, start=True, heading=True)
     assert motion.turned == pytest.approx(angle, abs=1e-8)
     assert motion.moved == pytest.approx(move[:dimensions], abs=1e-6)
@@ -33,8 +33,8 @@ def test_a_moved_copy_is_found_whatever_way_it_was_turned(angle: float, dimensio
 
 
 def test_only_what_is_asked_is_moved() -> None:
-    simulated = line_of(slalom(WAY))
-    measured = line_of(turned(slalom(WAY), 0.05, (1.0, 2.0, 0.0)))
+    simulated = line_of(slalom(ALONG))
+    measured = line_of(turned(slalom(ALONG), 0.05, (1.0, 2.0, 0.0)))
     shifted = fitted_motion(simulated, measured, start=True, heading=False)
     assert shifted.turned == 0.0
     swung = fitted_motion(simulated, measured, start=False, heading=True)
@@ -46,11 +46,11 @@ def test_only_what_is_asked_is_moved() -> None:
 def test_the_answer_is_a_least_square() -> None:
     """With noise no small step in any direction makes the mean square over the same places smaller."""
     random = np.random.default_rng(5)
-    simulated = line_of(slalom(WAY)[:, :2])
-    measured = line_of(turned(slalom(WAY), 0.1, (0.5, 0.3, 0.0))[:, :2] + 0.3 * np.sin(WAY / 3.0)[:, None])
+    simulated = line_of(slalom(ALONG)[:, :2])
+    measured = line_of(turned(slalom(ALONG), 0.1, (0.5, 0.3, 0.0))[:, :2] + 0.3 * np.sin(ALONG / 3.0)[:, None])
     measured = line_of(measured.place + 0.01 * random.normal(size=measured.place.shape))
     motion = fitted_motion(simulated, measured, start=True, heading=True)
-    places = measured.at_way(np.linspace(0.0, measured.length, 2049))
+    places = measured.at_arc_length(np.linspace(0.0, measured.length, 2049))
 
     shown = Path(motion.applied(simulated).place).nearest(places)
     inside = ~shown.beyond
@@ -81,8 +81,8 @@ def test_straight_lines_do_not_tell_how_far_along() -> None:
 
 
 def test_a_fit_neither_scales_nor_mirrors() -> None:
-    simulated = line_of(slalom(WAY)[:, :2])
-    for other in (slalom(WAY)[:, :2] * [1.0, -1.0], slalom(WAY)[:, :2] * 1.05):
+    simulated = line_of(slalom(ALONG)[:, :2])
+    for other in (slalom(ALONG)[:, :2] * [1.0, -1.0], slalom(ALONG)[:, :2] * 1.05):
         measured = line_of(other)
         moved = fitted_motion(simulated, measured, start=True, heading=True).applied(simulated)
         assert moved.length == pytest.approx(simulated.length, rel=1e-12)
@@ -90,21 +90,21 @@ def test_a_fit_neither_scales_nor_mirrors() -> None:
 
 
 def test_a_short_track_cannot_be_slid_out_of_sight() -> None:
-    measured, simulated = line_of(slalom(WAY)), line_of(slalom(WAY)[:100] + 0.5)
+    measured, simulated = line_of(slalom(ALONG)), line_of(slalom(ALONG)[:100] + 0.5)
     with pytest.raises(FitError, match="less than 50 % of the measured track"):
         fitted_motion(simulated, measured, start=True, heading=True)
 
 
 @pytest.mark.parametrize("later", [-40.0, -0.37, 0.0, 2.2])
 def test_start_time(later: float) -> None:
-    place = slalom(WAY)
+    place = slalom(ALONG)
     simulated, measured = line_of(place), polyline(place, np.linspace(0.0, 6.0, 500) - later)
     assert fitted_time(simulated, measured) == pytest.approx(later, abs=1e-6)
 
 
 def test_start_time_of_a_track_that_begins_later() -> None:
     """The measured track lacks the first third: its clock starts anew, the fit finds the 2 s."""
-    place = slalom(WAY)
+    place = slalom(ALONG)
     time = np.linspace(0.0, 6.0, 500)
     late = time >= 2.0
     assert fitted_time(line_of(place), polyline(place[late], time[late] - 2.0)) == pytest.approx(2.0, abs=1e-6)

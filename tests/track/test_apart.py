@@ -30,8 +30,8 @@ def test_mean_length_against_quadrature() -> None:
 
 def test_numbers_of_a_straight_line_that_leaves_another() -> None:
     """d = s tan α: mean L tan α / 2, rms L tan α / √3, largest at the end; the standstill at 2 m weighs nothing."""
-    way = np.array([0.0, 2.0, 2.0, 7.0, 10.0])
-    found = numbers_of(Apart(way, np.column_stack([0.0 * way, 0.1 * way])))
+    arc_length = np.array([0.0, 2.0, 2.0, 7.0, 10.0])
+    found = numbers_of(Apart(arc_length, np.column_stack([0.0 * arc_length, 0.1 * arc_length])))
     assert found is not None
     assert (found.max, found.max_at, found.mean, found.compared) == pytest.approx((1.0, 10.0, 0.5, 10.0))
     assert found.rms == pytest.approx(1.0 / math.sqrt(3.0), rel=1e-14)

@@ -274,5 +274,5 @@ def test_tracks_that_have_one_moment_in_common_are_compared_there() -> None:
     met = time_apart(late, early)
     assert met is not None
     assert set(met.distance.tolist()) == {3.0}
-    assert set(met.way.tolist()) == {5.0}
+    assert set(met.arc_length.tolist()) == {5.0}
     assert time_apart(late, early, later=-0.001) is None

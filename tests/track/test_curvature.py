@@ -22,7 +22,9 @@ def test_circle_without_noise(radius: float) -> None:
     assert motion.turn_radius[5:-5] == pytest.approx(np.full(71, radius), rel=5e-3)
     assert motion.heading == pytest.approx(SPEED * motion.time / radius, abs=2e-3)
     assert motion.speed == pytest.approx(np.full(81, SPEED), rel=2e-3)
-    assert motion.way[-1] == pytest.approx(SPEED * 8.0, rel=2e-3)  # chords of 0.8 m are 1/8000 short, then smoothing
+    assert motion.arc_length[-1] == pytest.approx(
+        SPEED * 8.0, rel=2e-3
+    )  # chords of 0.8 m are 1/8000 short, then smoothing
     assert np.all(np.diff(motion.heading) * radius > 0.0)  # more than a whole turn, without a jump
 
 
@@ -76,21 +78,21 @@ def test_straight_line_may_be_straight() -> None:
 
 def test_clothoid_has_a_curvature_that_grows_with_the_way() -> None:
     step, growth = 0.005, 0.002
-    way: FloatArray = step * np.arange(12_001.0)
-    fine = along(growth * way, step)
+    arc_length: FloatArray = step * np.arange(12_001.0)
+    fine = along(growth * arc_length, step)
     made = track(fine[::200])  # 1 m each 0.1 s
     motion = track_motion(made, window=0.8)
     inside = slice(4, -4)
-    assert motion.curvature[inside] == pytest.approx(growth * way[::200][inside], rel=0.02, abs=1e-4)
-    assert motion.heading[inside] == pytest.approx(growth * way[::200][inside] ** 2 / 2.0, abs=3e-3)
+    assert motion.curvature[inside] == pytest.approx(growth * arc_length[::200][inside], rel=0.02, abs=1e-4)
+    assert motion.heading[inside] == pytest.approx(growth * arc_length[::200][inside] ** 2 / 2.0, abs=3e-3)
 
 
 def test_recorded_speed_comes_before_the_places() -> None:
     place = circle(RADIUS, SPEED)
     motion = track_motion(track(place, speed=np.full(len(place), 9.0)))
     assert motion.speed.tolist() == [9.0] * len(place)
-    assert (motion.speed_source, motion.way_source) == ("recorded", "recorded speed")
-    assert motion.way[-1] == pytest.approx(9.0 * 8.0)
+    assert (motion.speed_source, motion.arc_length_source) == ("recorded", "recorded speed")
+    assert motion.arc_length[-1] == pytest.approx(9.0 * 8.0)
     assert motion.curvature[40] == pytest.approx(1.0 / RADIUS, rel=5e-3)  # a path's shape knows no clock
 
 
@@ -99,9 +101,9 @@ def test_odometer_comes_first() -> None:
     odometer = 100.0 + np.linspace(0.0, 50.0, 81)
     odometer[30] = np.nan
     motion = track_motion(replace(made, odometer=odometer))
-    assert motion.way_source == "odometer"
-    assert motion.way[-1] - motion.way[0] == pytest.approx(50.0)
-    assert motion.way[30] == pytest.approx(100.0 + 50.0 * 30 / 80)
+    assert motion.arc_length_source == "odometer"
+    assert motion.arc_length[-1] - motion.arc_length[0] == pytest.approx(50.0)
+    assert motion.arc_length[30] == pytest.approx(100.0 + 50.0 * 30 / 80)
 
 
 def test_recorded_velocity_gives_speed_and_way() -> None:
@@ -110,7 +112,7 @@ def test_recorded_velocity_gives_speed_and_way() -> None:
     velocity = SPEED * np.stack([np.cos(angle), np.sin(angle), np.full_like(angle, 0.75)], axis=1)
     motion = track_motion(replace(made, velocity=velocity))
     assert motion.speed == pytest.approx(np.full(81, 1.25 * SPEED))
-    assert motion.way[-1] == pytest.approx(1.25 * SPEED * 8.0)
+    assert motion.arc_length[-1] == pytest.approx(1.25 * SPEED * 8.0)
 
 
 def test_way_over_a_gap_is_straight() -> None:
@@ -118,7 +120,7 @@ def test_way_over_a_gap_is_straight() -> None:
     straight[30:, 0] += 100.0
     made = track(straight, speed=np.full(60, 10.0))
     motion = track_motion(replace(made, time=made.time + np.where(np.arange(60) >= 30, 100.0, 0.0)))
-    assert motion.way[-1] == pytest.approx(159.0)  # not 10 m/s over 100 s
+    assert motion.arc_length[-1] == pytest.approx(159.0)  # not 10 m/s over 100 s
 
 
 def test_nobody_heads_anywhere_at_rest() -> None:

@@ -88,7 +88,7 @@ def test_way_direction_and_what_is_beyond() -> None:
     corner = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]])
     asked = np.array([[1.0, 2.0], [3.5, 1.0], [6.0, -2.0], [-1.0, 0.5], [2.0, 9.0], [0.0, -1.0], [7.0, 3.0]])
     found = Path(corner).nearest(asked)
-    assert found.way == pytest.approx([1.0, 5.0, 4.0, 0.0, 7.0, 0.0, 7.0])
+    assert found.arc_length == pytest.approx([1.0, 5.0, 4.0, 0.0, 7.0, 0.0, 7.0])
     assert found.distance == pytest.approx(
         [2.0, 0.5, math.hypot(2.0, 2.0), math.hypot(1.0, 0.5), math.hypot(2, 6), 1, 3]
     )

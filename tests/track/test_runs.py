@@ -44,7 +44,7 @@ def split(track: Track) -> Day:
 def test_day_of_three_runs(recorded: bool) -> None:
     """A cycle is 540 s; a run begins when the rest at the top ends, 360 s into it, and takes 100 s."""
     found = split(day([*([LIFT, REST, RUN, QUEUE] * 3)], recorded=recorded))
-    assert found.told_by == "height"
+    assert found.split_by == "height"
     assert len(found.runs) == len(found.lifts) == 3
     for number, (run, lift) in enumerate(zip(found.runs, found.lifts, strict=True)):
         begin = 540.0 * number
@@ -78,7 +78,7 @@ def test_short_run_is_one_run() -> None:
     whole = day([Leg(50, 0.8, -0.1)], height_noise=0.01)
     short = replace(whole, time=0.1 * whole.time, speed=10.0 * whole.speed)
     found = split(short)
-    assert found.told_by == "motion"
+    assert found.split_by == "motion"
     (run,) = found.runs
     assert (run.start, run.end) == (0.0, 5.0)
     assert run.distance == pytest.approx(40.0, rel=0.01)

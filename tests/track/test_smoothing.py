@@ -53,9 +53,9 @@ def test_marked_points_take_no_part() -> None:
     made = track(circle(15.0, 8.0), noise=NOISE)
     jump = np.zeros(len(made), dtype=bool)
     jump[40] = True
-    without = smoothed_track(replace(made, marks={"jump": jump}))
+    without = smoothed_track(replace(made, flags={"jump": jump}))
     made.place[40] += 30.0
-    assert smoothed_track(replace(made, marks={"jump": jump})).velocity == pytest.approx(without.velocity, abs=1e-9)
+    assert smoothed_track(replace(made, flags={"jump": jump})).velocity == pytest.approx(without.velocity, abs=1e-9)
 
 
 def test_recorded_velocities_make_the_acceleration_surer_and_right() -> None:
@@ -81,9 +81,9 @@ def test_windows_end_at_gaps() -> None:
     found = smoothed_track(replace(made, time=time))
     assert found.part.tolist() == [0] * 30 + [1] * 30
     assert found.velocity[:, 0] == pytest.approx(np.full(60, 10.0), abs=1e-7)  # 1 m each 0.1 s, never 1 m in 20 s
-    marked = np.zeros(60, dtype=bool)
-    marked[10] = True
-    assert parts(replace(made, marks={"gap": marked}), np.ones(60, dtype=bool))[[9, 10]].tolist() == [0, 1]
+    flagged = np.zeros(60, dtype=bool)
+    flagged[10] = True
+    assert parts(replace(made, flags={"gap": flagged}), np.ones(60, dtype=bool))[[9, 10]].tolist() == [0, 1]
 
 
 def test_windows_keep_their_length_at_the_ends() -> None:

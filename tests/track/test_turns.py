@@ -14,8 +14,8 @@ SPEED, STEP = 10.0, 0.01
 
 def sine(turns: int, *, length: float = 15.0, least_radius: float = 12.0) -> FloatArray:
     """Curvature of equal turns, the first to the left, each half a sine over ``length`` (m)."""
-    way = STEP * np.arange(round(turns * length / STEP) + 1)
-    return np.asarray(np.sin(np.pi * way / length) / least_radius)
+    along = STEP * np.arange(round(turns * length / STEP) + 1)
+    return np.asarray(np.sin(np.pi * along / length) / least_radius)
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -43,13 +43,13 @@ def test_black_on_white_by_definition() -> None:
 def test_lines_are_told_apart_by_colour_and_dashes_alone() -> None:
     """Three to one against the page's white is what graphics need (WCAG 2.2, 1.4.11)."""
     chart = pytest.importorskip("skisnow.web.line_chart", reason="the web lab is not installed")
-    read = [look for look in chart.LOOKS if look["read"]]
-    assert read == list(chart.LOOKS[: chart.BEHIND])
+    read = [style for style in chart.STYLES if style["read"]]
+    assert read == list(chart.STYLES[: chart.BEHIND])
     for name in ("colour", "dash"):
-        assert len({look[name] for look in read}) == len(read)
-    assert len({(look["width"], look["point"]) for look in read}) == 1
-    for look in read:
-        red, green, blue = bytes.fromhex(look["colour"].removeprefix("#"))
+        assert len({style[name] for style in read}) == len(read)
+    assert len({(style["width"], style["point"]) for style in read}) == 1
+    for style in read:
+        red, green, blue = bytes.fromhex(style["colour"].removeprefix("#"))
         assert contrast(f"rgb({red}, {green}, {blue})", "rgb(255, 255, 255)") >= 3.0
 
 

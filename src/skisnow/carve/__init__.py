@@ -1,12 +1,13 @@
 """A flexible ski at rest in snow, or carving steadily: the question, the equilibrium, the answer.
 
-The room can be called: `skisnow.carve(ski, snow, …)` is `skisnow.carve.equilibrium.carve`.
+The package can be called: `skisnow.carve(ski, snow, …)` is `skisnow.carve.equilibrium.carve`.
 """
 
 from __future__ import annotations
 
-from ..callable_rooms import make_callable
-from .equilibrium import Equilibrium, rest
+from ..callable_packages import make_callable
+from .equilibrium import rest
+from .result import Equilibrium
 
 __all__ = ["Equilibrium", "rest"]
 

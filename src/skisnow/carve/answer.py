@@ -10,9 +10,10 @@ from ..snow import SnowProperties
 from ..snow.given_stress import require_stress, with_stress
 from ..snow.measured_range import with_range_warnings
 from ..sources import Sources
-from .equilibrium import Equilibrium, carve, rest
+from .equilibrium import carve, rest
 from .keys import CARVE_KEYS, CarveQuestion
-from .limits import require_clamp, suspicions
+from .limits import implausible_values, require_clamp
+from .result import Equilibrium
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,14 +43,14 @@ def answered(question: CarveQuestion, *, sources: Sources | None = None) -> Carv
         Ski or snow cannot be read, or an input does not go with the ski.
     """
     sources = sources or Sources()
-    ski, told = sources.ski(question.ski)
+    ski, warned = sources.ski(question.ski)
     snow = asked_snow(question, sources)
     require_clamp(ski, question.clamp_length_m)
     edge_angle = question.edge_angle_deg * CARVE_KEYS["edge_angle_deg"].factor
     equilibrium = _equilibrium(question, ski, snow, edge_angle)
     _, outside = with_range_warnings(lambda: _warn_outside_ranges(snow, edge_angle, at_rest=question.at_rest))
     return CarveAnswer(
-        question, ski, snow, equilibrium, (*told, *suspicions(question), *outside, *equilibrium.warnings)
+        question, ski, snow, equilibrium, (*warned, *implausible_values(question), *outside, *equilibrium.warnings)
     )
 
 

@@ -14,7 +14,7 @@ from ..json_number import json_number
 from ..snow.snow_dict import snow_dict
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .answer import CarveAnswer
-from .equilibrium import Equilibrium
+from .result import Equilibrium
 from .solve import RIGID_PLASTIC
 
 SCHEMA_VERSION: Final = 1

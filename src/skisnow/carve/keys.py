@@ -9,7 +9,8 @@ from typing import Annotated, Any, Final, Literal
 from ..inputs import Quantity, own_quantities, require_declared
 from ..ski.beam.clamped import CLAMP_LENGTH, MOST_ELEMENTS
 from ..snow import SnowProperties
-from .equilibrium import ELEMENTS, GREATEST_EDGE_ANGLE
+from .checks import GREATEST_EDGE_ANGLE
+from .equilibrium import ELEMENTS
 
 _SNOW: Final = {each.name: each for each in own_quantities(SnowProperties)}
 

@@ -1,4 +1,4 @@
-"""What the parts of a question must have in common, and what about it looks like a slip, in users' words."""
+"""What the parts of a question must have in common, and which numbers are implausible, in users' words."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def require_clamp(ski: Ski, clamp_length_m: float) -> None:
     )
 
 
-def suspicions(question: CarveQuestion) -> tuple[str, ...]:
+def implausible_values(question: CarveQuestion) -> tuple[str, ...]:
     """Numbers that look like those of another unit, in words."""
     found = []
     degrees = in_degrees_if_radians(question.edge_angle_deg)

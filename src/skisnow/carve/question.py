@@ -52,8 +52,8 @@ def require_complete(values: Mapping[str, object]) -> None:
     for name in ("ski", "edge_angle_deg", "load_N", *(() if rests else ("unloading_ratio",))):
         if name not in values:
             example = CARVE_KEYS[name].example
-            told = f". Give one, e.g. {example}" if example else ""
-            raise ParameterError(f"{name} is missing: {CARVE_KEYS[name].meaning}. It has no default{told}")
+            hint = f". Give one, e.g. {example}" if example else ""
+            raise ParameterError(f"{name} is missing: {CARVE_KEYS[name].meaning}. It has no default{hint}")
     _require_one_snow(set(values), rests)
 
 

@@ -1,8 +1,8 @@
 """From a campaign to a turn in one call: analysis, the snow of a site, a turn with each contact, a band, one page.
 
-The room can be called: `skisnow.chain(…)` is `skisnow.chain.chaining.chain`.
+The package can be called: `skisnow.chain(…)` is `skisnow.chain.chaining.chain`.
 """
 
-from ..callable_rooms import make_callable
+from ..callable_packages import make_callable
 
 make_callable(__name__, ".chaining", "chain")

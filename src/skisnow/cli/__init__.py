@@ -65,14 +65,14 @@ def _ended(error: Exception | KeyboardInterrupt) -> int:
         print(f"skisnow: {error.strerror or error}{f': {error.filename}' if error.filename else ''}", file=sys.stderr)
         return _stdout_lost()
     if isinstance(error, SkisnowError | MemoryError):
-        _say(error)
+        _print_error(error)
         return 1
-    from .last_resort import told
+    from .last_resort import report_failure
 
-    return told(error)
+    return report_failure(error)
 
 
-def _say(error: SkisnowError | MemoryError) -> None:
+def _print_error(error: SkisnowError | MemoryError) -> None:
     if isinstance(error, FieldDataError):
         for problem in error.problems:
             print(_short(str(problem)), file=sys.stderr)

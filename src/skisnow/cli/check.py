@@ -21,7 +21,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Print the problems; 1 if any is an error."""
-    problems, told = _problems(options.campaign)
+    problems, notes = _problems(options.campaign)
     errors, warnings, marks = (_count(problems, severity) for severity in ("error", "warning", "mark"))
     if options.json:
         entries = [problem.as_dict() for problem in problems]
@@ -29,8 +29,8 @@ def run(options: argparse.Namespace) -> int:
     else:
         for problem in problems:
             print(problem)
-        for remark in told:
-            print(f"remark: {remark}")
+        for note in notes:
+            print(f"note: {note}")
         print(f"errors: {errors}, warnings: {warnings}, flags: {marks}")
     return 1 if errors else 0
 

@@ -71,15 +71,15 @@ def run(options: argparse.Namespace) -> int:
     answer = comparison_dict(found)
     for text in found.warnings:
         print(f"warning: {text}", file=sys.stderr)
-    told = json.dumps(answer, ensure_ascii=False, allow_nan=False, indent=1)
+    text = json.dumps(answer, ensure_ascii=False, allow_nan=False, indent=1)
     if options.json:
-        print(told, flush=True)
+        print(text, flush=True)
     else:
         from ..report.compare_summary import compare_summary
 
         print(compare_summary(answer), flush=True)
     if options.out is not None:
-        _write(options.out, found, told)
+        _write(options.out, found, text)
     return 0
 
 
@@ -124,14 +124,14 @@ def _in_slope(track: Track, options: argparse.Namespace) -> Track:
     )
 
 
-def _write(folder: Path, found: Comparison, told: str) -> None:
+def _write(folder: Path, found: Comparison, text: str) -> None:
     from ..files import write_file
     from ..report.figures.figure_file import write_figure
     from ..report.figures.track_comparison import track_comparison
     from ..staging import staged
 
     with staged(folder, last="compare.json") as stage:
-        write_file(stage.path / "compare.json", f"{told}\n")
+        write_file(stage.path / "compare.json", f"{text}\n")
         for ending in ("png", "svg"):
             write_figure(stage.path / f"track_comparison.{ending}", lambda: track_comparison(found))
     print(f"Figure: {folder / 'track_comparison.png'}", file=sys.stderr)

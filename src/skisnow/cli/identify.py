@@ -126,20 +126,20 @@ def _identified(options: argparse.Namespace) -> Identification:
             clock_is_free=None if options.clock is None else options.clock == "free",
             rng=np.random.default_rng(options.seed),
             workers=options.workers,
-            kept=None if options.out is None else options.out / KEPT,
-            anew=not options.resume,
-            told=progress,
+            checkpoint=None if options.out is None else options.out / KEPT,
+            restart=not options.resume,
+            progress=progress,
         )
 
 
 def _tell(options: argparse.Namespace, found: Identification, asked: ScenarioFile) -> None:
     from ..identify import identification_dict
 
-    told = identification_dict(found, files=(*asked.files, *options.data))
+    contents = identification_dict(found, files=(*asked.files, *options.data))
     for text in found.warnings:
         print(f"warning: {text}", file=sys.stderr)
     if options.json:
-        print(json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+        print(json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
         from ..report.identify_summary import identify_summary
 
@@ -148,7 +148,9 @@ def _tell(options: argparse.Namespace, found: Identification, asked: ScenarioFil
         from ..report.identify_report import write_identify_report
 
         with Progress() as progress:
-            page = write_identify_report(found, told, options.out, progress=lambda doing: progress(f"writing {doing}"))
+            page = write_identify_report(
+                found, contents, options.out, progress=lambda doing: progress(f"writing {doing}")
+            )
         print(f"Report: {page}", file=sys.stderr)
     if found.outcome == "interrupted" and options.out is not None:
         print("The same command with --resume goes on with the simulations that are kept.", file=sys.stderr)

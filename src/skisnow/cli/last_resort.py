@@ -15,7 +15,7 @@ STATUS: Final = 70
 """Of a command that ended so; ``EX_SOFTWARE`` of sysexits.h."""
 
 
-def told(error: Exception) -> int:
+def report_failure(error: Exception) -> int:
     """Write the trace down and say where; returns the exit status."""
     reference = secrets.token_hex(4)
     place = _kept(f"error-{reference}.txt", _trace(error, reference))

@@ -58,9 +58,9 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps(values, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
         from ..report.track_summary import track_text
-        from ..track.marks import MARKS
+        from ..track.flags import FLAGS
 
-        print(track_text(values, mark_sentences={code: mark.sentence for code, mark in MARKS.items()}), flush=True)
+        print(track_text(values, flag_sentences={code: flag.sentence for code, flag in FLAGS.items()}), flush=True)
     if options.out is not None:
         from ..report.track_report import write_track_report
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
 
@@ -60,12 +61,15 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write report.html and figures of the whole chain here")
+    parser.add_argument("--json", action="store_true", help="print turn.json alone to standard output")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="write report.html, turn.json and figures of the whole chain here"
+    )
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Compute the chain, print what the contacts do otherwise, write the report."""
+    """Compute the chain, print what the contacts do otherwise or the JSON, write the report."""
     with announced("loading"):
         from ..chain.chaining import chain
         from ..scenario import scenario_file
@@ -74,6 +78,8 @@ def run(options: argparse.Namespace) -> int:
 
         priors = [prior_of(word) for word in options.priors]
         asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
+    for text in asked.warnings:
+        print(f"warning: {text}", file=sys.stderr)
     if options.out is not None:
         ready(options.out)
     names = ("unloading_ratio", "runs", "seed", "workers")
@@ -81,7 +87,12 @@ def run(options: argparse.Namespace) -> int:
     with Progress() as progress:
         found = chain(options.campaign, options.site, asked.scenario, priors=priors, progress=progress, **chosen)
         page = None if options.out is None else found.report(options.out)
-    print(f"snow: {found.snow.in_words}", *found.sentences, sep="\n")
+    if options.json:
+        from ..report.turn_dict import turn_dict
+
+        print(json.dumps(turn_dict(found), ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+    else:
+        print(f"snow: {found.snow.in_words}", *found.sentences, sep="\n")
     for text in found.warnings:
         print(f"warning: {text}", file=sys.stderr)
     if page is not None:

@@ -75,9 +75,9 @@ def number(
         except ValueError:
             found = _BEGINS_AS_NUMBER.match(word.strip())
             example = f", such as {found[0].replace(',', '.')}" if found else ""
-            told = f" in {unit}, without the unit" if unit else ""
+            where = f" in {unit}, without the unit" if unit else ""
             raise argparse.ArgumentTypeError(
-                f"{_shown(word)} is no number; write one with a decimal point{told}{example}"
+                f"{_shown(word)} is no number; write one with a decimal point{where}{example}"
             ) from None
 
     return read

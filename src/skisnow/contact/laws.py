@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..shown import Facts, Shown
+from ..shown import Facts, Shown, name_with_values
 
 if TYPE_CHECKING:
     from ..forces.friction import FrictionLaw
@@ -32,6 +32,11 @@ class Laws(Shown):
     shear: ShearLaw | None = None
     penetration: PointLaw | None = None
 
+    @property
+    def described(self) -> dict[str, str | None]:
+        """Each law by its class and numbers, ``None`` where the scenario's acts."""
+        laws = {name: getattr(self, name) for name in ("friction", "shear", "penetration")}
+        return {name: None if law is None else name_with_values(law) for name, law in laws.items()}
+
     def _facts(self) -> Facts:
-        given = {name: getattr(self, name) for name in ("friction", "shear", "penetration")}
-        return Facts(", ".join(f"{name} {type(law).__name__}" for name, law in given.items() if law) or "none")
+        return Facts(", ".join(f"{name} {law}" for name, law in self.described.items() if law) or "none")

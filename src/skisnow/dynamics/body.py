@@ -16,7 +16,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
-    """An array of finite numbers as compiled code takes it; it looks at no shape itself."""
+    """An array of finite numbers as compiled code takes it; it checks no shape itself."""
     array = np.asarray(given, float, order="C")
     if array.shape != shape:
         raise ParameterError(f"{name} has shape {array.shape}; it must be {shape}")

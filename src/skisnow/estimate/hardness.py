@@ -3,7 +3,7 @@
 The three rival definitions share one form, H = F / M with a measure M of the contact: the depth e, the projected area A
 or the displaced volume V. A further definition is one more entry in ``DEFINITIONS``.
 
-Error model of a reading, used throughout this room: its departure from the law, ln F - ln(H M), has the variance
+Error model of a reading, used throughout this package: its departure from the law, ln F - ln(H M), has the variance
 
     s² + (u_F / F)² + (k u_e / e)²,     k = d ln M / d ln e,
 

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..units import DEGREE, MM, MM2, MM3, N_PER_MM2, N_PER_MM3
+from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .hardness import DEFINITIONS
+from .model_rows import model_rows, nested_row, selected_model
 from .remarks import remarks
 
 if TYPE_CHECKING:
@@ -25,9 +26,7 @@ if TYPE_CHECKING:
     from ..field.records import PenetrationTests, ShearTests
     from .analysis import Analysis
     from .hardness import Hardness
-    from .model_choice import NestedRows
-    from .models import Model, ModelFit
-    from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis
+    from .parts import PenetrationAnalysis, ShearAnalysis
     from .regressions import Regression
     from .screening import Screened
     from .shear_displacement import ShearDisplacement
@@ -39,8 +38,6 @@ FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
 
 SCHEMA_VERSION = 1
-_SAME_PERCENT = 0.005
-"""Rmse that differ by less are told as the same."""
 
 
 def results_dict(analysis: Analysis) -> Json:
@@ -149,23 +146,23 @@ def _penetration(analysis: Analysis) -> Json:
     if found is None or tests is None:
         return {
             "experiments": [],
-            "models": _no_models(),
+            "models": model_rows(None),
             "tests": [],
             "selected": None,
             "warnings": [],
             "seating": [],
-            "errors_in_depth": {"models": _no_models(), "experiments": []},
+            "errors_in_depth": {"models": model_rows(None), "experiments": []},
             "unloading": [],
         }
     return {
         "experiments": penetration_experiments(tests, found.screened, found.hardness, found.unloading),
-        "models": _models(found.table),
-        "tests": [_nested(row) for row in found.nested],
-        "selected": _selected(found),
+        "models": model_rows(found.table),
+        "tests": [nested_row(row) for row in found.nested],
+        "selected": selected_model(found),
         "warnings": list(found.warnings),
         "seating": _seating(tests.experiment, found),
         "errors_in_depth": {
-            "models": _models(found.errors_in_depth),
+            "models": model_rows(found.errors_in_depth),
             "experiments": _fitted_hardness(tests.experiment, found),
         },
         "unloading": [_site_unloading(row) for row in found.site_unloading],
@@ -220,100 +217,6 @@ def _degrees(angle: FloatArray) -> list[float]:
     """Degrees as a person wrote them: the last bits that the way over radians costs are taken off."""
     degrees: list[float] = np.round(np.degrees(angle), 11).tolist()
     return degrees
-
-
-def _models(table: ModelTable | None) -> list[Json]:
-    if table is None:
-        return _no_models()
-    return [_model(fit, table.intervals.get(fit.model)) for fit in table.fits]
-
-
-def _model_head(model: Model) -> Json:
-    return {"id": model.id, "hardness": model.hardness, "a": model.a, "b": model.b}
-
-
-def _no_models() -> list[Json]:
-    from .models import MODELS
-
-    nothing = dict.fromkeys(("a0", "a1", "b0", "b1"))
-    return [
-        _model_head(model)
-        | nothing
-        | {"n": 0, "n_series": 0, "n_parameters": model.n_parameters}
-        | {"rmse_N": None, "rmse_dof_N": None, "rmse_free_N": None, "at_bound": [], "intervals": dict(nothing)}
-        for model in MODELS
-    ]
-
-
-def _model(fit: ModelFit, intervals: FloatArray | None) -> Json:
-    """A row in the units of the table: A in mm², V in mm³, H in N/mm, N/mm² or N/mm³."""
-    si = DEFINITIONS[fit.model.hardness].si
-    factor_a, factor_b = si * MM2, si * MM3
-    factors = {"a0": factor_a, "a1": factor_a, "b0": factor_b, "b1": factor_b}
-    fitted = _fitted_coefficients(fit.model)
-    pairs: dict[str, list[float] | None] = dict.fromkeys(factors)
-    if intervals is not None:
-        for index, (name, factor) in enumerate(factors.items()):
-            pairs[name] = (intervals[index] * factor).tolist() if name in fitted else None
-    return (
-        _model_head(fit.model)
-        | {name: getattr(fit, name) * factor for name, factor in factors.items()}
-        | {
-            "n": fit.n,
-            "n_series": fit.n_series,
-            "n_parameters": fit.n_parameters,
-            "rmse_N": fit.rmse,
-            "rmse_dof_N": fit.rmse_dof,
-            "rmse_free_N": fit.rmse_free,
-            "at_bound": list(fit.at_bound),
-            "intervals": pairs,
-        }
-    )
-
-
-def _fitted_coefficients(model: Model) -> set[str]:
-    fitted = set()
-    for name, term in (("a", model.a), ("b", model.b)):
-        if term in ("constant", "linear"):
-            fitted.add(f"{name}0")
-        if term == "linear":
-            fitted.add(f"{name}1")
-    return fitted
-
-
-def _nested(row: NestedRows) -> Json:
-    return {
-        "full": row.full.id,
-        "reduced": row.reduced.id,
-        "F": row.F,
-        "df": [row.df1, row.df2],
-        "p": row.p,
-        "rmse_change_percent": row.rmse_change_percent,
-        "valid_classically": row.valid_classically,
-    }
-
-
-def _selected(found: PenetrationAnalysis) -> Json | None:
-    if found.selected is None or found.table is None:
-        return None
-    best = min(found.table.fits, key=lambda fit: fit.rmse)
-    chosen = found.selected
-    return {"id": chosen.model.id, "reason": _reason(chosen, best)}
-
-
-def _reason(chosen: ModelFit, best: ModelFit) -> str:
-    if chosen.model == best.model:
-        return (
-            f"The smallest rmse of the nine candidate models, {chosen.rmse:.4g} N; no model with fewer fitted "
-            f"parameters ({chosen.n_parameters} here) comes within 5 % of it."
-        )
-    more = 100.0 * (chosen.rmse / best.rmse - 1.0) if best.rmse > 0 else 0.0
-    return (
-        f"The simplest of the nine candidate models whose rmse is within 5 % of the best: {chosen.rmse:.4g} N "
-        f"with fitted parameters: {chosen.n_parameters}, against {best.rmse:.4g} N of "
-        f"{best.model.id} with {best.n_parameters}, "
-        f"{f'{more:.2g} % more' if more >= _SAME_PERCENT else 'which is the same'}."
-    )
 
 
 def _seating(experiment: tuple[str, ...], found: PenetrationAnalysis) -> list[Json]:

@@ -111,9 +111,9 @@ def _read(name: str, files: RawFiles) -> Table | None:
     try:
         text = look_at_csv(data)
     except UnreadableTextError as trouble:
-        files.say_unreadable(name, trouble)
+        files.report_unreadable(name, trouble)
         return None
-    files.say_encoding(name, text.foreign_encoding)
+    files.report_encoding(name, text.foreign_encoding)
     return read_table(_form(name), text, corrections={}, files=files)
 
 

@@ -17,7 +17,7 @@ from ..scenario.given import GivenScenario
 from ..scenario.keys import SCENARIO_KEYS
 from ..track.track import Track
 from .data import Data, read_data, taken_for
-from .marks import Marks
+from .measured_grooves import MeasuredGrooves
 from .observations import START
 from .photo_cells import PhotoCells
 from .track_frame import in_scenario_frame
@@ -32,7 +32,7 @@ class Collected:
 
     Attributes
     ----------
-    tracks, cells, marks
+    tracks, cells, grooves
         What was measured.
     starts
         Values of keys that a run has for itself, by run, from ``[identify.runs."NAME"]``.
@@ -48,7 +48,7 @@ class Collected:
 
     tracks: tuple[Measured, ...]
     cells: tuple[PhotoCells, ...]
-    marks: tuple[Marks, ...]
+    grooves: tuple[MeasuredGrooves, ...]
     starts: Mapping[str, Mapping[str, float]]
     fixed: Mapping[str, float]
     first_motions: Mapping[str, Mapping[str, float]]
@@ -80,8 +80,8 @@ def collected(
     methods: list[str] = []
     tracks = []
     for each in (each for each in read if isinstance(each, Track)):
-        track, told = in_scenario_frame(each, asked, given.identify.get("site"))
-        methods += told
+        track, how = in_scenario_frame(each, asked, given.identify.get("site"))
+        methods += how
         tracks.append(measured(replace(track, name=names.of(each.name))))
     cells = tuple(
         replace(each, runs=tuple(replace(run, name=names.of(run.name)) for run in each.runs))
@@ -97,7 +97,7 @@ def collected(
     return Collected(
         tracks=tuple(tracks),
         cells=cells,
-        marks=tuple(each for each in read if isinstance(each, Marks)),
+        grooves=tuple(each for each in read if isinstance(each, MeasuredGrooves)),
         starts=starts,
         fixed={key: float(asked.values[key]) for key in SNOW_NUMBERS} if snow else {},
         first_motions={track.name: first_motion(track) for track in tracks} if len(runs) > 1 else {},

@@ -1,4 +1,4 @@
-"""Intervals by resampled residuals: each sample fitted anew with its own simulations, or by the linearised model."""
+"""Intervals by resampled residuals: each sample refitted with its own simulations, or by the linearised model."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..statistics import percentile_interval
-from .from_the_best import residuals_from_the_best, samples_in_values
+from .best_place import residuals_about_best, samples_in_values
 from .identification import Identification
 from .parameter import bounds_of
 from .result import Solution
 from .search import step_inside
 
 FloatArray = npt.NDArray[np.float64]
-Told: TypeAlias = Callable[[str], None]
+Progress: TypeAlias = Callable[[str], None]
 BootstrapBy: TypeAlias = Literal["refit", "linear"]
 
 FEWEST: Final = 40
@@ -60,9 +60,14 @@ def require_bootstrap(resamples: int, by: str) -> None:
 
 
 def bootstrapped(
-    found: Identification, solution: Solution, resamples: int, by: BootstrapBy, rng: np.random.Generator, told: Told
+    found: Identification,
+    solution: Solution,
+    resamples: int,
+    by: BootstrapBy,
+    rng: np.random.Generator,
+    progress: Progress,
 ) -> Identification:
-    """Resample stretches of residuals and fit each sample anew.
+    """Resample stretches of residuals and refit each sample.
 
     Notes
     -----
@@ -76,8 +81,8 @@ def bootstrapped(
     samples = [_Sample(drawn, place, place) for drawn, place in _begun(solution, resamples, rng)]
     lost = 0
     if by == "refit":
-        told("bootstrap: first resamples")
-        _refitted(solution, samples, told)
+        progress("bootstrap: first resamples")
+        _refitted(solution, samples, progress)
         lost = sum(not np.isfinite(each.cost) for each in samples)
         samples = [each for each in samples if np.isfinite(each.cost)]
     warnings = (f"{lost} of {resamples} resamples of the bootstrap could not be computed",) if lost else ()
@@ -88,7 +93,7 @@ def bootstrapped(
         each if each.standard_error is None else replace(each, bootstrap_interval=(float(low), float(high)))
         for each, (low, high) in zip(found.parameters, percentile_interval(values), strict=True)
     )
-    how = "fitted anew" if by == "refit" else "fitted by the model linearised at the best values"
+    how = "refitted" if by == "refit" else "fitted by the model linearised at the best values"
     method = f"bootstrap: {len(samples)} resamples of stretches of residuals, each {how}"
     return replace(
         found,
@@ -116,7 +121,7 @@ def _begun(solution: Solution, resamples: int, rng: np.random.Generator) -> Iter
 
 
 def _resampled(residuals: FloatArray, series: list[int], rng: np.random.Generator) -> FloatArray:
-    """Each series put together anew from stretches of it, its mean taken away."""
+    """Each series put together again from stretches of it, its mean taken away."""
     parts, first = [], 0
     for length in series:
         part = residuals[first : first + length] - float(np.mean(residuals[first : first + length]))
@@ -128,9 +133,9 @@ def _resampled(residuals: FloatArray, series: list[int], rng: np.random.Generato
     return np.concatenate(parts)
 
 
-def _refitted(solution: Solution, samples: list[_Sample], told: Told) -> None:
+def _refitted(solution: Solution, samples: list[_Sample], progress: Progress) -> None:
     """Search on for each sample; those of one batch take their steps together, so that all processes have work."""
-    ask = residuals_from_the_best(solution)
+    ask = residuals_about_best(solution)
     for first in range(0, len(samples), AT_ONCE):
         batch = samples[first : first + AT_ONCE]
         for _ in range(MOST_STEPS):
@@ -139,7 +144,7 @@ def _refitted(solution: Solution, samples: list[_Sample], told: Told) -> None:
                 break
             for each, residuals in zip(going, ask([each.place for each in going]), strict=True):
                 _step(solution, each, residuals)
-        told(f"bootstrap: {min(first + AT_ONCE, len(samples))} of {len(samples)} resamples")
+        progress(f"bootstrap: {min(first + AT_ONCE, len(samples))} of {len(samples)} resamples")
 
 
 def _step(solution: Solution, sample: _Sample, residuals: FloatArray | None) -> None:

@@ -10,23 +10,23 @@ from ..given import is_file
 from ..spreadsheet_text import encoding_of, most_frequent_separator, named_separator
 from ..track.readers.table import GEODETIC, LOCAL, TIMES
 from ..track.track import Track
-from .marks import COLUMNS as MARK_COLUMNS
-from .marks import Marks, marks_of
+from .measured_grooves import COLUMNS as GROOVE_COLUMNS
+from .measured_grooves import MeasuredGrooves, grooves_of
 from .photo_cells import COLUMNS as CELL_COLUMNS
 from .photo_cells import PhotoCells, photo_cells_of
 from .table_file import read_table
 
 _HEAD: Final = 4096
 _OF_CAMPAIGN: Final = {"experiment", "load_N", "moment_Nm", "lever_arm_mm"}
-"""Columns of the campaign's tables that have a depth, as marks do."""
-Data: TypeAlias = Track | PhotoCells | Marks
+"""Columns of the campaign's tables that have a depth, as measured grooves do."""
+Data: TypeAlias = Track | PhotoCells | MeasuredGrooves
 
 
 def read_data(path: str | Path) -> Data:
-    """Read photo-cell times or marks, by their columns, or else a track.
+    """Read photo-cell times or measured grooves, by their columns, or else a track.
 
     A table with time, x and y, or time, latitude and longitude, is a track, whatever else it has: a run's own track.csv
-    has the column ``turn_radius_m``, as marks do.
+    has the column ``turn_radius_m``, as measured grooves do.
 
     Raises
     ------
@@ -40,13 +40,13 @@ def read_data(path: str | Path) -> Data:
         head = _head(path)
         if set(CELL_COLUMNS) <= head or ("station_m" in head and not _is_track(head)):
             return photo_cells_of(read_table(path))
-        if head & set(MARK_COLUMNS) and not _is_track(head):
+        if head & set(GROOVE_COLUMNS) and not _is_track(head):
             if of_campaign := sorted(head & _OF_CAMPAIGN):
                 raise ParameterError(
-                    f"{path} has a column {of_campaign[0]}: it is a table of a campaign, no marks left in the snow. "
+                    f"{path} has a column {of_campaign[0]}: it is a table of a campaign, no measured grooves. "
                     "Give its folder to `skisnow analyse`, and results.json as snow.results"
                 )
-            return marks_of(read_table(path))
+            return grooves_of(read_table(path))
     from ..track.read import read_track
 
     return read_track(path)
@@ -60,8 +60,8 @@ def taken_for(data: Data) -> str:
     """What a file was taken for, in words."""
     if isinstance(data, PhotoCells):
         return f"photo-cell times (runs: {len(data.runs)})"
-    if isinstance(data, Marks):
-        return f"marks left in the snow (places: {len(data)})"
+    if isinstance(data, MeasuredGrooves):
+        return f"measured grooves (places: {len(data)})"
     return f"a track (points: {len(data)})"
 
 

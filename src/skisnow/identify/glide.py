@@ -1,9 +1,9 @@
-"""A body that glides straight down a slope: when it passes which station.
+"""A body that glides straight down a slope: when it passes which cell.
 
     m v' = m g sin α - μ(v) m (g cos α + κ v²) - ½ ρ C_dA v²,   s' = v,   μ(v) = μ_0 + μ_1 v
 
-s is the length of the way along the slope's surface, α(s) its inclination, κ(s) its curvature, above 0 in a hollow,
-where the snow presses more. After Kaps, Nachbauer and Mössner (1996).
+s is the arc length along the slope's surface, α(s) its inclination, κ(s) its curvature, above 0 in a hollow, where the
+snow presses more. After Kaps, Nachbauer and Mössner (1996).
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ STEPS: Final = 200
 WAIT: Final = 5.0
 """How many times as long as a run took its body is waited for."""
 CRAWL: Final = 0.1
-"""Speed (m/s) of a body that does not get there in that time, so that a search is told the way."""
+"""Speed (m/s) of a body that does not get there in that time, so that a search finds its direction."""
 LONGEST_STEP_ON_PROFILE: Final = 0.02
 """(s): 0.4 m at 20 m/s (modelling assumption); a step ends at every point of a profile besides."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SlopeLine:
-    """The slope along the way, from the start on, in n pieces on which its gradient changes linearly.
+    """The slope along the path, from the start on, in n pieces on which its gradient changes linearly.
 
     A profile's points do not say where between them it bends. Each of its segments has its gradient at its middle, and
     from middle to middle the gradient changes linearly (modelling assumption): a hollow presses and a crest relieves
@@ -41,7 +41,7 @@ class SlopeLine:
 
     Attributes
     ----------
-    way
+    arc_length
         (n + 1,) m: where the pieces begin, from 0 on, and where the last one ends; a plane has one without an end.
     x
         (n + 1,) m: the horizontal distances of these places.
@@ -50,14 +50,14 @@ class SlopeLine:
         all.
     """
 
-    way: FloatArray
+    arc_length: FloatArray
     x: FloatArray
     gradient: FloatArray
 
     @property
     def length(self) -> float:
         """How far it goes (m); a plane has no end."""
-        return float(self.way[-1])
+        return float(self.arc_length[-1])
 
     def at(self, piece: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Sine and cosine of the inclination, positive downwards, and curvature (1/m), above 0 in a hollow."""
@@ -84,7 +84,7 @@ def slope_line(slope: Plane | Profile, start: float) -> SlopeLine:
     x = np.concatenate([[start], middle[ahead], slope.x[-1:]])
     gradient = np.concatenate([np.interp([start], middle, of_segment), of_segment[ahead], of_segment[-1:]])
     line = SlopeLine(np.zeros(len(x)), x, np.stack([gradient[:-1], np.diff(gradient) / np.diff(x)]))
-    return replace(line, way=np.concatenate([[0.0], np.cumsum(_lengths(line))]))
+    return replace(line, arc_length=np.concatenate([[0.0], np.cumsum(_lengths(line))]))
 
 
 def planes(angle: FloatArray) -> SlopeLine:
@@ -126,7 +126,7 @@ class Glide:
     gravity: FloatArray
 
     def rates(self, line: SlopeLine, piece: IntArray, x: FloatArray, speed: FloatArray) -> FloatArray:
-        """Of change of x (m/s), way (m/s) and speed (m/s²), (3, k); the snow presses but does not pull."""
+        """Of change of x (m/s), arc length (m/s) and speed (m/s²), (3, k); the snow presses but does not pull."""
         sine, cosine, curvature = line.at(piece, x)
         pressed = np.maximum(self.gravity * cosine + curvature * speed**2, 0.0)
         friction = (self.friction + self.friction_by_speed * speed) * pressed
@@ -134,12 +134,12 @@ class Glide:
 
 
 def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: float) -> FloatArray:
-    """When each body passes each station.
+    """When each body passes each cell.
 
     Parameters
     ----------
     line
-        The slope along the way.
+        The slope along the path.
     glide
         k bodies.
     station
@@ -162,9 +162,9 @@ def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: f
     k = len(glide.speed)
     stations = np.broadcast_to(np.asarray(station, float), (k, np.shape(station)[-1]))
     h = longest / STEPS if math.isinf(line.length) else min(longest / STEPS, LONGEST_STEP_ON_PROFILE)
-    time, way, speed = _histories(line, glide, h, float(stations.max()), WAIT * longest)
-    found = [_passages(time[:, j], way[:, j], speed[:, j], stations[j]) for j in range(k)]
-    crawling = WAIT * longest + (stations - way[-1][:, None]) / CRAWL
+    time, arc_length, speed = _histories(line, glide, h, float(stations.max()), WAIT * longest)
+    found = [_passages(time[:, j], arc_length[:, j], speed[:, j], stations[j]) for j in range(k)]
+    crawling = WAIT * longest + (stations - arc_length[-1][:, None]) / CRAWL
     return np.where(np.isfinite(found), found, crawling)
 
 
@@ -175,16 +175,16 @@ def _histories(
     k = len(glide.speed)
     piece, time = np.zeros(k, np.int64), np.zeros(k)
     state = np.stack([np.full(k, line.x[0]), np.zeros(k), glide.speed.astype(float)])
-    told = [(time, state)]
+    history = [(time, state)]
     with np.errstate(over="ignore", invalid="ignore"):
-        for _ in range(math.ceil(longest / h) + len(line.way)):
+        for _ in range(math.ceil(longest / h) + len(line.arc_length)):
             step = np.where((state[1] < last) & (time < longest), h, 0.0)
             state, piece, share = _stepped(line, glide, piece, state, step)
             time = time + share * step
-            told.append((time, state))
+            history.append((time, state))
             if not np.any((state[1] < last) & (state[2] > 0.0) & (time < longest)):
                 break
-    return np.array([each for each, _ in told]), *np.array([each[1:] for _, each in told]).transpose(1, 0, 2)
+    return np.array([each for each, _ in history]), *np.array([each[1:] for _, each in history]).transpose(1, 0, 2)
 
 
 def _stepped(
@@ -193,7 +193,7 @@ def _stepped(
     """State and piece after a step, and which share of it was taken: all, or what leads to the end of the piece."""
     share = np.ones_like(h)
     moved = _runge_kutta(line, glide, piece, state, h)
-    end = line.way[piece + 1]
+    end = line.arc_length[piece + 1]
     passes = moved[1] >= end
     if passes.any():
         shorter = _share(state[1], moved[1], h * state[2], h * moved[2], end)
@@ -201,7 +201,7 @@ def _stepped(
         again = _runge_kutta(line, glide, piece, state, share * h)
         at_end = np.stack([line.x[piece + 1], end, again[2]])
         moved = np.where(passes, at_end, moved)
-        piece = np.minimum(piece + passes, len(line.way) - 2)
+        piece = np.minimum(piece + passes, len(line.arc_length) - 2)
     return moved, piece, share
 
 
@@ -218,13 +218,13 @@ def _runge_kutta(line: SlopeLine, glide: Glide, piece: IntArray, state: FloatArr
     return np.where(moved[1] < state[1], np.stack([state[0], state[1], moved[2]]), moved)
 
 
-def _passages(time: FloatArray, way: FloatArray, speed: FloatArray, station: FloatArray) -> FloatArray:
-    """Times (s) at the stations, infinite at those that are not reached."""
-    number = np.searchsorted(way, station, side="left") - 1
-    reached = number < len(way) - 1
-    at = np.clip(number, 0, len(way) - 2)
+def _passages(time: FloatArray, arc_length: FloatArray, speed: FloatArray, station: FloatArray) -> FloatArray:
+    """Times (s) at the cells, infinite at those that are not reached."""
+    number = np.searchsorted(arc_length, station, side="left") - 1
+    reached = number < len(arc_length) - 1
+    at = np.clip(number, 0, len(arc_length) - 2)
     h = time[at + 1] - time[at]
-    share = _share(way[at], way[at + 1], h * speed[at], h * speed[at + 1], station)
+    share = _share(arc_length[at], arc_length[at + 1], h * speed[at], h * speed[at + 1], station)
     return np.where(reached, time[at] + h * share, np.inf)
 
 

@@ -67,15 +67,15 @@ class Identified(Shown):
     def in_words(self) -> str:
         """The value with its interval in the key's unit, and whether the data determine it."""
         low, high = self.interval or (None, None)
-        told = amount(self.value, self.parameter.unit)
+        text = amount(self.value, self.parameter.unit)
         if low is not None and high is not None:
-            told = f"{told} ({span(low, high)})"
-        return f"{told}{'' if self.identifiable else ', not determined'}{', at a bound' if self.at_bound else ''}"
+            text = f"{text} ({span(low, high)})"
+        return f"{text}{'' if self.identifiable else ', not determined'}{', at a bound' if self.at_bound else ''}"
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Profile(Shown):
-    """The sum of squares along one parameter with all others fitted anew.
+    """The sum of squares along one parameter with all others refitted.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The whole way from a scenario and files to identified parameters."""
+"""From a scenario and data to identified parameters."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from typing import Final
 import numpy as np
 
 from ..errors import FitError, ParameterError
+from ..former_names import with_former_keywords
 from ..inputs import values_of
 from ..parallel.kept_rows import KeptRows
-from ..scenario import ScenarioFile
+from ..scenario import Scenario, ScenarioFile
 from ..scenario.free_keys import free_keys
 from ..scenario.given import GivenScenario, given_scenario
 from ..scenario.identify_section import given_parameters
@@ -23,9 +24,9 @@ from .assembling import Collected, collected, values_to_begin_with
 from .bootstrap import BootstrapBy, require_bootstrap
 from .data import Data
 from .fingerprint import fingerprint
+from .groove_residuals import GrooveResiduals, require_groove_stays
+from .grooves_alone import grooves_alone
 from .identification import Effort, Identification
-from .mark_grooves import MarkGrooves, require_marks_can_be
-from .marks_alone import marks_alone
 from .observations import Observations, keys_of_runs
 from .parameter import Parameter
 from .parameter_table import fixed_by_given, parameter_table
@@ -38,11 +39,12 @@ from .solving import Request, solved
 from .track_positions import TrackPositions
 
 _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
-Told = Callable[[str], None]
+Progress = Callable[[str], None]
 
 
+@with_former_keywords(kept="checkpoint", anew="restart", told="progress")
 def identify(
-    scenario: str | Path | GivenScenario,
+    scenario: Scenario | str | Path | GivenScenario,
     data: Sequence[Data | str | Path] | Data | str | Path,
     free: str | Sequence[str] = (),
     *,
@@ -55,18 +57,18 @@ def identify(
     clock_is_free: bool | None = None,
     rng: np.random.Generator | None = None,
     workers: int | None = None,
-    kept: Path | None = None,
-    anew: bool = False,
-    told: Told | None = None,
+    checkpoint: Path | None = None,
+    restart: bool = False,
+    progress: Progress | None = None,
 ) -> Identification:
     """Find the parameters of a scenario that fit what was measured.
 
     Parameters
     ----------
     scenario
-        A built-in name, the path of a file, or values as given.
+        A scenario, a built-in name, the path of a file, or values as given.
     data
-        Tracks, photo-cell times, marks left in the snow, or paths of files with these; several together.
+        Tracks, photo-cell times, measured grooves, or paths of files with these; several together.
     free
         Keys that are looked for, with or without section and unit; ``KEY@RUN`` in one run of several, ``KEY@each`` in
         each a value of its own, as keys of the start always. Left out: those with a table ``[identify."KEY"]``.
@@ -87,12 +89,12 @@ def identify(
         Source of random numbers, for starts, bootstrap and posterior; left out, one with the seed 0.
     workers
         Processes that simulate; None: as many as this process has cores.
-    kept
-        File in which finished simulations are kept, and looked for first; None: nowhere.
-    anew
-        Whether what an earlier search kept there is forgotten, once everything that is asked has been found right.
-    told
-        Is told what is being done.
+    checkpoint
+        File in which finished simulations are stored, and looked for first; None: nowhere.
+    restart
+        Whether what an earlier search stored there is forgotten, once everything that is asked has been found right.
+    progress
+        Called with a line of text now and then.
 
     Returns
     -------
@@ -113,7 +115,7 @@ def identify(
 
     Notes
     -----
-    Searches simulate with fixed steps of 1 ms; the last steps of the search and what is told of the answer are computed
+    Searches simulate with fixed steps of 1 ms; the last steps of the search and the numbers of the answer are computed
     with the scenario's own solver.
 
     References
@@ -133,11 +135,10 @@ def identify(
     read = collected(given, asked, [data] if isinstance(data, Data | str | Path) else data, keys)
     parameters = parameter_table(keys_of_runs(keys, read.runs), values_to_begin_with(asked, read, own), own)
     simulate = RunSimulation(given, tuple(track.time for track in read.tracks))
-    if anew and kept is not None:
-        kept.unlink(missing_ok=True)
-    rows = KeptRows() if kept is None else KeptRows.opened(kept, fingerprint(given, read.tracks))
-    say = told or _silent
-    counted = _Counted(say)
+    if restart and checkpoint is not None:
+        checkpoint.unlink(missing_ok=True)
+    rows = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, fingerprint(given, read.tracks))
+    counted = _Counted(progress or _silent)
     with Simulations(simulate, rows, workers, counted) as simulations:
         observations = _observations(asked, read, simulations, clock_is_free=_clock(given, clock_is_free))
         _require_used(keys, observations)
@@ -149,7 +150,7 @@ def identify(
             bootstrap_by=bootstrap_by,
             posterior=posterior,
             rng=np.random.default_rng(0) if rng is None else rng,
-            told=counted.about,
+            progress=counted.about,
             warnings=(*read.warnings, *_fixed(keys, own)),
             methods=read.methods,
         )
@@ -171,8 +172,8 @@ def _found(parameters: tuple[Parameter, ...], observations: tuple[Observations, 
     if not problem.priors and problem.points < len(parameters) + problem.nuisances + (not problem.accuracy_is_stated):
         return too_few(problem, plan.title, plan.warnings)
     only = observations[0]
-    if len(observations) == 1 and isinstance(only, MarkGrooves):
-        return marks_alone(parameters, only, plan)
+    if len(observations) == 1 and isinstance(only, GrooveResiduals):
+        return grooves_alone(parameters, only, plan)
     return solved(problem, plan)
 
 
@@ -183,9 +184,9 @@ def _observations(
     if read.tracks:
         found.append(TrackPositions(read.tracks, simulations, read.fixed, read.starts, values_of(asked.scenario)))
     found += [PhotoCellTimes(each, asked, read.starts, clock_is_free) for each in read.cells]
-    for each in read.marks:
-        require_marks_can_be(asked)
-        found.append(MarkGrooves(each, asked))
+    for each in read.grooves:
+        require_groove_stays(asked)
+        found.append(GrooveResiduals(each, asked))
     return tuple(found)
 
 
@@ -211,19 +212,19 @@ def _fixed(keys: Sequence[str], own: Mapping[str, object]) -> tuple[str, ...]:
 class _Counted:
     """What is being done, with the number of simulated runs."""
 
-    say: Told
+    progress: Progress
     doing: str = "starting"
     runs: int = 0
 
     def __call__(self, runs: int) -> None:
         """Take note of a finished run."""
         self.runs = runs
-        self.say(f"{self.doing}; {runs} simulated runs")
+        self.progress(f"{self.doing}; {runs} simulated runs")
 
     def about(self, doing: str) -> None:
         """Take note of what is being done."""
         self.doing = doing
-        self.say(f"{doing}; {self.runs} simulated runs" if self.runs else doing)
+        self.progress(f"{doing}; {self.runs} simulated runs" if self.runs else doing)
 
 
 def _silent(_text: str) -> None:

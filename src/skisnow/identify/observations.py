@@ -32,7 +32,7 @@ class Fit(ShownFields):
     name, kind
         Of the run.
     along : (n,)
-        What the points stand over: time (s) of a track, station (m) of photo cells, number of a mark.
+        What the points stand over: time (s) of a track, distance (m) of photo cells, number of a place of a groove.
     labels
         Names of the k quantities, with units.
     measured, fitted, sd : (n, k)
@@ -66,7 +66,7 @@ class Observations(Protocol):
 
     @property
     def points(self) -> int:
-        """Number of points: times of a track, cells passed, places of marks."""
+        """Number of points: times of a track, cells passed, places of grooves."""
 
     def depends_on(self, key: str) -> bool:
         """Whether the scenario's key can play a part in these data."""

@@ -37,7 +37,7 @@ class Parameter:
     Raises
     ------
     ParameterError
-        A number is not finite, bounds are the wrong way round or exclude the start, half a prior is given, a standard
+        A number is not finite, bounds are swapped or exclude the start, half a prior is given, a standard
         deviation is not above 0, or a logarithmic parameter may reach 0.
 
     Examples

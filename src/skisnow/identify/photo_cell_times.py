@@ -88,7 +88,7 @@ class PhotoCellTimes:
 
     @property
     def points(self) -> int:
-        """Passages; one at station 0 with a clock that starts there says nothing."""
+        """Passages; one at the start with a clock that starts there says nothing."""
         return sum(len(run.station) for run in self.cells.runs) - self._trivial
 
     @property
@@ -122,7 +122,7 @@ class PhotoCellTimes:
     final_residuals = residuals
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
-        """Times over stations."""
+        """Times over the distance."""
         found = []
         for run in self.cells.runs:
             station, time, sd = self._telling(run)

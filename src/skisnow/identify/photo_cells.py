@@ -22,7 +22,7 @@ class Passage:
     """A row of a file of photo cells."""
 
     run: Annotated[str, Quantity("run", "name of the run")]
-    station: Annotated[float, Quantity("station_m", "length of the way from the start down, which no cell lies before")]
+    station: Annotated[float, Quantity("station_m", "distance from the start down, which no cell lies before")]
     time: Annotated[float, Quantity("time_s", "of the passage")]
     time_sd: Annotated[float | None, Quantity("time_sd_s", "standard deviation of it", lowest=0.0, above=True)] = None
 
@@ -40,7 +40,7 @@ class PhotoCellRun(ShownFields):
     name
         Of the run.
     station : (n,) m
-        Length of the way from the start down to the cell, along the slope's surface, rising.
+        Distance from the start down to the cell, along the slope's surface, rising.
     time : (n,) s
         Of the passage, rising.
     time_sd : (n,) s or None
@@ -54,10 +54,10 @@ class PhotoCellRun(ShownFields):
 
     def __post_init__(self) -> None:
         if len(self.station) < 1 or self.station.shape != self.time.shape:
-            raise ParameterError(f"run {self.name}: {len(self.station)} stations and {len(self.time)} times")
+            raise ParameterError(f"run {self.name}: {len(self.station)} cells and {len(self.time)} times")
         if self.station[0] < 0.0:
             raise ParameterError(
-                f"run {self.name}: station {self.station[0]:g} m lies before the start; stations count from the "
+                f"run {self.name}: station {self.station[0]:g} m lies before the start; they count from the "
                 "scenario's start down"
             )
         for what, values, unit in (("station", self.station, "m"), ("time", self.time, "s")):
@@ -65,7 +65,7 @@ class PhotoCellRun(ShownFields):
             if wrong.size:
                 first, second = values[wrong[0]], values[wrong[0] + 1]
                 raise ParameterError(
-                    f"run {self.name}: {what} {second:g} {unit} follows {first:g} {unit}; stations and times must rise "
+                    f"run {self.name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise "
                     "from cell to cell. Sort the rows of the run, and look for a clock that was set back"
                 )
         if self.time_sd is not None and not np.all(self.time_sd > 0.0):
@@ -86,7 +86,7 @@ def read_photo_cells(path: str | Path) -> PhotoCells:
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is missing, a cell is no number (row and column are named), stations or times
+        The file cannot be read, a column is missing, a cell is no number (row and column are named), distances or times
         do not rise, or only some rows of a run state a standard deviation.
     """
     return photo_cells_of(read_table(Path(path)))

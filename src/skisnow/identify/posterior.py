@@ -42,7 +42,7 @@ def require_emcee() -> Any:
 
 
 def posterior_places(
-    solution: Solution, samples: int, rng: np.random.Generator, told: Callable[[str], None]
+    solution: Solution, samples: int, rng: np.random.Generator, progress: Callable[[str], None]
 ) -> tuple[FloatArray | None, str]:
     """About that many samples (N, p) on the scale of the search, and how they came about.
 
@@ -66,7 +66,7 @@ def posterior_places(
     sampler = emcee.EnsembleSampler(walkers, p, likelihood, vectorize=True)
     sampler.random_state = np.random.RandomState(int(rng.integers(2**31))).get_state()
     for number, _ in enumerate(sampler.sample(begin, iterations=steps)):
-        told(f"posterior: step {number + 1} of {steps}")
+        progress(f"posterior: step {number + 1} of {steps}")
     chain = sampler.get_chain(discard=round(_BURN_IN * steps), flat=True)
     return np.asarray(chain, dtype=float), SIMULATED if simulated else TRUE
 

@@ -31,7 +31,7 @@ ON_BOUND: Final = 1e-6
 SURE: Final = 1e-3
 """Probability below which residuals are not those of the stated accuracy."""
 ALIKE: Final = 0.3
-"""Correlation of neighbouring residuals from which on it is told, where it is also beyond three standard errors."""
+"""Correlation of neighbouring residuals from which on it is reported, where it is also beyond three standard errors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ def too_few(problem: Problem, title: str, warnings: tuple[str, ...]) -> Identifi
     """Nothing identified: fewer points than what is looked for."""
     p = len(problem.parameters)
     needed = p + problem.nuisances + (not problem.accuracy_is_stated)
-    told = (
+    warning = (
         f"{problem.points} points are too few for {p} parameters"
         f"{f' and {problem.nuisances} clocks' if problem.nuisances else ''}: at least {needed} are needed"
         f"{'' if problem.accuracy_is_stated else ', one of them for the noise, which is not stated'}, and ten or more "
@@ -137,7 +137,7 @@ def too_few(problem: Problem, title: str, warnings: tuple[str, ...]) -> Identifi
         accuracy_is_stated=problem.accuracy_is_stated,
         points=problem.points,
         degrees_of_freedom=problem.points - p - problem.nuisances,
-        warnings=(*warnings, told),
+        warnings=(*warnings, warning),
     )
 
 

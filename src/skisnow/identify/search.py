@@ -18,14 +18,14 @@ FloatArray = npt.NDArray[np.float64]
 Residuals: TypeAlias = Callable[[Sequence[FloatArray]], list[FloatArray | None]]
 """From places of the search to residuals, all at once; None where there are none."""
 State: TypeAlias = Literal["converged", "not_converged", "interrupted"]
-Told: TypeAlias = Callable[[str], None]
+Progress: TypeAlias = Callable[[str], None]
 
 _SMALLEST_DAMPING, _LARGEST_DAMPING = 1e-9, 1e9
 _FIRST_DAMPING: Final = 1e-3
 _SLIGHT: Final = 3.0
 """Change of the residuals (standard deviations of one) over which derivatives hold, however far the parameters went."""
 _KEPT_PROMISE: Final = 0.5
-"""Share of the fall that derivatives foretold, below which they are taken anew."""
+"""Share of the fall that derivatives foretold, below which they are taken again."""
 _AT_BOUND: Final = 1e-9
 """Distance (sizes) from a bound that counts as on it."""
 
@@ -46,7 +46,7 @@ class SearchOptions:
         Residuals move by so many standard deviations for no reason: where no step improves and what is left to gain
         is smaller than this, the search is at its end too.
     keeps_jacobian
-        Derivatives are taken anew farther away than this from where they were taken, in sizes; 0: always.
+        Derivatives are taken again farther away than this from where they were taken, in sizes; 0: always.
     longest_move
         Of a parameter in one step, in sizes: beyond it nothing is known yet.
     smallest_move
@@ -132,15 +132,15 @@ class Search:
         Bounds, in sizes from the start.
     options
         How.
-    told
-        Is told where the search is.
+    progress
+        Called with where the search is.
     """
 
     residuals: Residuals
     lower: FloatArray
     upper: FloatArray
     options: SearchOptions
-    told: Told = field(default=lambda _: None)
+    progress: Progress = field(default=lambda _: None)
     best: SearchState | None = None
 
     def run(self, start: FloatArray) -> SearchState | None:
@@ -207,7 +207,7 @@ class Search:
             rounds=found.rounds + 1,
         )
         self.best = renewed
-        self.told(f"round {renewed.rounds}: rms residual {np.sqrt(renewed.cost / len(renewed.residuals)):.4g}")
+        self.progress(f"round {renewed.rounds}: rms residual {np.sqrt(renewed.cost / len(renewed.residuals)):.4g}")
         return renewed
 
     def _begun(self, start: FloatArray) -> SearchState | None:

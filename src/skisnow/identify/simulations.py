@@ -26,8 +26,8 @@ class Simulations:
         Rows that are finished, and where new ones are kept.
     workers
         Number of processes; None: as many as this process has cores; 1: this process itself.
-    told
-        Is told the number of runs computed so far.
+    progress
+        Called with the number of runs computed so far.
     computed, found
         How many were computed here, and how many were finished before.
     """
@@ -35,7 +35,7 @@ class Simulations:
     simulate: RunSimulation
     kept: KeptRows = field(default_factory=KeptRows)
     workers: int | None = None
-    told: Callable[[int], None] = field(default=lambda _: None)
+    progress: Callable[[int], None] = field(default=lambda _: None)
     computed: int = 0
     found: int = 0
     _pool: Pool = field(init=False)
@@ -60,7 +60,7 @@ class Simulations:
         for rows in self._pool.rows(list(missing.items())):
             self.kept.add(rows)
             self.computed += len(rows)
-            self.told(self.computed)
+            self.progress(self.computed)
         return [self.kept.rows[number] for number in numbers]
 
     def __enter__(self) -> Self:

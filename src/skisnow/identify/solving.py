@@ -11,15 +11,15 @@ import numpy.typing as npt
 
 from ..errors import FitError, ParameterError
 from .bootstrap import BootstrapBy, bootstrapped
-from .further import profiled, with_posterior
 from .identification import Identification
 from .parameter import bounds_of
 from .problem import Problem
+from .profiles import profiled, with_posterior
 from .result import Solution, identification_of
 from .search import FINE, Search, SearchOptions, SearchState
 
 FloatArray = npt.NDArray[np.float64]
-Told = Callable[[str], None]
+Progress = Callable[[str], None]
 
 OF_GROOVES: Final = replace(
     FINE, smallest_step=0.005, largest_step=0.005, tolerance=1e-3, worth=1e-6, rough=0.05, smallest_move=1e-6
@@ -47,8 +47,8 @@ class Request:
         Whether each resample is refitted, or by the linearised model.
     rng
         Source of random numbers.
-    told
-        Is told what is being done.
+    progress
+        Called with what is being done.
     warnings, methods
         What is known before the search.
     """
@@ -59,7 +59,7 @@ class Request:
     bootstrap: int
     posterior: int
     rng: np.random.Generator
-    told: Told
+    progress: Progress
     bootstrap_by: BootstrapBy = "refit"
     warnings: tuple[str, ...] = ()
     methods: tuple[str, ...] = ()
@@ -85,14 +85,14 @@ def with_further_intervals(found: Identification, solution: Solution, plan: Requ
         return found
     try:
         if plan.profile:
-            found = profiled(found, solution, plan.told)
+            found = profiled(found, solution, plan.progress)
         if plan.bootstrap:
-            found = bootstrapped(found, solution, plan.bootstrap, plan.bootstrap_by, plan.rng, plan.told)
+            found = bootstrapped(found, solution, plan.bootstrap, plan.bootstrap_by, plan.rng, plan.progress)
         if plan.posterior:
-            found = with_posterior(found, solution, plan.posterior, plan.rng, plan.told)
+            found = with_posterior(found, solution, plan.posterior, plan.rng, plan.progress)
     except KeyboardInterrupt:
-        told = "what was asked beside the values was interrupted; values and intervals by curvature are complete"
-        return replace(found, outcome="interrupted", warnings=(*found.warnings, told))
+        warning = "what was asked beside the values was interrupted; values and intervals by curvature are complete"
+        return replace(found, outcome="interrupted", warnings=(*found.warnings, warning))
     return found
 
 
@@ -130,7 +130,7 @@ class _Solver:
     def _search(self, problem: Problem, about: str, *, final: bool = False) -> Search:
         lower, upper = bounds_of(problem.parameters)
         residuals = problem.final_residuals if final else problem.residuals
-        return Search(residuals, lower, upper, options_of(problem), lambda text: self.plan.told(f"{about}{text}"))
+        return Search(residuals, lower, upper, options_of(problem), lambda text: self.plan.progress(f"{about}{text}"))
 
     def _best(self) -> SearchState:
         best: SearchState | None = None
@@ -150,8 +150,8 @@ class _Solver:
                 return replace(best, state="interrupted")
         if best is None:
             values = self.problem.values(np.zeros(len(self.problem.parameters)))
-            told = "; ".join(text for each in self.problem.observations for text in each.warnings(values))
-            raise FitError(f"nothing can be computed at the start: {told or 'no residuals'}")
+            warnings = "; ".join(text for each in self.problem.observations for text in each.warnings(values))
+            raise FitError(f"nothing can be computed at the start: {warnings or 'no residuals'}")
         return best
 
     def _starts(self) -> list[FloatArray]:
@@ -180,7 +180,7 @@ class _Solver:
 
     def _polished(self, found: SearchState) -> SearchState:
         """The last steps with the scenario's own solver; all with it where the quick one was too far off."""
-        self.plan.told("last steps with the scenario's own solver")
+        self.plan.progress("last steps with the scenario's own solver")
         search = self._search(self.problem, "")
         quick = found.residuals
         try:

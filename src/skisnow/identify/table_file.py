@@ -13,7 +13,7 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..inputs import Quantity
 from ..spreadsheet_text import number
-from ..track.readers.text import cells_of, mark_of, require_width, text_of
+from ..track.readers.text import cells_of, decimal_mark_of, require_width, text_of
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -113,5 +113,5 @@ def read_table(path: Path) -> TableFile:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path") from error
     cells = cells_of(text_of(data, str(path)), str(path))
     require_width(cells, str(path))
-    mark = mark_of((cell for row in cells.rows for cell in row), cells.separator)
+    mark = decimal_mark_of((cell for row in cells.rows for cell in row), cells.separator)
     return TableFile(str(path), cells.header, tuple(zip(cells.lines, cells.rows, strict=True)), cells.header_line, mark)

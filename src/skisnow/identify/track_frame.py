@@ -74,8 +74,8 @@ def _from_its_first_point(
     )
     start = asked.scenario.start
     place = turned.place + np.array([start.x, start.y, 0.0])
-    told = "the first point of each track is taken as the scenario's start; its error is in all points"
-    return replace(turned, place=place), [told]
+    method = "the first point of each track is taken as the scenario's start; its error is in all points"
+    return replace(turned, place=place), [method]
 
 
 def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
@@ -86,7 +86,7 @@ def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
     if distance > FARTHEST:
         raise ParameterError(
             f"{track.name} is {distance / 1000.0:.4g} km from the site of [identify.site]: it is of another place, or "
-            "latitude and longitude are the wrong way round"
+            "latitude and longitude are swapped"
         )
     return at
 

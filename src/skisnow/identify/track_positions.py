@@ -89,7 +89,7 @@ def measured(track: Track) -> Measured:
     """
     use = track.usable
     if not use.any():
-        raise ParameterError(f"{track.name} has no point that can be used: {dict(track.marked) or 'no places'}")
+        raise ParameterError(f"{track.name} has no point that can be used: {dict(track.flagged) or 'no places'}")
     time, place = track.time[use], track.place[use, :2]
     given = None if track.place_sd is None else track.place_sd[use, :2]
     stated = given is not None and bool(np.all(np.isfinite(given) & (given > 0.0)))

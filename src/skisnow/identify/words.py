@@ -1,4 +1,4 @@
-"""Warnings of an identification in plain sentences: what cannot be told apart, and what would help."""
+"""Warnings of an identification in plain sentences: what cannot be distinguished, and what would help."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _HELPS: Final = {
     frozenset({"friction.mu_0", "slope.angle_deg"}): "a steeper slope drives as less friction does. Measure the "
     "slope's inclination and fix it",
     frozenset({"friction.mu_0", "start.speed_m_per_s"}): "early and late parts of the run must differ for it. Measure "
-    "the speed at the start, or the way for longer",
+    "the speed at the start, or the path for longer",
     frozenset({"drag.drag_area_m2", "sledge.mass_kg"}): "drag acts as C_dA over mass. Weigh the skier and fix the mass",
     frozenset({"drag.drag_area_m2", "drag.air_density_kg_per_m3"}): "only their product acts. Fix the air's density",
     frozenset({"snow.S_f_N_per_mm2", "snow.H_V_N_per_mm3"}): "grip is S_f times the depth, and H_V sets the depth. "
-    "Depth and width of the marks left in the snow, or a field test, give H_V",
+    "Depth and width of the groove that stayed, or a field test, give H_V",
     frozenset(
         {"snow.S_f_N_per_mm2", "snow.shear_displacement_mm"}
     ): "an edge that holds gives way in proportion to u_y "
@@ -37,14 +37,14 @@ _HELPS: Final = {
     frozenset(
         {"snow.H_V_N_per_mm3", "sledge.edge_angle_deg"}
     ): "a ski that cuts deeper bends more and turns tighter, as "
-    "one on a larger edge angle does. Measure the edge angle, or the depth of the marks",
+    "one on a larger edge angle does. Measure the edge angle, or the depth of the groove",
     frozenset({"start.heading_deg", "sledge.edge_angle_deg"}): "a turn begun further round looks like a tighter one. A "
     "longer track tells them apart",
 }
 _ALONE: Final = {
     "snow.S_f_N_per_mm2": "S_f shows only where the edge side-slips; an edge with grip bounds it from below. A run "
     "that skids, a tighter turn or a shear test tells it",
-    "snow.H_V_N_per_mm3": "The path hardly depends on the depth of the groove. Depth and width of the marks, or a "
+    "snow.H_V_N_per_mm3": "The path hardly depends on the depth of the groove. Depth and width of the groove, or a "
     "penetration test, tell it",
     "drag.drag_area_m2": "At these speeds drag is too small. A faster run tells it",
     "snow.shear_displacement_mm": "An edge that hardly gives way shows no u_y. A tighter turn tells it, or a shear "
@@ -68,9 +68,9 @@ def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArra
 
 def unknown_warnings(parameters: Sequence[Parameter], known: Uncertainty) -> Iterator[str]:
     """A sentence for each parameter, or group of them, that the data leave open."""
-    told: set[int] = set()
+    named: set[int] = set()
     for group in known.groups:
-        told.update(group)
+        named.update(group)
         if len(group) == 1:
             alone = parameters[group[0]]
             yield f"{alone.name} cannot be identified: it has no effect on these data. {_alone(alone)}"
@@ -79,7 +79,7 @@ def unknown_warnings(parameters: Sequence[Parameter], known: Uncertainty) -> Ite
             helps = _help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
             yield f"{names} cannot be told apart at all by these data: {helps}"
     for j in np.flatnonzero(known.unknown).tolist():
-        if j not in told:
+        if j not in named:
             yield (
                 f"{parameters[j].name} is left open by these data: its interval is as wide as all values it could "
                 f"have. {_why_open(parameters, known, j)}"

@@ -1,4 +1,4 @@
-"""Quantities that dataclasses declare: found, checked in constructors, read from values as given and told back.
+"""Quantities that dataclasses declare: found, checked in constructors, read from values as given and written back.
 
 A field's annotation says what may stand there:
 
@@ -33,7 +33,7 @@ T = TypeVar("T")
 
 
 def _nothing(_: Any) -> None:
-    """What a word says of a value that does not tell it."""
+    """The word for a value that has none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Word(Quantity):
 
     Attributes
     ----------
-    told
+    word_of
         The word for a value of the field.
     names_file
         Whether it is the path of a file.
@@ -50,7 +50,7 @@ class Word(Quantity):
 
     kind: Kind = "text"
     needed: bool = False
-    told: Callable[[Any], object] = _nothing
+    word_of: Callable[[Any], object] = _nothing
     names_file: bool = False
 
 
@@ -169,7 +169,7 @@ def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
         value = getattr(thing, slot.field.name)
         for each in slot.own:
             single = value if each.index is None else value[each.index]
-            found[_full(section, each.name)] = each.told(value) if isinstance(each, Word) else each.in_unit(single)
+            found[_full(section, each.name)] = each.word_of(value) if isinstance(each, Word) else each.in_unit(single)
         if slot.parts and value is not None:
             found |= values_of(value, section=slot.section.name)
     return found
@@ -190,9 +190,9 @@ def declared_text(thing: Any) -> str:
     >>> Step()
     <Step: step_ms = 0.5>
     """
-    told = ((name.rpartition(".")[2], value) for name, value in values_of(thing).items() if value is not None)
+    pairs = ((name.rpartition(".")[2], value) for name, value in values_of(thing).items() if value is not None)
     glue = "\xa0"  # a name stays beside its value
-    values = ", ".join(f"{name} = {_in_short(value)}".replace(" ", glue) for name, value in told)
+    values = ", ".join(f"{name} = {_in_short(value)}".replace(" ", glue) for name, value in pairs)
     lines = textwrap.wrap(f"<{type(thing).__name__}: {values}>", _WIDEST, subsequent_indent="    ")
     return "\n".join(lines).replace(glue, " ")
 

@@ -46,7 +46,7 @@ def table_schema(quantities: Iterable[Quantity]) -> Schema:
     }
 
 
-def told_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -> Schema:
+def output_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -> Schema:
     """The schema of a table that says the value in force under every key; null where there is none.
 
     With `every_null` also a key that has a default, or must be given, may have none in force.

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 from .kept_rows import KeptRows, Row
 from .pool import PointFunction, Pool, workers_in_force
 
-Told: TypeAlias = Callable[[int, int], None]
+Progress: TypeAlias = Callable[[int, int], None]
 """Takes the number of finished points and that of all."""
 
 
@@ -18,7 +18,7 @@ def run_batch(
     *,
     kept: KeptRows | None = None,
     workers: int | None = None,
-    progress: Told | None = None,
+    progress: Progress | None = None,
 ) -> list[Row]:
     """Rows of all points, in their order.
 

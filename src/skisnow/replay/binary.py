@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..given import GivenError, json_value
-from .looks import COLOURS, drawn_thickness
+from .colours import COLOURS, drawn_thickness
 from .replay import Replay, ReplayGroove, ReplaySkis, ReplayTrack
 
 if TYPE_CHECKING:

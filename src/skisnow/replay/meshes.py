@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .colours import COLOURS, drawn_thickness, linear, linear_colours, round_above
 from .glb import Mesh
-from .looks import COLOURS, drawn_thickness, linear, linear_colours, round_above
 from .shape import ski_edges
 
 if TYPE_CHECKING:

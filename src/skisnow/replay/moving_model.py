@@ -17,8 +17,8 @@ from scipy.spatial.transform import Rotation
 
 from ..files import write_file
 from .binary import at_moments, thinned
+from .colours import round_above
 from .glb import Glb
-from .looks import round_above
 from .meshes import CORNERS, grid_mesh, groove_mesh, snow_mesh, surface_heights, unloaded_ski_mesh, upright
 from .replay import SKI_NAMES
 
@@ -56,7 +56,7 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     ground = {"snow": snow_mesh(shown), "grid": grid_mesh(shown)}
     parts = [model.node(name, mesh=model.mesh(name, mesh)) for name, mesh in ground.items()]
     parts += [*_groove(model, shown), sledge, _camera(model, shown, clock, course)]
-    run = model.node("run", rotation=upright(shown.tilt), children=parts, extras=_told(shown, exaggeration))
+    run = model.node("run", rotation=upright(shown.tilt), children=parts, extras=_extras(shown, exaggeration))
     return model.finished(shown.title, [run], cameras=_CAMERAS)
 
 
@@ -157,7 +157,7 @@ def _steepness_behind(replay: Replay) -> FloatArray:
     return np.arctan2(surface_heights(replay, x + _EYE[0]) - surface_heights(replay, x), -_EYE[0])
 
 
-def _told(replay: Replay, exaggeration: float) -> dict[str, Any]:
+def _extras(replay: Replay, exaggeration: float) -> dict[str, Any]:
     """What the model does not show of itself."""
     force = round_above(float(replay.skis.force_per_length.max()))
     return {

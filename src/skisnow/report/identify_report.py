@@ -38,7 +38,7 @@ COLUMNS: Final = ("run", "kind", "along", "quantity", "measured", "identified", 
 
 def write_identify_report(
     found: Identification,
-    told: Mapping[str, Any],
+    contents: Mapping[str, Any],
     folder: str | Path,
     *,
     progress: Callable[[str], None] | None = None,
@@ -49,7 +49,7 @@ def write_identify_report(
     ----------
     found
         What came out.
-    told
+    contents
         What `identification_dict` gives.
     folder
         Made where it is missing. Other files in it stay; figures of an earlier identification are replaced or removed.
@@ -63,14 +63,14 @@ def write_identify_report(
     """
     folder = Path(folder)
     require_writable(folder)
-    say = progress or _silent
+    report = progress or _silent
     with staged(folder, last=ANSWER) as stage:
         stage.stale += picture_files(FIGURES)
-        text = json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1)
+        text = json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
         write_file(stage.path / ANSWER, f"{text}\n")
         write_file(stage.path / "fits.csv", fits_csv(found))
-        pictures = write_pictures(_drawings(found), stage.path / "figures", every=FIGURES, progress=say)
-        say("report.html")
+        pictures = write_pictures(_drawings(found), stage.path / "figures", every=FIGURES, progress=report)
+        report("report.html")
         write_file(stage.path / "report.html", identify_page(found, pictures))
     return folder / "report.html"
 
@@ -142,7 +142,7 @@ def _drawings(found: Identification) -> Iterator[Drawing]:
             tracks_above(tracks),
             wide=True,
         )
-    for kind, words in (("track", "along the run"), ("photo_cells", "over the station"), ("marks", "place by place")):
+    for kind, words in (("track", "along the run"), ("photo_cells", "over the distance"), ("marks", "place by place")):
         fits = [fit for fit in found.fits if fit.kind == kind]
         if fits:
             yield Drawing(

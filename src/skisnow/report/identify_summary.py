@@ -38,16 +38,16 @@ def _row(each: Identified) -> tuple[str, str, str]:
         ("posterior", each.posterior_interval),
     )
     error = each.standard_error
-    more = [f"{name} {_told(interval, error)}" for name, interval in others if interval is not None]
+    more = [f"{name} {_text(interval, error)}" for name, interval in others if interval is not None]
     bound = ["on its bound"] if each.at_bound else []
     return (
         each.parameter.key,
         f"{_as_exact(each.value, error)}{unit}",
-        "  ".join([_told(each.interval, error), *more, *bound]),
+        "  ".join([_text(each.interval, error), *more, *bound]),
     )
 
 
-def _told(interval: Interval | None, error: float | None) -> str:
+def _text(interval: Interval | None, error: float | None) -> str:
     if interval is None:
         return "no interval"
     low, high = interval

@@ -20,6 +20,7 @@ from .symbols import prose
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from markupsafe import Markup
     from matplotlib.figure import Figure
 
     from ..simulate.run import Run
@@ -68,7 +69,8 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         prose(
             "Grip utilisation, the side force over the shear capacity S_f e, along each ski and for each whole ski. "
             "At 1 the snow yields and the edge side-slips."
-        ),
+        )
+        + _other_strength(run),
         "Grip utilisation over position along the ski and time.",
         run_grip(run),
         wide=True,
@@ -82,6 +84,18 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         "Stored energies and losses over time, stacked.",
         run_energies(run),
         wide=True,
+    )
+
+
+def _other_strength(run: Run) -> Markup:
+    """Said where the edge met another strength than the scenario's."""
+    given = [name.replace("_", " ") for name, law in run.given_laws.items() if law and name != "friction"]
+    if not given:
+        return prose("")
+    return prose(
+        " S_f here is the scenario's; the run had another strength ({given}, given in Python), whose limit is "
+        "not at 1.",
+        given=", ".join(given),
     )
 
 

@@ -43,7 +43,7 @@ def write_run_file(
     path
         Of the file, which is replaced where it exists.
     provenance
-        As in summary.json: the global attribute ``provenance``; left out: only the program's version is told.
+        As in summary.json: the global attribute ``provenance``; left out: only the program's version.
 
     Raises
     ------
@@ -76,6 +76,7 @@ def _attributes(file: Any, run: Run, values: Mapping[str, Any], provenance: Mapp
         "outcome": run.outcome,
         "remedy": run.remedy,
         "scenario": json.dumps(values, allow_nan=False, ensure_ascii=False),
+        "laws": json.dumps(run.given_laws, ensure_ascii=False),
         "scenario_keys": json.dumps({name: key.described for name, key in SCENARIO_KEYS.items()}, ensure_ascii=False),
         "provenance": json.dumps(provenance, allow_nan=False, ensure_ascii=False),
         "comment": "x down the fall line, y to the left of it, z out of the snow; on a measured profile x is "

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ..files import write_file
-from ..scenario.suspicions import suspicions
+from ..scenario.plausibility import implausible_values
 from ..simulate.run_summary import summary_dict
 from ..simulate.track_table import write_track
 from ..staging import staged, tidied
@@ -56,16 +56,16 @@ def write_run(
     OutputError
         A file cannot be written.
     """
-    folder, say = Path(folder), progress or _silent
+    folder, report = Path(folder), progress or _silent
     for sentence in tidied(folder):
-        say(sentence)
-    told = summary_dict(run, warnings=suspicions(run.scenario)) if summary is None else summary
+        report(sentence)
+    contents = summary_dict(run, warnings=implausible_values(run.scenario)) if summary is None else summary
     with staged(folder, last=SUMMARY) as stage:
         stage.stale += _STALE
-        text = json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1)
+        text = json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
         write_file(stage.path / SUMMARY, f"{text}\n")
         write_track(run, stage.path / "track.csv")
-        page = write_run_report(run, told, stage.path, progress=say)
+        page = write_run_report(run, contents, stage.path, progress=report)
         if beside is not None:
             beside(stage.path)
     return folder / page.name

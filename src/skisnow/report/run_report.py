@@ -22,7 +22,7 @@ from .symbols import html, prose
 from .tables.run import energies_table, scenario_table, verification_table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from ..simulate.run import Run
     from .figures.drawing import Picture
@@ -60,11 +60,11 @@ def write_run_report(
     """
     folder = Path(folder)
     require_writable(folder)
-    say = progress or _silent
-    say("run.nc")
+    report = progress or _silent
+    report("run.nc")
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
-    pictures = write_pictures(run_drawings(run), folder / "figures", every=FIGURES, progress=say)
-    say("report.html")
+    pictures = write_pictures(run_drawings(run), folder / "figures", every=FIGURES, progress=report)
+    report("report.html")
     write_file(folder / "report.html", run_page(run, summary, pictures))
     return folder / "report.html"
 
@@ -92,10 +92,18 @@ def _header(run: Run) -> Header:
     facts = [
         ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}")),
         ("Source of the snow", scenario.contact.snow.source),
+        *_laws(run),
         ("Skis", f"{scenario.ski.name}, edge angle {significant(scenario.sledge.edge_angle / DEGREE)}°"),
         ("Computed", f"skisnow {version('skisnow')}"),
     ]  # fmt: skip
     return Header("A simulated run of a sledge on two flexible skis", _title(run), facts)
+
+
+def _laws(run: Run) -> Iterator[tuple[str, str]]:
+    """What acted in place of the scenario's laws."""
+    for name, law in run.given_laws.items():
+        if law:
+            yield f"{name.replace('_', ' ').capitalize()}, given in Python", law
 
 
 def _title(run: Run) -> str:
@@ -139,8 +147,8 @@ def _balance(run: Run) -> list[Markup]:
     error = run.energy_balance_error
     if error is None or json_number(error) is None:
         return []
-    if told := run_warnings(run):
-        return [prose("Warning: {told}.", told=each) for each in told]
+    if warnings := run_warnings(run):
+        return [prose("Warning: {text}.", text=each) for each in warnings]
     return [prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))]
 
 

@@ -31,7 +31,7 @@ class SkiDrawing:
     half_width_mm, base_height_mm, EI_N_m2, GJ_N_m2
         Half of the width from edge to edge, height of the unloaded base, bending and torsional stiffness.
     facts
-        What a ski is told by, in words and with units.
+        Key data of a ski, in words and with units.
     """
 
     name: str

@@ -43,14 +43,14 @@ def _lines(results: Json) -> Iterator[str]:
     if results["penetration"]["selected"]:
         yield ""
         yield from _models(results["penetration"], tag)
-    told = [row for row in results["regressions"] if row["p"] is not None or row["withheld"]]
-    if told:
+    shown = [row for row in results["regressions"] if row["p"] is not None or row["withheld"]]
+    if shown:
         yield ""
         yield f"Regressions{tag}, slope with 95 % interval:"
-        yield from map(_regression, told[:MOST_REGRESSIONS])
-        if len(told) > MOST_REGRESSIONS:
-            yield f"  and {len(told) - MOST_REGRESSIONS} more in results.json"
-        if any(row["withheld"] for row in told[:MOST_REGRESSIONS]):
+        yield from map(_regression, shown[:MOST_REGRESSIONS])
+        if len(shown) > MOST_REGRESSIONS:
+            yield f"  and {len(shown) - MOST_REGRESSIONS} more in results.json"
+        if any(row["withheld"] for row in shown[:MOST_REGRESSIONS]):
             few = f"fewer than {FEWEST_VALUES} values of the predictor"
             yield f"  not judged: with {few}, whatever else differs between them would show as well"
 

@@ -29,21 +29,21 @@ _TURNS_WORDS: Final = (
 )
 
 
-def track_text(values: Mapping[str, Any], *, mark_sentences: Mapping[str, str] | None = None) -> str:
+def track_text(values: Mapping[str, Any], *, flag_sentences: Mapping[str, str] | None = None) -> str:
     """What a track says.
 
     Parameters
     ----------
     values
         What `skisnow.track.summary.summary_dict` gives.
-    mark_sentences
-        What each mark means.
+    flag_sentences
+        What each flag means.
     """
     rows = list(_rows(values))
     width = max(len(name) for name, _ in rows)
     lines = [values["file"], "", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
     for code, count in values["marked"].items():
-        lines.append(f"{'flagged ' + code.replace('_', ' ')}: {count}. {(mark_sentences or {}).get(code, '')}".rstrip())
+        lines.append(f"{'flagged ' + code.replace('_', ' ')}: {count}. {(flag_sentences or {}).get(code, '')}".rstrip())
     for remark in values["remarks"]:
         lines.append(f"Note: {remark}")
     lines += _table("runs", values["runs"], _RUN_COLUMNS, _RUNS_WORDS[values["runs_by"]])

@@ -103,7 +103,7 @@ class TurnChain(Shown):
         return [sentence.replace("<sub>", "_").striptags() for sentence in contrast(self)]
 
     def report(self, folder: str | Path) -> Path:
-        """Write report.html and figures/ of the whole chain; see `report.turn_report.write_turn_report`."""
+        """Write report.html, turn.json and figures/ of the whole chain; see `report.turn_report.write_turn_report`."""
         page: Path = from_above("report.turn_report", "write_turn_report")(self, folder)
         return page
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
+
+from markupsafe import Markup
 
 from ..errors import ParameterError
 from ..files import require_writable, write_file
@@ -21,13 +24,12 @@ from .sheet import Header, Section, sheet
 from .symbols import html, prose
 from .tables.run import scenario_table
 from .tables.turn import contacts_table, ensemble_table, parameters_table, shares_table
+from .turn_dict import turn_dict
 from .turn_numbers import middle_track
 from .turn_sentences import ensemble_accuracy, ensemble_sentence, key_sentences, meaning
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-    from markupsafe import Markup
 
     from .figures.drawing import Picture
     from .turn_chain import TurnChain
@@ -37,7 +39,7 @@ FIGURES: Final = ("contacts", "along_ski", "grip", "band")
 
 
 def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:
-    """Write report.html and figures/ of the chain from a campaign to a turn.
+    """Write report.html, turn.json and figures/ of the chain from a campaign to a turn.
 
     Returns
     -------
@@ -59,6 +61,8 @@ def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:
     folder = Path(folder)
     require_writable(folder)
     pictures = write_pictures(_drawings(chain), folder / "figures", every=FIGURES)
+    text = json.dumps(turn_dict(chain), ensure_ascii=False, allow_nan=False, indent=1)
+    write_file(folder / "turn.json", f"{text}\n")
     write_file(folder / "report.html", sheet(_header(chain), _sections(chain, pictures)))
     return folder / "report.html"
 
@@ -173,7 +177,9 @@ def _snow() -> Markup:
 
 def _provenance(chain: TurnChain) -> Markup:
     return prose(
-        "Snow from {source}. Computed with skisnow {version}; {runs} in {seconds} s, without the ensemble.",
+        "Snow from {source}. Computed with skisnow {version}; {runs} in {seconds} s, without the ensemble. Unrounded "
+        "numbers: {file}.",
+        file=Markup("<code>turn.json</code>"),
         source=chain.snow.source,
         version=version("skisnow"),
         runs=f"{len(chain.runs)} runs",

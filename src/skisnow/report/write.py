@@ -70,29 +70,29 @@ def write_report(analysis: Analysis, out: str | Path, *, progress: Callable[[str
             "a report is written of an analysis, into a folder: write_report(analyse(campaign), folder); given is a "
             f"{type(analysis).__name__}"
         )
-    say = progress or _silent
+    report = progress or _silent
     out = Path(out)
     for sentence in tidied(out):
-        say(sentence)
+        report(sentence)
     with paused_collector(), staged(out, last=RESULTS) as stage:
-        stage.stale += _write(ReportData(analysis), stage.path, say)
+        stage.stale += _write(ReportData(analysis), stage.path, report)
     return out / "report.html"
 
 
-def _write(data: ReportData, stage: Path, say: Callable[[str], None]) -> list[str]:
+def _write(data: ReportData, stage: Path, report: Callable[[str], None]) -> list[str]:
     """Write all files below the stage; returns those of an earlier report that this campaign has no data for."""
-    say("tables of the report")
+    report("tables of the report")
     every_table = tables_of(data)
     tables = {name: table for name, table in every_table.items() if table.rows}
     for table in tables.values():
-        say(f"table {table.name}")
+        report(f"table {table.name}")
         _write_table(table, stage / "tables")
-    pictures, missing = figures_of(data, progress=say)
+    pictures, missing = figures_of(data, progress=report)
     for picture in pictures:
         _write_picture(picture, stage / "figures")
-    say("report.html")
+    report("report.html")
     write_file(stage / "report.html", page(data, tables, pictures, missing))
-    say("results.json")
+    report("results.json")
     write_file(stage / RESULTS, results_json(data.results))
     stale = [f"tables/{stem}{ending}" for stem in _other_stems(every_table.values()) for ending in (".csv", ".tex")]
     return stale + [f"figures/{left_out.name}{ending}" for left_out in missing for ending in (".svg", ".png")]

@@ -1,11 +1,11 @@
 """What a run starts from: slope, snow, sledge, skis, start, and how it is computed.
 
-The room can be called: `skisnow.scenario("carved-46m")` is `skisnow.scenario.reading.read_scenario`.
+The package can be called: `skisnow.scenario("carved-46m")` is `skisnow.scenario.reading.read_scenario`.
 """
 
 from __future__ import annotations
 
-from ..callable_rooms import make_callable
+from ..callable_packages import make_callable
 from .air import Air
 from .built_in import scenario_names, scenario_text
 from .contact import Contact

@@ -31,12 +31,12 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
     for name, key in SCENARIO_KEYS.items():
         if key.needed and name not in values:
             raise ParameterError(_missing(name))
-    ski, told = _ski(given, sources)
+    ski, warned = _ski(given, sources)
     slope, contact = _slope(given, values), _contact(values, _snow(given, sources))
     if "run.duration_s" not in values and "run.length_m" not in values:
         raise ParameterError("the run has no end: give run.duration_s or run.length_m")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
-    return made(Scenario, values, slope=slope, contact=contact, ski=ski), told
+    return made(Scenario, values, slope=slope, contact=contact, ski=ski), warned
 
 
 def _missing(name: str) -> str:

@@ -63,7 +63,7 @@ class Contact:
             choices=get_args(Penetration),
             default="hypoplastic",
             origin="snow keeps its tracks",
-            told=_penetration,
+            word_of=_penetration,
         ),
     ]
     compaction_resistance: Annotated[

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,6 +15,7 @@ from .built_in import scenario_names, scenario_text
 from .identify_section import require_known
 from .keys import SCENARIO_KEYS, SECTIONS
 from .replaced import replaced
+from .scenario import Scenario
 from .solver import present_method
 
 PATH_KEYS: Final = tuple(name for name, key in SCENARIO_KEYS.items() if isinstance(key, Word) and key.names_file)
@@ -42,6 +43,8 @@ class GivenScenario(ShownFields):
         Where relative paths start, for each key that names a file.
     identify
         The section ``[identify]`` as it stands in the file: what may be looked for, which a run does not heed.
+    base
+        A scenario that was given as an object; `values` are then the changes to it. None: `values` are all.
     """
 
     title: str
@@ -49,6 +52,7 @@ class GivenScenario(ShownFields):
     values: Mapping[str, InputValue]
     folders: Mapping[str, Path]
     identify: Mapping[str, Any] = field(default_factory=dict)
+    base: Scenario | None = None
 
     def path(self, name: str) -> Path:
         """The place of the file that a key names."""
@@ -75,11 +79,11 @@ class GivenScenario(ShownFields):
         values = {name: value for name, value in self.values.items() if name not in gone} | new
         folders = dict(self.folders)
         folders.update((name, folder or Path()) for name in PATH_KEYS if name in new)
-        return GivenScenario(self.title, self.file, values, folders, self.identify)
+        return replace(self, values=values, folders=folders)
 
 
-def given_scenario(name_or_path: str | Path) -> GivenScenario:
-    """Read a scenario as given: a built-in one by its name, any other from its TOML file.
+def given_scenario(name_or_path: str | Path | Scenario) -> GivenScenario:
+    """Read a scenario as given: a built-in one by its name, any other from its TOML file, or take the object itself.
 
     Raises
     ------
@@ -87,6 +91,8 @@ def given_scenario(name_or_path: str | Path) -> GivenScenario:
         There is no such name or file, it is no TOML, a section or key is unknown (the nearest is named), or a value is
         of the wrong kind or outside its range.
     """
+    if isinstance(name_or_path, Scenario):
+        return GivenScenario("scenario given in Python", None, {}, {}, base=name_or_path)
     word = str(name_or_path)
     if word in scenario_names():
         return _given(word, None, scenario_text(word))

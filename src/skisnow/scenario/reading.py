@@ -14,9 +14,10 @@ from ..errors import ParameterError, RangeWarning
 from ..shown import ShownFields
 from ..sources import Sources
 from .building import built
+from .changed import changed_scenario
 from .given import GivenScenario, given_scenario
+from .plausibility import implausible_values
 from .scenario import Scenario
-from .suspicions import suspicions
 from .values import scenario_values
 
 _NOTHING: Final[Mapping[str, object]] = MappingProxyType({})
@@ -91,8 +92,8 @@ def read_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
     >>> scenario.sledge.mass, scenario.contact.snow.snow_hardness
     (90.0, 200000000.0)
     """
-    scenario, told = _built(given_scenario(name_or_path).changed(changes), Sources())
-    for text in told:
+    scenario, warned = _built(given_scenario(name_or_path).changed(changes), Sources())
+    for text in warned:
         warnings.warn(text, RangeWarning, stacklevel=2)
     return scenario
 
@@ -120,19 +121,21 @@ def resolved(given: GivenScenario, *, sources: Sources | None = None) -> Scenari
     ParameterError
         As `read_scenario`.
     """
-    scenario, told = _built(given, sources or Sources())
-    own = _own_suspicions(given.title) if given.file is None else ()
-    warned = (*told, *(each for each in suspicions(scenario) if each not in own))
-    return ScenarioFile(given.title, _in_force(given, scenario), scenario, files_of(given), warned)
+    scenario, warned = _built(given, sources or Sources())
+    own = _own_implausible_values(given.title) if given.file is None and given.base is None else ()
+    found = (*warned, *(each for each in implausible_values(scenario) if each not in own))
+    return ScenarioFile(given.title, _in_force(given, scenario), scenario, files_of(given), found)
 
 
 @cache
-def _own_suspicions(name: str) -> tuple[str, ...]:
+def _own_implausible_values(name: str) -> tuple[str, ...]:
     """What a built-in scenario itself would be suspected of; its file says so, and why."""
-    return suspicions(_built(given_scenario(name), Sources())[0])
+    return implausible_values(_built(given_scenario(name), Sources())[0])
 
 
 def _built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, ...]]:
+    if given.base is not None:
+        return changed_scenario(given.base, given.values), ()
     try:
         return built(given, sources)
     except ParameterError as error:
@@ -142,6 +145,8 @@ def _built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str,
 def _in_force(given: GivenScenario, scenario: Scenario) -> dict[str, Any]:
     """As given where it was: there and back over the unit could change a last digit."""
     words = {name: list(value) if isinstance(value, tuple) else value for name, value in given.values.items()}
+    if given.base is not None:
+        return {**scenario_values(scenario), **words}
     of_ski = {"ski.name": words.get("ski.name"), "ski.file": words.get("ski.file")}
     return {**scenario_values(scenario), **words, **of_ski}
 

@@ -72,7 +72,7 @@ class Scenario(Shown):
             choices=("plane", "profile"),
             default="plane",
             origin="choice: the simpler one",
-            told=_slope_kind,
+            word_of=_slope_kind,
         ),
     ]
     contact: Contact
@@ -80,8 +80,8 @@ class Scenario(Shown):
     sledge: RigidSledge
     ski: Annotated[
         Ski,
-        Word("ski.name", "a ski of the catalogue", told=_ski_name),
-        Word("ski.file", "the path of a ski file, in place of a name", told=_ski_file, names_file=True),
+        Word("ski.name", "a ski of the catalogue", word_of=_ski_name),
+        Word("ski.file", "the path of a ski file, in place of a name", word_of=_ski_file, names_file=True),
     ]
     stiffness_factor: Annotated[
         float,

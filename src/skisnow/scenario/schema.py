@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from ..inputs import Quantity, quantities
-from ..inputs.json_schema import DRAFT, Schema, table_schema, told_schema
+from ..inputs.json_schema import DRAFT, Schema, output_schema, table_schema
 from .identify_section import CLOCKS, Site, Sought
 from .keys import SCENARIO_KEYS, SECTIONS
 
@@ -53,9 +53,9 @@ def scenario_schema() -> Schema:
     }
 
 
-def told_scenario_schema() -> Schema:
+def output_scenario_schema() -> Schema:
     """The schema of a scenario as summary.json says it: every key with the value in force."""
-    sections = {name: told_schema(_keys(name), every_null=True) for name in SECTIONS}
+    sections = {name: output_schema(_keys(name), every_null=True) for name in SECTIONS}
     return {"type": "object", "additionalProperties": False, "required": list(sections), "properties": sections}
 
 

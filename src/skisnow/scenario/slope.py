@@ -97,7 +97,7 @@ class Profile(Shown):
         Word(
             "slope.profile",
             'CSV file with the columns x and y, horizontal distance and height in m; only with kind = "profile"',
-            told=str,
+            word_of=str,
             names_file=True,
         ),
     ] = field(default="given as numbers", kw_only=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
@@ -11,12 +12,14 @@ import numpy.typing as npt
 from ..former_names import warn_of_former_name
 from ..from_above import from_above
 from ..scenario import Plane, Scenario
-from ..shown import Facts, Shown, amount, field_facts, span
+from ..shown import Facts, Shown, amount, field_facts, name_with_values, span
 from ..track.track import Track
 from ..units import DEGREE, MM
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from ..contact import Laws
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal[
@@ -31,6 +34,8 @@ Outcome: TypeAlias = Literal[
     "not_finite",
     "interrupted",
 ]
+Strength: TypeAlias = Callable[[float], float]
+"""Takes the distance run (m), and gives S_f over that of the scenario, > 0."""
 
 WARNED_SHARE, OPEN_SHARE, LEAST_OPEN = 0.02, 0.1, 1.0
 """Shares of the energy exchanged by which the balance may be open before a run warns of it, and before its end is
@@ -43,7 +48,7 @@ LOST: Final = ("penetration", "shear", "friction", "drag", "damping", "snow_damp
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
 class SkiHistory(Shown):
-    """The skis over time: index 0 the time (n), 1 the ski (0 left, 1 right), 2 the station (m) or the coordinate.
+    """The skis over time: index 0 the time (n), 1 the ski (0 left, 1 right), 2 the place along it or the coordinate.
 
     Attributes
     ----------
@@ -139,6 +144,8 @@ class Run(Shown):
         Time it took, without the start (s).
     numbers
         What the solver chose: elements, line_spacing_m.
+    laws, strength_along
+        What acted in place of the scenario's laws, as `skisnow.simulate` was given it.
 
     See Also
     --------
@@ -163,6 +170,15 @@ class Run(Shown):
     rejected_steps: int
     wall_s: float
     numbers: dict[str, float]
+    laws: Laws | None = None
+    strength_along: Strength | None = None
+
+    @property
+    def given_laws(self) -> dict[str, str | None]:
+        """What acted in place of the scenario's laws, in words: friction, shear, penetration, strength_along."""
+        along = None if self.strength_along is None else name_with_values(self.strength_along)
+        laws = dict.fromkeys(("friction", "shear", "penetration")) if self.laws is None else self.laws.described
+        return {**laws, "strength_along": along}
 
     @property
     def track(self) -> Track:
@@ -249,7 +265,9 @@ class Run(Shown):
 
     def _facts(self) -> Facts:
         error, radius = self.energy_balance_error, self.turn_radius_quantile(0.5)
+        given = ", ".join(f"{name} {law.partition('(')[0]}" for name, law in self.given_laws.items() if law)
         rows = (
+            *([("laws", f"given in Python: {given}")] if given else []),
             ("run length", f"{amount(self.run_length, 'm')} in {amount(self.simulated_s, 's')}"),
             ("speed", f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, maximum {_most(self.speed)}"),
             ("heading", span(float(self.heading[0]) / DEGREE, float(self.heading[-1]) / DEGREE, "°")),

@@ -58,6 +58,7 @@ def summary_dict(
         "energies": energies_dict(run),
         "energy_balance_error": json_number(run.energy_balance_error),
         "numbers": {name: json_number(value) for name, value in run.numbers.items()},
+        "laws": run.given_laws,
         "scenario": in_sections(scenario_values(run.scenario) if values is None else values),
         "snow": snow_dict(run.scenario.contact.snow),
         "ski": {"name": run.scenario.ski.name, "source": run.scenario.ski.source},

@@ -14,15 +14,13 @@ from ..contact import Laws
 from ..errors import SolverError
 from ..former_names import formerly
 from ..scenario import Scenario
-from .run import OPEN_SHARE, Groove, Outcome, Run
+from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_record import Record
 from .run_setup import AT_REST, Setup, set_up
 from .standing import why_no_start
 
 Progress: TypeAlias = Callable[[float, float], None]
 """Takes the simulated time (s), and the share of the run that is done, 0 to 1."""
-Strength: TypeAlias = Callable[[float], float]
-"""Takes the distance run (m), and gives S_f over that of the scenario, > 0."""
 
 TIPPED: Final = math.radians(60.0)
 """Angle between the sledge and the snow's normal at which it has tipped over (modelling assumption)."""
@@ -76,8 +74,8 @@ def simulate(
         S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places. Asked
         once for each output interval, for both skis and all along them.
     laws
-        In place of the scenario's: laws of `skisnow.forces`, or of your own. The run knows the scenario alone, so its
-        report and files tell nothing of them.
+        In place of the scenario's: laws of `skisnow.forces`, or of your own. Run, summary.json and report name them
+        with their numbers.
 
     Returns
     -------
@@ -108,7 +106,7 @@ def simulate(
     setup = set_up(scenario, laws=laws)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.unrest <= AT_REST and setup.sinks):
-        return computed_run(setup, record, "sunk", 0.0)
+        return replace(computed_run(setup, record, "sunk", 0.0), laws=laws, strength_along=strength_along)
     if not setup.unrest <= AT_REST:
         setup.dynamics.contact.require_finite_laws()
         raise SolverError(why_no_start(setup))
@@ -117,7 +115,8 @@ def simulate(
         outcome = _loop(setup, record, progress, strength_along)
     except KeyboardInterrupt:
         outcome = "interrupted"
-    return computed_run(setup, record, outcome, time.perf_counter() - begin)
+    run = computed_run(setup, record, outcome, time.perf_counter() - begin)
+    return replace(run, laws=laws, strength_along=strength_along)
 
 
 simulated_run = formerly("simulated_run", simulate)

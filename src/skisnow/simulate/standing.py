@@ -50,7 +50,7 @@ def weight_meets_base(setup: Setup) -> tuple[float, float]:
 
 
 def _carried_across(setup: Setup) -> tuple[float, float]:
-    """How far to the right and to the left skis can bear on the snow (m): at most from their edges to the waterline."""
+    """How far to the right and left skis can stand on the snow (m): at most from their edges to the waterline."""
     ski, angle = setup.scenario.ski, setup.scenario.sledge.edge_angle
     width, length = float(ski.width.max()), float(ski.station[0] - ski.station[-1])
     tangent = max(math.tan(abs(angle)), 1e-9)

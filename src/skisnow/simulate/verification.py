@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -116,7 +117,8 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     run
         The run.
     simulate
-        What computes a scenario, called in the order of `repetitions`; left out: `skisnow.simulate`.
+        What computes a scenario, called in the order of `repetitions`; left out: `skisnow.simulate`, with the laws
+        that the run was given in Python.
 
     Returns
     -------
@@ -132,7 +134,7 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     ----------
     The page docs/validation/simulated-turn.md.
     """
-    again = simulate or _plainly()
+    again = simulate or _alike(run)
     finer = refine(run, again)
     return finer if len(finer) < len(refined_solvers(run)) else (*finer, *_nudge(run, again))
 
@@ -176,10 +178,10 @@ def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...
     )
 
 
-def _plainly() -> Simulate:
+def _alike(run: Run) -> Simulate:
     from .simulated_run import simulate  # which loads the compiled core
 
-    return simulate
+    return partial(simulate, laws=run.laws, strength_along=run.strength_along)
 
 
 verified = formerly("verified", verify)

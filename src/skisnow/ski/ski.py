@@ -122,11 +122,11 @@ class Ski(Shown):
         """The ski with EI and GJ times a factor > 0; itself with 1."""
         if factor == 1.0:
             return self
-        stiffness = {
-            "bending_stiffness": self.bending_stiffness * factor,
-            "torsional_stiffness": self.torsional_stiffness * factor,
-        }
-        return replace(self, **stiffness)
+        return replace(
+            self,
+            bending_stiffness=self.bending_stiffness * factor,
+            torsional_stiffness=self.torsional_stiffness * factor,
+        )
 
     def _facts(self) -> Facts:
         """Name, length, widths, the radius of the side line in use, mass."""

@@ -1,4 +1,4 @@
-"""The one orthogonal factorisation behind the linear fits of this room.
+"""The one orthogonal factorisation behind the linear fits of this package.
 
 The columns are centred and scaled, factorised by Householder reflections with column exchange, and the coefficients are
 carried back to the columns as given. No normal equations: they would square the condition number.

@@ -149,8 +149,8 @@ def _fit(response: FloatArray, columns: Columns, *, intercept: bool, confidence:
         coefficients[0] += middle
     p = len(coefficients)
     r2, F, tail = _explained(shifted, residuals, p) if intercept else (float("nan"),) * 3
-    told = spread(coefficients, residuals, design, confidence)
-    return LinearFit(**told, rank=p, r2=r2, F=F, p=tail)
+    statistics = spread(coefficients, residuals, design, confidence)
+    return LinearFit(**statistics, rank=p, r2=r2, F=F, p=tail)
 
 
 def _explained(shifted: FloatArray, residuals: FloatArray, p: int) -> tuple[float, float, float]:

@@ -230,11 +230,11 @@ def _factorised(slopes: Jacobian, names: tuple[str, ...]) -> Factorisation:
 
 
 def _warn(known: _Known, errors_exist: bool) -> None:
-    told = (
+    checks = (
         ("parameters", known.parameters, _PARAMETER_DIGITS, "the data hardly determine them"),
         ("standard errors", known.standard_errors, _ERROR_DIGITS, "the residuals are little above rounding"),
     )
-    for what, share, allowed, reason in told[: 2 if errors_exist else 1]:
+    for what, share, allowed, reason in checks[: 2 if errors_exist else 1]:
         if not share <= allowed:
             digits = max(int(-np.log10(share)), 0) if np.isfinite(share) and share > 0 else 0
             warnings.warn(

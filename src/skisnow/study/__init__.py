@@ -1,9 +1,9 @@
 """Studies: one question asked over a grid or a sample of its inputs, in parallel and resumable, as one table.
 
-The room can be called: `skisnow.study(…)` is `skisnow.study.run_study`.
+The package can be called: `skisnow.study(…)` is `skisnow.study.run_study`.
 """
 
-from ..callable_rooms import make_callable
+from ..callable_packages import make_callable
 from .run import StudyState, run_study, study_state
 from .study import Study
 from .study_file import read_study

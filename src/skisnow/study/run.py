@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..errors import ParameterError
 from ..files import cannot_write, write_file
-from ..parallel.batch import Told, run_batch
+from ..parallel.batch import Progress, run_batch
 from ..parallel.kept_rows import KeptRows
 from ..parallel.pool import workers_in_force
 from .study import Study
@@ -42,7 +42,7 @@ def study_state(study: Study) -> StudyState:
     return StudyState.FINISHED if same else StudyState.ANOTHER
 
 
-def run_study(study: Study | str | Path, *, workers: int | None = None, progress: Told | None = None) -> StudyTable:
+def run_study(study: Study | str | Path, *, workers: int | None = None, progress: Progress | None = None) -> StudyTable:
     """Ask one question over a grid or a sample of its inputs: compute the points that are missing, write the table.
 
     Parameters

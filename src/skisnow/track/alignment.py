@@ -95,7 +95,7 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
         Neither start leads to an answer in which half of the measured track has something beside it.
     """
     path = Path(simulated.place)
-    places = measured.at_way(np.linspace(0.0, measured.length, PLACES + 1))
+    places = measured.at_arc_length(np.linspace(0.0, measured.length, PLACES + 1))
     begins = [Motion(np.zeros(places.shape[1]), 0.0)]
     begins.append(_overlay(simulated, measured, start=start, heading=heading))
     found = [_settled(path, places, begin, start=start, heading=heading) for begin in begins]
@@ -111,9 +111,9 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
 
 def _overlay(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
     """Turned and moved so that places at equal arc length are as near as they can be (Kabsch, about the vertical)."""
-    way = np.linspace(0.0, min(simulated.length, measured.length), PLACES + 1)
+    arc_length = np.linspace(0.0, min(simulated.length, measured.length), PLACES + 1)
     origin = simulated.place[0]
-    own, other = simulated.at_way(way) - origin, measured.at_way(way) - origin
+    own, other = simulated.at_arc_length(arc_length) - origin, measured.at_arc_length(arc_length) - origin
     centre = (own.mean(axis=0), other.mean(axis=0)) if start else (np.zeros_like(origin), np.zeros_like(origin))
     a, b = (own - centre[0])[:, :2], (other - centre[1])[:, :2]
     turned = math.atan2(float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()), float((a * b).sum())) if heading else 0.0
@@ -195,8 +195,8 @@ def fitted_time(simulated: Polyline, measured: Polyline) -> float:
         raise FitError("the start time cannot be fitted: one of the tracks has no duration")
     least = simulated.time[0] - measured.time[-1] + LEAST_SHARE * shorter
     most = simulated.time[-1] - measured.time[0] - LEAST_SHARE * shorter
-    way = np.linspace(0.0, measured.length, PLACES + 1)
-    time, places = np.interp(way, measured.way, measured.time), measured.at_way(way)
+    arc_length = np.linspace(0.0, measured.length, PLACES + 1)
+    time, places = np.interp(arc_length, measured.arc_length, measured.time), measured.at_arc_length(arc_length)
 
     def mean_square(later: float) -> float:
         at = time + later

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from ..former_names import warn_of_former_name
 from ..shown import ShownFields
 
 FloatArray = npt.NDArray[np.float64]
@@ -24,14 +25,20 @@ class Apart(ShownFields):
 
     Attributes
     ----------
-    way : (k,) m
+    arc_length : (k,) m
         Length of the measured track up to the place, not falling.
     offset : (k, d) m
         From the measured to the simulated track; NaN where there is none.
     """
 
-    way: FloatArray
+    arc_length: FloatArray
     offset: FloatArray
+
+    @property
+    def way(self) -> FloatArray:
+        """Former name of `arc_length`."""
+        warn_of_former_name("Apart.way", "arc_length")
+        return self.arc_length
 
     @property
     def distance(self) -> FloatArray:
@@ -41,7 +48,7 @@ class Apart(ShownFields):
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """Of distances along a track: the largest, where it is (way), mean and root mean square, over how much way (m)."""
+    """Of distances along a track: the largest, where it is (arc length), mean and rms, over what arc length (m)."""
 
     max: float
     max_at: float
@@ -51,13 +58,14 @@ class Numbers:
 
 
 def numbers_of(apart: Apart) -> Numbers | None:
-    """Largest, mean and rms distance; the means are integrals over the way, exact for offsets that change linearly.
+    """Largest, mean and rms distance; the means are integrals over the arc length.
 
-    ∫|δ| ds and ∫|δ|² ds, piece by piece, divided by the way. None where no way was compared.
+    They are exact for offsets that change linearly:     ∫|δ| ds and ∫|δ|² ds, piece by piece, divided by the arc
+    length. None where nothing was compared.
     """
     distance = apart.distance
     whole = np.isfinite(distance[:-1]) & np.isfinite(distance[1:])
-    weight = np.where(whole, np.diff(apart.way), 0.0)
+    weight = np.where(whole, np.diff(apart.arc_length), 0.0)
     compared = float(weight.sum())
     if not compared > 0.0:
         return None
@@ -66,7 +74,7 @@ def numbers_of(apart: Apart) -> Numbers | None:
     largest = int(np.nanargmax(distance))
     return Numbers(
         max=float(distance[largest]),
-        max_at=float(apart.way[largest]),
+        max_at=float(apart.arc_length[largest]),
         mean=float(weight @ mean_lengths(first, last)) / compared,
         rms=float(np.sqrt(weight @ square / compared)),
         compared=compared,

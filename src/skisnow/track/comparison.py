@@ -28,8 +28,8 @@ MOSTLY: Final = 0.9
 DEFINITIONS: Final = {
     "nearest": "from each place of the measured track to the nearest place of the simulated one, whenever that was "
     "passed; places ahead of the simulated track's ends are left out",
-    "arc_length": "between the places that both tracks reach after the same way from their first points, up to the "
-    "length of the shorter",
+    "arc_length": "between the places that both tracks reach after the same arc length from their first points, up to "
+    "the length of the shorter",
     "time": "between the places where both are at the same time, counted from {origin}, while both are on their way",
 }
 """What each distance is between."""
@@ -121,7 +121,7 @@ class Comparison(Shown):
     nearest, arc_length, time
         The three distances.
     largest_from_simulated : m or None
-        Largest distance the other way round, from places of the simulated track to the nearest of the measured one;
+        Largest distance in the other direction, from places of the simulated track to the nearest of the measured one;
         much larger than the other where the simulated track makes a detour.
     axes
         What the measured track's x and y are.
@@ -216,12 +216,12 @@ def compare_tracks(
     lines = polyline_of(simulated, dimensions=dimensions), polyline_of(measured, dimensions=dimensions)
     clock = common_clock(simulated, measured, time_from)
     names = (simulated.name, measured.name)
-    told = _warnings(simulated, measured, dimensions)
+    warnings = _warnings(simulated, measured, dimensions)
     plain = _held(lines, clock, names, seen)
     if fit:
         plain = _with_fit(plain, set(fit), clock)
     _require_near(plain.simulated, plain.measured, names)
-    return replace(plain, axes=measured.axes, warnings=(*told, *_short(plain)))
+    return replace(plain, axes=measured.axes, warnings=(*warnings, *_short(plain)))
 
 
 compared = formerly("compared", compare_tracks)
@@ -294,7 +294,7 @@ def _fitted_time(simulated: Polyline, plain: Comparison) -> float:
 
 
 def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str]) -> None:
-    places = measured.at_way(np.linspace(0.0, measured.length, 1001))
+    places = measured.at_arc_length(np.linspace(0.0, measured.length, 1001))
     nearest = float(Path(simulated.place).nearest(places).distance.min())
     if nearest > FARTHEST:
         raise ParameterError(
@@ -304,32 +304,32 @@ def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str
 
 
 def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
-    told = []
+    warnings = []
     for track in (simulated, measured):
         without = int((~compared_points(track, dimensions=dimensions)).sum())
         if without:
-            marks = ", ".join(f"{count} {code}" for code, count in track.marked.items()) or "without a place"
-            told.append(f"{track.name}: {without} of {len(track)} points are left out; marked are {marks}")
+            flags = ", ".join(f"{count} {code}" for code, count in track.flagged.items()) or "without a place"
+            warnings.append(f"{track.name}: {without} of {len(track)} points are left out; flagged are {flags}")
         inexact = inexact_sentence(track.name, track.solution)
         if inexact:
-            told.append(inexact)
+            warnings.append(inexact)
     compass = [track.axes == "east_north_up" for track in (simulated, measured)]
     origins = {track.origin for track in (simulated, measured)} - {None}
     if compass[0] != compass[1] or len(origins) > 1:
-        told.append(
+        warnings.append(
             f"the tracks are not in one frame ({simulated.name}: {simulated.frame}; "
             f"{measured.name}: {measured.frame}); their coordinates are compared as they stand"
         )
-    return told
+    return warnings
 
 
 def _short(found: Comparison) -> list[str]:
-    told = []
+    warnings = []
     for name in ("nearest", "arc_length", "time"):
         numbers = getattr(found, name).numbers
         if numbers is not None and numbers.compared < MOSTLY * found.measured.length:
-            told.append(
+            warnings.append(
                 f"{name.replace('_', ' ')}: only {numbers.compared:.4g} of the {found.measured.length:.4g} m of the "
                 "measured track could be compared"
             )
-    return told
+    return warnings

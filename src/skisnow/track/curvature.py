@@ -10,6 +10,7 @@ import numpy.typing as npt
 from scipy.stats import norm
 
 from ..constants import CONFIDENCE
+from ..former_names import warn_of_former_name
 from ..shown import ShownFields
 from .smoothing import SmoothedTrack, filled, smoothed_track
 from .track import Track
@@ -17,7 +18,7 @@ from .track import Track
 FloatArray = npt.NDArray[np.float64]
 
 SpeedSource: TypeAlias = Literal["recorded", "fitted"]
-WaySource: TypeAlias = Literal["odometer", "recorded speed", "places"]
+ArcLengthSource: TypeAlias = Literal["odometer", "recorded speed", "places"]
 
 LEAST_SPEED: Final = 1.0
 """Speed (m/s) below which a heading is not asked for. Modelling assumption: slower than walking; places wander at
@@ -36,7 +37,7 @@ class TrackMotion(ShownFields):
     ----------
     time : (n,) s
         Of the track.
-    way : (n,) m
+    arc_length : (n,) m
         Along the track from its first point.
     speed : (n,) m/s
         As recorded, and where it was not, of the smoothed track.
@@ -48,12 +49,12 @@ class TrackMotion(ShownFields):
         1 / curvature with its sign; the standard error is that of small errors, infinite where the curvature is 0.
     smoothed
         Places, velocities and accelerations behind them, with noise and resolution.
-    speed_source, way_source
-        Where most of the speed, and where the way comes from.
+    speed_source, arc_length_source
+        Where most of the speed, and where the arc length comes from.
     """
 
     time: FloatArray
-    way: FloatArray
+    arc_length: FloatArray
     speed: FloatArray
     heading: FloatArray
     heading_sd: FloatArray
@@ -63,7 +64,19 @@ class TrackMotion(ShownFields):
     turn_radius_sd: FloatArray
     smoothed: SmoothedTrack
     speed_source: SpeedSource
-    way_source: WaySource
+    arc_length_source: ArcLengthSource
+
+    @property
+    def way(self) -> FloatArray:
+        """Former name of `arc_length`."""
+        warn_of_former_name("TrackMotion.way", "arc_length")
+        return self.arc_length
+
+    @property
+    def way_source(self) -> ArcLengthSource:
+        """Former name of `arc_length_source`."""
+        warn_of_former_name("TrackMotion.way_source", "arc_length_source")
+        return self.arc_length_source
 
     def curvature_interval(self) -> tuple[FloatArray, FloatArray]:
         """Ends (n,), (n,) of the 95 % intervals of the curvature (1/m), from the noise alone."""
@@ -101,15 +114,15 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     smoothed = smoothed_track(track, window=window, place_noise=place_noise)
     fitted = np.linalg.norm(smoothed.velocity, axis=1)
     speed, speed_source = _speed(track, fitted)
-    way, way_source = _way(track, smoothed, speed)
+    arc_length, arc_length_source = _arc_length(track, smoothed, speed)
     heading, heading_sd = _heading(smoothed, fitted)
     curvature, curvature_sd = _curvature(smoothed, fitted)
     with np.errstate(divide="ignore", invalid="ignore"):
         radius = 1.0 / curvature
         radius_sd = np.where(curvature == 0.0, np.inf, curvature_sd / curvature**2)
     return TrackMotion(
-        track.time, way, speed, heading, heading_sd, curvature, curvature_sd, radius, radius_sd, smoothed,
-        speed_source, way_source,
+        track.time, arc_length, speed, heading, heading_sd, curvature, curvature_sd, radius, radius_sd, smoothed,
+        speed_source, arc_length_source,
     )  # fmt: skip
 
 
@@ -125,16 +138,16 @@ def _speed(track: Track, fitted: FloatArray) -> tuple[FloatArray, SpeedSource]:
     return np.where(recorded, speed, fitted), source
 
 
-def _way(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> tuple[FloatArray, WaySource]:
+def _arc_length(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> tuple[FloatArray, ArcLengthSource]:
     """The device's own distance, else the integral of a recorded speed, else the length of the smoothed track."""
     if track.odometer is not None and np.count_nonzero(np.isfinite(track.odometer)) >= 2:
-        return odometer_way(track), "odometer"
+        return odometer_arc_length(track), "odometer"
     if 2 * np.count_nonzero(np.isfinite(track.speed)) >= len(track) or track.velocity is not None:
-        return integrated_way(track, smoothed, speed), "recorded speed"
-    return places_way(track, smoothed), "places"
+        return integrated_arc_length(track, smoothed, speed), "recorded speed"
+    return places_arc_length(track, smoothed), "places"
 
 
-def odometer_way(track: Track) -> FloatArray:
+def odometer_arc_length(track: Track) -> FloatArray:
     """The device's own distance (n,) (m), its gaps filled evenly in time; it may begin above 0."""
     assert track.odometer is not None
     known = np.isfinite(track.odometer)
@@ -142,8 +155,8 @@ def odometer_way(track: Track) -> FloatArray:
     return np.interp(time, time[known], np.maximum.accumulate(track.odometer[known]))
 
 
-def integrated_way(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> FloatArray:
-    """Integral (n,) (m) of the speed by the trapezoidal rule; over a gap the straight way between its ends."""
+def integrated_arc_length(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> FloatArray:
+    """Integral (n,) (m) of the speed by the trapezoidal rule; over a gap the straight line between its ends."""
     rising = np.maximum.accumulate(track.time)
     known = np.isfinite(speed) & track.usable
     if not known.any():
@@ -155,16 +168,16 @@ def integrated_way(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> 
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def places_way(track: Track, smoothed: SmoothedTrack) -> FloatArray:
+def places_arc_length(track: Track, smoothed: SmoothedTrack) -> FloatArray:
     """Length (n,) (m) of the smoothed track, with the recorded heights where there are any; straight over gaps."""
     chosen = smoothed.usable
     place = np.where(np.isfinite(smoothed.place), smoothed.place, track.place[:, :2])[chosen]
     steps = np.sum(np.diff(place, axis=0) ** 2, axis=1)
     height = smooth_height(track, smoothed)[chosen]
     rises = np.nan_to_num(np.diff(height))
-    way = np.concatenate([[0.0], np.cumsum(np.sqrt(steps + rises**2))])
+    arc_length = np.concatenate([[0.0], np.cumsum(np.sqrt(steps + rises**2))])
     rising = np.maximum.accumulate(track.time)
-    return np.interp(rising, rising[chosen], way)
+    return np.interp(rising, rising[chosen], arc_length)
 
 
 def smooth_height(track: Track, smoothed: SmoothedTrack) -> FloatArray:

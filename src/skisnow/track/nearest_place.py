@@ -33,7 +33,7 @@ class NearestPlaces:
         The nearest place on the path.
     distance : (n,) m
         To it.
-    way : (n,) m
+    arc_length : (n,) m
         Length of the path up to it.
     direction : (n, d)
         Unit vector of the path there.
@@ -45,7 +45,7 @@ class NearestPlaces:
 
     foot: FloatArray
     distance: FloatArray
-    way: FloatArray
+    arc_length: FloatArray
     direction: FloatArray
     where: IntArray
     beyond: BoolArray
@@ -73,7 +73,7 @@ class Path:
         self._along = np.diff(places, axis=0)
         self._squared = (self._along**2).sum(axis=1)
         self._piece = np.sqrt(self._squared)
-        self._way = np.concatenate([[0.0], np.cumsum(self._piece)])
+        self._arc_length = np.concatenate([[0.0], np.cumsum(self._piece)])
         self._tree = PieceTree(places)
 
     @property
@@ -84,7 +84,7 @@ class Path:
     @property
     def length(self) -> float:
         """Of all pieces (m)."""
-        return float(self._way[-1])
+        return float(self._arc_length[-1])
 
     def nearest(self, points: FloatArray) -> NearestPlaces:
         """The nearest places to points (n, d): the true ones, on the pieces and not only among their ends."""
@@ -99,7 +99,7 @@ class Path:
         return NearestPlaces(
             foot=foot,
             distance=distance,
-            way=self._way[piece] + share * self._piece[piece],
+            arc_length=self._arc_length[piece] + share * self._piece[piece],
             direction=along / self._piece[piece, None],
             where=2 * piece + np.sign(raw - share).astype(np.intp),
             beyond=ahead > np.maximum(ABREAST * distance, 1e-9 * self.length),

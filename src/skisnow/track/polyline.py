@@ -1,4 +1,4 @@
-"""A track as places joined by straight pieces, with the way along them and the times at them."""
+"""A track as places joined by straight pieces, with the arc length along them and the times at them."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ class Polyline(ShownFields):
         d = 2 from above, or 3.
     time : (n,) s
         At the places.
-    way : (n,) m
+    arc_length : (n,) m
         Length of the pieces up to each place.
     """
 
     place: FloatArray
     time: FloatArray
-    way: FloatArray
+    arc_length: FloatArray
 
     @property
     def length(self) -> float:
         """Of all pieces (m)."""
-        return float(self.way[-1])
+        return float(self.arc_length[-1])
 
-    def at_way(self, way: FloatArray) -> FloatArray:
+    def at_arc_length(self, arc_length: FloatArray) -> FloatArray:
         """Places (k, d) at ways (k,) (m)."""
-        return interpolated(way, self.way, self.place)
+        return interpolated(arc_length, self.arc_length, self.place)
 
     def at_time(self, time: FloatArray) -> FloatArray:
         """Places (k, d) at times (k,) (s)."""
@@ -48,13 +48,13 @@ class Polyline(ShownFields):
 
 def polyline(place: FloatArray, time: FloatArray) -> Polyline:
     """Join places (n, d) by straight pieces."""
-    return Polyline(place, time, way_along(place))
+    return Polyline(place, time, arc_lengths(place))
 
 
-def way_along(place: FloatArray) -> FloatArray:
+def arc_lengths(place: FloatArray) -> FloatArray:
     """Length (n,) of the straight pieces through places (n, d) up to each of them (m).
 
-    >>> way_along(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 5.0]]))
+    >>> arc_lengths(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 5.0]]))
     array([0., 5., 6.])
     """
     steps = np.linalg.norm(np.diff(place, axis=0), axis=1)

@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 from ..errors import ParameterError
-from .marks import FASTEST, GAP_FACTOR
+from .flags import FASTEST, GAP_FACTOR
 from .readers.fit import read_fit
 from .readers.gpx import read_gpx
 from .readers.nmea import SENTENCE, read_nmea
 from .readers.recording import Recording, track_of
+from .readers.refusal import refusal
 from .readers.rtklib import read_rtklib
 from .readers.rtklib_header import HEADER
 from .readers.table import read_table
 from .readers.text import text_of
-from .readers.trouble import refusal
 from .readers.ubx import SYNC, read_ubx
 
 if TYPE_CHECKING:
@@ -58,14 +58,14 @@ def read_track(
     kind
         The format; left out, it is told from the content, and by the file's ending where the content does not say.
     fastest : m/s
-        Horizontal speed above which a step between points is marked as impossible.
+        Horizontal speed above which a step between points is flagged as impossible.
     gap_factor
-        A time step longer than this many usual ones is marked as a gap.
+        A time step longer than this many usual ones is flagged as a gap.
 
     Returns
     -------
     Track
-        Every point of the file, in its order; doubtful ones are marked, none is dropped, moved or filled in.
+        Every point of the file, in its order; doubtful ones are flagged, none is dropped, moved or filled in.
 
     Raises
     ------

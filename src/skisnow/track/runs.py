@@ -34,7 +34,7 @@ _ZONE: Final = 0.02
 _SPARSE: Final = 10
 """One height in so many points is enough to tell tops from bottoms (modelling assumption)."""
 _LEVEL_SHARE: Final = 0.01
-"""Heights that differ by less than this share of the way are none: the slope's own third axis."""
+"""Heights that differ by less than this share of the distance travelled are none: the slope's own third axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ class Day(ShownFields):
 
     runs: tuple[Stretch, ...]
     lifts: tuple[Stretch, ...]
-    told_by: Literal["height", "motion"]
+    split_by: Literal["height", "motion"]
     remarks: tuple[str, ...]
 
 
@@ -124,8 +124,8 @@ def known_height(track: Track, motion: TrackMotion) -> tuple[FloatArray | None, 
     if np.count_nonzero(recorded) < max(2, len(track) // _SPARSE):
         return None, ("No heights in the track: lifts cannot be told from runs, descents are unknown.",)
     height = np.interp(np.arange(len(track)), np.flatnonzero(recorded), track.place[recorded, 2])
-    way = float(motion.way[-1] - motion.way[0])
-    if track.axes == "file" and np.ptp(height) < _LEVEL_SHARE * way:
+    arc_length = float(motion.arc_length[-1] - motion.arc_length[0])
+    if track.axes == "file" and np.ptp(height) < _LEVEL_SHARE * arc_length:
         return None, ("The third axis hardly changes: it is taken as the slope's own, and descents are unknown.",)
     return height, ()
 
@@ -197,7 +197,7 @@ def _stretch(track: Track, motion: TrackMotion, height: FloatArray | None, first
         last,
         float(track.time[first]),
         float(track.time[last]),
-        float(motion.way[last] - motion.way[first]),
+        float(motion.arc_length[last] - motion.arc_length[first]),
         None if height is None else float(height[first] - height[last]),
         max_speed(track, motion, inside),
         int(np.count_nonzero(np.diff(motion.smoothed.part[inside]))),
@@ -212,5 +212,5 @@ def max_speed(track: Track, motion: TrackMotion, inside: slice) -> float | None:
 
 
 def _is_run(found: Stretch) -> bool:
-    """A height that wanders while someone stands is none: the way is longer than it is deep."""
+    """A height that wanders while someone stands is none: the distance travelled is longer than it is deep."""
     return found.distance >= max(LEAST_DISTANCE, found.descent or 0.0)

@@ -11,8 +11,8 @@ from scipy.stats import chi2
 
 from ..errors import ParameterError
 from ..shown import ShownFields
+from .flags import GAP_FACTOR
 from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, Observed, local_cubic
-from .marks import GAP_FACTOR
 from .resolution import Resolution
 from .track import Track
 
@@ -130,7 +130,7 @@ def parts(track: Track, usable: BoolArray) -> IntArray:
     """
     begins = np.zeros(len(track), dtype=bool)
     for code in ("gap", "impossible_step"):
-        begins |= track.marks.get(code, False)
+        begins |= track.flags.get(code, False)
     chosen = np.flatnonzero(usable)
     late = np.diff(track.time[chosen]) > GAP_FACTOR * _interval(track.time[chosen])
     begins[chosen[1:][late]] = True

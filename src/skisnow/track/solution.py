@@ -40,8 +40,8 @@ def solution_counts(solution: SolutionArray | None) -> dict[str, int] | None:
     return {name: count for name, count in counts.items() if count}
 
 
-def solution_marks(solution: SolutionArray | None, count: int) -> dict[str, npt.NDArray[np.bool_]]:
-    """The marks ``float_solution`` and ``code_solution``, each (count,) bool.
+def solution_flags(solution: SolutionArray | None, count: int) -> dict[str, npt.NDArray[np.bool_]]:
+    """The flags ``float_solution`` and ``code_solution``, each (count,) bool.
 
     The second only where other points are by the phase: a receiver that never is says nothing by it.
     """
@@ -60,10 +60,10 @@ def inexact_sentence(name: str, solution: SolutionArray | None) -> str | None:
     """
     counts = solution_counts(solution) or {}
     words = {"float": "float (decimetres off)", "code": "by the code alone (metres off)"}
-    told = [f"{counts[kind]} {text}" for kind, text in words.items() if counts.get(kind)]
-    if not told or not counts.get("fixed"):
+    counted = [f"{counts[kind]} {text}" for kind, text in words.items() if counts.get(kind)]
+    if not counted or not counts.get("fixed"):
         return None
-    return f"{name}: of {sum(counts.values())} points {' and '.join(told)}; the others are fixed"
+    return f"{name}: of {sum(counts.values())} points {' and '.join(counted)}; the others are fixed"
 
 
 def _by_phase(solution: SolutionArray) -> bool:

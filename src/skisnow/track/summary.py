@@ -1,4 +1,4 @@
-"""What a track says: points, marks, distance, speed, runs and turns, and the same as JSON values."""
+"""What a track says: points, flags, distance, speed, runs and turns, and the same as JSON values."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..errors import ParameterError
 from ..json_number import json_number
 from ..shown import Facts, Shown, amount
 from ..units import DEGREE
-from .curvature import TrackMotion, integrated_way, places_way, track_motion
+from .curvature import TrackMotion, integrated_arc_length, places_arc_length, track_motion
 from .runs import Day, Stretch, max_speed, split_day
 from .solution import solution_counts
 from .track import Track
@@ -36,7 +36,7 @@ class TrackSummary(Shown):
     turns
         Turns within runs, in the order of time.
     distances
-        Length of the whole track (m) by each way to tell it: "odometer", "recorded speed", "places".
+        Length of the whole track (m) by each method: "odometer", "recorded speed", "places".
     max_speed
         Over the whole track (m/s): of the recorded speeds, or without any of the smoothed track's; None if unknown.
     remarks
@@ -117,29 +117,29 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
 
 
 def _distances(track: Track, motion: TrackMotion) -> dict[str, float]:
-    ways = {"places": places_way(track, motion.smoothed)}
+    ways = {"places": places_arc_length(track, motion.smoothed)}
     if motion.speed_source == "recorded":
-        ways["recorded speed"] = integrated_way(track, motion.smoothed, motion.speed)
-    if motion.way_source == "odometer":
-        ways["odometer"] = motion.way
-    return {name: float(way[-1] - way[0]) for name, way in ways.items()}
+        ways["recorded speed"] = integrated_arc_length(track, motion.smoothed, motion.speed)
+    if motion.arc_length_source == "odometer":
+        ways["odometer"] = motion.arc_length
+    return {name: float(arc_length[-1] - arc_length[0]) for name, arc_length in ways.items()}
 
 
 def _remarks(motion: TrackMotion, distances: dict[str, float]) -> tuple[str, ...]:
     found = []
-    chosen = distances[motion.way_source]
+    chosen = distances[motion.arc_length_source]
     for name, distance in distances.items():
         if chosen > 0.0 and abs(distance - chosen) > _APART * chosen:
             found.append(
-                f"The distance by {name}, {distance:.0f} m, is not that by {motion.way_source}, {chosen:.0f} m; the "
-                "latter counts."
+                f"The distance by {name}, {distance:.0f} m, is not that by {motion.arc_length_source}, {chosen:.0f} m; "
+                "the latter counts."
             )
     if motion.speed_source == "fitted":
         found.append("No speeds in the track: they are those of the smoothed places.")
     gaps = int(np.count_nonzero(np.diff(motion.smoothed.part)))
     if gaps:
         count = "1 gap" if gaps == 1 else f"{gaps} gaps"
-        found.append(f"{count}: nothing is smoothed across, and the way over it is straight.")
+        found.append(f"{count}: nothing is smoothed across, and the path over it is straight.")
     return tuple(found)
 
 
@@ -150,11 +150,11 @@ def summary_dict(summary: TrackSummary) -> Json:
         "schema_version": SCHEMA_VERSION,
         "file": summary.track.name,
         "points": len(summary.track),
-        "marked": summary.track.marked,
+        "marked": summary.track.flagged,
         "solutions": solution_counts(summary.track.solution),
         "duration_s": json_number(float(summary.track.time[-1] - summary.track.time[0])),
-        "distance_m": json_number(summary.distances[summary.motion.way_source]),
-        "distance_source": summary.motion.way_source.replace(" ", "_"),
+        "distance_m": json_number(summary.distances[summary.motion.arc_length_source]),
+        "distance_source": summary.motion.arc_length_source.replace(" ", "_"),
         "distances_m": {name.replace(" ", "_"): json_number(value) for name, value in summary.distances.items()},
         "max_speed_m_per_s": json_number(summary.max_speed),
         "speed_source": summary.motion.speed_source,
@@ -168,7 +168,7 @@ def summary_dict(summary: TrackSummary) -> Json:
             "velocity_noise_m_per_s": json_number(smoothed.speed_noise),
         },
         "runs": [_stretch_dict(run, "descent_m", 1.0) for run in summary.day.runs],
-        "runs_by": summary.day.told_by,
+        "runs_by": summary.day.split_by,
         "lifts": [_stretch_dict(lift, "ascent_m", -1.0) for lift in summary.day.lifts],
         "turns": [_turn_dict(turn) for turn in summary.turns],
         "frame": summary.track.frame,

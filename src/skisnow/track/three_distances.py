@@ -31,26 +31,29 @@ def nearest_apart(simulated: Path, measured: Polyline) -> Apart:
     place passes from one piece of the simulated track to another, halved until the distance there is linear within
     `EXACTNESS`. What is beyond an end of the simulated track has no offset.
     """
-    way = np.unique(np.concatenate([measured.way, np.linspace(0.0, measured.length, FEWEST_PIECES + 1)]))
-    at = measured.at_way(way)
+    arc_length = np.unique(np.concatenate([measured.arc_length, np.linspace(0.0, measured.length, FEWEST_PIECES + 1)]))
+    at = measured.at_arc_length(arc_length)
     found = simulated.nearest(at)
     offset, beyond, where = found.foot - at, found.beyond, found.where
     open_ = np.flatnonzero((where[1:] != where[:-1]) | (beyond[1:] != beyond[:-1]))
     for _ in range(_ROUNDS):
-        if not open_.size or len(way) > _MOST_PLACES:
+        if not open_.size or len(arc_length) > _MOST_PLACES:
             break
-        middle = 0.5 * (way[open_] + way[open_ + 1])
-        at = measured.at_way(middle)
+        middle = 0.5 * (arc_length[open_] + arc_length[open_ + 1])
+        at = measured.at_arc_length(middle)
         found = simulated.nearest(at)
         bent = _bent(offset, open_, found, at) > EXACTNESS * measured.length
         ends = (beyond[open_] != found.beyond) | (beyond[open_ + 1] != found.beyond)
         split = bent & ~(beyond[open_] & beyond[open_ + 1] & found.beyond)
-        split = (split | ends) & (way[open_ + 1] - way[open_] > _END * measured.length)
-        way, offset = np.insert(way, open_ + 1, middle), np.insert(offset, open_ + 1, found.foot - at, axis=0)
+        split = (split | ends) & (arc_length[open_ + 1] - arc_length[open_] > _END * measured.length)
+        arc_length, offset = (
+            np.insert(arc_length, open_ + 1, middle),
+            np.insert(offset, open_ + 1, found.foot - at, axis=0),
+        )
         beyond = np.insert(beyond, open_ + 1, found.beyond)
         left = (open_ + np.arange(len(open_)))[split]
         open_ = np.sort(np.concatenate([left, left + 1]))
-    return Apart(way, np.where(beyond[:, None], np.nan, offset))
+    return Apart(arc_length, np.where(beyond[:, None], np.nan, offset))
 
 
 def _bent(offset: FloatArray, first: npt.NDArray[np.intp], found: NearestPlaces, at: FloatArray) -> FloatArray:
@@ -60,14 +63,14 @@ def _bent(offset: FloatArray, first: npt.NDArray[np.intp], found: NearestPlaces,
 
 
 def arc_length_apart(simulated: Polyline, measured: Polyline) -> Apart:
-    """Offsets between places after the same way from the first points, up to the shorter track's length.
+    """Offsets between places after the same arc length from the first points, up to the shorter track's length.
 
     At the points of both tracks, so that nothing is left out between them.
     """
     end = min(simulated.length, measured.length)
-    way = np.unique(np.concatenate([simulated.way, measured.way, [end]]))
-    way = way[way <= end]
-    return Apart(way, simulated.at_way(way) - measured.at_way(way))
+    arc_length = np.unique(np.concatenate([simulated.arc_length, measured.arc_length, [end]]))
+    arc_length = arc_length[arc_length <= end]
+    return Apart(arc_length, simulated.at_arc_length(arc_length) - measured.at_arc_length(arc_length))
 
 
 def time_apart(simulated: Polyline, measured: Polyline, *, later: float = 0.0) -> Apart | None:
@@ -92,7 +95,7 @@ def time_apart(simulated: Polyline, measured: Polyline, *, later: float = 0.0) -
     own = (measured.time >= begin) & (measured.time <= end)
     other = np.concatenate([clock[(clock > begin) & (clock < end)], [begin, end]])
     time = np.concatenate([measured.time[own], other])
-    way = np.concatenate([measured.way[own], np.interp(other, measured.time, measured.way)])
+    arc_length = np.concatenate([measured.arc_length[own], np.interp(other, measured.time, measured.arc_length)])
     place = np.concatenate([measured.place[own], measured.at_time(other)])
-    order = np.lexsort((way, time))  # several points at one time stay in their order
-    return Apart(way[order], interpolated(time, clock, simulated.place)[order] - place[order])
+    order = np.lexsort((arc_length, time))  # several points at one time stay in their order
+    return Apart(arc_length[order], interpolated(time, clock, simulated.place)[order] - place[order])

@@ -10,8 +10,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..former_names import warn_of_former_name
 from ..shown import Facts, Shown, amount, ends
-from .marks import MARKS
+from .flags import FLAGS
 from .projection import GeodeticPoint
 from .solution import SolutionArray
 
@@ -21,7 +22,7 @@ Axes: TypeAlias = Literal["file", "east_north_up", "slope"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Track(Shown):
-    """Points in the order of their file; nothing is left out, what is doubtful is marked.
+    """Points in the order of their file; nothing is left out, what is doubtful is flagged.
 
     Attributes
     ----------
@@ -49,8 +50,8 @@ class Track(Shown):
         ``"UTC"``, ``"GPS"``, ``"JST"``, ``"local"`` (of the file, without a date or zone).
     frame
         In words: the slope's axes, or the local projection with its origin.
-    marks
-        CODE to (n,) bool: which points carry the mark. Marked points stay.
+    flags
+        CODE to (n,) bool: which points carry the quality flag. Flagged points stay.
     axes
         What x, y and z are: ``"file"`` (the file's own local metres), ``"east_north_up"``, or ``"slope"``.
     origin
@@ -82,7 +83,7 @@ class Track(Shown):
     solution: SolutionArray | None = None
     odometer: FloatArray | None = None
     start: datetime | None = None
-    marks: Mapping[str, npt.NDArray[np.bool_]] = field(default_factory=dict)
+    flags: Mapping[str, npt.NDArray[np.bool_]] = field(default_factory=dict)
     axes: Axes = "file"
     origin: GeodeticPoint | None = None
     first_time: float = 0.0
@@ -94,10 +95,10 @@ class Track(Shown):
         return len(self.time)
 
     def _facts(self) -> Facts:
-        marked = ", ".join(f"{count} {code}" for code, count in self.marked.items())
+        flagged = ", ".join(f"{count} {code}" for code, count in self.flagged.items())
         duration = float(self.time[-1] - self.time[0]) if len(self.time) else 0.0
         rows = (
-            ("points", f"{len(self)} in {amount(duration, 's')}{f', marked: {marked}' if marked else ''}"),
+            ("points", f"{len(self)} in {amount(duration, 's')}{f', flagged: {flagged}' if flagged else ''}"),
             *((f"{axis}", ends(self.place[:, k], "m")) for k, axis in enumerate("xyz")),
             ("speed", f"{ends(self.speed, 'm/s')} ({self.speed_kind})"),
             ("start", "no date" if self.start is None else f"{self.start} ({self.time_scale})"),
@@ -106,15 +107,27 @@ class Track(Shown):
         return Facts(repr(self.name), rows)
 
     @property
+    def marks(self) -> Mapping[str, npt.NDArray[np.bool_]]:
+        """Former name of `flags`."""
+        warn_of_former_name("Track.marks", "flags")
+        return self.flags
+
+    @property
     def marked(self) -> dict[str, int]:
-        """How many points carry each mark, marks without any left out."""
-        return {code: int(np.sum(where)) for code, where in self.marks.items() if np.any(where)}
+        """Former name of `flagged`."""
+        warn_of_former_name("Track.marked", "flagged")
+        return self.flagged
+
+    @property
+    def flagged(self) -> dict[str, int]:
+        """How many points carry each flag, flags without any left out."""
+        return {code: int(np.sum(where)) for code, where in self.flags.items() if np.any(where)}
 
     @property
     def usable(self) -> npt.NDArray[np.bool_]:
-        """(n,) bool: points with a horizontal place and without a mark that excludes."""
+        """(n,) bool: points with a horizontal place and without a flag that excludes."""
         usable = np.asarray(np.isfinite(self.place[:, :2]).all(axis=1))
-        for code, where in self.marks.items():
-            if code in MARKS and MARKS[code].excludes:
+        for code, where in self.flags.items():
+            if code in FLAGS and FLAGS[code].excludes:
                 usable &= ~where
         return usable

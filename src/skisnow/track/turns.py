@@ -167,7 +167,7 @@ def _switch_time(motion: TrackMotion, before: int, after: int) -> float:
 def _turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> Turn:
     sharpest = _sharpest(motion, piece)
     headings, errors = _at_times(motion, (start, end))
-    length = float(np.diff(np.interp((start, end), motion.time, motion.way))[0])
+    length = float(np.diff(np.interp((start, end), motion.time, motion.arc_length))[0])
     angle = float(headings[1] - headings[0])
     return Turn(
         start=start,

@@ -12,8 +12,8 @@ from nicegui import ui
 
 from ..report.numerals import counted
 from .analysing import Choice, Numbers, Refusal, choosable_marks
+from .error_pages import error_sentence
 from .layout import heading, sentence
-from .trouble import told
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -86,7 +86,7 @@ class AnalysisView:
             await self._draw(found, asked)
         except Exception as error:
             if not self._is_old(asked):
-                page.refused = told(error)
+                page.refused = error_sentence(error)
                 page.settled.set()
                 self._status.set_text(page.refused)
 

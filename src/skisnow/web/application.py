@@ -11,13 +11,13 @@ from nicegui import app as pages_app
 from nicegui import ui
 from starlette.responses import FileResponse
 
+from .error_pages import add_error_pages, log_to
 from .guard import Access, Guard
 from .layout import KEEPING, SCRIPT, STYLES
 from .pages import INNER, PAGES
 from .patience import RECONNECT_S, use_heartbeat
 from .socket_events import answer_quietly
 from .transfer import add_transfer
-from .trouble import add_error_pages, log_to
 
 if TYPE_CHECKING:
     from starlette.types import ASGIApp

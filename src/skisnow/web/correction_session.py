@@ -13,7 +13,7 @@ from ..field.store import corrected_files, kept_tables
 from ..field.store.grown import ReplayedRow, ReplayedTest
 from ..field.store.journal_entry import JournalEntry
 from ..field.store.kept_tables import cell_key
-from .edit_session import AtOnce, EditSession, said_at_once
+from .edit_session import AtOnce, EditSession, quick_results
 
 if TYPE_CHECKING:
     from ..field.problems import Problem
@@ -77,4 +77,4 @@ class CorrectionSession(EditSession):
 
     def at_once(self, site: str) -> AtOnce:
         """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
-        return said_at_once(campaign_of_files(corrected_files(self._files, self._entries)), site)
+        return quick_results(campaign_of_files(corrected_files(self._files, self._entries)), site)

@@ -83,10 +83,10 @@ class EditSession:
     def at_once(self, site: str) -> AtOnce:
         """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
         files = grown_in_memory(self.campaign, of=self.tests_of_site(site))
-        return said_at_once(campaign_of_files(files.contents), site)
+        return quick_results(campaign_of_files(files.contents), site)
 
 
-def said_at_once(campaign: Campaign, site: str) -> AtOnce:
+def quick_results(campaign: Campaign, site: str) -> AtOnce:
     """What the tests of a site say, of a campaign that may have other sites too."""
     screened = screened_both(campaign, geometry="extended")
     found = experiments_at_once(campaign, screened=screened)

@@ -60,15 +60,15 @@ function pointsOf(line, across, up) {
 }
 
 function drawn(line, { colour, dash, width, point }, across, up) {
-  const look = line.points
+  const style = line.points
     ? { d: pointsOf(line, across, up), "stroke-width": point, "stroke-linecap": "round", class: "points" }
     : { d: pathOf(line, across, up), "stroke-width": width, "stroke-dasharray": dash, class: "line" };
-  return made("path", { ...look, stroke: colour, fill: "none" });
+  return made("path", { ...style, stroke: colour, fill: "none" });
 }
 
 export default {
   template: '<div><svg role="img" style="display: block; width: 100%; touch-action: pan-y"></svg></div>',
-  props: { panel: Object, height: Number, looks: Array },
+  props: { panel: Object, height: Number, styles: Array },
   mounted() {
     this.svg = this.$el.firstChild;
     this.observer = new ResizeObserver(() => this.draw());
@@ -107,7 +107,7 @@ export default {
       // a window of its own: what is beyond the range is cut off
       const inside = made("svg", { x: LEFT, y: TOP, width: Math.max(0, right - LEFT), height: bottom - TOP,
                                    viewBox: `${LEFT} ${TOP} ${Math.max(1, right - LEFT)} ${bottom - TOP}` });
-      inside.append(...lines.map((line) => drawn(line, this.looks[line.look], this.across, this.up)));
+      inside.append(...lines.map((line) => drawn(line, this.styles[line.style], this.across, this.up)));
       this.svg.setAttribute("viewBox", `0 0 ${width} ${this.height}`);
       this.svg.setAttribute("height", this.height);
       this.svg.setAttribute("aria-label", panel.label);
@@ -120,7 +120,7 @@ export default {
     read(event) {
       this.reading?.remove();
       const x = (event.clientX - this.svg.getBoundingClientRect().left);
-      const nearest = toRaw(this.panel).lines.filter((line) => this.looks[line.look].read).map((line) => {
+      const nearest = toRaw(this.panel).lines.filter((line) => this.styles[line.style].read).map((line) => {
         let best = -1;
         line.x.forEach((value, i) => {
           if (value === null) return;

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 DIGITS: Final = 5
-LOOKS: Final = (
+STYLES: Final = (
     {"colour": "#0b4f8a", "dash": "", "width": 2.5, "point": 11, "read": True},
     {"colour": "#b3450b", "dash": "7 5", "width": 2.5, "point": 11, "read": True},
     {"colour": "#48525c", "dash": "2 4", "width": 2.5, "point": 11, "read": True},
@@ -25,19 +25,19 @@ LOOKS: Final = (
 )
 """Colour, dashes, width of a line and of a point in pixels, and whether numbers stand beside the finger or mouse."""
 BEHIND: Final = 3
-"""The look of what the others are seen against."""
+"""The style of what the others are seen against."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChartLine:
     """Values over places, None where there is none, which breaks the line.
 
-    ``look`` 0, 1 or 2: the first, second or a further thing, or `BEHIND`. ``points``: points in place of a line.
+    ``style`` 0, 1 or 2: the first, second or a further thing, or `BEHIND`. ``points``: points in place of a line.
     """
 
     x: Sequence[float | None]
     y: Sequence[float | None]
-    look: int = 0
+    style: int = 0
     points: bool = False
 
 
@@ -60,7 +60,7 @@ class LineChart(Element, component="line_chart.js"):
         self._words = words
         self._drawn: list[tuple[ChartLine, dict[str, Any]]] = []
         self._props["height"] = height
-        self._props["looks"] = LOOKS
+        self._props["styles"] = STYLES
         self.show([])
 
     def show(
@@ -90,7 +90,7 @@ class LineChart(Element, component="line_chart.js"):
         for known, plain in self._drawn:
             if known == line:
                 return plain
-        return {"x": _short(line.x), "y": _short(line.y), "look": line.look, "points": line.points}
+        return {"x": _short(line.x), "y": _short(line.y), "style": line.style, "points": line.points}
 
     def _label(self, lines: Sequence[ChartLine]) -> str:
         found = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]

@@ -72,7 +72,7 @@ def ski_found(asked: SkiAsked, *, name: str = "") -> SkiFound:
     wanted = {column: np.full(station.size, np.nan) for column in EDITED_COLUMNS}
     for (column, i), text in asked.cells.items():
         wanted[column][i] = typed_number(f"{CELLS[column]} at {station[i]:.3f} m", text) * COLUMNS[column].factor
-    source = ski.source if asked.is_file else f"edited in the lab ({_told(asked, station)}) from: {ski.source}"
+    source = ski.source if asked.is_file else f"edited in the lab ({_in_words(asked, station)}) from: {ski.source}"
     own = ski.name if asked.is_file else f"{ski.name}, edited"
     edited = edited_ski(ski, SkiEdit(station, factors, wanted), name=name or own, source=source)
     shown = values_at(edited, station)
@@ -84,7 +84,7 @@ def ski_found(asked: SkiAsked, *, name: str = "") -> SkiFound:
     return SkiFound(edited, warned, tuple(station.tolist()), {**cells, **asked.cells})
 
 
-def _told(asked: SkiAsked, station: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+def _in_words(asked: SkiAsked, station: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
     scaled = [f"{FACTORS[key]} × {text}" for key, text in asked.factors.items() if typed_number(key, text) != 1.0]
     given = [f"{CELLS[column]} {text} at {station[i]:.3f} m" for (column, i), text in asked.cells.items()]
     return "; ".join([*scaled, *given])

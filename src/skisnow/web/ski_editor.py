@@ -1,4 +1,4 @@
-"""The editor of a ski: factors for whole curves, values at stations, and the text of its file."""
+"""The editor of a ski: factors for whole curves, values at positions along it, and the text of its file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from .lab_skis import LabSkis
 
-STATION: Final = "Station (m)"
+POSITION: Final = "Position (m)"
 ONE: Final = "1"
 
 
@@ -36,7 +36,7 @@ class SkiEditor:
         heading("Whole curves", 3)
         with ui.element("div").classes("factors"):
             self._factors = {key: self._factor(words) for key, words in FACTORS.items()}
-        heading("At stations", 3)
+        heading("At positions along the ski", 3)
         sentence("What is typed here holds; between its neighbours the curve goes through it smoothly.", "quiet")
         self._table = ui.element("div").classes("table")
         self._text, self._csv = self._file(text, table)
@@ -53,7 +53,7 @@ class SkiEditor:
             with ui.element("summary"):
                 ui.label("The file of the ski")
             sentence(
-                "With units in its keys. Draw the file takes it as it is written here; factors and values at stations "
+                "With units in its keys. Draw the file takes it as it is written here; factors and values at positions "
                 "start again from it.",
                 "quiet",
             )
@@ -114,7 +114,7 @@ class SkiEditor:
         self._cells, self._shown = {}, dict(cells)
         with self._table, ui.element("table").classes("cells"):
             with ui.element("thead"), ui.element("tr"):
-                for words in (STATION, *CELLS.values()):
+                for words in (POSITION, *CELLS.values()):
                     with ui.element("th").props("scope=col"):
                         ui.label(words)
             with ui.element("tbody"):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import core
 
-from .trouble import LOG
+from .error_pages import LOG
 
 if TYPE_CHECKING:
     from collections.abc import Callable

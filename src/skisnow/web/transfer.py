@@ -18,8 +18,8 @@ from ..errors import ParameterError, SkisnowError, StoreError
 from ..field.reading import CAMPAIGN_FILES, FilesInMemory
 from ..field.store import Journals, campaign_files, corrected_files, export_corrected, grown, write_campaign
 from .confined import BOUNDS, confined
+from .error_pages import error_sentence, plain_page
 from .names import required_id
-from .trouble import plain_page, told
 from .unpacking import files_below, write_zip
 from .uploaded import add_uploaded
 
@@ -43,7 +43,7 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
                 uploads = [item for item in form.getlist("files") if isinstance(item, UploadFile) and item.filename]
                 added = await run_in_threadpool(_added, lab, uploads)
         except (SkisnowError, OSError) as error:
-            return plain_page("This was not taken in", f"Nothing was stored: {told(error)}", 400)
+            return plain_page("This was not taken in", f"Nothing was stored: {error_sentence(error)}", 400)
         except HTTPException:
             text = f"Nothing was stored: at most {lab.limits.files} files at once are taken in."
             return plain_page("This was not taken in", text, 400)
@@ -75,7 +75,7 @@ async def _packed(write: Writing, id_: str) -> Response:
     try:
         content = await run_in_threadpool(_zip, write)
     except StoreError as error:
-        return plain_page("This cannot be exported", told(error), 404)
+        return plain_page("This cannot be exported", error_sentence(error), 404)
     headers = {"content-disposition": f'attachment; filename="campaign-{required_id(id_)}.zip"'}
     return Response(content, media_type="application/zip", headers=headers)
 

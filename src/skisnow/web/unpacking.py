@@ -59,7 +59,7 @@ class Unpacking:
             links.
         """
         self._require_small_directory(packed)
-        with _damage_told():
+        with _damage_errors():
             archive = zipfile.ZipFile(packed)
         with archive:
             members = [member for member in archive.infolist() if not member.filename.endswith("/")]
@@ -71,7 +71,7 @@ class Unpacking:
 
     def _require_small_directory(self, packed: IO[bytes]) -> None:
         """Refuse a list of files so long that reading it alone would fill the memory."""
-        with _damage_told():
+        with _damage_errors():
             packed.seek(0, 2)
             size = packed.tell()
             packed.seek(max(0, size - _END_RECORD.size - _LONGEST_COMMENT))
@@ -121,11 +121,11 @@ def _require_plain(member: zipfile.ZipInfo) -> None:
 
 
 def _unpacked(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Iterator[bytes]:
-    with _damage_told():
+    with _damage_errors():
         content = archive.open(member)
     with content:
         while True:
-            with _damage_told():
+            with _damage_errors():
                 piece = content.read(CHUNK_BYTES)
             if not piece:
                 return
@@ -133,7 +133,7 @@ def _unpacked(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Iterator[byt
 
 
 @contextmanager
-def _damage_told() -> Iterator[None]:
+def _damage_errors() -> Iterator[None]:
     """Only for what zipfile does by itself: it tells of damage by a dozen kinds of errors, from any of its steps."""
     try:
         yield

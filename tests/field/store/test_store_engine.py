@@ -78,7 +78,7 @@ def test_rows_must_point_somewhere(place: Path) -> None:
     with (
         Store.open(place) as store,
         pytest.raises(StoreError, match="FOREIGN KEY"),
-        store_engine.database_told(place, "refused"),
+        store_engine.database_errors(place, "refused"),
         writing(store.engine) as connection,
     ):
         connection.execute(text("INSERT INTO chunk VALUES ('a', 0, x'00')"))

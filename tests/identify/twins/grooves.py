@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from skisnow import SnowProperties, carve
-from skisnow.identify import Marks, identify
+from skisnow.identify import MeasuredGrooves, identify
 from skisnow.scenario import scenario_file
 from skisnow.units import MM, N_PER_MM2, N_PER_MM3
 
@@ -78,7 +78,7 @@ def true_groove(hardness: float, strength: float, changes: dict[str, object]) ->
     return TrueGroove(depth * (1.0 - 1.0 / ratio), depth / math.tan(local), radius, slid, needed)
 
 
-def marks_of(groove: TrueGroove, rng: np.random.Generator) -> Marks:
+def marks_of(groove: TrueGroove, rng: np.random.Generator) -> MeasuredGrooves:
     """Ten places; a sliding ski sweeps three times its width, which tells nothing."""
     width = groove.width * (3.0 if groove.slid else 1.0)
     sds = (
@@ -89,7 +89,7 @@ def marks_of(groove: TrueGroove, rng: np.random.Generator) -> Marks:
     true = (groove.depth, width, groove.turn_radius)
     depth, across, radius = (above_zero(value, sd, rng) for value, sd in zip(true, sds, strict=True))
     depth_sd, width_sd, radius_sd = (np.full(PLACES, sd) for sd in sds)
-    return Marks("twin", depth, across, radius, depth_sd, width_sd, radius_sd)
+    return MeasuredGrooves("twin", depth, across, radius, depth_sd, width_sd, radius_sd)
 
 
 def above_zero(value: float, sd: float, rng: np.random.Generator) -> np.ndarray:

@@ -22,7 +22,7 @@ from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
 from skisnow.report.figures.track_band import TimedTrack, band_of, offsets, track_band
 from skisnow.simulate.run import Run
 from skisnow.track.nearest_place import distance_beside
-from skisnow.track.polyline import way_along
+from skisnow.track.polyline import arc_lengths
 
 from ..runs import RADIUS, SPEED, STANCE, circle_run
 
@@ -162,7 +162,7 @@ def test_distance_between_circles_of_one_centre() -> None:
         np.stack([radius * np.cos(angle), radius * np.sin(angle), 0.0 * angle], axis=1) for radius in (12.0, 12.5)
     )
     assert distance_beside(outer, inner) == pytest.approx(np.full(2001, 0.5), abs=1e-6)
-    assert way_along(inner)[-1] == pytest.approx(12.0, rel=1e-6)
+    assert arc_lengths(inner)[-1] == pytest.approx(12.0, rel=1e-6)
 
 
 def test_compared_runs_are_held_against_the_first(run: Run) -> None:

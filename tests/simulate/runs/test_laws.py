@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy.io import netcdf_file
 
-from skisnow import scenario, simulate
+from skisnow import scenario, simulate, verify
 from skisnow.contact import Laws
 from skisnow.errors import ParameterError
-from skisnow.forces.friction import FrictionLaw, WaterFilmFriction
+from skisnow.forces.friction import ConstantFriction, FrictionLaw, WaterFilmFriction
 from skisnow.forces.penetration import HypoplasticPoint, MeanPressurePoint, PointLaw, VolumeWithAnglePoint
 from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear
 from skisnow.simulate.run import Run
+from skisnow.simulate.run_summary import summary_dict
 
 FloatArray = npt.NDArray[np.float64]
 H, S = 0.2e9, 0.5e6
+
+
+def weaker(_distance: float) -> float:
+    """Snow that is weaker than the scenario's by a tenth."""
+    return 0.9
 
 
 def carve(seconds: float, laws: Laws | None = None) -> Run:
@@ -84,6 +93,38 @@ def test_other_laws_run_in_a_turn(laws: Laws) -> None:
     assert run.outcome == "finished"
     assert not run.has_residual_above(0.02)
     assert 1e-4 < np.linalg.norm(run.place[-1] - usual.place[-1]) < 0.5
+
+
+def test_a_run_names_the_laws_that_it_was_given(tmp_path: Path) -> None:
+    """In its repr, in summary.json, in run.nc and in the report; a run of the scenario's own laws names none."""
+    turn = scenario("carved-46m", changes={"run.duration_s": 0.05})
+    run = simulate(turn, laws=Laws(friction=Own(), shear=ConstantShear(S)), strength_along=weaker)
+    named = {
+        "friction": "Own()",
+        "shear": f"ConstantShear(failure_shear_stress={S!r})",
+        "penetration": None,
+        "strength_along": "weaker",
+    }
+    assert run.given_laws == summary_dict(run)["laws"] == named
+    assert "laws             given in Python: friction Own, shear ConstantShear, strength_along weaker" in repr(run)
+    assert repr(run).count("\n") < 9
+    page = run.report(tmp_path).read_text(encoding="utf-8")
+    assert f"<dt>Shear, given in Python</dt><dd>{named['shear']}</dd>" in page
+    assert "the run had another strength (shear, strength along, given in Python)" in page
+    with netcdf_file(tmp_path / "run.nc", "r", mmap=False) as file:
+        assert json.loads(file.laws) == named  # type: ignore[attr-defined]
+    plain = simulate(turn)
+    assert set(summary_dict(plain)["laws"].values()) == {None}
+    assert "given in Python" not in repr(plain) + plain.report(tmp_path).read_text(encoding="utf-8")
+
+
+def test_a_run_is_verified_on_its_own_laws() -> None:
+    """On the scenario's friction the end would move by millimetres, and not by what a finer solver changes."""
+    high = ConstantFriction(0.1)
+    run = carve(0.1, Laws(friction=high))
+    moved = {each.key: each.end_moves for each in verify(run)}
+    assert moved["solver.tolerance_mm"] is not None
+    assert moved["solver.tolerance_mm"] < 1e-3 < np.linalg.norm(run.place[-1] - carve(0.1).place[-1])
 
 
 def test_a_law_that_gives_no_strength_ends_the_run_with_its_name() -> None:

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from skisnow.errors import FieldDataError
-from skisnow.track.marks import MARKS
+from skisnow.track.flags import FLAGS
 from skisnow.track.read import read_track
 
 from .receivers import fit_checksum, fit_file, nav_pvt, sentence, ubx_frame
@@ -71,9 +71,9 @@ def require_track_or_our_error(path: Path, kind: str | None = None) -> bool:
     assert (np.diff(track.time) >= 0.0).all()
     assert np.isfinite(track.time).all()
     assert not np.isinf(track.place).any()
-    assert set(track.marks) == set(MARKS)
+    assert set(track.flags) == set(FLAGS)
     assert np.isfinite(track.place[track.usable, :2]).all()
-    assert track.marks["no_fix"][np.isnan(track.place[:, 0])].all()
+    assert track.flags["no_fix"][np.isnan(track.place[:, 0])].all()
     return True
 
 

@@ -33,7 +33,7 @@ def test_records(tmp_path: Path) -> None:
         np.testing.assert_allclose(track.place[2, :2], [0.0, north], atol=1e-5)
         assert track.origin is not None
         assert track.origin.height == 1500.0
-        assert track.marked == {"no_fix": 1, "missing_height": 1}
+        assert track.flagged == {"no_fix": 1, "missing_height": 1}
 
 
 def test_negative_latitudes(tmp_path: Path) -> None:

@@ -32,7 +32,7 @@ def test_places_times_heights(tmp_path: Path) -> None:
         np.testing.assert_array_equal(track.time, [0.0, 0.5, 16.0])
         stretched = 1e-4 * metres_per_degree.north(47.0) * (1 + 1500.5 / 6.37e6)
         np.testing.assert_allclose(track.place[1, :2], [0.0, stretched], atol=2e-5)
-        assert track.marked == {"missing_height": 1}
+        assert track.flagged == {"missing_height": 1}
         assert np.isnan(track.speed).all()
         assert "above mean sea level" in track.frame
 
@@ -66,7 +66,7 @@ def test_time_zones(tmp_path: Path) -> None:
 
 def test_no_fix(tmp_path: Path) -> None:
     track = read(tmp_path, gpx(point(47.0, "14Z") + point(47.0, "15Z", "<fix>none</fix>")), "a.gpx")
-    assert track.marked["no_fix"] == 1
+    assert track.flagged["no_fix"] == 1
     assert track.usable.tolist() == [True, False]
 
 
@@ -136,7 +136,7 @@ def test_the_place_is_a_points_own(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("height", ["<ele></ele>", "<ele>NaN</ele>", ""])
 def test_a_height_may_be_missing(tmp_path: Path, height: str) -> None:
-    assert read(tmp_path, gpx(point(47.0, "14Z", height)), "a.gpx").marked == {"missing_height": 1}
+    assert read(tmp_path, gpx(point(47.0, "14Z", height)), "a.gpx").flagged == {"missing_height": 1}
 
 
 @pytest.mark.parametrize("place", ['lat="47"', 'lat="x" lon="11"', 'lat="1e999" lon="11"'])

@@ -90,8 +90,8 @@ def test_carrier_phase_of_gga(tmp_path: Path) -> None:
     track = read(tmp_path, b"".join(gga(f"15511{i}.00", quality=i) for i in (1, 2, 4, 5, 6)), "a.nmea")
     assert track.solution is not None
     assert track.solution.tolist() == ["code", "code", "fixed", "float", ""]
-    assert track.marked == {"float_solution": 1, "code_solution": 2}
-    assert read(tmp_path, gga(quality=1), "b.nmea").marked == {}
+    assert track.flagged == {"float_solution": 1, "code_solution": 2}
+    assert read(tmp_path, gga(quality=1), "b.nmea").flagged == {}
 
 
 def test_carrier_phase_of_gns(tmp_path: Path) -> None:
@@ -109,13 +109,13 @@ def test_no_fix(tmp_path: Path) -> None:
     empty = sentence("GNGGA,155113.00,,,,,0,00,99.99,,,,,,")
     track = read(tmp_path, empty + rmc("155113.00", "", "", ok="V") + gga() + rmc("155115.00", ok="V"), "a.nmea")
     assert track.usable.tolist() == [False, True, False]
-    assert track.marked["no_fix"] == 2
+    assert track.flagged["no_fix"] == 2
 
 
 def test_the_same_time_twice(tmp_path: Path) -> None:
     track = read(tmp_path, gga() + rmc() + gga() + rmc() + gga("155115.00"), "a.nmea")
     assert len(track) == 3
-    assert track.marked == {"repeated_time": 1}
+    assert track.flagged == {"repeated_time": 1}
 
 
 def test_damaged_sentences_are_counted(tmp_path: Path) -> None:

@@ -58,7 +58,7 @@ def test_carrier_phase(tmp_path: Path) -> None:
     track = read(tmp_path, "\n".join([*LLH.splitlines()[:3], *rows]), "a.pos")
     assert track.solution is not None
     assert track.solution.tolist() == ["fixed", "float", "code", "code", "code", "float"]
-    assert track.marked == {"float_solution": 2, "code_solution": 3}
+    assert track.flagged == {"float_solution": 2, "code_solution": 3}
 
 
 def test_standard_deviation_of_the_speed(tmp_path: Path) -> None:
@@ -163,7 +163,7 @@ def test_baseline_with_its_base(tmp_path: Path) -> None:
 
 def test_no_solution_is_marked(tmp_path: Path) -> None:
     track = read(tmp_path, LLH.replace("1499.5000   1", "1499.5000   0"), "a.pos")
-    assert track.marked == {"no_fix": 1}
+    assert track.flagged == {"no_fix": 1}
 
 
 @pytest.mark.parametrize(

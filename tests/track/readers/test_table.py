@@ -41,7 +41,7 @@ def test_local_metres(tmp_path: Path) -> None:
     assert track.first_time == 0.5
     np.testing.assert_array_equal(track.place, [[0, 0, 10], [0.7, 0.1, 9.9], [1.5, -0.2, np.nan]])
     np.testing.assert_array_equal(track.speed, [7.0, 7.25, np.nan])
-    assert track.marked == {"missing_height": 1}
+    assert track.flagged == {"missing_height": 1}
     assert (track.time_scale, track.start, track.axes, track.origin) == ("local", None, "file", None)
     assert track.name == "run.csv"
 
@@ -88,7 +88,7 @@ def test_latitude_and_longitude(tmp_path: Path) -> None:
     np.testing.assert_allclose(track.place[0], np.zeros(3), atol=1e-9)
     np.testing.assert_allclose(track.place[1], expected, atol=2e-5)
     np.testing.assert_array_equal(track.speed, [3.5, np.nan])
-    assert track.marked == {"negative_speed": 1}
+    assert track.flagged == {"negative_speed": 1}
     assert "latitude 46°, longitude 7°, height 0 m" in track.frame
     assert track.axes == "east_north_up"
 
@@ -112,14 +112,14 @@ def test_sixty_kilometres_from_the_origin_up_is_down(tmp_path: Path) -> None:
 def test_points_without_a_place_stay(tmp_path: Path) -> None:
     track = read(tmp_path, "time,lat,lon\n0,,\n1,46,7\n2,,7\n3,46,7\n")
     assert len(track) == 4
-    assert track.marked == {"no_fix": 2, "missing_height": 2}
+    assert track.flagged == {"no_fix": 2, "missing_height": 2}
     np.testing.assert_array_equal(track.usable, [False, True, False, True])
     np.testing.assert_array_equal(track.place[1, :2], [0.0, 0.0])
 
 
 def test_latitude_and_longitude_zero_are_no_place(tmp_path: Path) -> None:
     track = read(tmp_path, "time,lat,lon,alt_m\n0,0,0.0,0\n1,0,7,5\n2,0,7,5\n")  # on the equator there is a place
-    assert track.marked == {"no_fix": 1}
+    assert track.flagged == {"no_fix": 1}
     assert track.origin == GeodeticPoint(0.0, 7.0, height=5.0)
 
 
@@ -209,7 +209,7 @@ def test_a_real_day() -> None:
     with DAY.open() as stream:
         rows = list(csv.DictReader(stream))
     assert len(track) == len(rows) == 5898
-    assert track.marked == {"repeated_time": 13}
+    assert track.flagged == {"repeated_time": 13}
     assert track.further_columns == ("lap",)
     np.testing.assert_array_equal(track.speed, [float(row["speed_mps"]) for row in rows])
     assert track.odometer is not None

@@ -38,7 +38,7 @@ def test_messages(tmp_path: Path) -> None:
         assert track.origin.height == 1500.123
         north = 1e-5 * metres_per_degree.north(47.2345678) * (1 + 1500 / 6.37e6)
         np.testing.assert_allclose(track.place[1], [0.0, north, 0.0], atol=2e-5)
-        assert track.marked == {}
+        assert track.flagged == {}
         assert track.left_out == {}
 
 
@@ -85,7 +85,7 @@ def test_a_high_precision_place_that_is_not_valid_does_not_count(tmp_path: Path)
     track = read(tmp_path, nav_pvt() + nav_hpposllh(invalid=1), "a.ubx")
     assert track.origin is not None
     assert track.origin.height == 1500.123
-    assert read(tmp_path, nav_pvt() + nav_pvt(second=15, invalid_place=1), "b.ubx").marked == {"no_fix": 1}
+    assert read(tmp_path, nav_pvt() + nav_pvt(second=15, invalid_place=1), "b.ubx").flagged == {"no_fix": 1}
 
 
 def test_covariances(tmp_path: Path) -> None:
@@ -123,9 +123,9 @@ def test_carrier_phase(tmp_path: Path) -> None:
     track = read(tmp_path, data + nav_pvt(second=13, fix=0, carrier=2), "a.ubx")
     assert track.solution is not None
     assert track.solution.tolist() == ["fixed", "float", "code", ""]
-    assert track.marked == {"no_fix": 1, "float_solution": 1, "code_solution": 1}
+    assert track.flagged == {"no_fix": 1, "float_solution": 1, "code_solution": 1}
     assert track.usable.tolist() == [True, True, True, False]
-    assert read(tmp_path, nav_pvt(), "b.ubx").marked == {}
+    assert read(tmp_path, nav_pvt(), "b.ubx").flagged == {}
 
 
 def test_negative_fraction_of_a_second(tmp_path: Path) -> None:
@@ -137,7 +137,7 @@ def test_no_fix(tmp_path: Path) -> None:
     data = nav_pvt(second=1) + nav_pvt(second=2, fix=0) + nav_pvt(second=3, fix_ok=0) + nav_pvt(second=4, fix=5)
     track = read(tmp_path, data, "a.ubx")
     assert track.usable.tolist() == [True, False, False, False]
-    assert track.marked == {"no_fix": 3}
+    assert track.flagged == {"no_fix": 3}
 
 
 def test_time_that_is_not_valid_yet(tmp_path: Path) -> None:

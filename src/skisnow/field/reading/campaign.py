@@ -203,7 +203,7 @@ def _described(files: RawFiles) -> CampaignFile | None:
     try:
         decoded = decode(data)
     except UnreadableTextError as trouble:
-        files.say_unreadable(CAMPAIGN_FILE, trouble)
+        files.report_unreadable(CAMPAIGN_FILE, trouble)
         return None
     if not decoded.text.strip():
         action = "Describe the tools and plates that the tables name."
@@ -211,7 +211,7 @@ def _described(files: RawFiles) -> CampaignFile | None:
             error("empty_file", CAMPAIGN_FILE, value="nothing", allowed="keys and values", action=action)
         )
         return None
-    files.say_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)
+    files.report_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)
     return read_campaign_file(decoded.text, files.found)
 
 
@@ -233,9 +233,9 @@ def _table(
     try:
         text = look_at_csv(data)
     except UnreadableTextError as trouble:
-        files.say_unreadable(form.file, trouble)
+        files.report_unreadable(form.file, trouble)
         return None
-    files.say_encoding(form.file, text.foreign_encoding)
+    files.report_encoding(form.file, text.foreign_encoding)
     return read_table(form, text, corrections=corrections, files=files, progress=progress)
 
 

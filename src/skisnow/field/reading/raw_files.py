@@ -56,7 +56,7 @@ class RawFiles:
         allowed = "a plain file that may be read"
         self.found.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
 
-    def say_unreadable(self, name: str, trouble: UnreadableTextError) -> None:
+    def report_unreadable(self, name: str, trouble: UnreadableTextError) -> None:
         """Say that a file is not the text it should be."""
         self.found.append(
             error(
@@ -69,7 +69,7 @@ class RawFiles:
             )
         )
 
-    def say_encoding(self, name: str, foreign_encoding: str | None) -> None:
+    def report_encoding(self, name: str, foreign_encoding: str | None) -> None:
         """State an encoding that is not the plain one."""
         if foreign_encoding is None:
             return

@@ -67,7 +67,7 @@ def read_table(
                 if progress is not None:
                     progress(f"{form.file}: {len(reading):,} rows")
     except UnreadableTextError as trouble:
-        files.say_unreadable(form.file, trouble)
+        files.report_unreadable(form.file, trouble)
         readable = False
     return _table_or_empty(form, reading, files.found, readable=readable)
 

@@ -47,7 +47,7 @@ _SYSTEM_TROUBLE: Final = {
 
 
 @contextmanager
-def database_told(store: Path, doing: str) -> Iterator[None]:
+def database_errors(store: Path, doing: str) -> Iterator[None]:
     """Turn trouble of the database into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
     try:
         yield
@@ -61,7 +61,7 @@ def database_told(store: Path, doing: str) -> Iterator[None]:
 
 
 @contextmanager
-def files_told(place: Path, doing: str) -> Iterator[None]:
+def file_errors(place: Path, doing: str) -> Iterator[None]:
     """Turn trouble of the file system into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
     try:
         yield
@@ -99,7 +99,7 @@ def open_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
     StoreError
         The file is no store, or of a newer program, or damaged, or must be written and cannot.
     """
-    with database_told(path, "cannot be used"):
+    with database_errors(path, "cannot be used"):
         engine = _readable_engine(path, create=create, busy_timeout_s=busy_timeout_s)
         if _is_outdated(engine, path):
             _bring_up_to_date(engine, path, busy_timeout_s)

@@ -1,4 +1,4 @@
-"""Damage in a store, as it is told."""
+"""Damage in a store, as it is reported."""
 
 from __future__ import annotations
 

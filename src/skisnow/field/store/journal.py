@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final
 from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
 
 from ...errors import StoreError
-from .engine import database_told, reading, writing
+from .engine import database_errors, reading, writing
 from .entry_sums import entry_sha256, entry_sums
 from .journal_entry import DESCRIPTION, PLAIN, JournalEntry, NewEntry, entry_of
 from .rows import TIME, damaged, number_of, text_of
@@ -61,7 +61,7 @@ class Journals:
         With the same ``once`` again it gives the id of the campaign that was begun the first time.
         """
         id_ = secrets.token_hex(6) if once is None else sha256(once.encode()).hexdigest()[:12]
-        with database_told(self._path, "could not be written"), writing(self._engine) as connection:
+        with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
             if once is not None and connection.execute(select(journal.c.id).where(journal.c.id == id_)).first():
                 return id_
             connection.execute(insert(journal).values(id=id_, begun_at=_now()))
@@ -83,7 +83,7 @@ class Journals:
             .group_by(journal.c.id)
             .order_by(journal.c.begun_at, journal.c.id)
         )
-        with database_told(self._path, "could not be read"), reading(self._engine) as connection:
+        with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
             return tuple(_head(*row) for row in connection.execute(asked).all())
 
     def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
@@ -107,7 +107,7 @@ class Journals:
         return self._read(id, after, _require_kept)
 
     def _read(self, id_: str, after: int, require: Callable[[Connection, str], None]) -> tuple[JournalEntry, ...]:
-        with database_told(self._path, "could not be read"), reading(self._engine) as connection:
+        with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
             require(connection, id_)
             asked = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
             rows = connection.execute(asked.order_by(journal_entry.c.sequence)).mappings()
@@ -132,7 +132,7 @@ class Journals:
         StoreError
             There is no such journal, or no such entry to correct or undo.
         """
-        with database_told(self._path, "could not be written"), writing(self._engine) as connection:
+        with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
             _require(connection, id)
             if (known := _written_before(connection, id, entry)) is not None:
                 return known
@@ -161,7 +161,7 @@ class Journals:
         StoreError
             There is no such campaign, or no such entry to undo.
         """
-        with database_told(self._path, "could not be written"), writing(self._engine) as connection:
+        with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
             _require_kept(connection, id)
             if (known := _written_before(connection, id, entry)) is not None:
                 return known

@@ -74,7 +74,7 @@ def _looked_at(files: RawFiles, form: TableForm) -> CsvText | None:
     try:
         return look_at_csv(data) if data is not None else None
     except UnreadableTextError as trouble:
-        files.say_unreadable(form.file, trouble)
+        files.report_unreadable(form.file, trouble)
         return None
 
 
@@ -104,7 +104,7 @@ def _kept_table(files: RawFiles, form: TableForm, corrections: RowCorrections) -
                 cells = {name: row[at].strip() if at < len(row) else "" for name, at in header.position.items()}
                 tests.setdefault(cells[form.key], {})[line] = cells
     except UnreadableTextError as trouble:
-        files.say_unreadable(form.file, trouble)
+        files.report_unreadable(form.file, trouble)
     if header is None:
         return None
     columns = tuple(dict.fromkeys((*header.position, "status")))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 from ...errors import StoreError
 from ...shown import Facts, Shown
-from .engine import database_told, files_told, open_engine, reading, writing
+from .engine import database_errors, file_errors, open_engine, reading, writing
 from .finding import Finding
 from .folder import (
     FileState,
@@ -125,7 +125,7 @@ class Store(Shown):
             There is none, or it is something else, or it was written by a newer skisnow.
         """
         place = default_path() if path is None else Path(path).absolute()
-        with files_told(place, "cannot be used as a store"):
+        with file_errors(place, "cannot be used as a store"):
             if place.is_dir():
                 raise StoreError(f"{place} is a folder, not a store; name a file.")
             if not place.exists():
@@ -163,13 +163,13 @@ class Store(Shown):
             No such folder, no file in it, a link or the like in it, or a file that changed while it was read.
         """
         folder = Path(folder)
-        with files_told(folder, "could not be read"):
+        with file_errors(folder, "could not be read"):
             before = self._files_to_add(folder)
             n_bytes = sum(state.size for state in before.values())
             files = _hashed_files(folder, before, lambda done: progress(done, 2 * n_bytes))
             name, check = campaign_name(folder), _check(folder)
             sha256 = manifest_sha256(files)
-            with database_told(self.path, "could not take the campaign in"), writing(self.engine) as connection:
+            with database_errors(self.path, "could not take the campaign in"), writing(self.engine) as connection:
                 n_repaired, done = 0, n_bytes
                 for file in files:
                     n_repaired += keep_content(connection, folder, file)
@@ -202,7 +202,7 @@ class Store(Shown):
 
     def list(self) -> tuple[StoredCampaign, ...]:
         """Give all campaigns, oldest first."""
-        with database_told(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             return all_campaigns(connection)
 
     def show(self, id: str) -> StoredCampaign:  # noqa: A002 (users know it by this name)
@@ -213,7 +213,7 @@ class Store(Shown):
         StoreError
             No campaign or several begin so; the message lists those that may be meant.
         """
-        with database_told(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             return one_campaign(connection, id)
 
     def export(
@@ -235,10 +235,10 @@ class Store(Shown):
             As in `show`; the folder is there already and not empty; a file is damaged or its path is not safe here.
         """
         out, done = Path(out_folder), 0
-        with database_told(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             stored = one_campaign(connection, id)
             require_whole(stored)
-            with files_told(out, "could not be written"), new_folder(out) as filling:
+            with file_errors(out, "could not be written"), new_folder(out) as filling:
                 for file in stored.files:
                     write_file(filling, file, stored_chunks(connection, file.sha256))
                     done += file.size
@@ -259,7 +259,7 @@ class Store(Shown):
         StoreError
             As in `show`; a file is damaged.
         """
-        with database_told(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             stored = one_campaign(connection, id)
             require_whole(stored)
             chosen = [file for file in stored.files if file.path in names]
@@ -267,7 +267,7 @@ class Store(Shown):
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:
         """Look for damage: the database's own checks, the hash of every file, the id of every campaign; () if sound."""
-        with database_told(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             return findings(connection, progress)
 
 

@@ -1,4 +1,4 @@
-"""What every law for the glide friction of a ski looks like."""
+"""The interface of every law for the glide friction of a ski."""
 
 from __future__ import annotations
 

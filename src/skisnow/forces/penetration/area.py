@@ -28,7 +28,7 @@ class AreaLaw(PenetrationLaw):
     -----
     Range: edge angles 0-60°; no range of H_A was published.
     Source: Mössner and others (2013), rejected there: rmse 75.2 N (58.4 N with every coefficient free).
-    It cannot describe a flat base: that would feel H_A L W at any depth, and none at all until it touches.
+    It cannot describe a flat base: that would meet H_A L W at any depth, and none at all until it touches.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""What every law for the force of a pressed tool looks like."""
+"""The interface of every law for the force of a pressed tool."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every law for one place on the snow looks like."""
+"""The interface of every law for one place on the snow."""
 
 from __future__ import annotations
 

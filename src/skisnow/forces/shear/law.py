@@ -1,4 +1,4 @@
-"""What every law for the force at which snow fails sideways looks like."""
+"""The interface of every law for the force at which snow fails sideways."""
 
 from __future__ import annotations
 

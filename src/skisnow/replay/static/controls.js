@@ -104,7 +104,7 @@ export function fillLegend(element, scales, colours) {
     bar("force", FORCE_TITLE, ticksOf(scales.force / 1000)),
     scales.staysNothing
       ? made("span", { textContent: "Elastic snow: no groove stays; the line is where the skis went" })
-      : bar("depth", "Groove that stays (mm)", ticksOf(scales.depth * 1000)),
+      : bar("depth", "Permanent groove depth (mm)", ticksOf(scales.depth * 1000)),
   );
 }
 

@@ -108,15 +108,15 @@ def _grid(rows: Sequence[Json], layout: MapLayout) -> tuple[FloatArray, FloatArr
 
 
 def _points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
-    for holds, look in _looks(layout.sampled).items():
+    for holds, line_style in _styles(layout.sampled).items():
         chosen = [row for row in rows if row["holds"] is holds]
         axes.plot(
             [row[layout.x] for row in chosen], [row[str(layout.second)] for row in chosen], linestyle="none", zorder=3,
-            **look,
+            **line_style,
         )  # fmt: skip
 
 
-def _looks(sampled: bool) -> dict[bool | None, dict[str, Any]]:
+def _styles(sampled: bool) -> dict[bool | None, dict[str, Any]]:
     size = 3.6 if sampled else 2.4
     return {
         True: {"marker": "o", "color": BLUE, "markersize": size},
@@ -128,9 +128,11 @@ def _looks(sampled: bool) -> dict[bool | None, dict[str, Any]]:
 def _share_lines(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
     ordered = sorted(rows, key=lambda row: float(row[layout.x]))
     axes.plot([row[layout.x] for row in ordered], [share_of_limit(row) for row in ordered], color=GREY, zorder=1)
-    for holds, look in _looks(True).items():
+    for holds, line_style in _styles(True).items():
         chosen = [row for row in ordered if row["holds"] is holds]
-        axes.plot([row[layout.x] for row in chosen], [share_of_limit(row) for row in chosen], linestyle="none", **look)
+        axes.plot(
+            [row[layout.x] for row in chosen], [share_of_limit(row) for row in chosen], linestyle="none", **line_style
+        )
     axes.axhline(1.0, color=BLACK, linewidth=1.8, zorder=2)
 
 
@@ -158,8 +160,8 @@ def _colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
 def _handles(layout: MapLayout, rows: Sequence[Json]) -> list[Line2D]:
     texts = {True: "holds", False: "slips", None: "no equilibrium"}
     handles = [
-        Line2D([], [], linestyle="none", label=texts[holds], **look)
-        for holds, look in _looks(layout.sampled).items()
+        Line2D([], [], linestyle="none", label=texts[holds], **line_style)
+        for holds, line_style in _styles(layout.sampled).items()
         if any(row["holds"] is holds for row in rows)
     ]
     if not layout.sampled:

@@ -70,7 +70,9 @@ def residuals_along(fits: Sequence[Fit]) -> Figure:
     for axes, label in zip(rows, labels, strict=True):
         axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
         axes.set_ylabel(f"{label.replace(' (', chr(10) + 'measured − identified (')}")
-    rows[-1].set_xlabel({"track": "time (s)", "photo_cells": "station (m)", "marks": "place"}[fits[0].kind])
+    rows[-1].set_xlabel(
+        {"track": "time (s)", "photo_cells": "distance from the start (m)", "marks": "place"}[fits[0].kind]
+    )
     figure.align_ylabels()
     legend_below(figure, handles)
     return figure

@@ -1,4 +1,4 @@
-"""How the sum of squares rises along each parameter with all others fitted anew."""
+"""How the sum of squares rises along each parameter with all others refitted."""
 
 from __future__ import annotations
 

@@ -80,9 +80,9 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
     left = [name for name in varied if name not in (x, second) and (name in names or not sampled)]
     count = math.prod(len(_distinct(table, name)) for name in left)
     if count > MOST_PANELS:
-        told = ", ".join(f"{name} with {len(_distinct(table, name))} values" for name in left)
+        counts = ", ".join(f"{name} with {len(_distinct(table, name))} values" for name in left)
         raise ParameterError(
-            f"the map would have {count} panels ({told}); at most {MOST_PANELS} are readable. The table is written; "
+            f"the map would have {count} panels ({counts}); at most {MOST_PANELS} are readable. The table is written; "
             "make a study of fewer of them for the map"
         )
     return MapLayout(x, second, tuple(left), sampled)

@@ -83,12 +83,12 @@ def _lines(axes: Axes, rows: Sequence[Json], layout: MapLayout, values: list[Any
         place = values.index(value)
         ordered = sorted(of_line, key=lambda row: float(row[layout.x]))
         x, y = _numbers(ordered, layout.x), _numbers(ordered, RADIUS)
-        look: dict[str, Any] = {"color": COLOURS[place % len(COLOURS)], "marker": MARKERS[place % len(MARKERS)]}
-        axes.plot(x, y, color=look["color"], linewidth=0.8, zorder=2)
+        line_style: dict[str, Any] = {"color": COLOURS[place % len(COLOURS)], "marker": MARKERS[place % len(MARKERS)]}
+        axes.plot(x, y, color=line_style["color"], linewidth=0.8, zorder=2)
         for holds in (True, False):
             chosen = np.array([row["holds"] is holds for row in ordered], dtype=bool)
-            face = look["color"] if holds else "white"
-            axes.plot(x[chosen], y[chosen], linestyle="none", markerfacecolor=face, zorder=3, **look)
+            face = line_style["color"] if holds else "white"
+            axes.plot(x[chosen], y[chosen], linestyle="none", markerfacecolor=face, zorder=3, **line_style)
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,7 +42,7 @@ _LABEL_POINTS: Final = 12.0
 
 
 def run_track(run: Run) -> Figure:
-    """Draw the whole run with equal scales, and below it the grooves over a short way at half time."""
+    """Draw the whole run with equal scales, and below it the grooves over a short distance at half time."""
     limits = track_limits(run.skis.track.reshape(-1, 3))
     height = plan_height_mm(limits)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DETAIL_MM + _FRAME_MM)
@@ -110,17 +110,17 @@ def _time_marks(axes: Axes, run: Run) -> None:
 
 
 def _groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
-    """The grooves over a short way at half time, stretched across, coloured by the depth that stays."""
+    """The grooves over a short distance at half time, stretched across, coloured by the depth that stays."""
     centre = run.place[len(run.time) // 2]
     near = np.linalg.norm(run.groove.middle - centre, axis=1) < CUTOUT + run.scenario.sledge.stance_width
     top = max(float(run.groove.residual_depth[near].max(initial=0.0)) / MM, 1e-9)
     for ski, axes in enumerate(row):
-        way, aside = beside_track(
+        arc_length, aside = beside_track(
             run.groove.middle[near], run.skis.track[:, ski], run.skis.track[len(run.time) // 2, ski]
         )
-        chosen = (abs(way) < CUTOUT / 2.0) & (abs(aside) < run.scenario.sledge.stance_width / 2.0)
+        chosen = (abs(arc_length) < CUTOUT / 2.0) & (abs(aside) < run.scenario.sledge.stance_width / 2.0)
         width, depth = (values[near][chosen] for values in (run.groove.width, run.groove.residual_depth))
-        corners = groove_corners(way[chosen], aside[chosen], width, run.numbers.get("line_spacing_m", _SPACING))
+        corners = groove_corners(arc_length[chosen], aside[chosen], width, run.numbers.get("line_spacing_m", _SPACING))
         drawn = PolyCollection(list(corners), array=depth / MM, cmap="cividis_r", edgecolor="face", linewidth=0.2)
         drawn.set_clim(0.0, top)
         drawn.set_rasterized(True)
@@ -139,7 +139,7 @@ def _groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
 def beside_track(points: FloatArray, track: FloatArray, origin: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Where points (k, 3) lie along a track (n, 3) and to the left of it, seen from above (m), each (k,).
 
-    The way is counted from the track's point ``origin``; each point belongs to the nearest piece of the track.
+    The arc length is counted from the track's point ``origin``; each point belongs to the nearest piece of the track.
     """
     start, along = track[:-1, :2], np.diff(track[:, :2], axis=0)
     length = np.linalg.norm(along, axis=1)
@@ -155,9 +155,9 @@ def beside_track(points: FloatArray, track: FloatArray, origin: FloatArray) -> t
     return ways[nearest] + share[number, nearest] - zero, aside
 
 
-def groove_corners(way: FloatArray, aside: FloatArray, width: FloatArray, spacing: float) -> FloatArray:
+def groove_corners(arc_length: FloatArray, aside: FloatArray, width: FloatArray, spacing: float) -> FloatArray:
     """Corners (k, 4, 2) of pieces: along the track (m) as long as the lines are apart, across it (mm) their width."""
     half, wide = spacing / 2.0, width / 2.0
-    x = np.stack([way - half, way + half, way + half, way - half], axis=1)
+    x = np.stack([arc_length - half, arc_length + half, arc_length + half, arc_length - half], axis=1)
     y = np.stack([aside + wide, aside + wide, aside - wide, aside - wide], axis=1) / MM
     return np.stack([x, y], axis=2)

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 
 from ...scenario import Profile
 from ...track.nearest_place import distance_beside
-from ...track.polyline import way_along
+from ...track.polyline import arc_lengths
 from ...units import MM
 from ..symbols import figure_text
 from .run_track import plan_axes, plan_height_mm, track_limits
@@ -47,14 +47,14 @@ def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 10.0, 62.0))
     plan = figure.add_subplot(grid[0, :])
     for place, (_, run) in enumerate(named):
-        plan.plot(run.place[:, 0], run.place[:, 1], **_look(place))
-        plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=_look(place)["color"])
+        plan.plot(run.place[:, 0], run.place[:, 1], **_line_style(place))
+        plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=_line_style(place)["color"])
     plan_axes(plan, limits, profile=isinstance(named[0][1].scenario.slope, Profile))
     _distances(figure.add_subplot(grid[1, 0]), named)
     moment = 0.9 * min(run.simulated_s for run in runs.values()) if at is None else at
     _depths(figure.add_subplot(grid[1, 1]), named, moment)
     legend_below(
-        figure, [Line2D([], [], label=mathtext(name), **_look(place)) for place, (name, _) in enumerate(named)]
+        figure, [Line2D([], [], label=mathtext(name), **_line_style(place)) for place, (name, _) in enumerate(named)]
     )
     return figure
 
@@ -68,14 +68,14 @@ def mathtext(name: str) -> str:
     return _SYMBOL.sub(r"$\1_\2$", figure_text(name, longest=60))
 
 
-def _look(place: int) -> dict[str, Any]:
+def _line_style(place: int) -> dict[str, Any]:
     return {"color": COLOURS[place % len(COLOURS)], "linestyle": LINE_STYLES[place % len(LINE_STYLES)]}
 
 
 def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
     (first, reference), *others = named
     for place, (_, run) in enumerate(others, start=1):
-        axes.plot(way_along(run.place), distance_beside(run.place, reference.place), **_look(place))
+        axes.plot(arc_lengths(run.place), distance_beside(run.place, reference.place), **_line_style(place))
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("distance travelled (m)")
@@ -88,7 +88,7 @@ def _depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
     ski = loaded_ski(reference, moment)
     for place, (_, run) in enumerate(named):
         now = int(np.argmin(abs(run.time - moment)))
-        axes.plot(run.skis.station, run.skis.edge_depth[now, ski] / MM, **_look(place))
+        axes.plot(run.skis.station, run.skis.edge_depth[now, ski] / MM, **_line_style(place))
     deepest = max(float(np.nanmax(run.skis.edge_depth[_at(run, moment), ski])) for _, run in named) / MM
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)

@@ -166,8 +166,8 @@ def thinning_sentence(count: int) -> str:
 
 
 def _marker(style: SiteStyle, size: float | None) -> dict[str, Any]:
-    look: dict[str, Any] = {"marker": style.marker, "color": style.colour, "markerfacecolor": "none"}
-    return look if size is None else look | {"markersize": size}
+    line_style: dict[str, Any] = {"marker": style.marker, "color": style.colour, "markerfacecolor": "none"}
+    return line_style if size is None else line_style | {"markersize": size}
 
 
 def error_bars(axes: Axes, x: FloatArray, ends: FloatArray, site: TextArray, styles: Sequence[SiteStyle]) -> None:

@@ -26,12 +26,12 @@ WALKING: Final = 2.0
 KILOMETRE: Final = 1000.0
 """Metres in a kilometre."""
 _IN_KILOMETRES: Final = 3000.0
-"""Ways (m) that are longer are told in km."""
+"""Distances (m) that are longer are given in km."""
 _RADII: Final = (2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 2000, 5000)
 _TICKS: Final = 3
 """Radii named on each side of the axis."""
 _SHARE_SHOWN: Final = 0.98
-"""Share of the way in runs whose curvature is inside the axis."""
+"""Share of the distance in runs whose curvature is inside the axis."""
 _NEIGHBOURS: Final = 0.18
 """Least distance of two named radii, as a share of half the axis."""
 
@@ -44,26 +44,28 @@ def track_along(summary: TrackSummary) -> Figure:
     grid = figure.subplots(rows, 1, sharex=True)
     numbers = drawn_points(0, len(summary.track) - 1)
     numbers = numbers[summary.track.usable[numbers]]
-    way = summary.motion.way - summary.motion.way[0]
-    unit = KILOMETRE if way[-1] > _IN_KILOMETRES else 1.0
-    _speed(grid[0], summary, numbers, way / unit)
+    arc_length = summary.motion.arc_length - summary.motion.arc_length[0]
+    unit = KILOMETRE if arc_length[-1] > _IN_KILOMETRES else 1.0
+    _speed(grid[0], summary, numbers, arc_length / unit)
     if with_height:
-        _height(grid[1], summary, numbers, way / unit)
-    _radius(grid[-1], summary, way / unit)
+        _height(grid[1], summary, numbers, arc_length / unit)
+    _radius(grid[-1], summary, arc_length / unit)
     for axes in grid:
-        _tint_runs(axes, summary, way / unit)
+        _tint_runs(axes, summary, arc_length / unit)
     grid[-1].set_xlabel(f"distance along the track ({'km' if unit == KILOMETRE else 'm'})")
-    grid[-1].set_xlim(0.0, float(way[-1]) / unit)
+    grid[-1].set_xlim(0.0, float(arc_length[-1]) / unit)
     figure.align_ylabels()
     figure.legend(handles=_handles(summary), loc="outside lower center", ncols=4)
     return figure
 
 
-def _tint_runs(axes: Axes, summary: TrackSummary, way: FloatArray) -> None:
+def _tint_runs(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> None:
     if len(summary.day.runs) < 2 and not summary.day.lifts:
         return
     for run in summary.day.runs:
-        axes.axvspan(float(way[run.first]), float(way[run.last]), color=SKY, alpha=0.16, linewidth=0.0, zorder=0)
+        axes.axvspan(
+            float(arc_length[run.first]), float(arc_length[run.last]), color=SKY, alpha=0.16, linewidth=0.0, zorder=0
+        )
 
 
 def _parted(summary: TrackSummary, numbers: npt.NDArray[np.int64], values: FloatArray) -> FloatArray:
@@ -73,28 +75,28 @@ def _parted(summary: TrackSummary, numbers: npt.NDArray[np.int64], values: Float
     return found
 
 
-def _speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], way: FloatArray) -> None:
-    axes.plot(way[numbers], _parted(summary, numbers, summary.motion.speed), color=BLUE, linewidth=0.8)
+def _speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
+    axes.plot(arc_length[numbers], _parted(summary, numbers, summary.motion.speed), color=BLUE, linewidth=0.8)
     axes.set_ylim(0.0, 1.1 * max(summary.max_speed or 0.0, 0.1))
     axes.set_ylabel(
         f"speed (m/s),\n{'as recorded' if summary.motion.speed_source == 'recorded' else 'from the places'}"
     )
 
 
-def _height(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], way: FloatArray) -> None:
-    axes.plot(way[numbers], _parted(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
+def _height(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
+    axes.plot(arc_length[numbers], _parted(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
     words = {"east_north_up": "height above\nthe origin (m)", "slope": "out of the slope\n$z$ (m)", "file": "$z$ (m)"}
     axes.set_ylabel(words[summary.track.axes])
 
 
-def _radius(axes: Axes, summary: TrackSummary, way: FloatArray) -> None:
+def _radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> None:
     """The curvature with its interval, its axis named by radii: a straight path lies at 0, where no radius could."""
     motion, ridden = summary.motion, _ridden_curvature(summary)
     for run in summary.day.runs:
         numbers = drawn_points(run.first, run.last)
         curvature, half = _parted(summary, numbers, ridden), INTERVAL_FACTOR * motion.curvature_sd[numbers]
-        axes.fill_between(way[numbers], curvature - half, curvature + half, color=PALE, alpha=0.7, linewidth=0.0)
-        axes.plot(way[numbers], curvature, color=BLUE, linewidth=0.8)
+        axes.fill_between(arc_length[numbers], curvature - half, curvature + half, color=PALE, alpha=0.7, linewidth=0.0)
+        axes.plot(arc_length[numbers], curvature, color=BLUE, linewidth=0.8)
     reach = curvature_reach(summary)
     axes.axhline(0.0, color=GREY, linewidth=0.5, zorder=1)
     axes.set_ylim(-reach, reach)
@@ -110,9 +112,9 @@ def _ridden_curvature(summary: TrackSummary) -> FloatArray:
 
 
 def curvature_reach(summary: TrackSummary) -> float:
-    """Where the axis of the curvature ends (1/m): above that of nearly all of the way, whatever happens near a rest."""
+    """Where the axis of the curvature ends (1/m): above that of nearly all points, whatever happens near a rest."""
     ridden = np.abs(_ridden_curvature(summary))
-    steps = np.gradient(summary.motion.way)
+    steps = np.gradient(summary.motion.arc_length)
     inside = np.zeros(len(ridden), dtype=bool)
     for run in summary.day.runs:
         inside[run.first : run.last + 1] = True

@@ -24,7 +24,7 @@ FloatArray = npt.NDArray[np.float64]
 MEASURED: Final[dict[str, Any]] = {"color": BLACK, "linewidth": 1.1}
 SIMULATED: Final[dict[str, Any]] = {"color": VERMILLION, "linewidth": 1.1, "linestyle": (0, (5, 1.5))}
 BEFORE: Final[dict[str, Any]] = {"color": PALE, "linewidth": 0.8}
-LOOKS: Final[dict[str, dict[str, Any]]] = {
+LINE_STYLES: Final[dict[str, dict[str, Any]]] = {
     "nearest": {"color": BLUE, "linestyle": "-"},
     "arc_length": {"color": GREEN, "linestyle": (0, (5, 1.5))},
     "time": {"color": PURPLE, "linestyle": (0, (1, 1))},
@@ -80,12 +80,12 @@ def _plan(axes: Axes, comparison: Comparison) -> None:
     if comparison.fitted is not None:
         before = comparison.fitted.before.simulated.place
         axes.plot(*_drawn(before[:, 0], before[:, 1]), **BEFORE)
-    for line, look in ((comparison.measured, MEASURED), (comparison.simulated, SIMULATED)):
-        axes.plot(*_drawn(line.place[:, 0], line.place[:, 1]), **look)
-        axes.plot(*line.place[0, :2], marker="o", markersize=3.2, linestyle="none", color=look["color"])
-        axes.plot(*line.place[-1, :2], marker="s", markersize=3.2, linestyle="none", color=look["color"])
-    for kind, look in LOOKS.items():
-        _tie(axes, comparison, getattr(comparison, kind), look["color"])
+    for line, line_style in ((comparison.measured, MEASURED), (comparison.simulated, SIMULATED)):
+        axes.plot(*_drawn(line.place[:, 0], line.place[:, 1]), **line_style)
+        axes.plot(*line.place[0, :2], marker="o", markersize=3.2, linestyle="none", color=line_style["color"])
+        axes.plot(*line.place[-1, :2], marker="s", markersize=3.2, linestyle="none", color=line_style["color"])
+    for kind, line_style in LINE_STYLES.items():
+        _tie(axes, comparison, getattr(comparison, kind), line_style["color"])
 
 
 def _tie(axes: Axes, comparison: Comparison, found: Distances, colour: str) -> None:
@@ -93,19 +93,21 @@ def _tie(axes: Axes, comparison: Comparison, found: Distances, colour: str) -> N
     if found.numbers is None or found.apart is None:
         return
     largest = int(np.nanargmax(found.apart.distance))
-    own = comparison.measured.at_way(found.apart.way[[largest]])[0, :2]
+    own = comparison.measured.at_arc_length(found.apart.arc_length[[largest]])[0, :2]
     other = own + found.apart.offset[largest, :2]
     axes.plot([own[0], other[0]], [own[1], other[1]], color=colour, linewidth=1.4, solid_capstyle="butt", zorder=4)
 
 
 def _along(axes: Axes, comparison: Comparison) -> None:
-    for kind, look in LOOKS.items():
+    for kind, line_style in LINE_STYLES.items():
         found: Distances = getattr(comparison, kind)
         if found.numbers is None or found.apart is None:
             continue
-        axes.plot(*_drawn(found.apart.way, found.apart.distance), **look)
+        axes.plot(*_drawn(found.apart.arc_length, found.apart.distance), **line_style)
         place = (found.numbers.max_at, found.numbers.max)
-        axes.plot(*place, marker="o", markersize=3.0, linestyle="none", color=look["color"], clip_on=False, zorder=4)
+        axes.plot(
+            *place, marker="o", markersize=3.0, linestyle="none", color=line_style["color"], clip_on=False, zorder=4
+        )
     axes.set_xlim(0.0, comparison.measured.length)
     _scale(axes, comparison)
     axes.set_xlabel("distance along the measured track (m)")
@@ -114,7 +116,7 @@ def _along(axes: Axes, comparison: Comparison) -> None:
 
 def _scale(axes: Axes, comparison: Comparison) -> None:
     """From 0; logarithmic where one distance would hide another."""
-    every = [getattr(comparison, kind).numbers for kind in LOOKS]
+    every = [getattr(comparison, kind).numbers for kind in LINE_STYLES]
     largest = [numbers.max for numbers in every if numbers is not None and numbers.max > EXACTNESS]
     if largest and max(largest) > _HIDES * min(largest):
         axes.set_yscale("log")
@@ -148,8 +150,8 @@ def _handles(comparison: Comparison) -> list[Line2D]:
     ]
     if comparison.fitted is not None:
         handles.append(Line2D([], [], label="simulated, before the fit", **BEFORE))
-    for kind, look in LOOKS.items():
+    for kind, line_style in LINE_STYLES.items():
         numbers = getattr(comparison, kind).numbers
-        told = "none" if numbers is None else f"maximum {significant(numbers.max)} m"
-        handles.append(Line2D([], [], label=f"{TITLES[kind]}: {told}", **look))
+        text = "none" if numbers is None else f"maximum {significant(numbers.max)} m"
+        handles.append(Line2D([], [], label=f"{TITLES[kind]}: {text}", **line_style))
     return handles

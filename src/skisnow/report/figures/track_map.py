@@ -43,7 +43,7 @@ def track_map(summary: TrackSummary) -> Figure:
     _line(axes, summary, 0, len(summary.track) - 1, color=PALE, linewidth=0.7, zorder=1)
     for lift in summary.day.lifts:
         _line(axes, summary, lift.first, lift.last, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)), zorder=2)
-    if told_apart(summary):
+    if turns_are_distinct(summary):
         _turns(axes, summary)
     else:
         for run in summary.day.runs:
@@ -54,7 +54,7 @@ def track_map(summary: TrackSummary) -> Figure:
     return figure
 
 
-def told_apart(summary: TrackSummary) -> bool:
+def turns_are_distinct(summary: TrackSummary) -> bool:
     """Whether single turns are drawn."""
     return len(summary.day.runs) == 1 and 0 < len(summary.turns) <= MOST_TURNS
 
@@ -71,14 +71,14 @@ def drawn_points(first: int, last: int) -> npt.NDArray[np.int64]:
     return np.unique(np.linspace(first, last, min(last - first + 1, MOST_DRAWN)).round().astype(np.int64))
 
 
-def _line(axes: Axes, summary: TrackSummary, first: int, last: int, **look: object) -> None:
+def _line(axes: Axes, summary: TrackSummary, first: int, last: int, **line_style: object) -> None:
     """A line through the usable points; gaps stay open."""
     numbers = drawn_points(first, last)
     numbers = numbers[summary.track.usable[numbers]]
     place = summary.track.place[numbers, :2]
     after_gap = np.flatnonzero(np.diff(summary.motion.smoothed.part[numbers])) + 1
     x, y = (np.insert(place[:, axis], after_gap, np.nan) for axis in (0, 1))
-    axes.plot(x, y, **look)  # type: ignore[arg-type]
+    axes.plot(x, y, **line_style)  # type: ignore[arg-type]
 
 
 def _turns(axes: Axes, summary: TrackSummary) -> None:
@@ -120,7 +120,7 @@ def _frame(axes: Axes, limits: tuple[float, float, float, float], kind: str) -> 
 
 def _handles(summary: TrackSummary) -> list[Line2D]:
     handles = []
-    if told_apart(summary):
+    if turns_are_distinct(summary):
         handles += [
             Line2D([], [], color=c, label=f"turn to the {s}") for c, s in ((BLUE, "left"), (VERMILLION, "right"))
         ]

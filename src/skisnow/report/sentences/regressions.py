@@ -103,9 +103,9 @@ def _by_site(row: Json) -> Markup:
     if ends is None:
         return html(" The sites do not tell an interval of their own.")
     zero = ends[0] <= 0.0 <= ends[1]
-    told = prose(" With sites as clusters the interval is {ends}", ends=_changes(row, ends))
+    sentence = prose(" With sites as clusters the interval is {ends}", ends=_changes(row, ends))
     if zero and row["p"] < SIGNIFICANT:
-        return told + html(": it holds zero, so what looks significant may be a difference between a few sites.")
+        return sentence + html(": it holds zero, so what looks significant may be a difference between a few sites.")
     if not zero and row["p"] >= SIGNIFICANT:
-        return told + html(": it leaves out zero.")
-    return told + html(".")
+        return sentence + html(": it leaves out zero.")
+    return sentence + html(".")

@@ -49,7 +49,7 @@ def scenario_table(values: Json) -> Table:
             Column("unit", "Unit", "text"),
             Column("meaning", "Meaning", "text"),
         ),
-        [(name, _told(value), *_unit_and_meaning(name)) for name, value in by_full_name(values)],
+        [(name, _text(value), *_unit_and_meaning(name)) for name, value in by_full_name(values)],
     )
 
 
@@ -71,14 +71,14 @@ def _unit_and_meaning(name: str) -> tuple[str, str]:
     return ("", "") if key is None else (key.unit, key.meaning)
 
 
-def _told(value: Any) -> str | None:
+def _text(value: Any) -> str | None:
     """A value as it may be given again, with all digits that matter."""
     if value is None:
         return None
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(str(_told(each)) for each in value)}]"
+        return f"[{', '.join(str(_text(each)) for each in value)}]"
     return f"{value:.10g}" if isinstance(value, int | float) else str(value)
 
 

@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from .recording import Recording
-from .trouble import refusal
+from .refusal import refusal
 
 SEMICIRCLE: Final = 180.0 / 2**31
 """Degrees in a semicircle, the unit of FIT's latitude and longitude."""

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...spreadsheet_text import number
 from .recording import Recording
-from .trouble import refusal
+from .refusal import refusal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

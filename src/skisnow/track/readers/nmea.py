@@ -18,7 +18,7 @@ import numpy as np
 from ...units import DEGREE
 from ..solution import Solution, solution_array
 from .recording import Recording
-from .trouble import refusal
+from .refusal import refusal
 
 KNOT: Final = 1852.0 / 3600.0
 """m/s in a knot."""

@@ -1,4 +1,4 @@
-"""What the reader of one format hands over: the columns of a file as they are, before a projection and before marks."""
+"""What the reader of one format hands over: the columns of a file as they are, before a projection and before flags."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..marks import FASTEST, GAP_FACTOR, point_marks
+from ..flags import FASTEST, GAP_FACTOR, point_flags
 from ..point import GEODETIC, LOCAL, MOTION
 from ..projection import GeodeticPoint, east_north_up, turned_to_origin
 from ..track import Axes, Track
-from .trouble import refusal
+from .refusal import refusal
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -89,7 +89,7 @@ def track_of(
     fastest: float = FASTEST,
     gap_factor: float = GAP_FACTOR,
 ) -> Track:
-    """The track of a recording: checked, projected about its origin, marked.
+    """The track of a recording: checked, projected about its origin, flagged.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def track_of(
         solution=solution,
         odometer=recording.odometer,
         start=recording.start,
-        marks=point_marks(time, place, fix, negative, fastest=fastest, gap_factor=gap_factor, solution=solution),
+        flags=point_flags(time, place, fix, negative, fastest=fastest, gap_factor=gap_factor, solution=solution),
         axes="east_north_up" if recording.is_geodetic else recording.axes,
         origin=at,
         first_time=recording.first_time,

@@ -19,8 +19,8 @@ from ..point import FARTHEST, FASTEST_NUMBER
 from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
 from ..solution import Solution, solution_array
 from .recording import Recording
+from .refusal import refusal
 from .rtklib_header import PLACES, Header, header_of
-from .trouble import refusal
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from .trouble import refusal
+from .refusal import refusal
 
 SCALES: Final = {"GPST": "GPS", "UTC": "UTC", "JST": "JST"}
 PLACES: Final = {

@@ -14,8 +14,8 @@ import numpy as np
 from ...spreadsheet_text import number
 from ..point import FARTHEST
 from .recording import Recording
-from .text import Cells, cells_of, mark_of, moment, require_width
-from .trouble import refusal
+from .refusal import refusal
+from .text import Cells, cells_of, decimal_mark_of, moment, require_width
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -90,7 +90,7 @@ class _Table:
         require_width(cells, name)
         rows = tuple((row + ("",) * (width - len(row)))[:width] for row in cells.rows)
         known = [place for place, column in enumerate(cells.header) if column in COLUMNS]
-        mark = mark_of((row[place] for place in known for row in rows), cells.separator)
+        mark = decimal_mark_of((row[place] for place in known for row in rows), cells.separator)
         return cls(dataclasses.replace(cells, rows=rows), name, mark, set())
 
     @property

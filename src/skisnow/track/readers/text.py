@@ -18,7 +18,7 @@ from ...spreadsheet_text import (
     most_frequent_separator,
     named_separator,
 )
-from .trouble import refusal
+from .refusal import refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -143,10 +143,10 @@ def require_width(cells: Cells, name: str) -> None:
             )
 
 
-def mark_of(cells: Iterable[str], separator: str) -> str:
+def decimal_mark_of(cells: Iterable[str], separator: str) -> str:
     """The decimal mark of a file: a comma where it does not separate and as many numbers have one as have a point.
 
-    >>> mark_of(["1", "2,5", "1.5"], ";"), mark_of(["1", "2"], ";")
+    >>> decimal_mark_of(["1", "2,5", "1.5"], ";"), decimal_mark_of(["1", "2"], ";")
     (',', '.')
     """
     return "." if separator == "," else decimal_mark([cells], separator=separator)

@@ -21,7 +21,7 @@ import numpy as np
 from ...units import MM
 from ..solution import Solution, solution_array
 from .recording import Recording
-from .trouble import refusal
+from .refusal import refusal
 
 SYNC: Final = b"\xb5\x62"
 LENGTHS: Final = {b"\x01\x07": (84, 92), b"\x01\x14": (36,), b"\x01\x36": (64,)}
@@ -54,11 +54,11 @@ def read_ubx(data: bytes, name: str) -> Recording:
     counts = {"messages with a wrong checksum or cut short": 0, "messages without a valid time": 0}
     epochs = _epochs(data, counts)
     if not epochs:
-        told = ", ".join(f"{count} {words}" for words, count in counts.items())
+        counted = ", ".join(f"{count} {words}" for words, count in counts.items())
         raise refusal(
             "empty_file",
             name,
-            value=told,
+            value=counted,
             allowed="messages NAV-PVT with right checksums and valid times",
             action="Switch NAV-PVT on in the receiver, or copy the file again.",
         )

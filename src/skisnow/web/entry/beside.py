@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from nicegui import background_tasks, run, ui
 
 from ...errors import FieldDataError, StoreError
+from ..error_pages import error_sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
-from ..trouble import told
 from ..words import displacement_words, hardness_words, label, stress_words, unloading_words
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Beside:
                 try:
                     found = await run.io_bound(self._view.session.at_once, site)
                 except (FieldDataError, StoreError) as error:
-                    self._value.set_text(told(error))
+                    self._value.set_text(error_sentence(error))
                     continue
                 # another may have been wanted while this one was waited for
                 if self._wanted is None and found is not None:  # type: ignore[redundant-expr]
@@ -86,12 +86,12 @@ def _lines(name: str, curves: dict[str, SeriesCurve]) -> Iterator[ChartLine]:
     """Readings and law of a series, over those of all others, which are one thing: a site may have hundreds."""
     others = [curve for other, curve in curves.items() if other != name]
     own = [curves[name]] if name in curves else []
-    for chosen, look in ((others, BEHIND), (own, 0)):
+    for chosen, style in ((others, BEHIND), (own, 0)):
         if chosen:
             points = [(curve.depth_mm, curve.load_N) for curve in chosen]
             laws = [((*curve.law_depth_mm, None), (*curve.law_load_N, None)) for curve in chosen]
-            yield ChartLine(*_joined(points), look, points=True)
-            yield ChartLine(*_joined(laws), look)
+            yield ChartLine(*_joined(points), style, points=True)
+            yield ChartLine(*_joined(laws), style)
 
 
 def _joined(pairs: Iterable[tuple[Iterable[float | None], Iterable[float | None]]]) -> tuple[_Values, _Values]:

@@ -15,10 +15,10 @@ from starlette.responses import FileResponse, Response
 from ..analyses import Analyses
 from ..analysing import ready, write_whole_report
 from ..analysis_view import AnalysisView, OpenAnalysis
+from ..error_pages import plain_page
 from ..fields import link
 from ..layout import framed
 from ..names import entering, export, required_id
-from ..trouble import plain_page
 from ..unpacking import files_below, write_zip
 from ..worker import Worker
 

@@ -14,7 +14,7 @@ from ...report.numerals import significant
 from ..fields import choice
 from ..lab_skis import LabSkis
 from ..layout import framed
-from ..line_chart import LOOKS, ChartLine, LineChart
+from ..line_chart import STYLES, ChartLine, LineChart
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,7 +63,7 @@ FACTS: Final = {
     "contact_length_m": ("Contact length", "m"),
     "side_force_N": ("Side force", "N"),
     "side_force_limit_N": ("Shear capacity of the snow", "N"),
-    "boot_pitch_moment_Nm": ("Moment at the boot about the cross axis", "N m"),
+    "boot_pitch_moment_Nm": ("Moment at the boot about the cross axis", "N\u00a0m"),
 }
 
 
@@ -172,7 +172,7 @@ class _Carve:
         ]
 
     def _show(self, answers: list[dict[str, Any]]) -> None:
-        self._status.set_text(" ".join(_told(answer) for answer in answers))
+        self._status.set_text(" ".join(_in_words(answer) for answer in answers))
         names = [answer["ski"]["name"] for answer in answers]
         if names != self._named:
             self._named = names
@@ -195,7 +195,7 @@ def _range(key: str, answers: list[dict[str, Any]]) -> tuple[float, float] | Non
     return (1.1 * max(depths), -ABOVE_MM) if key == "edge_depth_mm" and depths else None
 
 
-def _told(answer: dict[str, Any]) -> str:
+def _in_words(answer: dict[str, Any]) -> str:
     words = f"{answer['ski']['name']}: {str(answer['outcome']).replace('_', ' ')}"
     remedy = f", {answer['remedy']}" if answer["remedy"] else ""
     warned = "".join(f" Warning: {text}." for text in answer["warnings"])
@@ -209,7 +209,7 @@ def _table(names: list[str]) -> dict[str, list[ui.label]]:
         with ui.element("thead"), ui.element("tr"):
             ui.element("th").props("scope=col")
             for number, text in enumerate(names):
-                with ui.element("th").props("scope=col").style(f"color: {LOOKS[number]['colour']}"):
+                with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
                     ui.label(text)
         with ui.element("tbody"):
             for key, (words, _) in FACTS.items():
@@ -218,6 +218,6 @@ def _table(names: list[str]) -> dict[str, list[ui.label]]:
                         ui.label(words)
                     cells[key] = []
                     for number in range(len(names)):
-                        with ui.element("td").classes("n").style(f"color: {LOOKS[number]['colour']}"):
+                        with ui.element("td").classes("n").style(f"color: {STYLES[number]['colour']}"):
                             cells[key].append(ui.label(""))
     return cells

@@ -51,12 +51,12 @@ def add_page(lab: Lab) -> None:
 def _run(place: Path, name: str) -> None:
     with ui.element("section").classes("card"):
         heading(name, 2)
-        sentence(_told(place), "quiet")
+        sentence(_in_words(place), "quiet")
         with ui.element("div").classes("acts"):
             link("Watch", show_address(name), "main").props(f'aria-label="Watch {_quoted(name)}"')
 
 
-def _told(place: Path) -> str:
+def _in_words(place: Path) -> str:
     """What summary.json says of a run in a line; nothing where there is none."""
     try:
         summary: dict[str, Any] = read_json(place / "summary.json")

@@ -11,13 +11,13 @@ from ...errors import ParameterError, SkisnowError
 from ...field.store import Journals
 from ...replay.of_file import RUN_FILE
 from ..edit_session import EditSession
+from ..error_pages import error_sentence
 from ..fields import button, choice, field, link
 from ..lab_skis import LabSkis
 from ..layout import framed, heading, sentence
 from ..replay.addresses import show_address
 from ..runs import Job, Runs
 from ..snow_of_campaign import require_scenario, snow_of_campaign
-from ..trouble import told
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -107,7 +107,7 @@ class _Form:
         try:
             job = await self._asked(str(self._scenario.value), self._changed())
         except SkisnowError as error:
-            self._status.set_text(f"Not begun: {told(error)}")
+            self._status.set_text(f"Not begun: {error_sentence(error)}")
             self._status.classes(add="bad")
             return
         self._status.set_text(f"{job.name} is in the queue.")
@@ -148,7 +148,7 @@ class _Form:
         try:
             found = await run.io_bound(snow_of_campaign, self._lab, snow, str(self._scenario.value), {})
         except SkisnowError as error:
-            self._known.set_text(told(error))
+            self._known.set_text(error_sentence(error))
             return
         if found is not None and snow == self._snow.value:
             self._known.set_text(f"Snow: {found[1]}")

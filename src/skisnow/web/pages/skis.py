@@ -9,14 +9,14 @@ from nicegui import run, ui
 from ...errors import SkisnowError
 from ...report.ski_drawing import SkiDrawing, ski_drawing
 from ..confined import OF_A_SKI, confined
+from ..error_pages import error_sentence
 from ..fields import button, choice, field
 from ..lab_skis import FILE, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..layout import framed, heading, sentence
-from ..line_chart import LOOKS, ChartLine, LineChart
+from ..line_chart import STYLES, ChartLine, LineChart
 from ..patience import BUILD_S
 from ..ski_asked import SkiAsked, SkiFound, ski_found
 from ..ski_editor import SkiEditor
-from ..trouble import told
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -107,12 +107,12 @@ class _Skis:
             found = await run.io_bound(self._found, words, asked)
         except SkisnowError as error:
             if number == self._asked:
-                _say(self._status, told(error), bad=True)
+                _show(self._status, error_sentence(error), bad=True)
             return
         if found is None or number != self._asked:  # the server ends, or something else is wanted by now
             return
         skis, edited = found
-        _say(self._status, " ".join(each.warned for each in skis if each.warned), bad=False)
+        _show(self._status, " ".join(each.warned for each in skis if each.warned), bad=False)
         self._editor.show(edited.station, edited.cells)
         self._show([ski_drawing(each.ski) for each in skis])
 
@@ -141,13 +141,13 @@ class _Skis:
             self._editor.require_drawn()
             await run.io_bound(self._keep, name, asked)
         except SkisnowError as error:
-            _say(self._saved, f"Not saved: {told(error)}", bad=True)
+            _show(self._saved, f"Not saved: {error_sentence(error)}", bad=True)
             return
         names = self._skis.names()
         self._first.set_options(names)
         self._second.set_options([NOTHING, EDITED, *names])
         self._second.set_value(name)  # which draws it
-        _say(self._saved, f"Saved: {name}. Carve and Simulate have it too.", bad=False)
+        _show(self._saved, f"Saved: {name}. Carve and Simulate have it too.", bad=False)
 
     def _keep(self, name: str, asked: SkiAsked) -> None:
         self._skis.require_new(name)
@@ -162,13 +162,13 @@ class _Skis:
             self._editor.require_drawn()
             files = await run.io_bound(_files, self._editor.asked())
         except SkisnowError as error:
-            _say(self._saved, told(error), bad=True)
+            _show(self._saved, error_sentence(error), bad=True)
             return
         for name, text in (files or {}).items():
             ui.download(text.encode(), name)
 
 
-def _say(label: ui.label, text: str, *, bad: bool) -> None:
+def _show(label: ui.label, text: str, *, bad: bool) -> None:
     label.set_text(text)
     label.classes(add="bad" if bad else "good", remove="good" if bad else "bad")
 
@@ -193,7 +193,7 @@ def _table(drawn: list[SkiDrawing]) -> None:
         with ui.element("thead"), ui.element("tr"):
             ui.element("th").props("scope=col")
             for number, each in enumerate(drawn):
-                with ui.element("th").props("scope=col").style(f"color: {LOOKS[number]['colour']}"):
+                with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
                     ui.label(each.name)
         with ui.element("tbody"):
             for key in drawn[0].facts:
@@ -201,7 +201,7 @@ def _table(drawn: list[SkiDrawing]) -> None:
                     with ui.element("th").props("scope=row"):
                         ui.label(key)
                     for number, each in enumerate(drawn):
-                        with ui.element("td").style(f"color: {LOOKS[number]['colour']}"):
+                        with ui.element("td").style(f"color: {STYLES[number]['colour']}"):
                             ui.label(each.facts[key])
     for each in drawn:
         sentence(f"{each.name}: {each.source}", "quiet")

@@ -13,7 +13,7 @@ from starlette.responses import RedirectResponse, Response
 
 from ...errors import ParameterError, SkisnowError
 from ..confined import BOUNDS, confined
-from ..trouble import plain_page, told
+from ..error_pages import error_sentence, plain_page
 from .tracks import Placing, number_of, points_of_track
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def add_uploads(app: FastAPI, tracks: TrackFolders) -> None:
             async with request.form(max_files=1, max_fields=4) as form:
                 name, _ = await run_in_threadpool(_kept, tracks, form)
         except (SkisnowError, OSError) as error:
-            return plain_page("This was not taken in", f"Nothing was stored: {told(error)}", 400)
+            return plain_page("This was not taken in", f"Nothing was stored: {error_sentence(error)}", 400)
         except HTTPException:
             return plain_page("This was not taken in", "Nothing was stored: one file at a time is taken in.", 400)
         return RedirectResponse(f"{_BACK}?track={quote(name, safe='')}", 303)

@@ -46,7 +46,7 @@ def reported(error: BaseException) -> str:
     return reference
 
 
-def told(error: BaseException) -> str:
+def error_sentence(error: BaseException) -> str:
     """An error as a sentence: our own errors say what to do, all others get a reference into the log."""
     if isinstance(error, FieldDataError):
         return f"The campaign cannot be used as it is: {error}"
@@ -66,7 +66,7 @@ def add_error_pages(outer: FastAPI) -> None:
 
 
 def _notified(error: Exception) -> None:
-    said = told(error)
+    said = error_sentence(error)
     try:
         ui.notify(said, type="negative", multi_line=True, timeout=0, close_button="Close")
     except RuntimeError:  # no page belongs to what failed
@@ -77,7 +77,7 @@ def _page(error: Exception) -> None:
     if isinstance(error, StoreError | ParameterError):
         ui.context.client.request.scope[STATUS] = 404
     with framed("This page cannot be shown"):
-        sentence(told(error), "bad")
+        sentence(error_sentence(error), "bad")
 
 
 def plain_page(title: str, said: str, status: int) -> Response:
@@ -91,5 +91,5 @@ async def _not_found(_: Request, __: Exception) -> Response:
 
 async def _failed(_: Request, error: Exception) -> Response:
     if isinstance(error, SkisnowError):  # the page itself says it
-        return plain_page("This cannot be shown", told(error), 500)
+        return plain_page("This cannot be shown", error_sentence(error), 500)
     return plain_page("This cannot be shown", f"Something went wrong. Reference: {reported(error)}.", 500)

@@ -1,4 +1,4 @@
-"""Marks without a track: whether the edge held or slid decides what they say of S_f."""
+"""Measured grooves without a track over time: whether the edge held or slid decides what they say of S_f."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import chi2, norm
 
+from .groove_residuals import STRENGTH, GrooveResiduals
 from .identification import REASONS, Identification, Identified, Outcome
-from .mark_grooves import STRENGTH, MarkGrooves
 from .parameter import Parameter
 from .problem import problem_of
 from .result import identification_of, too_few
@@ -21,63 +21,63 @@ from .solving import Request, solution_of, solved, with_further_intervals
 FloatArray = npt.NDArray[np.float64]
 
 SLID: Final = 0.01
-"""Probability below which marks are not those of an edge that held (modelling assumption)."""
+"""Probability below which grooves are not those of an edge that held (modelling assumption)."""
 _ONE_SIDED: Final = 0.95
 
 
-def marks_alone(parameters: Sequence[Parameter], marks: MarkGrooves, plan: Request) -> Identification:
-    """Identify from marks.
+def grooves_alone(parameters: Sequence[Parameter], grooves: GrooveResiduals, plan: Request) -> Identification:
+    """Identify from measured grooves.
 
     Notes
     -----
-    Where S_f is looked for, the marks are first held against a ski whose edge holds, without S_f. If they go with it,
-    S_f can be anything above what the turn needed: a bound from below, no value. If the path is wider than the ski
+    Where S_f is looked for, the grooves are first compared with a ski whose edge holds, without S_f. If they go with
+    it, S_f can be anything above what the turn needed: a bound from below, no value. If the path is wider than the ski
     carves by itself beyond chance (1 %), the edge slid: then S_f is what it gave.
     """
     strength = next((each for each in parameters if each.key == STRENGTH), None)
     if strength is None:
-        return solved(problem_of(tuple(parameters), (marks,)), plan)
+        return solved(problem_of(tuple(parameters), (grooves,)), plan)
     others = tuple(each for each in parameters if each is not strength)
-    if _slid(others, marks, plan):
-        return _sliding(tuple(parameters), strength, marks, plan)
-    return _holding(others, tuple(parameters), strength, marks, plan)
+    if _slid(others, grooves, plan):
+        return _sliding(tuple(parameters), strength, grooves, plan)
+    return _holding(others, tuple(parameters), strength, grooves, plan)
 
 
-def _slid(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Request) -> bool:
+def _slid(others: tuple[Parameter, ...], grooves: GrooveResiduals, plan: Request) -> bool:
     """Whether the measured radius is larger than that of an edge that holds, beyond chance."""
-    if not math.isfinite(marks.mean_radius):
+    if not math.isfinite(grooves.mean_radius):
         return False
     if not others:
-        residuals, values, dof = marks.residuals([{}])[0], {}, marks.points
+        residuals, values, dof = grooves.residuals([{}])[0], {}, grooves.points
     else:
-        problem = problem_of(others, (marks,))
+        problem = problem_of(others, (grooves,))
         if problem.points <= len(others):
             return False
-        solution = solution_of(problem, replace(plan, starts=1, told=lambda _: None))
+        solution = solution_of(problem, replace(plan, starts=1, progress=lambda _: None))
         values = problem.values(solution.found.place)
-        residuals, dof = marks.residuals([values])[0], problem.points - len(others)
-    groove = marks.groove(values)
+        residuals, dof = grooves.residuals([values])[0], problem.points - len(others)
+    groove = grooves.groove(values)
     if residuals is None or groove is None:
         return False
     worse = float(chi2.sf(float(residuals @ residuals), dof)) < SLID
-    return worse and marks.mean_radius > groove.turn_radius
+    return worse and grooves.mean_radius > groove.turn_radius
 
 
 def _sliding(
-    parameters: tuple[Parameter, ...], strength: Parameter, marks: MarkGrooves, plan: Request
+    parameters: tuple[Parameter, ...], strength: Parameter, grooves: GrooveResiduals, plan: Request
 ) -> Identification:
-    sliding = replace(marks, slides=True)
-    begin = sliding.strength_for({}, marks.mean_radius)
+    sliding = replace(grooves, slides=True)
+    begin = sliding.strength_for({}, grooves.mean_radius)
     own = strength
     if begin is not None and strength.lower < begin < strength.upper:
         own = replace(strength, start=begin)
     chosen = tuple(own if each is strength else each for each in parameters)
-    told = (
+    method = (
         "the radius is wider than this ski carves at this edge angle: the edge slid, and S_f follows from the side "
         "force that the turn needed; the width, swept sideways, was not used"
     )
     problem = problem_of(chosen, (sliding,))
-    plan = replace(plan, methods=(*plan.methods, told))
+    plan = replace(plan, methods=(*plan.methods, method))
     if problem.points < len(chosen):
         return too_few(problem, plan.title, plan.warnings)
     return solved(problem, plan)
@@ -87,17 +87,17 @@ def _holding(
     others: tuple[Parameter, ...],
     parameters: tuple[Parameter, ...],
     strength: Parameter,
-    marks: MarkGrooves,
+    grooves: GrooveResiduals,
     plan: Request,
 ) -> Identification:
     """Identify the others; S_f is bounded from below by what the turn needed."""
-    found = _others(others, marks, plan) if others else _nothing_else(marks, plan)
+    found = _others(others, grooves, plan) if others else _nothing_else(grooves, plan)
     values = {key: value for key, value in found.values.items() if value is not None}
-    bound, low = _bound(marks, values, found)
+    bound, low = _bound(grooves, values, found)
     needed = "says nothing" if bound is None or low is None else f"needed {bound:.3g} N/mm² (95 %: at least {low:.3g})"
-    told = (
-        f"the marks go with an edge that held, so S_f is bounded from below alone: the turn {needed}. A turn in which "
-        "the edge slides, or a shear test, gives its value"
+    warning = (
+        f"the grooves go with an edge that held, so S_f is bounded from below alone: the turn {needed}. A turn in "
+        "which the edge slides, or a shear test, gives its value"
     )
     held = Identified(parameter=strength, interval=(low, None), identifiable=False)
     entries = {each.parameter.key: each for each in found.parameters} | {STRENGTH: held}
@@ -116,20 +116,20 @@ def _holding(
         covariance=covariance,
         bootstrap=_with_gaps(found.bootstrap, places, p),
         posterior=_with_gaps(found.posterior, places, p),
-        warnings=(told, *found.warnings),
+        warnings=(warning, *found.warnings),
     )
 
 
-def _others(others: tuple[Parameter, ...], marks: MarkGrooves, plan: Request) -> Identification:
-    solution = solution_of(problem_of(others, (marks,)), plan)
+def _others(others: tuple[Parameter, ...], grooves: GrooveResiduals, plan: Request) -> Identification:
+    solution = solution_of(problem_of(others, (grooves,)), plan)
     found = identification_of(solution, plan.title, plan.warnings, plan.methods)
     return with_further_intervals(found, solution, plan)
 
 
-def _nothing_else(marks: MarkGrooves, plan: Request) -> Identification:
-    """The scenario's own ski and snow held against the marks; there is nothing to look for."""
-    problem = problem_of((), (marks,))
-    residuals = marks.residuals([{}])[0]
+def _nothing_else(grooves: GrooveResiduals, plan: Request) -> Identification:
+    """The scenario's own ski and snow compared with the grooves; there is nothing to look for."""
+    problem = problem_of((), (grooves,))
+    residuals = grooves.residuals([{}])[0]
     if residuals is not None:
         problem = problem.with_noise_of(residuals)
     return Identification(
@@ -143,9 +143,9 @@ def _nothing_else(marks: MarkGrooves, plan: Request) -> Identification:
         accuracy_is_stated=problem.accuracy_is_stated,
         points=problem.points,
         degrees_of_freedom=problem.points,
-        warnings=(*plan.warnings, *marks.warnings({})),
+        warnings=(*plan.warnings, *grooves.warnings({})),
         methods=(*plan.methods, "every other value is the scenario's own: nothing was searched for"),
-        fits=marks.fits({}),
+        fits=grooves.fits({}),
     )
 
 
@@ -158,20 +158,22 @@ def _with_gaps(samples: FloatArray | None, places: Sequence[int], count: int) ->
     return found
 
 
-def _bound(marks: MarkGrooves, values: dict[str, float], found: Identification) -> tuple[float | None, float | None]:
+def _bound(
+    grooves: GrooveResiduals, values: dict[str, float], found: Identification
+) -> tuple[float | None, float | None]:
     """S_f that the turn needed (N/mm²), and the lower end of its one-sided 95 % interval."""
-    radius = marks.mean_radius
-    bound = marks.strength_for(values, radius) if math.isfinite(radius) else None
+    radius = grooves.mean_radius
+    bound = grooves.strength_for(values, radius) if math.isfinite(radius) else None
     if bound is None:
         return None, None
     keys = [each.parameter.key for each in found.parameters]
     slopes = []
     for key in keys:
         step = 0.01 * values[key]
-        moved = marks.strength_for({**values, key: values[key] + step}, radius)
+        moved = grooves.strength_for({**values, key: values[key] + step}, radius)
         slopes.append(0.0 if moved is None or step == 0.0 else (moved - bound) / step)
     slope = np.array(slopes)
-    wider = marks.strength_for(values, radius + marks.mean_radius_sd)
+    wider = grooves.strength_for(values, radius + grooves.mean_radius_sd)
     variance = (0.0 if wider is None else (wider - bound) ** 2) + float(
         slope @ np.nan_to_num(found.covariance, posinf=0.0) @ slope if keys else 0.0
     )

@@ -1,4 +1,4 @@
-"""How a replay looks, the same in the browser and in a model taken away: colours with a meaning, drawn thickness."""
+"""Colours with a meaning and drawn thickness of a replay, the same in the browser and in an exported model."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy.typing as npt
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 COLOURS: Final[dict[str, Any]] = {
-    # yellow, orange, red, purple, near black: darker all the way, told apart without red or green as well
+    # yellow, orange, red, purple, near black: darker throughout, distinct without red or green as well
     "force": [[255, 233, 148], [253, 180, 83], [240, 105, 68], [190, 45, 92], [112, 20, 106], [45, 10, 70]],
     "depth": [[170, 196, 219], [95, 144, 190], [38, 92, 150], [12, 42, 92]],
     "unloaded": [214, 220, 226],

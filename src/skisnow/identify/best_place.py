@@ -12,7 +12,7 @@ from .result import Solution
 FloatArray = npt.NDArray[np.float64]
 
 
-def residuals_from_the_best(solution: Solution) -> Callable[[Sequence[FloatArray]], list[FloatArray | None]]:
+def residuals_about_best(solution: Solution) -> Callable[[Sequence[FloatArray]], list[FloatArray | None]]:
     """Those of the search, moved so that at the best place they are those of the answer."""
     problem, found = solution.problem, solution.found
     quick = problem.residuals([found.place])[0]

@@ -1,4 +1,4 @@
-"""What about a scenario looks like a slip, or lies beyond what was measured, in users' words."""
+"""What of a scenario is implausible, or lies beyond what was measured, in users' words."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .scenario import Scenario
 from .slope import Plane
 
 
-def suspicions(scenario: Scenario) -> tuple[str, ...]:
+def implausible_values(scenario: Scenario) -> tuple[str, ...]:
     """Warnings about a scenario, none of which stops it."""
     return (*_like_radians(scenario), *_like_another_unit(scenario), *_outside_ranges(scenario))
 

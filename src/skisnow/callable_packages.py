@@ -1,4 +1,4 @@
-"""Rooms that can be called: `skisnow.simulate(turn)`, where `skisnow.simulate` is also the folder of the verb."""
+"""Packages that can be called: `skisnow.simulate(turn)`, where `skisnow.simulate` is also the folder of the verb."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-def make_callable(room: str, module: str, verb: str) -> None:
-    """Let calling a room call a function in it, which is loaded with the first call.
+def make_callable(package: str, module: str, verb: str) -> None:
+    """Let calling a package call a function in it, which is loaded with the first call.
 
-    So the name stays callable whatever was imported first: importing a room binds its name to the folder.
+    So the name stays callable whatever was imported first: importing a package binds its name to the folder.
 
     Parameters
     ----------
-    room
+    package
         ``__name__`` of the package that calls this.
     module, verb
         The module in it, such as ".simulated_run", and the function there.
     """
 
     def loaded() -> Callable[..., Any]:
-        found: Callable[..., Any] = getattr(import_module(module, room), verb)
+        found: Callable[..., Any] = getattr(import_module(module, package), verb)
         return found
 
-    class CallableRoom(ModuleType):
-        """A room that is a verb, too."""
+    class CallablePackage(ModuleType):
+        """A package that is a verb, too."""
 
         def __call__(self, *args: Any, **named: Any) -> Any:
             return loaded()(*args, **named)
@@ -39,5 +39,5 @@ def make_callable(room: str, module: str, verb: str) -> None:
         def __signature__(self) -> inspect.Signature:
             return inspect.signature(loaded())
 
-    CallableRoom.__call__.__doc__ = f"Call `{room}{module}.{verb}`."
-    sys.modules[room].__class__ = CallableRoom
+    CallablePackage.__call__.__doc__ = f"Call `{package}{module}.{verb}`."
+    sys.modules[package].__class__ = CallablePackage

@@ -1,4 +1,4 @@
-"""Residuals of marks left in the snow: the groove and the radius of a ski that carves, or that the snow lets slide.
+"""Residuals of the track left in the snow: the groove and the radius of a ski that carves, or that the snow lets slide.
 
 The ski is the one of `skisnow.carve`: half of the weight's part along the snow's normal on each, edge angle given. The
 depth that stays is e_max (1 - H_V/k_u), the width across the groove e_max/tan ϑ where it is deepest, the radius that of
@@ -18,13 +18,14 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..carve.equilibrium import Equilibrium, carve
+from ..carve.equilibrium import carve
+from ..carve.result import Equilibrium
 from ..errors import ParameterError, SkisnowError
 from ..scenario import Plane, ScenarioFile
 from ..ski import Ski
 from ..snow import SnowProperties
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
-from .marks import Marks
+from .measured_grooves import MeasuredGrooves
 from .observations import Fit, Kind, Values
 
 FloatArray = npt.NDArray[np.float64]
@@ -41,7 +42,7 @@ USED: Final = (
     "slope.angle_deg",
     "slope.gravity_m_per_s2",
 )
-"""Keys that the marks depend on."""
+"""Keys that the grooves depend on."""
 STRAIGHTEST: Final = 1e6
 """Radius (m) that stands for a straight path: grip too small for any turn."""
 
@@ -58,12 +59,12 @@ class Groove:
 
 
 @dataclass(slots=True)
-class MarkGrooves:
-    """Marks, and the ski that is taken to have left them.
+class GrooveResiduals:
+    """Measured grooves, and the ski that is taken to have left them.
 
     Attributes
     ----------
-    marks
+    measured
         What was measured.
     asked
         The scenario: ski, mass, slope, speed, heading, edge angle, and the values of what is not looked for.
@@ -72,19 +73,19 @@ class MarkGrooves:
         nothing.
     """
 
-    marks: Marks
+    measured: MeasuredGrooves
     asked: ScenarioFile
     slides: bool = False
     _kept: dict[tuple[float, ...], Groove | None] = field(init=False, default_factory=dict)
 
     @property
     def kind(self) -> Kind:
-        """Marks."""
+        """MeasuredGrooves."""
         return "marks"
 
     @property
     def runs(self) -> tuple[str, ...]:
-        """None: all marks are of one passage."""
+        """None: all grooves are of one passage."""
         return ()
 
     def depends_on(self, key: str) -> bool:
@@ -104,7 +105,7 @@ class MarkGrooves:
     @property
     def accuracy_is_stated(self) -> bool:
         """Whether the file has standard deviations."""
-        return self.marks.stated
+        return self.measured.stated
 
     @property
     def series(self) -> tuple[int, ...]:
@@ -122,13 +123,15 @@ class MarkGrooves:
         groove = self.groove(values)
         if groove is None:
             return ()
-        computed = np.tile([groove.depth / MM, groove.width / MM, self._radius(values, groove)], (len(self.marks), 1))
-        measured = np.column_stack([self.marks.depth / MM, self.marks.width / MM, self.marks.turn_radius])
-        sd = np.column_stack([self.marks.depth_sd / MM, self.marks.width_sd / MM, self.marks.turn_radius_sd])
+        computed = np.tile(
+            [groove.depth / MM, groove.width / MM, self._radius(values, groove)], (len(self.measured), 1)
+        )
+        measured = np.column_stack([self.measured.depth / MM, self.measured.width / MM, self.measured.turn_radius])
+        sd = np.column_stack([self.measured.depth_sd / MM, self.measured.width_sd / MM, self.measured.turn_radius_sd])
         labels = ("depth (mm)", "width (mm)", "turn radius (m)")
         return (
             Fit(
-                name=self.marks.name, kind="marks", along=np.arange(1.0, len(self.marks) + 1.0), labels=labels,
+                name=self.measured.name, kind="marks", along=np.arange(1.0, len(self.measured) + 1.0), labels=labels,
                 measured=measured, fitted=computed, sd=sd,
             ),
         )  # fmt: skip
@@ -164,22 +167,22 @@ class MarkGrooves:
     @property
     def mean_radius(self) -> float:
         """Weighted mean of the measured radii (m), NaN without any."""
-        use = np.isfinite(self.marks.turn_radius)
-        weight = self.marks.turn_radius_sd[use] ** -2.0
-        return float(np.sum(weight * self.marks.turn_radius[use]) / np.sum(weight)) if use.any() else math.nan
+        use = np.isfinite(self.measured.turn_radius)
+        weight = self.measured.turn_radius_sd[use] ** -2.0
+        return float(np.sum(weight * self.measured.turn_radius[use]) / np.sum(weight)) if use.any() else math.nan
 
     @property
     def mean_radius_sd(self) -> float:
         """Its standard deviation (m)."""
-        use = np.isfinite(self.marks.turn_radius)
-        return float(np.sum(self.marks.turn_radius_sd[use] ** -2.0) ** -0.5) if use.any() else math.nan
+        use = np.isfinite(self.measured.turn_radius)
+        return float(np.sum(self.measured.turn_radius_sd[use] ** -2.0) ** -0.5) if use.any() else math.nan
 
     def _columns(self) -> list[tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]]:
-        marks = self.marks
+        grooves = self.measured
         return [
-            (marks.depth, marks.depth_sd, np.isfinite(marks.depth)),
-            (marks.width, marks.width_sd, np.isfinite(marks.width) & (not self.slides)),
-            (marks.turn_radius, marks.turn_radius_sd, np.isfinite(marks.turn_radius)),
+            (grooves.depth, grooves.depth_sd, np.isfinite(grooves.depth)),
+            (grooves.width, grooves.width_sd, np.isfinite(grooves.width) & (not self.slides)),
+            (grooves.turn_radius, grooves.turn_radius_sd, np.isfinite(grooves.turn_radius)),
         ]
 
     def _residual(self, values: Values) -> FloatArray | None:
@@ -202,10 +205,10 @@ class MarkGrooves:
         return min(mass * speed**2 / left, STRAIGHTEST) if left > 0.0 else STRAIGHTEST
 
 
-def require_marks_can_be(asked: ScenarioFile) -> None:
-    """Refuse scenarios whose ski leaves no mark, or that say nothing of a turn."""
+def require_groove_stays(asked: ScenarioFile) -> None:
+    """Refuse scenarios whose ski leaves no groove, or that say nothing of a turn."""
     if asked.scenario.contact.unloading_ratio <= 1.0:
-        raise ParameterError("snow.unloading_ratio is 1: elastic snow keeps no mark. Give the snow that kept these")
+        raise ParameterError("snow.unloading_ratio is 1: elastic snow keeps no groove. Give the snow that kept these")
     if asked.scenario.sledge.edge_angle == 0.0:
         raise ParameterError("sledge.edge_angle_deg is 0: a flat ski leaves no groove of an edge. Give the edge angle")
 

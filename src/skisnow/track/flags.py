@@ -1,6 +1,6 @@
-"""The marks that points of a track may carry: codes, sentences, and how they are found.
+"""The quality flags that points of a track may carry: codes, sentences, and how they are found.
 
-A mark changes nothing: the point stays where the file has it. `Track.usable` leaves out the marks that exclude.
+A flag changes nothing: the point stays where the file has it. `Track.usable` leaves out points whose flag excludes.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .solution import solution_marks
+from .solution import solution_flags
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,8 +30,8 @@ GAP_FACTOR: Final = 5.0
 
 
 @dataclass(frozen=True, slots=True)
-class PointMark:
-    """A mark: its code, the sentence that explains it, and whether `Track.usable` leaves the point out."""
+class PointFlag:
+    """A quality flag: its code, the sentence that explains it, and whether `Track.usable` leaves the point out."""
 
     code: str
     sentence: str
@@ -39,23 +39,23 @@ class PointMark:
 
 
 _ALL: Final = (
-    PointMark("no_fix", "The receiver had no fix, or the file has no place for this point.", True),
-    PointMark("missing_height", "The point has a place but no height.", False),
-    PointMark("repeated_time", "The point has the same time stamp as the one before it.", True),
-    PointMark("gap", "The time since the point before is much longer than the usual interval.", False),
-    PointMark("jump", "A single point far off: the speed out to it and back again is impossible.", True),
-    PointMark("impossible_step", "The speed to this point is impossible, and no single point explains it.", False),
-    PointMark("negative_speed", "The speed is below zero, as devices write that have none; it counts as none.", False),
-    PointMark(
+    PointFlag("no_fix", "The receiver had no fix, or the file has no place for this point.", True),
+    PointFlag("missing_height", "The point has a place but no height.", False),
+    PointFlag("repeated_time", "The point has the same time stamp as the one before it.", True),
+    PointFlag("gap", "The time since the point before is much longer than the usual interval.", False),
+    PointFlag("jump", "A single point far off: the speed out to it and back again is impossible.", True),
+    PointFlag("impossible_step", "The speed to this point is impossible, and no single point explains it.", False),
+    PointFlag("negative_speed", "The speed is below zero, as devices write that have none; it counts as none.", False),
+    PointFlag(
         "float_solution", "By the carrier's phase, but not fixed to whole cycles: decimetres that wander.", False
     ),
-    PointMark("code_solution", "By the code alone, in a track that has the carrier's phase elsewhere: metres.", False),
+    PointFlag("code_solution", "By the code alone, in a track that has the carrier's phase elsewhere: metres.", False),
 )
-MARKS: Final[Mapping[str, PointMark]] = MappingProxyType({mark.code: mark for mark in _ALL})
-"""Every mark by its code, in the order in which they are listed."""
+FLAGS: Final[Mapping[str, PointFlag]] = MappingProxyType({flag.code: flag for flag in _ALL})
+"""Every flag by its code, in the order in which they are listed."""
 
 
-def point_marks(
+def point_flags(
     time: FloatArray,
     place: FloatArray,
     fix: BoolArray,
@@ -65,7 +65,7 @@ def point_marks(
     gap_factor: float = GAP_FACTOR,
     solution: SolutionArray | None = None,
 ) -> dict[str, BoolArray]:
-    """Marks of every code, each (n,) bool.
+    """Flags of every code, each (n,) bool.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def point_marks(
     fastest : m/s
         Horizontal speed above which a step is impossible.
     gap_factor
-        A time step longer than this many medians of the steps above zero is a gap; the point after it is marked.
+        A time step longer than this many medians of the steps above zero is a gap; the point after it is flagged.
     solution : (n,) or None
         How the receiver came to each place, as in `Track`.
     """
@@ -100,7 +100,7 @@ def point_marks(
         "jump": jump,
         "impossible_step": impossible,
         "negative_speed": negative_speed,
-        **solution_marks(solution, len(time)),
+        **solution_flags(solution, len(time)),
     }
 
 
@@ -128,7 +128,7 @@ def _impossible(time: FloatArray, place: FloatArray, fastest: float) -> tuple[li
 
 
 def _jumps(time: FloatArray, place: FloatArray, lengths: FloatArray, fastest: float) -> list[int]:
-    """Inner points over which the way is impossible, while the way past them is possible and less than half as long."""
+    """Inner points over which the distance is impossible, and past them possible and less than half as long."""
     over = lengths[:-1] + lengths[1:]
     past = np.hypot(*(place[2:] - place[:-2]).T)
     most = fastest * (time[2:] - time[:-2])

@@ -1,4 +1,4 @@
-"""Marks left in the snow: depth and width of the groove, and the radius of the turn."""
+"""The track left in the snow: depth and width of the groove, and the radius of the turn."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MarkRow:
-    """A row of a file of marks; what was not measured is left out."""
+class GrooveRow:
+    """A row of a file of measured grooves; what was not measured is left out."""
 
     depth: Annotated[float | None, Quantity("depth_mm", "depth of the groove", lowest=0.0, above=True)] = None
     width: Annotated[float | None, Quantity("width_mm", "width of the groove", lowest=0.0, above=True)] = None
@@ -31,14 +31,14 @@ class MarkRow:
     )
 
 
-_ROW: Final = own_quantities(MarkRow)
+_ROW: Final = own_quantities(GrooveRow)
 COLUMNS: Final = tuple(each.name for each in _ROW[:3])
 SPREADS: Final = tuple(each.name for each in _ROW[3:])
 FEWEST_FOR_SCATTER: Final = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Marks(ShownFields):
+class MeasuredGrooves(ShownFields):
     """Places along a track, (n,) each, in m.
 
     Attributes
@@ -81,7 +81,7 @@ class Marks(ShownFields):
         return len(self.depth)
 
 
-def read_marks(path: str | Path) -> Marks:
+def read_measured_grooves(path: str | Path) -> MeasuredGrooves:
     """Read ``depth_mm, width_mm, turn_radius_m, depth_sd_mm, width_sd_mm, turn_radius_sd_m``, a row for each place.
 
     Columns and cells may be missing; without standard deviations the scatter of three places or more takes their part.
@@ -91,11 +91,11 @@ def read_marks(path: str | Path) -> Marks:
     ParameterError
         The file cannot be read, none of the three quantities is there, or a number is missing or not above 0.
     """
-    return marks_of(read_table(Path(path)))
+    return grooves_of(read_table(Path(path)))
 
 
-def marks_of(table: TableFile) -> Marks:
-    """The marks of a table that was read."""
+def grooves_of(table: TableFile) -> MeasuredGrooves:
+    """The grooves of a table that was read."""
     table.require(())
     table.require_no_slip((*COLUMNS, *SPREADS))
     columns = {}
@@ -113,7 +113,7 @@ def marks_of(table: TableFile) -> Marks:
     (depth, depth_sd), (width, width_sd), (radius, radius_sd) = (columns[name] for name in COLUMNS)
     if not any(np.isfinite(each).any() for each in (depth, width, radius)):
         raise ParameterError(f"{table.name} holds none of {', '.join(COLUMNS)}")
-    return Marks(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
+    return MeasuredGrooves(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
 
 
 def _column(table: TableFile, quantity: Quantity) -> FloatArray:

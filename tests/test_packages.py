@@ -1,4 +1,4 @@
-"""The plan of the rooms: no file is reached again by what it imports, not even for a type."""
+"""The plan of the packages: no file is reached again by what it imports, not even for a type."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Intervals by other ways than curvature: profile and posterior."""
+"""Intervals other than by curvature: profile likelihood and posterior."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy.typing as npt
 from scipy.interpolate import PchipInterpolator
 
 from ..statistics import percentile_interval
-from .from_the_best import residuals_from_the_best, samples_in_values
+from .best_place import residuals_about_best, samples_in_values
 from .identification import Identification, Identified, Interval, Profile
 from .parameter import Parameter, bounds_of
 from .result import Solution
 from .search import step_inside
 
 FloatArray = npt.NDArray[np.float64]
-Told = Callable[[str], None]
+Progress = Callable[[str], None]
 
 PLACES: Final = (-3.0, -2.0, -1.0, 1.0, 2.0, 3.0)
 """Of a profile, in standard errors from the best value."""
@@ -26,8 +26,8 @@ REFITS: Final = 2
 """Gauss-Newton steps of all other parameters at each place, with the Jacobian of the best one."""
 
 
-def profiled(found: Identification, solution: Solution, told: Told) -> Identification:
-    """Hold each parameter at several values, fit all others anew, and see how the sum of squares rises.
+def profiled(found: Identification, solution: Solution, progress: Progress) -> Identification:
+    """Hold each parameter at several values, refit all others, and see how the sum of squares rises.
 
     Notes
     -----
@@ -39,7 +39,7 @@ def profiled(found: Identification, solution: Solution, told: Told) -> Identific
     limit = known.factor**2 * (solution.widening**2)
     profiles, parameters = [], list(found.parameters)
     for j, parameter in enumerate(solution.problem.parameters):
-        told(f"profile of {parameter.name}")
+        progress(f"profile of {parameter.name}")
         error = float(known.standard_errors[j])
         if not np.isfinite(error):
             continue
@@ -48,8 +48,8 @@ def profiled(found: Identification, solution: Solution, told: Told) -> Identific
         profiles.append(profile)
         ends = _ends(solution.found.place[j], place, rise, limit)
         parameters[j] = replace(parameters[j], profile_interval=_as_values(parameter, ends))
-    told_how = f"profiles: others fitted anew by {REFITS} Gauss-Newton steps at each value"
-    return replace(found, profiles=tuple(profiles), parameters=tuple(parameters), methods=(*found.methods, told_how))
+    method = f"profiles: others refitted by {REFITS} Gauss-Newton steps at each value"
+    return replace(found, profiles=tuple(profiles), parameters=tuple(parameters), methods=(*found.methods, method))
 
 
 def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatArray]:
@@ -59,7 +59,7 @@ def _along(solution: Solution, j: int, error: float) -> tuple[FloatArray, FloatA
     centre = found.place
     ends = np.unique(np.clip(centre[j] + error * np.array(PLACES), lower[j], upper[j]))
     ends = ends[np.abs(ends - centre[j]) > 1e-9]
-    ask = residuals_from_the_best(solution)
+    ask = residuals_about_best(solution)
     begun = [_moved(solution, j, float(end)) for end in ends]
     costs = np.full(len(ends), np.inf)
     for _ in range(REFITS):
@@ -119,12 +119,12 @@ def _as_values(parameter: Parameter, ends: tuple[float | None, float | None]) ->
 
 
 def with_posterior(
-    found: Identification, solution: Solution, samples: int, rng: np.random.Generator, told: Told
+    found: Identification, solution: Solution, samples: int, rng: np.random.Generator, progress: Progress
 ) -> Identification:
     """Sample the posterior with emcee, inside the bounds."""
     from .posterior import posterior_places
 
-    places, how = posterior_places(solution, samples, rng, told)
+    places, how = posterior_places(solution, samples, rng, progress)
     if places is None:
         return replace(found, warnings=(*found.warnings, how))
     values = samples_in_values(solution, places)

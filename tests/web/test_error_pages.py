@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 from skisnow.errors import StoreError
-from skisnow.web.trouble import LOG, _notified, log_to, plain_page, told
+from skisnow.web.error_pages import LOG, _notified, error_sentence, log_to, plain_page
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def test_an_unforeseen_error_is_a_reference_that_the_log_knows(log: Path) -> Non
     try:
         raise KeyError("inner secret")
     except KeyError as error:
-        said = told(error)
+        said = error_sentence(error)
     assert "secret" not in said
     found = re.search(r"Reference: ([0-9a-f]{8})\.", said)
     assert found is not None
@@ -48,7 +48,7 @@ def test_what_no_page_can_show_stands_in_the_log(log: Path, monkeypatch: pytest.
 
 
 def test_our_own_errors_say_what_to_do() -> None:
-    assert told(StoreError("The disk is full; free some space.")) == "The disk is full; free some space."
+    assert error_sentence(StoreError("The disk is full; free some space.")) == "The disk is full; free some space."
 
 
 def test_what_users_wrote_is_escaped() -> None:

@@ -1,0 +1,168 @@
+"""The tables of the pages on shear and friction in turns, computed again: python docs/tables_of_turns.py [PAGE ...].
+
+Each stands between two marks that no reader sees, ``<!-- table NAME -->`` and ``<!-- end of table -->``. Some
+70 turns: a minute or two of one core.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from skisnow import Run, scenario, simulate
+
+DOCS = Path(__file__).resolve().parent
+LAWS: dict[str, dict[str, object]] = {
+    "S_f": {},
+    "S_f (1 − 0.266 ϑ)": {"shear.law": "by-angle", "shear.relative_decrease_per_rad": 0.266},
+    "cutting, μ_t = 0": {"shear.law": "machining", "shear.transverse_friction": 0.0},
+    "cutting, μ_t = 0.2": {"shear.law": "machining", "shear.transverse_friction": 0.2},
+    "r = 0.7, d = 1 mm": {"shear.residual_ratio": 0.7, "shear.slip_weakening_mm": 1.0},
+    "r = 0.4, d = 1 mm": {"shear.residual_ratio": 0.4, "shear.slip_weakening_mm": 1.0},
+    "r = 0.4, d = 10 mm": {"shear.residual_ratio": 0.4, "shear.slip_weakening_mm": 10.0},
+}
+SNOWS = {"0.2, 0.5": tuple(LAWS), "0.2, 0.1": tuple(LAWS), "1, 0.3": tuple(LAWS)[:5]}
+TURNS = ("carved-46m", "carver-42m", "giant-slalom-67m")
+SKIDS = {"skid: H_V 0.2, S_f 0.1": (0.2, 0.1), "skid: 1, 0.25": (1.0, 0.25), "ice: 90, S_f 10": (90.0, 10.0)}
+DISPLACEMENTS = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01)
+
+
+@cache
+def turn(name: str, *changes: tuple[str, object]) -> Run:
+    """A run of a built-in scenario with changes."""
+    print(name, *changes, file=sys.stderr)
+    return simulate(scenario(name, changes=dict(changes)))
+
+
+def on_snow(hardness: float, strength: float) -> tuple[tuple[str, object], ...]:
+    """Changes of H_V and S_f (N/mm³, N/mm²)."""
+    return ("snow.H_V_N_per_mm3", hardness), ("snow.S_f_N_per_mm2", strength)
+
+
+def end(run: Run) -> str:
+    """Of the run: x and y (m)."""
+    return f"{run.place[-1, 0]:.2f}, {run.place[-1, 1]:.2f}".replace("-", "−")
+
+
+def apart(one: Run, other: Run) -> float:
+    """Distance of the ends (m)."""
+    return math.dist(one.place[-1], other.place[-1])
+
+
+def deepest(run: Run) -> float:
+    """Depth (mm) of the deepest place of an edge, median over the second half of the run."""
+    late = run.time >= run.time[-1] / 2.0
+    return 1e3 * float(np.median(run.skis.edge_depth[late].max(axis=(1, 2))))
+
+
+def shear_laws() -> Iterator[str]:
+    """Three snows with each law: where the run ends, how fast, how deep, what shear takes."""
+    yield "| H_V, S_f | law | end (m) | from the first (m) | speed (m/s) | depth (mm) | lost to shear (J) |"
+    yield "| --- | --- | --- | ---: | ---: | ---: | ---: |"
+    for snow, laws in SNOWS.items():
+        changes = on_snow(*map(float, snow.split(", ")))
+        first = turn("carved-46m", *changes)
+        for law in laws:
+            run = turn("carved-46m", *changes, *LAWS[law].items())
+            head = f"| {f'{snow} ' if law == laws[0] else ''}| {law} | {end(run)} | {apart(run, first):.1f} |"
+            yield f"{head} {run.speed[-1]:.2f} | {deepest(run):.2f} | {run.energies['shear'][-1]:.0f} |"
+
+
+def friction_loads() -> Iterator[str]:
+    """The built-in turns with friction on both loads."""
+    heads = ("run", "friction (J): snow-normal, base-normal", "their ratio", "1/cos ϑ", "speed at the end (m/s)")
+    yield f"| {' | '.join(heads)} | ends apart (m) |"
+    yield "| --- | --- | ---: | ---: | --- | ---: |"
+    for name in TURNS:
+        runs = [turn(name, ("friction.acts_on", each)) for each in ("snow-normal", "base-normal")]
+        lost = [float(run.energies["friction"][-1]) for run in runs]
+        lean = 1.0 / math.cos(runs[0].scenario.sledge.edge_angle)
+        yield (
+            f"| `{name}` | {lost[0]:.0f}, {lost[1]:.0f} | {lost[1] / lost[0]:.2f} | {lean:.3f} | "
+            f"{runs[0].speed[-1]:.2f}, {runs[1].speed[-1]:.2f} | {apart(*runs):.2f} |"
+        )
+
+
+def displacements() -> Iterator[str]:
+    """Ends over u_y, of carves and of skids."""
+    yield f"| u_y (mm) | {' | '.join((*TURNS, *SKIDS))} |"
+    yield f"| ---: |{' --- |' * (len(TURNS) + len(SKIDS))}"
+    for value in DISPLACEMENTS:
+        runs = [turn(name, ("snow.shear_displacement_mm", value)) for name in TURNS]
+        runs += [turn("carved-46m", *on_snow(*snow), ("snow.shear_displacement_mm", value)) for snow in SKIDS.values()]
+        yield f"| {value:g} | {' | '.join(map(end, runs))} |"
+
+
+PAGES = {
+    "methods/shear-in-turns.md": {"shear laws": shear_laws},
+    "methods/glide-friction.md": {"friction loads": friction_loads},
+    "methods/shear-displacement.md": {"displacements": displacements},
+}
+
+
+def spoken() -> Iterator[str]:
+    """Numbers of the sentences on these pages."""
+    carve, displacement = "carved-46m", "snow.shear_displacement_mm"
+    for name in TURNS:
+        loose, usual, tight = (turn(name, (displacement, value)) for value in (0.5, 0.02, 0.01))
+        yield f"{name}: 0.02 to 0.01 mm {apart(usual, tight):.3f} m, 0.5 to 0.02 mm {apart(loose, usual):.2f} m"
+        yield f"{name}: steps at 0.5, 0.02 and 0.01 mm {loose.steps}, {usual.steps}, {tight.steps}"
+    usual, tight = turn(carve), turn(carve, (displacement, 0.01))
+    elements, spacing = usual.numbers["elements"], 1e3 * usual.numbers["line_spacing_m"]
+    finer = (
+        ("solver.tolerance_mm", 1e-4),
+        ("solver.line_spacing_mm", spacing / 4.0),
+        ("solver.elements", int(2 * elements)),
+    )
+    for change in finer:
+        yield f"{carve}, {change[0]} {change[1]:g}: {1e3 * apart(usual, turn(carve, change)):.1f} mm"
+    yield f"at 0.01 mm, {finer[0][0]}: {1e3 * apart(tight, turn(carve, (displacement, 0.01), finer[0])):.1f} mm"
+    skid = turn(carve, *on_snow(0.2, 0.1))
+    fixed = [turn(carve, *on_snow(0.2, 0.1), ("solver.fixed", True), ("solver.step_ms", h)) for h in (0.25, 0.125)]
+    yield f"skid, fixed steps of 0.125 ms {apart(skid, fixed[1]):.2f} m, from 0.25 to 0.125 ms {apart(*fixed):.2f} m"
+    for share in (1.004, 0.996, 0.7):
+        yield f"skid, S_f times {share}: {apart(skid, turn(carve, *on_snow(0.2, 0.1 * share))):.2f} m"
+    for value in (0.05, 0.02):
+        run = turn(carve, *on_snow(1.0, 0.3), (displacement, value))
+        yield f"(1, 0.3) at {value} mm: slip angle {slip_angle(run):.0f}°, {run.energies['shear'][-1]:.0f} J to shear"
+    loads = [turn(carve, ("friction.acts_on", each), (displacement, 0.5)) for each in ("snow-normal", "base-normal")]
+    lost = [run.energies["friction"][-1] for run in loads]
+    yield f"friction base-normal over snow-normal at 0.5 mm: {lost[1] / lost[0]:.2f}"
+
+
+def slip_angle(run: Run) -> float:
+    """The largest angle (degrees) between skis and path."""
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    return float(np.degrees(np.abs(run.heading - path)).max())
+
+
+def written(page: str) -> str:
+    """The text of a page with its tables computed."""
+    text = (DOCS / page).read_text(encoding="utf-8")
+    for name, rows in PAGES[page].items():
+        mark = f"<!-- table {name} -->\n"
+        pattern = re.compile(f"{re.escape(mark)}.*?<!-- end of table -->", re.DOTALL)
+        found = pattern.search(text)
+        assert found, f"{page} has no table {name}"
+        table = "\n".join(rows())
+        text = f"{text[: found.start()]}{mark}{table}\n<!-- end of table -->{text[found.end() :]}"
+    return text
+
+
+def main() -> None:
+    """Write the pages that are named, or all; with --spoken print the numbers of their sentences."""
+    if sys.argv[1:] == ["--spoken"]:
+        print(*spoken(), sep="\n")
+        return
+    for page in sys.argv[1:] or PAGES:
+        (DOCS / page).write_text(written(page), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
