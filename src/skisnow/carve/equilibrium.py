@@ -158,6 +158,7 @@ def carve(
     unloading_ratio: float,
     moment: float = 0.0,
     clamp_length: float = CLAMP_LENGTH,
+    footprint_stiffness: float | None = None,
     side_force_bending: bool = True,
     groove: GrooveForm = "edge",
     moment_balance: MomentBalance = "boot",
@@ -179,8 +180,9 @@ def carve(
         does not converge, 500, 300 or 200 is taken and a warning says so.
     moment
         At the boot, positive where it presses the tip down (N m); about which axis, `moment_balance` says.
-    clamp_length
-        Length of ski kept straight by boot and binding (m).
+    clamp_length, footprint_stiffness
+        Length of ski that boot and binding hold (m), and how stiff they are between the boot and each metre of it
+        (N/m²); None: rigid, the ski stays straight there.
     side_force_bending
         Whether the side force, too, bends and twists the ski (it does: the part sin ϑ of it is normal to the base).
     groove
@@ -233,7 +235,7 @@ def carve(
         raise ParameterError(
             f"the snow ({snow.source}) has no failure shear stress S_f; a carved turn needs it: give one"
         )
-    model = clamped(ski, clamp_length, elements)
+    model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(
         ski, snow, edge_angle, load, moment, min(unloading_ratio, RIGID_PLASTIC), side_force_bending, twist
     )
@@ -263,6 +265,7 @@ def rest(
     load: float,
     moment: float = 0.0,
     clamp_length: float = CLAMP_LENGTH,
+    footprint_stiffness: float | None = None,
     twist: bool = True,
     elements: int = ELEMENTS,
 ) -> Equilibrium:
@@ -270,7 +273,7 @@ def rest(
 
     Parameters
     ----------
-    ski, snow, edge_angle, load, moment, clamp_length, twist, elements
+    ski, snow, edge_angle, load, moment, clamp_length, footprint_stiffness, twist, elements
         As in `carve`; the snow needs no S_f.
 
     Returns
@@ -291,7 +294,7 @@ def rest(
     _require_kinds(ski, snow)
     _require(edge_angle, load, 1.0, moment)
     _require_within(ski, load, moment)
-    model = clamped(ski, clamp_length, elements)
+    model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twist)._replace(side_force=0.0)
     return _described(model, conditions, snow, solved(model, conditions))
 
