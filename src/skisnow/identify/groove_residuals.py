@@ -238,7 +238,7 @@ def _groove(asked: ScenarioFile, of: Mapping[str, Any]) -> Groove | None:
     try:
         found = carve(
             asked.scenario.flexing_ski, snow, edge_angle=angle, load=load, unloading_ratio=ratio,
-            clamp_length=asked.scenario.clamp_length,
+            clamp_length=asked.scenario.clamp_length, footprint_stiffness=asked.scenario.footprint_stiffness,
         )  # fmt: skip
     except SkisnowError:
         return None

@@ -50,9 +50,9 @@ class Scenario(Shown):
         Snow with friction; the law of its shear strength; drag.
     sledge
         The rigid part with its edge angle, without the skis.
-    ski, stiffness_factor, clamp_length, damping_ratio
+    ski, stiffness_factor, clamp_length, footprint_stiffness, damping_ratio
         The ski of both sides, what its EI and GJ are multiplied with, the length that its binding keeps straight (m),
-        damping of its first bending mode.
+        or holds with a stiffness (N/m²; None: rigid), damping of its first bending mode.
     start, stop, solver
         Where it begins, when it ends, how it is computed.
     gravity
@@ -103,6 +103,16 @@ class Scenario(Shown):
             origin="choice: about a boot's sole",
         ),
     ] = CLAMP_LENGTH
+    footprint_stiffness: Annotated[
+        float | None,
+        Quantity(
+            "ski.footprint_stiffness_N_per_mm2",
+            "stiffness of boot and binding under each metre of the clamp length, against bending; left out: rigid",
+            lowest=0.0,
+            highest=1e4,
+            above=True,
+        ),
+    ] = None
     damping_ratio: Annotated[
         float,
         Quantity(

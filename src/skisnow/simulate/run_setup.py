@@ -128,7 +128,7 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])
     elements = solver.elements or max(ELEMENTS, math.ceil(5.0 * length / wavelength))
     spacing = solver.line_spacing or min(LINE_SPACING, wavelength / 10.0)  # two to an element
-    ski = clamped(scenario.flexing_ski, scenario.clamp_length, elements)
+    ski = clamped(scenario.flexing_ski, scenario.clamp_length, elements, scenario.footprint_stiffness)
     body = sledge_body(
         scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity(scenario),
         drag=0.5 * air.density * air.drag_area, drag_height=air.centre_of_pressure_height,
