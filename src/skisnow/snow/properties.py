@@ -96,8 +96,8 @@ class SnowProperties(Shown):
     @property
     def in_words(self) -> str:
         """Both values with their intervals, the unloading ratio where it is known, and the source."""
-        hardness = _told(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")
-        stress = _told(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")
+        hardness = _with_interval(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")
+        stress = _with_interval(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")
         ratio = "" if self.unloading_ratio is None else f", k_u/H_V {amount(self.unloading_ratio)}"
         return f"H_V {hardness}, S_f {stress}{ratio}: {self.source}"
 
@@ -105,6 +105,6 @@ class SnowProperties(Shown):
         return Facts(self.in_words)
 
 
-def _told(value: float | None, interval: Interval | None, size: float, unit: str) -> str:
-    told = amount(None if value is None else value / size, unit)
-    return told if interval is None else f"{told} ({span(interval[0] / size, interval[1] / size)})"
+def _with_interval(value: float | None, interval: Interval | None, size: float, unit: str) -> str:
+    text = amount(None if value is None else value / size, unit)
+    return text if interval is None else f"{text} ({span(interval[0] / size, interval[1] / size)})"
