@@ -1,4 +1,4 @@
-"""What can go wrong, told so that the reader knows what to do.
+"""What can go wrong, reported so that the reader knows what to do.
 
 One base class, one subclass for each kind of trouble. Each message names where the trouble is, what is allowed and what
 to do about it.

@@ -49,7 +49,7 @@ class RunTask:
 
 @dataclass(slots=True)
 class RunSimulation:
-    """Simulates what tracks are held against. An instance can be handed to another process.
+    """Simulates what tracks are compared with. An instance can be handed to another process.
 
     Attributes
     ----------

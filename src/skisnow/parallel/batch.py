@@ -35,7 +35,7 @@ def run_batch(
     workers
         Number of processes; None: as many as this process has cores; 1: this process itself.
     progress
-        Is told the number of finished points and that of all.
+        Called with the number of finished points and that of all.
 
     Returns
     -------

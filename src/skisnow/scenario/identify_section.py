@@ -50,7 +50,7 @@ def require_known(section: Mapping[str, Any]) -> None:
     Raises
     ------
     ParameterError
-        The nearest name, or where the key belongs, is told.
+        The nearest name, or where the key belongs, is named.
     """
     given_parameters(section)
     clock = section.get("clock", "start")

@@ -103,7 +103,7 @@ def radii_dict(run: Run) -> dict[str, float | None]:
 
 
 def run_warnings(run: Run) -> tuple[str, ...]:
-    """What about the numbers of a run is to be told, in words: a balance of energy that stays open."""
+    """Warnings about the numbers of a run, in words: an energy residual that is too large."""
     error = run.energy_balance_error
     if not (run.has_residual_above(WARNED_SHARE) or (error is None and run.energy_residual > LEAST_OPEN)):
         return ()

@@ -69,7 +69,7 @@ def simulate(
     scenario
         What to simulate.
     progress
-        Is told the simulated time and the share that is done, after every five outputs at the latest.
+        Called with the simulated time and the share that is done, after every five outputs at the latest.
     strength_along
         S_f over that of the scenario, > 0, by the distance run (m): snow that is weaker or stronger in places. Asked
         once for each output interval, for both skis and all along them.

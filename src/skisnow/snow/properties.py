@@ -104,11 +104,11 @@ class SnowProperties(Shown):
     @property
     def in_words(self) -> str:
         """Both values with their intervals, the unloading ratio where it is known, and the source."""
-        hardness = _told(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")
-        stress = _told(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")
-        ratio = _told(self.unloading_ratio, self.unloading_ratio_interval, 1.0, "")
+        hardness = _with_interval(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")
+        stress = _with_interval(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")
+        ratio = _with_interval(self.unloading_ratio, self.unloading_ratio_interval, 1.0, "")
         ratio = "" if self.unloading_ratio is None else f", k_u/H_V {ratio}"
-        way = _told(self.shear_displacement, self.shear_displacement_interval, MM, "mm")
+        way = _with_interval(self.shear_displacement, self.shear_displacement_interval, MM, "mm")
         way = "" if self.shear_displacement is None else f", u_y {way}"
         return f"H_V {hardness}, S_f {stress}{ratio}{way}: {self.source}"
 
@@ -116,6 +116,6 @@ class SnowProperties(Shown):
         return Facts(self.in_words)
 
 
-def _told(value: float | None, interval: Interval | None, size: float, unit: str) -> str:
-    told = amount(None if value is None else value / size, unit)
-    return told if interval is None else f"{told} ({span(interval[0] / size, interval[1] / size)})"
+def _with_interval(value: float | None, interval: Interval | None, size: float, unit: str) -> str:
+    text = amount(None if value is None else value / size, unit)
+    return text if interval is None else f"{text} ({span(interval[0] / size, interval[1] / size)})"

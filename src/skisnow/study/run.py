@@ -53,7 +53,7 @@ def run_study(study: Study | str | Path, *, workers: int | None = None, progress
     workers
         Number of processes; None: one for each core. The table does not depend on it.
     progress
-        Is told the number of finished points and that of all.
+        Called with the number of finished points and that of all.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A track from a file of any format that is known; which one is told by what is in it."""
+"""A track from a file of any format that is known; which one is recognised by its content."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def read_track(
         Where the plane of projection touches the earth and x, y, z are zero; left out, the first point with a fix, or
         the origin that the file itself names.
     kind
-        The format; left out, it is told from the content, and by the file's ending where the content does not say.
+        The format; left out, it is recognised by the content, and by the file's ending where the content does not say.
     fastest : m/s
         Horizontal speed above which a step between points is flagged as impossible.
     gap_factor

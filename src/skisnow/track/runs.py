@@ -69,7 +69,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Day(ShownFields):
-    """Runs and lifts in the order of time; what they were told by; in words what could not be told."""
+    """Runs and lifts in the order of time; what they were split by; in words what is unknown."""
 
     runs: tuple[Stretch, ...]
     lifts: tuple[Stretch, ...]

@@ -40,7 +40,7 @@ class TrackSummary(Shown):
     max_speed
         Over the whole track (m/s): of the recorded speeds, or without any of the smoothed track's; None if unknown.
     remarks
-        What could not be told, and what looks doubtful, in words.
+        What is unknown, and what is doubtful, in words.
 
     See Also
     --------

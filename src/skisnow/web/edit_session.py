@@ -105,9 +105,9 @@ def quick_results(campaign: Campaign, site: str) -> AtOnce:
 
 def _in_words(problems: list[Problem]) -> dict[str, tuple[str, ...]]:
     """Marks by file and experiment, as sentences."""
-    told: dict[str, tuple[str, ...]] = {}
+    sentences: dict[str, tuple[str, ...]] = {}
     for problem in problems:
         found = f" Found: {problem.value}; unmarked would be {problem.allowed}." if problem.value is not None else ""
         key = f"{problem.file}/{problem.experiment}"
-        told[key] = (*told.get(key, ()), f"{MARKS[problem.code].sentence}{found} {problem.action}")
-    return told
+        sentences[key] = (*sentences.get(key, ()), f"{MARKS[problem.code].sentence}{found} {problem.action}")
+    return sentences

@@ -1,4 +1,4 @@
-"""The server under the lab: one process, one socket, its address told when it answers."""
+"""The server under the lab: one process, one socket, its address given when it answers."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def serve(lab: Lab, *, host: str, port: int, token: str | None, tell: Callable[[
     token
         See `require_allowed`.
     tell
-        Is told the address as soon as requests are answered.
+        Called with the address as soon as requests are answered.
 
     Raises
     ------

@@ -42,7 +42,7 @@ def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None 
     folder
         The folder with campaign.toml and the tables.
     progress
-        Is told now and then, in a few words, how far the reading is.
+        Called now and then with a few words on how far the reading is.
 
     Returns
     -------

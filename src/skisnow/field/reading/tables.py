@@ -48,7 +48,7 @@ def read_table(
     files
         Takes every problem.
     progress
-        Is told now and then how many rows were read.
+        Called now and then with how many rows were read.
 
     Returns
     -------

@@ -278,15 +278,17 @@ def default_path() -> Path:
     return user_data_path("skisnow") / "store.sqlite3"
 
 
-def _hashed_files(folder: Path, states: Mapping[str, FileState], told: Callable[[int], None]) -> tuple[StoredFile, ...]:
-    """Take the hash of each file; ``told`` hears how many bytes are done."""
+def _hashed_files(
+    folder: Path, states: Mapping[str, FileState], progress: Callable[[int], None]
+) -> tuple[StoredFile, ...]:
+    """Take the hash of each file; ``progress`` is called with how many bytes are done."""
     files, done = [], 0
     for path, state in states.items():
         found, size = hashlib.sha256(), 0
         for piece in read_chunks(folder / path, CHUNK_BYTES):
             found.update(piece)
             size += len(piece)
-            told(done + size)
+            progress(done + size)
         if size != state.size:
             refuse_changed([path])
         files.append(StoredFile(path, size, found.hexdigest()))
@@ -299,7 +301,7 @@ def _check(folder: Path) -> _Check:
 
     try:
         problems = check_campaign(folder)
-    except Exception as error:  # whatever breaks in the check, raw data are kept; the caller is told
+    except Exception as error:  # whatever breaks in the check, raw data are kept; the caller gets the error
         return _Check(None, None, f"{type(error).__name__}: {error}")
     severities = [problem.severity for problem in problems]
     return _Check(severities.count("error"), severities.count("warning"), None)
