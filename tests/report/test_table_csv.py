@@ -88,6 +88,8 @@ HEADS = {
     "seating_distribution": "quantile depth_offset_mm H_V_change_percent",
     "seating_largest": "experiment site edge_angle_deg H_V_N_per_mm3 depth_offset_mm H_V_change_percent",
     "seating": "experiment site used depth_offset_mm H_V_change_percent",
+    "hardness_growth_sites": "site n growth_percent",
+    "hardness_growth": "experiment site used H_V_N_per_mm3 H_0_N_per_mm3 growth_percent",
     "unloading_sites": "site n unloading_ratio rebound_ratio_interval k_u_N_per_mm3",
     "unloading": "experiment site edge_angle_deg n_unloading used unloading_ratio rebound_ratio_interval k_u_N_per_mm3",
     "shear_displacement_sites": "site n shear_displacement_mm",

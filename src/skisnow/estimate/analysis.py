@@ -20,6 +20,7 @@ from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
 from .fit_warnings import fit_warnings
+from .growing_hardness import growing_hardness, site_growth
 from .hardness import DEFINITIONS, ReadingUncertainty, hardness
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model
@@ -251,10 +252,14 @@ def _penetration(
     found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
     back = unloading(campaign.penetration, readings, found["H_V"], uncertainty, screened.marks[NOT_FALLING])
     back_by_site = site_unloading(back, screened.used, campaign.penetration.site)
+    growing = growing_hardness(readings, found["H_V"].value, uncertainty)
+    growth_by_site = site_growth(growing, screened.used, campaign.penetration.site)
     offsets = seating(readings, found["H_V"].value, uncertainty)
     fitted = fitted_hardness(readings, offsets, uncertainty)
     if not screened.used.any():
-        return PenetrationAnalysis(screened, readings, found, offsets, fitted, back, back_by_site, None, (), None, None)
+        return PenetrationAnalysis(
+            screened, readings, found, offsets, fitted, growing, (), back, back_by_site, None, (), None, None
+        )
 
     used = readings.of(screened.used)
     _say(progress, f"model table over {used.n} readings")
@@ -270,6 +275,8 @@ def _penetration(
         hardness=found,
         seating=offsets,
         fitted=fitted,
+        growing=growing,
+        site_growth=growth_by_site,
         unloading=back,
         site_unloading=back_by_site,
         table=ModelTable(fits, intervals),

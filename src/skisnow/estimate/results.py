@@ -153,6 +153,7 @@ def _penetration(analysis: Analysis) -> Json:
             "seating": [],
             "errors_in_depth": {"models": model_rows(None), "experiments": []},
             "unloading": [],
+            "growing_hardness": {"experiments": [], "sites": []},
         }
     return {
         "experiments": penetration_experiments(tests, found.screened, found.hardness, found.unloading),
@@ -166,6 +167,25 @@ def _penetration(analysis: Analysis) -> Json:
             "experiments": _fitted_hardness(tests.experiment, found),
         },
         "unloading": [_site_unloading(row) for row in found.site_unloading],
+        "growing_hardness": {
+            "experiments": _rows(
+                {
+                    "experiment": list(tests.experiment),
+                    "H_0_N_per_mm3": _numbers(found.growing.surface_hardness / N_PER_MM3),
+                    "growth_percent": _numbers(100.0 * found.growing.growth),
+                    "growth_interval_percent": _numbers(100.0 * found.growing.growth_interval),
+                }
+            ),
+            "sites": [
+                {
+                    "site": row.site,
+                    "n": row.n,
+                    "growth_percent": 100.0 * row.growth,
+                    "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
+                }
+                for row in found.site_growth
+            ],
+        },
     }
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from .comparisons import published_table, site_comparison_table
 from .experiments import penetration_table, shear_table
+from .growing_hardness import hardness_growth_sites_table, hardness_growth_table
 from .marks import marks_table
 from .models import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
 from .provenance import corrections_table, files_table, warnings_table
@@ -28,6 +29,8 @@ BUILDERS = (
     nested_table,
     errors_in_depth_table,
     fitted_hardness_table,
+    hardness_growth_sites_table,
+    hardness_growth_table,
     seating_quantiles_table,
     seating_largest_table,
     seating_table,
