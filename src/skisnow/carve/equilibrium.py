@@ -8,7 +8,7 @@ whether the snow can hold it is a result (`Equilibrium.holds`), not part of the 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
@@ -27,6 +27,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_converged"]
 GrooveForm: TypeAlias = Literal["edge", "path"]
 MomentBalance: TypeAlias = Literal["boot", "free"]
+SideForceSpread: TypeAlias = Literal["depth", "base-reaction"]
 
 ELEMENTS: Final = 160
 """Elements over the whole ski: 1 cm each, half of 1/λ on the hardest snow (assumption: see the convergence tests)."""
@@ -74,6 +75,9 @@ class Equilibrium(Shown):
     turn_radius_boot
         Radius of the circle through the edge line at the boot and 0.4 m before and behind it (m); None for a ski that
         is flat or at rest.
+    turn_radius_boot_other_spread
+        The same with the side force spread the other way along the edge, all else alike (m): how much hangs on that
+        choice; None also where that has no equilibrium.
     turn_radius_chord
         Radius of the circle through the edge line at the boot and at both ends of the contact (m).
     contact_length
@@ -118,6 +122,7 @@ class Equilibrium(Shown):
     side_force: float | None
     side_force_limit: float | None
     turn_radius_boot: float | None
+    turn_radius_boot_other_spread: float | None
     turn_radius_chord: float | None
     contact_length: float | None
     bearing_length: float | None
@@ -140,7 +145,11 @@ class Equilibrium(Shown):
         limit = f"of {amount(self.side_force_limit, 'N')}: {holds}"
         rows = (
             ("side force", f"{amount(self.side_force, 'N')} {limit}"),
-            ("turn radius", amount(self.turn_radius_boot, "m")),
+            (
+                "turn radius",
+                f"{amount(self.turn_radius_boot, 'm')} ({amount(self.turn_radius_boot_other_spread, 'm')} with "
+                "the side force spread the other way)",
+            ),
             ("contact", amount(self.contact_length, "m")),
             ("edge depth", f"at most {amount(deepest, 'mm')}"),
             ("afterbody", f"{amount(self.afterbody_depth_ratio)} of the forebody's depth"),
@@ -160,6 +169,7 @@ def carve(
     clamp_length: float = CLAMP_LENGTH,
     footprint_stiffness: float | None = None,
     side_force_bending: bool = True,
+    side_force_spread: SideForceSpread = "depth",
     groove: GrooveForm = "edge",
     moment_balance: MomentBalance = "boot",
     twist: bool = True,
@@ -185,6 +195,9 @@ def carve(
         (N/m²); None: rigid, the ski stays straight there.
     side_force_bending
         Whether the side force, too, bends and twists the ski (it does: the part sin ϑ of it is normal to the base).
+    side_force_spread
+        How the side force goes along the edge: "depth", in proportion to the edge's depth, or "base-reaction", in
+        proportion to the snow's force on the base, whose whole reaction is then normal to the base everywhere.
     groove
         "edge": the groove of the forebody lies under the edge of the afterbody. "path": it lies on the circle through
         the edge line at the boot and 0.4 m before and behind, and each edge beside it by what its edge line differs.
@@ -216,9 +229,8 @@ def carve(
     Notes
     -----
     The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight
-    is left out. The side force draws the same share of the shear strength everywhere along the edge (modelling
-    assumption): τ e per
-    length.
+    is left out. With ``side_force_spread`` "depth" the side force draws the same share of the shear strength
+    everywhere along the edge (modelling assumption): τ e per length. Nobody has measured how it goes.
 
     References
     ----------
@@ -239,6 +251,9 @@ def carve(
     conditions = _conditions(
         ski, snow, edge_angle, load, moment, min(unloading_ratio, RIGID_PLASTIC), side_force_bending, twist
     )
+    if side_force_spread not in ("depth", "base-reaction"):
+        raise ParameterError(f"side_force_spread is {side_force_spread!r}; it must be 'depth' or 'base-reaction'")
+    conditions = conditions._replace(by_reaction=side_force_spread == "base-reaction")
     if groove not in ("edge", "path"):
         raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
     if moment_balance not in ("boot", "free"):
@@ -251,10 +266,20 @@ def carve(
     for gentler in (ratio for ratio in GENTLER_RATIOS if ratio < unloading_ratio):
         if solution.converged:
             break
-        gentler_conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
-        solution = find(model, gentler_conditions)
+        conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
+        solution = find(model, conditions)
         note = (f"computed with k_u/H_V = {gentler:g}: the steeper unloading that was asked did not converge",)
-    return _described(model, conditions, snow, solution, note)
+    found = _described(model, conditions, snow, solution, note)
+    if found.turn_radius_boot is None:
+        return found
+    other = find(model, conditions._replace(by_reaction=not conditions.by_reaction))
+    return replace(found, turn_radius_boot_other_spread=_radius_at_boot(model, conditions, other))
+
+
+def _radius_at_boot(model: ClampedSki, conditions: Conditions, solution: Solution) -> float | None:
+    if not solution.converged or float(np.max(solution.edge_depth)) > SINKING_DEPTH:
+        return None
+    return EdgeLine(model, conditions.edge_angle, solution).radius_at_boot()
 
 
 def rest(
@@ -353,6 +378,7 @@ def _conditions(
         bevel_width=ski.edge_width,
         pitch_of_force=1.0,
         pitch_of_shear=0.0,
+        by_reaction=False,
     )
 
 
@@ -393,7 +419,7 @@ def _described(
     sinks = deepest > SINKING_DEPTH if solution.converged else _too_soft(model, conditions)
     if not solution.converged or sinks:
         outcome: Outcome = "sinks" if sinks else "not_converged"
-        nothing = (None,) * 9
+        nothing = (None,) * 10
         return Equilibrium(outcome, REMEDIES[outcome], *nothing, station, *(None,) * 7, (), solution.iterations)
     line = EdgeLine(model, conditions.edge_angle, solution)
     weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
@@ -407,7 +433,8 @@ def _described(
     outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
     ends = line.contact_ends(depth)
     of_force = float(weight @ (force * station))
-    of_shear = solution.shear_stress * float(weight @ (np.maximum(depth, 0.0) * station))
+    drawn_from = force if conditions.by_reaction else np.maximum(depth, 0.0)
+    of_shear = solution.shear_stress * float(weight @ (drawn_from * station))
     turns = conditions.side_force > 0.0
     return Equilibrium(
         outcome=outcome,
@@ -416,6 +443,7 @@ def _described(
         side_force=conditions.side_force,
         side_force_limit=limit,
         turn_radius_boot=line.radius_at_boot() if turns else None,
+        turn_radius_boot_other_spread=None,
         turn_radius_chord=line.radius_over(*ends) if turns else None,
         contact_length=ends[0] - ends[1],
         bearing_length=float(weight[force > 0.0].sum()),
