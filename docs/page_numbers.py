@@ -64,6 +64,8 @@ def how_to_carve(_folder: Path) -> dict[str, str]:
         "as above": (),
         "clamp": ("--clamp-length-m", "0"),
         "side force": ("--no-side-force-bending",),
+        "spread": ("--side-force-spread", "base-reaction"),
+        "footprint": ("--footprint-stiffness-N-per-mm2", "30"),
         "path": ("--groove", "path"),
         "twist": ("--no-twist",),
         "elastic": ("--unloading-ratio", "1"),

@@ -11,7 +11,8 @@
 
 namespace skisnow {
 
-// Unknowns beside those of the beam: depth of the boot b₀ (m), its slope along the ski b₁, shear stress τ (Pa).
+// Unknowns beside those of the beam: depth of the boot b₀ (m), its slope along the ski b₁, what draws the side force,
+// τ: for each area of the edge in the snow (Pa), or for each force of the snow on the base.
 constexpr int CARVE_BORDER = 3;
 constexpr int CARVE_BAND = 11;  // columns of a row: five to each side
 
@@ -43,6 +44,7 @@ struct CarveConditions {
   bool side_force_bending, twists;
   double bevel, bevel_width;              // of the base along its edge (rad, m)
   double pitch_of_force, pitch_of_shear;  // shares of snow force and side force in the balance of moments
+  bool by_reaction = false;  // the side force goes along the edge as the force on the base, not as its depth
 };
 
 struct CarveState {

@@ -13,7 +13,11 @@ struct Load {
   double normal_by_depth, normal_by_twist, normal_by_stress;
   double moment_by_depth, moment_by_twist, moment_by_stress;
   double force, force_by_depth, force_by_twist;  // along the snow normal
-  double bite;                                   // depth of the edge where it is below the surface
+  // what τ draws the side force from: depth of the edge where it is below the surface, or the snow's force
+  double bite, bite_by_depth, bite_by_twist;
+  // of a force that a deeper groove adds: to the force normal to the base, the moment besides that of its place, and
+  // the balance of moments
+  double pulled_normal, pulled_moment, pulled_pitch;
 };
 
 class Pass {
@@ -44,9 +48,9 @@ class Pass {
   CarveSection section(const CarveStation& station) const;
   Load load(const CarveSection& section, const StripSums& sums) const;
   void add_to_border(const CarveStation& station, const Load& load);
-  void add_to_beam(const CarveStation& station, const Load& load, double lever);
+  void add_to_beam(const CarveStation& station, const Load& load);
   void add_to_matrix(const CarveStation& station, const Load& load);
-  void add_pulls(const CarveStation& station, double lever);
+  void add_pulls(const CarveStation& station, const Load& load, double lever);
   void bind_links();
 };
 
@@ -99,45 +103,53 @@ Load Pass::load(const CarveSection& section, const StripSums& sums) const {
   const double moment = sums.moment - lever * sums.force, moment_by_depth = sums.by_depth[1] - lever * by_depth;
   const double moment_by_twist = lever * sums.by_depth[1] - square * sums.by_depth[2] - lever * by_twist +
                                  section.half * section.sine * sums.force;
-  const double held = section.depth > 0.0 ? 1.0 : 0.0, bite = held * section.depth;
+  const bool reacts = conditions_.by_reaction;
+  const double held = section.depth > 0.0 ? 1.0 : 0.0, bite = reacts ? sums.force : held * section.depth;
+  const double bite_by_depth = reacts ? by_depth : held, bite_by_twist = reacts ? by_twist : held * lever;
   const double shears = conditions_.side_force_bending ? 1.0 : 0.0;
   const double up = shears * sine_, turn = -shears * section.half * section.sine, turn_by_twist = -shears * lever;
   return {.normal = cosine_ * sums.force + up * stress * bite,
           .moment = moment + turn * stress * bite,
-          .normal_by_depth = cosine_ * by_depth + up * stress * held,
-          .normal_by_twist = cosine_ * by_twist + up * stress * held * lever,
+          .normal_by_depth = cosine_ * by_depth + up * stress * bite_by_depth,
+          .normal_by_twist = cosine_ * by_twist + up * stress * bite_by_twist,
           .normal_by_stress = up * bite,
-          .moment_by_depth = moment_by_depth + turn * stress * held,
-          .moment_by_twist = moment_by_twist + (turn * held * lever + turn_by_twist * bite) * stress,
+          .moment_by_depth = moment_by_depth + turn * stress * bite_by_depth,
+          .moment_by_twist = moment_by_twist + (turn * bite_by_twist + turn_by_twist * bite) * stress,
           .moment_by_stress = turn * bite,
           .force = sums.force,
           .force_by_depth = by_depth,
           .force_by_twist = by_twist,
-          .bite = bite};
+          .bite = bite,
+          .bite_by_depth = bite_by_depth,
+          .bite_by_twist = bite_by_twist,
+          .pulled_normal = reacts ? cosine_ + up * stress : cosine_,
+          .pulled_moment = reacts ? turn * stress : 0.0,
+          .pulled_pitch = conditions_.pitch_of_force + (reacts ? conditions_.pitch_of_shear * stress : 0.0)};
 }
 
 // [balance] Force, moment about the boot's cross axis, side force.
 void Pass::add_to_border(const CarveStation& s, const Load& load) {
-  const double stress = at_.border[2], held = load.bite > 0.0 ? stress : 0.0;
+  const double stress = at_.border[2], held = stress * load.bite_by_depth;
   const double force = conditions_.pitch_of_force, shear = conditions_.pitch_of_shear;
   const double slope = force * load.force_by_depth + shear * held;
   auto& corner = out_.corner;
   out_.border_residual[0] += s.weight * load.force;
   out_.border_residual[1] += s.weight * (force * load.force + shear * stress * load.bite) * s.place;
-  out_.border_residual[2] += s.weight * stress * load.bite;
   corner[0][0] += s.weight * load.force_by_depth;
   corner[0][1] += s.weight * load.force_by_depth * s.place;
   corner[1][0] += s.weight * slope * s.place;
   corner[1][1] += s.weight * slope * s.place * s.place;
   corner[1][2] += s.weight * shear * load.bite * s.place;
+  if (conditions_.by_reaction) return;  // the load bears it all: see the end of the pass
+  out_.border_residual[2] += s.weight * stress * load.bite;
   corner[2][0] += s.weight * held;
   corner[2][1] += s.weight * held * s.place;
   corner[2][2] += s.weight * load.bite;
 }
 
 // The load on the beam's equations, and what beam and border do to it.
-void Pass::add_to_beam(const CarveStation& s, const Load& load, double lever) {
-  const double held = load.bite > 0.0 ? at_.border[2] : 0.0;
+void Pass::add_to_beam(const CarveStation& s, const Load& load) {
+  const double stress = at_.border[2];
   const double force = conditions_.pitch_of_force, shear = conditions_.pitch_of_shear;
   const auto add = [&](int unknown, double weighted, double by_unknown, double loaded, double by_depth,
                        double by_stress) {
@@ -150,10 +162,10 @@ void Pass::add_to_beam(const CarveStation& s, const Load& load, double lever) {
     // by_unknown: how the depth of the edge grows with it, or the twist
     const bool bends = unknown % 3 != 2;
     const double slope = s.weight * (bends ? load.force_by_depth : load.force_by_twist) * by_unknown;
-    const double deeper = s.weight * held * (bends ? 1.0 : lever) * by_unknown;
+    const double deeper = s.weight * stress * (bends ? load.bite_by_depth : load.bite_by_twist) * by_unknown;
     row[0] += slope;
     row[1] += (force * slope + shear * deeper) * s.place;
-    row[2] += deeper;
+    if (!conditions_.by_reaction) row[2] += deeper;
   };
   for (int a = 0; a < 4; a++)
     add(BENDS[a], s.weight * s.deflection[a], -cosine_ * s.deflection[a], load.normal, load.normal_by_depth,
@@ -181,20 +193,22 @@ void Pass::add_to_matrix(const CarveStation& s, const Load& load) {
 }
 
 // [links] What a deeper groove, cut by the linked stations, does to this station's load.
-void Pass::add_pulls(const CarveStation& s, double lever) {
+void Pass::add_pulls(const CarveStation& s, const Load& load, double lever) {
   out_.link_corner.resize(4 * links_.pulls.size(), 0.0);
   out_.link_from.resize(links_.pulls.size(), s.first);
   out_.columns.resize(out_.tile(tiles_for(CARVE_BORDER + 2 * int(links_.pulls.size()))), 0.0);
   for (std::size_t k = 0; k < links_.pulls.size(); k++) {
     const CarvePull& pull = links_.pulls[k];
     const double force[2] = {pull.force_by_depth, pull.force_by_twist};
-    const double moment[2] = {pull.moment_by_depth - lever * force[0], pull.moment_by_twist - lever * force[1]};
+    const double arm = lever - load.pulled_moment;
+    const double moment[2] = {pull.moment_by_depth - arm * force[0], pull.moment_by_twist - arm * force[1]};
     for (std::size_t of = 0; of < 2; of++) {
       if (force[of] == 0.0 && moment[of] == 0.0) continue;
       out_.link_corner[4 * k + 2 * of] += s.weight * force[of];
-      out_.link_corner[4 * k + 2 * of + 1] += s.weight * conditions_.pitch_of_force * force[of] * s.place;
+      out_.link_corner[4 * k + 2 * of + 1] += s.weight * load.pulled_pitch * force[of] * s.place;
       double* column = out_.column(CARVE_BORDER + int(2 * k + of)) + BAND_TILE * s.first;
-      for (int a = 0; a < 4; a++) column[BAND_TILE * BENDS[a]] -= s.weight * cosine_ * s.deflection[a] * force[of];
+      for (int a = 0; a < 4; a++)
+        column[BAND_TILE * BENDS[a]] -= s.weight * load.pulled_normal * s.deflection[a] * force[of];
       if (!conditions_.twists) continue;
       for (int a = 0; a < 2; a++) column[BAND_TILE * TURNS[a]] -= s.weight * s.twist[a] * moment[of];
     }
@@ -234,12 +248,16 @@ void Pass::from_tip_to_tail(Groove& groove) {
     const Load felt = load(found, sums);
     const double lever = found.half * found.cosine;
     add_to_border(station, felt);
-    add_to_beam(station, felt, lever);
+    add_to_beam(station, felt);
     add_to_matrix(station, felt);
-    add_pulls(station, lever);
+    add_pulls(station, felt, lever);
   }
   out_.border_residual[0] -= conditions_.load;
   out_.border_residual[1] -= conditions_.moment;
+  if (conditions_.by_reaction) {
+    out_.border_residual[2] += at_.border[2] * conditions_.load;
+    out_.corner[2][2] += conditions_.load;
+  }
   out_.border_residual[2] -= conditions_.side_force;
   bind_links();
 }

@@ -123,9 +123,10 @@ void bind_carve(nb::module_& m) {
   nb::class_<CarveConditions>(m, "CarveConditions")
       .def("__init__", [](CarveConditions* at, double edge_angle, double hardness, double excess, double load,
                           double moment, double side_force, bool side_force_bending, bool twists, double bevel,
-                          double bevel_width, double pitch_of_force, double pitch_of_shear) {
-        new (at) CarveConditions{edge_angle,         hardness, excess, load,        moment,         side_force,
-                                 side_force_bending, twists,   bevel,  bevel_width, pitch_of_force, pitch_of_shear};
+                          double bevel_width, double pitch_of_force, double pitch_of_shear, bool by_reaction) {
+        new (at) CarveConditions{edge_angle,     hardness,           excess,     load,  moment,
+                                 side_force,     side_force_bending, twists,     bevel, bevel_width,
+                                 pitch_of_force, pitch_of_shear,     by_reaction};
       });
   m.def("find_carve", &find, nb::arg("ski"), nb::arg("conditions"), nb::arg("offset").none(), nb::arg("near").none());
   m.def("banded_factors", &banded_factors);

@@ -39,7 +39,8 @@ CarveState first_guess(const CarvedSki& ski, const CarveConditions& given) {
       std::sqrt(2.0 * given.load * std::tan(std::max(angle, SHALLOWEST_WEDGE)) / (given.hardness * length));
   const double flat = given.load / (given.hardness * length * ski.waist * std::cos(angle)) + aside;
   const double depth = std::min(wedge, flat);
-  CarveState out{Column(ski.bent_by_width.size(), 0.0), {depth - aside, 0.0, given.side_force / (depth * length)}};
+  const double drawn = given.by_reaction ? given.load : depth * length;
+  CarveState out{Column(ski.bent_by_width.size(), 0.0), {depth - aside, 0.0, given.side_force / drawn}};
   for (std::size_t j = 0; j < out.u.size(); j++)
     out.u[j] = std::tan(angle) * ski.bent_by_width[j] - ski.bent_by_height[j];
   return out;

@@ -37,6 +37,7 @@ class Case:
     clamp_length: float = 0.0
     side_force_bending: bool = True
     twist: bool = True
+    by_reaction: bool = False  # the side force goes along the edge as the snow's force, not as the depth
     boot_is_free: bool = False  # the moment is all that the boot takes about the ski's cross axis
     knots: int = 30  # of each end
     along: int = 8  # intervals between knots
@@ -181,7 +182,7 @@ class _Equations:
         case = self.case
         curvature, rate, border = self.split(z)
         edge, force, moment, angle = self.snow(z)
-        shear = border[2] * np.maximum(edge, 0.0)
+        shear = border[2] * (force if case.by_reaction else np.maximum(edge, 0.0))
         bends = float(case.side_force_bending)
         normal = math.cos(case.edge_angle) * force + bends * math.sin(case.edge_angle) * shear
         turning = moment - bends * self.width / 2.0 * np.sin(angle) * shear

@@ -250,3 +250,30 @@ def test_beyond_small_deflections_the_answer_says_so(slope: float, twist: float,
     line = SimpleNamespace(greatest_slope=lambda: slope, twist=np.array([0.1, twist]))
     said = _warnings(cast("Any", line))
     assert [each for each, start in zip(said, told, strict=True) if not each.startswith(start)] == []
+
+
+@pytest.mark.parametrize("ratio", [1.0, 10.0])
+@pytest.mark.parametrize("groove", ["edge", "path"])
+def test_each_spread_of_the_side_force_tells_the_others_radius(ratio: float, groove: GrooveForm) -> None:
+    """Where the reaction is normal to the base everywhere, the boot holds no pitch moment but what it is given."""
+    ski = read_ski("slalom")
+    asked: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": ratio, "moment": 20.0}
+    by_depth = carve(ski, snow(0.2), **asked, groove=groove)
+    by_reaction = carve(ski, snow(0.2), **asked, groove=groove, side_force_spread="base-reaction")
+    assert by_reaction.turn_radius_boot == pytest.approx(by_depth.turn_radius_boot_other_spread, rel=1e-9)
+    assert by_depth.turn_radius_boot == pytest.approx(by_reaction.turn_radius_boot_other_spread, rel=1e-9)
+    assert by_reaction.turn_radius_boot != pytest.approx(by_depth.turn_radius_boot, rel=1e-3)
+    assert by_reaction.boot_pitch_moment == pytest.approx(20.0 / math.cos(math.radians(45.0)), rel=1e-6)
+    assert by_reaction.side_force == by_depth.side_force
+
+
+def test_a_spread_that_is_none_is_refused() -> None:
+    with pytest.raises(ParameterError, match="side_force_spread is 'even'; it must be 'depth' or 'base-reaction'"):
+        carve(
+            read_ski("slalom"),
+            snow(0.2),
+            edge_angle=0.5,
+            load=800.0,
+            unloading_ratio=1.0,
+            side_force_spread=cast(Any, "even"),
+        )

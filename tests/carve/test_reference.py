@@ -33,6 +33,7 @@ def compare(case: Case) -> None:
         unloading_ratio=case.unloading_ratio,
         clamp_length=case.clamp_length,
         side_force_bending=case.side_force_bending,
+        side_force_spread="base-reaction" if case.by_reaction else "depth",
         moment_balance="free" if case.boot_is_free else "boot",
         twist=case.twist,
         elements=320,
@@ -105,3 +106,8 @@ def test_a_plain_ski_with_a_shovel() -> None:
 @pytest.mark.parametrize("moment", [0.0, 40.0])
 def test_a_boot_that_takes_no_moment_of_the_side_force(moment: float) -> None:
     compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, boot_is_free=True, moment=moment))
+
+
+@pytest.mark.parametrize("boot_is_free", [False, True])
+def test_a_side_force_that_goes_as_the_force_on_the_base(boot_is_free: bool) -> None:
+    compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, by_reaction=True, boot_is_free=boot_is_free))

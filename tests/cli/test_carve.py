@@ -171,6 +171,7 @@ def test_table_has_skis_own_names_sidecut_radius_and_bearing_length(tmp_path: Pa
     ("switch", "key", "value"),
     [
         (["--no-side-force-bending"], "side_force_bending", False),
+        (["--side-force-spread", "base-reaction"], "side_force_spread", "base-reaction"),
         (["--groove", "path"], "groove", "path"),
         (["--moment-balance", "free"], "moment_balance", "free"),
         (["--no-twist"], "twist", False),

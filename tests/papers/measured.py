@@ -111,14 +111,14 @@ FOOTPRINTS: Final = (None, 1000.0, 100.0, 30.0, 10.0, 3.0, 1.0)
 """Stiffness of boot and binding under each metre of ski (N/mm²); None: rigid."""
 
 
-def footprint_rows() -> list[tuple[str, Equilibrium, Equilibrium]]:
+def footprint_rows() -> list[tuple[str, tuple[Equilibrium, Equilibrium]]]:
     """What holds 0.3 m of the ski, from rigid to the boot's middle alone: at 45° and at 65.7°."""
     held: list[tuple[str, Mapping[str, Any]]] = [
         ("rigid" if each is None else f"{each:g}", {"footprint_stiffness": None if each is None else each * 1e6})
         for each in FOOTPRINTS
     ]
     held.append(("the boot's middle alone", {"clamp_length": 0.0}))
-    return [(name, carved(45.0, **how), carved(65.7, **how)) for name, how in held]
+    return [(name, (carved(45.0, **how), carved(65.7, **how))) for name, how in held]
 
 
 def borne_by_boot(found: Equilibrium) -> float:
@@ -134,7 +134,7 @@ def footprint_table() -> str:
     rows = [
         (name, *(cell for each in found for cell in (f"{chord(each):.2f}", f"{boot(each):.2f}",
                                                      f"{100.0 * borne_by_boot(each):.0f}")))
-        for name, *found in footprint_rows()
+        for name, found in footprint_rows()
     ]  # fmt: skip
     head = ("chord (m)", "boot (m)", "under the boot (%)")
     return _table(("N/mm²", *(f"{degrees}: {each}" for degrees in ("45°", "65.7°") for each in head)), rows)

@@ -58,7 +58,8 @@ def test_the_page_is_what_is_computed() -> None:
 def test_a_footprint_that_gives_bears_under_the_boot() -> None:
     """From a rigid one to the boot's middle alone, the headline radius by less than the radius at the boot."""
     rows = measured.footprint_rows()
-    for found in ([low for _, low, _ in rows], [high for _, _, high in rows]):
+    for which in range(2):
+        found = [each[which] for _, each in rows]
         borne = [measured.borne_by_boot(each) for each in found]
         assert borne[0] < 0.2
         assert borne[-1] > 0.75

@@ -90,6 +90,7 @@ def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_a
         clamp_length=question.clamp_length_m,
         footprint_stiffness=footprint,
         side_force_bending=question.side_force_bending,
+        side_force_spread=question.side_force_spread,
         groove=question.groove,
         moment_balance=question.moment_balance,
         twist=question.twist,

@@ -68,6 +68,7 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
         "side_force_N": json_number(equilibrium.side_force),
         "side_force_limit_N": json_number(equilibrium.side_force_limit),
         "turn_radius_boot_m": json_number(equilibrium.turn_radius_boot),
+        "turn_radius_boot_other_spread_m": json_number(equilibrium.turn_radius_boot_other_spread),
         "turn_radius_chord_m": json_number(equilibrium.turn_radius_chord),
         "contact_length_m": json_number(equilibrium.contact_length),
         "bearing_length_m": json_number(equilibrium.bearing_length),

@@ -12,6 +12,7 @@ from ..snow.properties import SnowProperties
 GREATEST_EDGE_ANGLE: Final = math.radians(85.0)
 GROOVES: Final = ("edge", "path")
 MOMENT_BALANCES: Final = ("boot", "free")
+SIDE_FORCE_SPREADS: Final = ("depth", "base-reaction")
 
 
 def require_kinds(ski: object, snow: object) -> None:
@@ -48,12 +49,14 @@ def require_within(ski: Ski, load: float, moment: float) -> None:
         )
 
 
-def require_choices(groove: str, moment_balance: str) -> None:
+def require_choices(groove: str, moment_balance: str, side_force_spread: str) -> None:
     """Refuse a word that is no choice."""
     if groove not in GROOVES:
         raise ParameterError(f"groove is {groove!r}; it must be 'edge' or 'path'")
     if moment_balance not in MOMENT_BALANCES:
         raise ParameterError(f"moment_balance is {moment_balance!r}; it must be 'boot' or 'free'")
+    if side_force_spread not in SIDE_FORCE_SPREADS:
+        raise ParameterError(f"side_force_spread is {side_force_spread!r}; it must be 'depth' or 'base-reaction'")
 
 
 def require_strength(snow: SnowProperties) -> None:

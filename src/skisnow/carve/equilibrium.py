@@ -8,6 +8,7 @@ whether the snow can hold it is a result (`Equilibrium.holds`), not part of the 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
@@ -25,12 +26,13 @@ from .checks import (
     unloading_ratio_of,
 )
 from .edge_line import EdgeLine
-from .result import Equilibrium, equilibrium_of
+from .result import Equilibrium, equilibrium_of, radius_at_boot
 from .solve import RIGID_PLASTIC, Conditions, Solution, solved
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 GrooveForm: TypeAlias = Literal["edge", "path"]
 MomentBalance: TypeAlias = Literal["boot", "free"]
+SideForceSpread: TypeAlias = Literal["depth", "base-reaction"]
 
 ELEMENTS: Final = 160
 """Elements over the whole ski: 1 cm each, half of 1/λ on the hardest snow (assumption: see the convergence tests)."""
@@ -53,6 +55,7 @@ def carve(
     clamp_length: float = CLAMP_LENGTH,
     footprint_stiffness: float | None = None,
     side_force_bending: bool = True,
+    side_force_spread: SideForceSpread = "depth",
     groove: GrooveForm = "edge",
     moment_balance: MomentBalance = "boot",
     twist: bool = True,
@@ -78,6 +81,9 @@ def carve(
         (N/m²); None: rigid, the ski stays straight there.
     side_force_bending
         Whether the side force, too, bends and twists the ski (it does: the part sin ϑ of it is normal to the base).
+    side_force_spread
+        How the side force goes along the edge: "depth", in proportion to the edge's depth, or "base-reaction", in
+        proportion to the snow's force on the base, whose whole reaction is then normal to the base everywhere.
     groove
         "edge": the groove of the forebody lies under the edge of the afterbody. "path": it lies on the circle through
         the edge line at the boot and 0.4 m before and behind, and each edge beside it by what its edge line differs.
@@ -109,9 +115,8 @@ def carve(
     Notes
     -----
     The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight
-    is left out. The side force draws the same share of the shear strength everywhere along the edge (modelling
-    assumption): τ e per
-    length.
+    is left out. With ``side_force_spread`` "depth" the side force draws the same share of the shear strength
+    everywhere along the edge (modelling assumption): τ e per length. Nobody has measured how it goes.
 
     References
     ----------
@@ -126,9 +131,10 @@ def carve(
     require_ranges(edge_angle, load, ratio, moment)
     require_within(ski, load, moment)
     require_strength(snow)
-    require_choices(groove, moment_balance)
+    require_choices(groove, moment_balance, side_force_spread)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), side_force_bending, twist)
+    conditions = conditions._replace(by_reaction=side_force_spread == "base-reaction")
     if moment_balance == "free":
         conditions = conditions._replace(pitch_of_force=math.cos(edge_angle), pitch_of_shear=math.sin(edge_angle))
     find = solved if groove == "edge" else _following_path
@@ -137,10 +143,14 @@ def carve(
     for gentler in (each for each in GENTLER_RATIOS if each < ratio):
         if solution.converged:
             break
-        gentler_conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
-        solution = find(model, gentler_conditions)
+        conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
+        solution = find(model, conditions)
         note = (f"computed with k_u/H_V = {gentler:g}: the steeper unloading that was asked did not converge",)
-    return equilibrium_of(model, conditions, snow, solution, note)
+    found = equilibrium_of(model, conditions, snow, solution, note)
+    if found.turn_radius_boot is None:
+        return found
+    other = find(model, conditions._replace(by_reaction=not conditions.by_reaction))
+    return replace(found, turn_radius_boot_other_spread=radius_at_boot(model, conditions, other))
 
 
 def rest(
@@ -208,6 +218,7 @@ def _conditions(
         bevel_width=ski.edge_width,
         pitch_of_force=1.0,
         pitch_of_shear=0.0,
+        by_reaction=False,
     )
 
 

@@ -104,6 +104,14 @@ class CarveQuestion:
             origin="exact: its part normal to the base is sin ϑ of it",
         ),
     ] = True
+    side_force_spread: Annotated[
+        Literal["depth", "base-reaction"],
+        Quantity(
+            "side_force_spread",
+            "how the side force goes along the edge: as its depth, or as the snow's force on the base",
+            origin="choice: as the shear strength of the paper, S_f e; not measured",
+        ),
+    ] = "depth"
     groove: Annotated[
         Literal["edge", "path"],
         Quantity(

@@ -56,6 +56,9 @@ class Equilibrium(Shown):
     turn_radius_boot
         Radius of the circle through the edge line at the boot and 0.4 m before and behind it (m); None for a ski that
         is flat or at rest.
+    turn_radius_boot_other_spread
+        The same with the side force spread the other way along the edge, all else alike (m): how much hangs on that
+        choice; None also where that has no equilibrium.
     turn_radius_chord
         Radius of the circle through the edge line at the boot and at both ends of the contact (m).
     contact_length
@@ -100,6 +103,7 @@ class Equilibrium(Shown):
     side_force: float | None
     side_force_limit: float | None
     turn_radius_boot: float | None
+    turn_radius_boot_other_spread: float | None
     turn_radius_chord: float | None
     contact_length: float | None
     bearing_length: float | None
@@ -122,7 +126,11 @@ class Equilibrium(Shown):
         limit = f"of {amount(self.side_force_limit, 'N')}: {holds}"
         rows = (
             ("side force", f"{amount(self.side_force, 'N')} {limit}"),
-            ("turn radius", amount(self.turn_radius_boot, "m")),
+            (
+                "turn radius",
+                f"{amount(self.turn_radius_boot, 'm')} ({amount(self.turn_radius_boot_other_spread, 'm')} with "
+                "the side force spread the other way)",
+            ),
             ("contact", amount(self.contact_length, "m")),
             ("edge depth", f"at most {amount(deepest, 'mm')}"),
             ("afterbody", f"{amount(self.afterbody_depth_ratio)} of the forebody's depth"),
@@ -146,7 +154,7 @@ def equilibrium_of(
     sinks = deepest > SINKING_DEPTH if solution.converged else _too_soft(model, conditions)
     if not solution.converged or sinks:
         outcome: Outcome = "sinks" if sinks else "not_converged"
-        nothing = (None,) * 9
+        nothing = (None,) * 10
         return Equilibrium(outcome, REMEDIES[outcome], *nothing, station, *(None,) * 7, (), solution.iterations)
     line = EdgeLine(model, conditions.edge_angle, solution)
     weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
@@ -160,7 +168,8 @@ def equilibrium_of(
     outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
     ends = line.contact_ends(depth)
     of_force = float(weight @ (force * station))
-    of_shear = solution.shear_stress * float(weight @ (np.maximum(depth, 0.0) * station))
+    drawn_from = force if conditions.by_reaction else np.maximum(depth, 0.0)
+    of_shear = solution.shear_stress * float(weight @ (drawn_from * station))
     turns = conditions.side_force > 0.0
     return Equilibrium(
         outcome=outcome,
@@ -169,6 +178,7 @@ def equilibrium_of(
         side_force=conditions.side_force,
         side_force_limit=limit,
         turn_radius_boot=line.radius_at_boot() if turns else None,
+        turn_radius_boot_other_spread=None,
         turn_radius_chord=line.radius_over(*ends) if turns else None,
         contact_length=ends[0] - ends[1],
         bearing_length=float(weight[force > 0.0].sum()),
@@ -185,6 +195,13 @@ def equilibrium_of(
         warnings=(*note, *_warnings(line)),
         iterations=solution.iterations,
     )
+
+
+def radius_at_boot(model: ClampedSki, conditions: Conditions, solution: Solution) -> float | None:
+    """Of the circle through the edge line there (m); None where there is no balance."""
+    if not solution.converged or float(np.max(solution.edge_depth)) > SINKING_DEPTH:
+        return None
+    return EdgeLine(model, conditions.edge_angle, solution).radius_at_boot()
 
 
 def _bridges(station: FloatArray, below: npt.NDArray[np.bool_]) -> bool:

@@ -36,6 +36,7 @@ class Conditions(NamedTuple):
     bevel_width: float
     pitch_of_force: float  # share with which the snow's force takes part in the balance of moments about the boot
     pitch_of_shear: float  # share of the side force
+    by_reaction: bool  # the side force goes along the edge as the snow's force, not as the depth
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +52,7 @@ class Solution:
     boot_depth, boot_slope
         b₀ (m) and b₁: depth of the base's middle under the boot, and its growth along the ski.
     shear_stress
-        τ, drawn from the snow along the edge (N/m²).
+        τ, drawn from the snow along the edge (N/m²); by reaction: side force over the snow's force, everywhere.
     edge_depth, force_per_length
         At the stations: e (m), and the snow's force per length along the snow normal (N/m).
     """

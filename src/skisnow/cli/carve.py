@@ -66,6 +66,8 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
     choices.add_argument(
         "--no-side-force-bending", dest="side_force_bending", **off, help="the side force does not bend the ski"
     )
+    spread = "how the side force goes along the edge: as its depth, or as the snow's force on the base"
+    choices.add_argument("--side-force-spread", choices=("depth", "base-reaction"), help=spread)
     choices.add_argument("--groove", choices=("edge", "path"), help="what the groove of the forebody follows")
     balance = "what holds the side force's moment about the ski's cross axis: boot, or nothing but --moment-Nm (free)"
     choices.add_argument("--moment-balance", choices=("boot", "free"), help=balance)

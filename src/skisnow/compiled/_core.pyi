@@ -160,6 +160,7 @@ class CarveConditions:
         bevel_width: float,
         pitch_of_force: float,
         pitch_of_shear: float,
+        by_reaction: bool,
         /,
     ) -> None: ...
 

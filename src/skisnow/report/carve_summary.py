@@ -73,6 +73,7 @@ def _choices(inputs: Json) -> str:
         words.append(f"footprint stiffness {significant(inputs['footprint_stiffness_N_per_mm2'], style='plain')} N/mm²")
     if not inputs["at_rest"]:
         words.append(f"side force bends the ski: {_yes(inputs['side_force_bending'])}")
+        words.append(f"side force spread: {inputs['side_force_spread']}")
         words.append(f"groove follows the {inputs['groove']}")
         words.append(f"moment balance: {inputs['moment_balance']}")
     return ", ".join([*words, f"twist: {_yes(inputs['twist'])}", f"elements {inputs['elements']}"])
@@ -104,6 +105,10 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str]], ...]] = (
     ("side force (N)", _number("side_force_N")),
     ("shear capacity of the snow (N)", _number("side_force_limit_N")),
     ("turn radius, boot and 0.4 m to each side (m)", _number("turn_radius_boot_m")),
+    (
+        "the same, side force spread the other way (m)",
+        _number("turn_radius_boot_other_spread_m"),
+    ),
     ("turn radius, boot and ends of contact (m)", _number("turn_radius_chord_m")),
     ("sidecut radius of three widths (m)", lambda answer: _of_ski(answer, "sidecut_radius_of_three_widths_m")),
     ("sidecut radius of the whole edge line (m)", lambda answer: _of_ski(answer, "sidecut_radius_of_edge_line_m")),

@@ -31,6 +31,7 @@ RESULTS: Final = (
     "side_force_N",
     "side_force_limit_N",
     "turn_radius_boot_m",
+    "turn_radius_boot_other_spread_m",
     "turn_radius_chord_m",
     "contact_length_m",
     "afterbody_depth_ratio",

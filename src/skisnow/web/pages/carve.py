@@ -59,6 +59,7 @@ ABOVE_MM: Final = 3.0
 """How much of the edge above the snow the chart of depths shows (mm)."""
 FACTS: Final = {
     "turn_radius_boot_m": ("Turn radius at the boot", "m"),
+    "turn_radius_boot_other_spread_m": ("The same, side force spread the other way", "m"),
     "turn_radius_chord_m": ("Turn radius of the contact", "m"),
     "contact_length_m": ("Contact length", "m"),
     "side_force_N": ("Side force", "N"),
