@@ -1,10 +1,12 @@
-"""Compute the gallery's contrast of hypoplastic and elastic snow: python docs/figures_of_contrast.py.
+"""Compute the gallery's contrast of hypoplastic and elastic snow by kind of snow: python docs/figures_of_contrast.py.
 
-Draws its figures and writes its tables into docs/gallery/turn-contrast.md, between the marks there. Some 80 runs.
+Draws its figures and writes its tables into docs/gallery/turn-contrast-snows.md, between the marks there. Some 80 runs,
+in as many processes as a number behind it says.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -33,7 +35,7 @@ Runs = Mapping[tuple[str, str, float], "Run"]
 
 DOCS = Path(__file__).resolve().parent
 GALLERY = DOCS / "_static" / "gallery"
-PAGE = DOCS / "gallery" / "turn-contrast.md"
+PAGE = DOCS / "gallery" / "turn-contrast-snows.md"
 SCENARIOS = ("carver-42m", "giant-slalom-67m")
 SNOWS: dict[str, dict[str, Any]] = {
     "race piste": {"snow.published": "race-piste"},
@@ -117,7 +119,7 @@ def all_runs() -> dict[tuple[str, str, float], Run]:
         for name in SCENARIOS:
             for ratio in RATIOS[:2]:
                 asked[name, f"{strength:g}", ratio] = (name, keys | {"snow.unloading_ratio": ratio})
-    with ProcessPoolExecutor() as pool:
+    with ProcessPoolExecutor(int(sys.argv[1]) if len(sys.argv) > 1 else None) as pool:
         return dict(zip(asked, pool.map(_computed, asked.values()), strict=True))
 
 

@@ -156,6 +156,14 @@ def _percent(value: float) -> str:
     return significant(value, 3)
 
 
+def gallery_turn_contrast(_folder: Path) -> dict[str, str]:
+    """What the pairs in docs/gallery/contrast say; no run is computed."""
+    sys.path.append(str(DOCS.parent))
+    from benchmarks.contrast.found import found, numbers, read_rows
+
+    return numbers(found(read_rows(DOCS / "gallery" / "contrast")))
+
+
 if __name__ == "__main__":
     what, page, *rest = sys.argv[1:]
     if what == "program":
