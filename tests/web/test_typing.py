@@ -69,13 +69,43 @@ def test_shear_tests_without_a_pause(page: Page, served: Served) -> None:
     assert found == [["6", "250", "30"], ["8", "250", "36"], ["7", "250", "33"]]
 
 
+class HeldAnswers:
+    """What the lab says to a page, which may be held back for a while."""
+
+    def __init__(self, page: Page) -> None:
+        self._held: list[tuple[WebSocketRoute, str | bytes]] | None = None
+        page.route_web_socket("**/*", self._pass_on)
+
+    def _pass_on(self, socket: WebSocketRoute) -> None:
+        def answer(message: str | bytes) -> None:
+            if self._held is None:
+                socket.send(message)
+            else:
+                self._held.append((socket, message))
+
+        lab = socket.connect_to_server()
+        socket.on_message(lab.send)
+        lab.on_message(answer)
+
+    def hold(self) -> None:
+        self._held = []
+
+    def let_go(self) -> None:
+        held, self._held = self._held or [], None
+        for socket, message in held:
+            socket.send(message)
+
+
 @pytest.mark.parametrize("is_busy", [False, True])
 def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, served: Served, is_busy: bool) -> None:
     if is_busy:
         page.add_init_script(LEFT_LATE)
+    answers = HeldAnswers(page)
     page.goto(begun(served))
     page.get_by_label("Site", exact=True).and_(page.locator(":focus")).wait_for()
+    answers.hold()  # the hand is quicker than the lab, however slowly a busy machine types
     page.keyboard.type("A\n95\n1.5\n2.6\n")
+    answers.let_go()
     page.get_by_text("Typed meanwhile and not used: 1.5 ⏎ 2.6 ⏎").wait_for()
     page.get_by_role("alert").get_by_text("edge_angle_deg is a number from 0 to below 90; '95'").wait_for()
     angle = page.get_by_label("Edge angle (°)", exact=True).and_(page.locator(":focus"))
