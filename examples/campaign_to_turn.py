@@ -1,4 +1,4 @@
-"""From a campaign to a turn: each contact on the snow that was found, and a band over its uncertainty.
+"""From a campaign to a turn: each contact on the snow that was found, and a band over what is not known.
 
     python examples/campaign_to_turn.py CAMPAIGN OUT [--site SITE] [--runs N]
 
@@ -21,7 +21,7 @@ def main() -> None:
     parser.add_argument("campaign", type=Path)
     parser.add_argument("out", type=Path)
     parser.add_argument("--site", default="C")
-    parser.add_argument("--runs", type=int, default=32)
+    parser.add_argument("--runs", type=int, default=64)
     asked = parser.parse_args()
     turn = skisnow.scenario("carved-46m").with_(angle_deg=5, speed_m_per_s=4.5, edge_angle_deg=40)
     chain = skisnow.chain(

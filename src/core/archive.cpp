@@ -69,6 +69,11 @@ struct Strip {
     const double share = std::clamp(found.share, 0.0, 1.0), t = std::clamp(found.ahead, 0.0, 1.0);
     return (1.0 - t) * before.depth_at(share) + t * after.depth_at(share);
   }
+
+  double delayed(const Found& found) const {
+    const double share = std::clamp(found.share, 0.0, 1.0), t = std::clamp(found.ahead, 0.0, 1.0);
+    return (1.0 - t) * before.delayed_at(share) + t * after.delayed_at(share);
+  }
 };
 
 constexpr int MOST_TRIES = 60;
@@ -108,12 +113,26 @@ bool clip(const Quantity& quantity, double& a, double& b) {
   return b - a > THIN;
 }
 
-void press_strip(const Strip& strip, const Vector3& origin, const Vector3& lateral, double a, double b,
-                 Ground& ground) {
+// The delayed depth of a strip at the places of a line between a and b, as it is by now.
+void recall_delayed(const Strip& strip, const Vector3& origin, const Vector3& lateral, double a, double b, double now,
+                    DelayedRecall& out) {
+  const double spacing = out.ground.spacing;
+  const long from = long(std::ceil(a / spacing)), to = long(std::floor(b / spacing)) + 1;
+  const double left = std::exp(-std::max(now - strip.after.left_at, 0.0) / out.retardation);
+  out.ground.cover(from, to);
+  for (long n = from; n < to; n++) {
+    const double depth = strip.delayed(strip.find(along(origin, lateral, double(n) * spacing)));
+    out.ground.depth[std::size_t(n - out.ground.first)] = left * depth;
+  }
+}
+
+void press_strip(const Strip& strip, const Vector3& origin, const Vector3& lateral, double a, double b, double now,
+                 Ground& ground, DelayedRecall* delayed) {
   const auto found = [&](double y) { return strip.find(along(origin, lateral, y)); };
   const auto ahead = [&](double y) { return found(y).ahead; };
   const auto share = [&](double y) { return found(y).share; };
   if (!clip(ahead, a, b) || !clip(share, a, b)) return;
+  if (delayed != nullptr) recall_delayed(strip, origin, lateral, a, b, now, *delayed);
   double places[2 + 2 * KNOTS] = {a, b};
   int count = 2;
   for (const Track* track : {&strip.before, &strip.after})
@@ -137,18 +156,18 @@ void press_strip(const Strip& strip, const Vector3& origin, const Vector3& later
 
 }  // namespace
 
-double Track::depth_at(double share) const {
+double Track::at(const double* values, double share) const {
   const double where = place[0] + share * width();
   int j = 0;
   while (j + 2 < count && place[j + 1] <= where) j++;
   const double step = place[j + 1] - place[j];
-  if (!(step > 0.0)) return std::max(depth[j], depth[j + 1]);
-  return depth[j] + (depth[j + 1] - depth[j]) * std::clamp((where - place[j]) / step, 0.0, 1.0);
+  if (!(step > 0.0)) return std::max(values[j], values[j + 1]);
+  return values[j] + (values[j + 1] - values[j]) * std::clamp((where - place[j]) / step, 0.0, 1.0);
 }
 
 void press_between(const Track& before, const Track& after, const Vector3& origin, const Vector3& lateral, double from,
-                   double to, Ground& ground) {
-  press_strip({before, after}, origin, lateral, from, to, ground);
+                   double to, double now, Ground& ground, DelayedRecall* delayed) {
+  press_strip({before, after}, origin, lateral, from, to, now, ground, delayed);
 }
 
 const Track* Archive::before(int later) const {
@@ -187,7 +206,8 @@ void Archive::enter_squares(int later) {
     }
 }
 
-void Archive::recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground) const {
+void Archive::recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground,
+                     DelayedRecall* delayed) const {
   if (tracks_.empty()) return;
   std::vector<int> near;
   std::optional<std::uint64_t> region;  // the one met last, and whether any track lies there
@@ -201,12 +221,14 @@ void Archive::recall(const Vector3& origin, const Vector3& lateral, double from,
   });
   std::sort(near.begin(), near.end());  // in the order in which they were left
   near.erase(std::unique(near.begin(), near.end()), near.end());
-  for (int later : near) press_strip({*before(later), tracks_[std::size_t(later)]}, origin, lateral, from, to, ground);
+  for (int later : near)
+    press_strip({*before(later), tracks_[std::size_t(later)]}, origin, lateral, from, to, time, ground, delayed);
 }
 
 void Archive::forget_since(const Mark& mark) {
   strips_ = mark.strips;
   energy_ = mark.energy;
+  time = mark.time;
   if (mark.tracks == tracks_.size()) return;
   tracks_.resize(mark.tracks);
   for (auto& [square, tracks] : squares_)

@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "delayed.hpp"
 #include "groove.hpp"
 
 namespace skisnow {
@@ -20,14 +21,25 @@ struct Track {
   std::int64_t number;  // within the strip
   int count;
   double place[KNOTS], depth[KNOTS];
+  double delayed[KNOTS] = {}, left_at = 0.0;  // delayed depth (m) when it was left (s)
 
   double width() const { return place[count - 1] - place[0]; }
-  double depth_at(double share) const;  // of the width, from 0 to 1
+  double depth_at(double share) const { return at(depth, share); }  // of the width, from 0 to 1
+  double delayed_at(double share) const { return at(delayed, share); }
+
+ private:
+  double at(const double* values, double share) const;
+};
+
+// What a line takes over of the delayed depth of older tracks, which springs back since they were left.
+struct DelayedRecall {
+  double retardation;  // (s)
+  DelayedGround ground;
 };
 
 // Press the groove between two tracks, as far as a line crosses it between two places across it (m), into its ground.
 void press_between(const Track& before, const Track& after, const Vector3& origin, const Vector3& lateral, double from,
-                   double to, Ground& ground);
+                   double to, double now, Ground& ground, DelayedRecall* delayed);
 
 class Archive {
  public:
@@ -35,7 +47,9 @@ class Archive {
   void add(const Track& track, double energy);
 
   // Press the older tracks that a line crosses, between two places across it (m), into its ground.
-  void recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground) const;
+  void recall(const Vector3& origin, const Vector3& lateral, double from, double to, Ground& ground,
+              DelayedRecall* delayed) const;
+  double time = 0.0;  // to which the contacts have come (s)
 
   const std::vector<Track>& tracks() const { return tracks_; }
   double energy() const { return energy_; }
@@ -44,9 +58,9 @@ class Archive {
   struct Mark {
     std::size_t tracks;
     int strips;
-    double energy;
+    double energy, time;
   };
-  Mark mark() const { return {tracks_.size(), strips_, energy_}; }
+  Mark mark() const { return {tracks_.size(), strips_, energy_, time}; }
   void forget_since(const Mark& mark);
 
  private:

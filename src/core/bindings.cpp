@@ -209,6 +209,13 @@ void bind_snow(nb::module_& m) {
       .def_rw("residual_ratio", &ShearLaw::residual_ratio)
       .def_rw("weakening", &ShearLaw::weakening);
 
+  nb::class_<RateLaw>(m, "RateLaw")
+      .def(nb::init<>())
+      .def_rw("damping", &RateLaw::damping)
+      .def_rw("delayed_share", &RateLaw::delayed_share)
+      .def_rw("retardation", &RateLaw::retardation)
+      .def_rw("spacing", &RateLaw::spacing);
+
   nb::class_<Snow>(m, "Snow")
       .def(nb::init<>())
       .def_rw("surface", &Snow::surface)
@@ -222,6 +229,7 @@ void bind_snow(nb::module_& m) {
       .def_rw("friction", &Snow::friction)
       .def_rw("friction_on_base", &Snow::friction_on_base)
       .def_rw("shear", &Snow::shear)
+      .def_rw("rate", &Snow::rate)
       .def_rw("knot_area", &Snow::knot_area)
       .def_rw("part_along", &Snow::part_along)
       .def_rw("part_across", &Snow::part_across);
@@ -270,6 +278,7 @@ void bind_contact(nb::module_& m) {
       .def("tracks", [](const SnowContact& self, const Snow& snow) { return tracks_of(snow, self); })
       .def("groove_energy", &SnowContact::groove_energy)
       .def("elastic_energy", &SnowContact::elastic_energy)
+      .def("delayed_energy", &SnowContact::delayed_energy)
       .def("state", &SnowContact::state)
       .def("restore", &SnowContact::restore)
       .def(

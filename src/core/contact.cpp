@@ -88,6 +88,8 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
   trial_ = state_.lines;
   before_.resize(runners_.size());
   sections_.resize(runners_.size());
+  if (snow_->rate.acts()) rated_.resize(runners_.size());
+  state_.time = snow_->archive.time;
   wrenches_.resize(runners_.size());
 }
 
@@ -102,6 +104,7 @@ const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose&
   kernels_->find_sections(runner(k), pose, *snow_, lines, lines.first, s);
   kernels_->press(*snow_, lines, s);
   if (bearing_) bearing_->press(lines, s);
+  if (!rated_.empty()) rated_[std::size_t(k)].press(*snow_, lines, pose, motion, dt_, s);
   kernels_->slide(motion, pose, *snow_, s);
   if (snow_->shear.by_angle()) strengthen(snow_->shear, s);
   if (laws) laws(k, s);
@@ -133,6 +136,8 @@ const Wrench& SnowContact::look(int k, const Pose& pose, const Motion& motion) {
 void SnowContact::differ(int k, double sense) {
   if (bearing_)
     bearing_->differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
+  else if (!rated_.empty())
+    rated_[std::size_t(k)].differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
   else
     kernels_->differ(*snow_, lines(k), sections(k), TANGENT_STEP, sense, differences_);
 }
@@ -151,7 +156,11 @@ void SnowContact::find_tangent(int k, const Pose& pose, double stiffness, double
   const bool bends = runner(k).nodes() > 2;
   kernels_->add_stiffness(s, differences_, stiffness, bends, out);
   out.add_turning(wrenches_[std::size_t(k)], stiffness);
-  if (damping > 0.0) kernels_->add_friction_damping(s, damping, bends, out);
+  if (!(damping > 0.0)) return;
+  kernels_->add_friction_damping(s, damping, bends, out);
+  if (!(snow_->rate.damping > 0.0)) return;
+  rated_[std::size_t(k)].differ_rates(*snow_, lines(k), s, sense, differences_);
+  kernels_->add_stiffness(s, differences_, damping, bends, out);
 }
 
 // The lines at the end of a step, before its end is remembered: those that stand, or where that changes them a copy.
@@ -172,6 +181,7 @@ GrooveLines& SnowContact::history(int k, const Situation& at) {
 
 std::vector<Reaction> SnowContact::force(const Situation& at) {
   std::vector<Reaction> out;
+  dt_ = at.dt;
   for (int k = 0; k < runners(); k++)
     out.push_back(reaction(k, history(k, at), at.poses[std::size_t(k)], at.motions[std::size_t(k)]));
   return out;
@@ -179,6 +189,7 @@ std::vector<Reaction> SnowContact::force(const Situation& at) {
 
 void SnowContact::begin(const Situation& foreseen) {
   take_back();
+  dt_ = foreseen.dt;
   for (int k = 0; k < runners(); k++) {
     GrooveLines& lines = state_.lines[std::size_t(k)];
     Before& before = before_[std::size_t(k)];
@@ -201,11 +212,19 @@ void SnowContact::take_back() {
 
 void SnowContact::accept(const Situation& at) {
   begun_ = false;
+  pass_time(at.dt);
   for (int k = 0; k < runners(); k++) settle_history(k, at.poses[std::size_t(k)]);
   stand(at.poses);
 }
 
+void SnowContact::pass_time(double dt) {
+  dt_ = dt;
+  state_.time += dt;
+  snow_->archive.time = std::max(snow_->archive.time, state_.time);
+}
+
 void SnowContact::update(const Situation& to) {
+  pass_time(to.dt);
   for (int k = 0; k < runners(); k++) {
     GrooveLines& lines = state_.lines[std::size_t(k)];
     lines.drop_left(runner(k), to.poses[std::size_t(k)], &snow_->archive, state_.strips[std::size_t(k)]);
@@ -229,6 +248,7 @@ void SnowContact::stand(const std::vector<Pose>& poses) {
 // The end of a step, for which the sections stand, enters the history; lines that the ski has left are dropped.
 void SnowContact::settle_history(int k, const Pose& pose) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
+  if (snow_->rate.is_delayed()) state_.delayed_energy += advance_delayed(*snow_, sections(k), dt_, lines);
   remember(k, lines);
   const Sections& s = sections(k);
   for (std::int64_t n = lines.first; n < lines.end; n++)
@@ -266,6 +286,7 @@ void SnowContact::lay_anew(int k, const Pose& pose) {
 
 void SnowContact::tangent(const Situation& at, std::vector<double>& stiffness, std::vector<double>& damping) {
   const auto size = std::size_t(36 * runners());
+  dt_ = at.dt;
   stiffness.assign(size, 0.0);
   damping.assign(size, 0.0);
   for (int k = 0; k < runners(); k++)
@@ -299,7 +320,7 @@ ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) c
     all += wrench.force[a] * v[a] + wrench.moment[a] * o[a];
   }
   for (std::size_t i = 0; i < motion.beam.size(); i++) all += wrench.beam[i] * motion.beam[i];
-  ContactPower out{0.0, 0.0, 0.0};
+  ContactPower out{0.0, 0.0, 0.0, 0.0};
   for (int i = 0; i < s.count(); i++) {
     if (!s.touches(i)) continue;
     const double z = s[IN_ELEMENT][i], h = s[ELEMENT_LENGTH][i], y = 1.0 - z, reach = s[EDGE_REACH][i];
@@ -316,6 +337,7 @@ ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) c
                                 v[2] + o[0] * at[1] - o[1] * at[0] + lifting - s[TWIST_COSINE][i] * twisting};
     const double across = velocity[0] * s[ACROSS_0][i] + velocity[1] * s[ACROSS_1][i] + velocity[2] * s[ACROSS_2][i];
     out.shear += s[SHEAR][i] * across;
+    if (!rated_.empty()) out.damping += s[RATE_POWER][i];
     out.friction -= s[FRICTION][i] * s[FRICTION_LOAD][i] * s[SLIDING][i];
   }
   out.normal = all - out.shear - out.friction;

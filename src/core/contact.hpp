@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bearing.hpp"
+#include "rate.hpp"
 #include "tangent.hpp"
 
 namespace skisnow {
@@ -24,9 +25,10 @@ struct Reaction {
   std::vector<double> beam;
 };
 
-// What the snow does to a runner (W): across the edge, along it by friction, and all else of the force on the base.
+// What the snow does to a runner (W): across the edge, along it by friction, and all else of the force on the base; and
+// what of the last the snow's dashpot c takes.
 struct ContactPower {
-  double shear, friction, normal;
+  double shear, friction, normal, damping;
 };
 
 // Laws from outside: they may rewrite EDGE_STRENGTH, EDGE_THRUST and FRICTION of a runner's sections before forces are
@@ -75,13 +77,15 @@ class SnowContact {
   double groove_energy() const;   // lost in grooves, those under the runners included (J)
   double held_energy() const;     // in the displaced shear of the edges at the last situation looked at (J)
   double elastic_energy() const;  // in the snow at the last situation looked at (J)
+  double delayed_energy() const { return state_.delayed_energy; }  // that its delayed depth has taken so far (J)
 
   // All that the contact remembers, but for the tracks of others.
   struct State {
     std::vector<GrooveLines> lines;
     std::vector<Pose> accepted;  // empty before the first update
     std::vector<int> strips;
-    Archive::Mark tracks{0, 0, 0.0};
+    double time = 0.0, delayed_energy = 0.0;  // (s); (J)
+    Archive::Mark tracks{0, 0, 0.0, 0.0};
   };
   State state() const;
   void restore(const State& state);
@@ -96,6 +100,8 @@ class SnowContact {
   std::vector<Wrench> wrenches_;
   SectionDifferences differences_;
   std::shared_ptr<Bearing> bearing_;  // null: the core's own law
+  std::vector<RatedBase> rated_;      // of each runner, where the snow takes time
+  double dt_ = 0.0;                   // since the last accepted pose, of what is looked at (s)
   std::vector<std::int64_t> needed_;  // lines, the foremost first
   struct Before {                     // of one runner, what `begin` has changed
     std::int64_t first, end;
@@ -113,6 +119,7 @@ class SnowContact {
   void learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const;
   void settle_history(int k, const Pose& pose);
   void stand(const std::vector<Pose>& poses);
+  void pass_time(double dt);
   void lay_anew(int k, const Pose& pose);
   int parts(int k, const Situation& at) const;
   void march(int k, GrooveLines& lines, const Situation& to);

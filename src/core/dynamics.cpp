@@ -232,6 +232,7 @@ void Dynamics::add_work(double h) {
     now.shear -= snow.shear;
     now.friction -= snow.friction;
     now.normal += snow.normal;
+    now.snow_damping += snow.damping;
   }
   now.drag = drag_power(body_, next_);
   now.damping = damping_power(body_, layout_, next_);
@@ -240,6 +241,7 @@ void Dynamics::add_work(double h) {
   work_.normal += 0.5 * h * (power_.normal + now.normal);
   work_.drag += 0.5 * h * (power_.drag + now.drag);
   work_.damping += 0.5 * h * (power_.damping + now.damping);
+  work_.snow_damping += 0.5 * h * (power_.snow_damping + now.snow_damping);
   power_ = now;
 }
 

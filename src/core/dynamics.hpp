@@ -24,9 +24,9 @@ struct Counts {
 };
 
 // Energy (J) that was taken since the start by shear, friction, air and the skis' damping, and given to the base by the
-// snow's normal force.
+// snow's normal force; and what of it the snow's dashpot took.
 struct Work {
-  double shear = 0.0, friction = 0.0, normal = 0.0, drag = 0.0, damping = 0.0;
+  double shear = 0.0, friction = 0.0, normal = 0.0, drag = 0.0, damping = 0.0, snow_damping = 0.0;
 };
 
 class Dynamics {

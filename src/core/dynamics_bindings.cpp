@@ -122,7 +122,7 @@ void bind_dynamics(nb::module_& m) {
       .def_prop_ro("work",
                    [](const Dynamics& self) {
                      const Work& w = self.work();
-                     return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping);
+                     return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping, w.snow_damping);
                    })
       .def_prop_ro("counts", [](const Dynamics& self) {
         const Counts& c = self.counts();

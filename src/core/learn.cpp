@@ -61,18 +61,20 @@ bool may_cross(const GrooveEnds& before, const GrooveEnds& after, const Vector3&
 class SnowContact::Standing {
  public:
   Standing(const SnowContact& contact, int k) {
+    now_ = contact.snow_->archive.time;
     for (int other = 0; other < contact.runners(); other++)
       if (other != k) runners_.push_back({&contact.lines(other), ends_of(contact.lines(other))});
   }
 
   void recall(const Vector3& origin, const Vector3& lateral, const Vector3& ahead, double from, double to,
-              Ground& ground) const {
+              Ground& ground, DelayedRecall* delayed) const {
     for (const auto& [lines, ends] : runners_)
-      for (std::size_t i = 1; i < ends.size(); i++)
-        if (ends[i].number == ends[i - 1].number + 1 &&
-            may_cross(ends[i - 1], ends[i], origin, lateral, ahead, from, to))
-          press_between(lines->track(ends[i - 1].number, 0), lines->track(ends[i].number, 0), origin, lateral, from, to,
-                        ground);
+      for (std::size_t i = 1; i < ends.size(); i++) {
+        const GrooveEnds &before = ends[i - 1], &after = ends[i];
+        if (after.number == before.number + 1 && may_cross(before, after, origin, lateral, ahead, from, to))
+          press_between(lines->track(before.number, 0, now_), lines->track(after.number, 0, now_), origin, lateral,
+                        from, to, now_, ground, delayed);
+      }
   }
 
  private:
@@ -81,6 +83,7 @@ class SnowContact::Standing {
     std::vector<GrooveEnds> ends;
   };
   std::vector<Other> runners_;
+  double now_;
 };
 
 // Lay the lines that a runner will meet, and look for the tracks that it comes to.
@@ -106,8 +109,11 @@ void SnowContact::learn(GrooveLines& lines, int slot, double from, double to, co
   v[KNOWN_FROM][slot] = known ? std::min(from, v[KNOWN_FROM][slot]) : from;
   v[KNOWN_TO][slot] = known ? std::max(to, v[KNOWN_TO][slot]) : to;
   Ground older;
-  snow_->archive.recall(origin, lateral, from, to, older);
-  standing.recall(origin, lateral, ahead, from, to, older);
+  DelayedRecall recalled{snow_->rate.retardation, {snow_->rate.spacing}};
+  DelayedRecall* delayed = snow_->rate.is_delayed() ? &recalled : nullptr;
+  snow_->archive.recall(origin, lateral, from, to, older, delayed);
+  standing.recall(origin, lateral, ahead, from, to, older, delayed);
+  if (delayed != nullptr) lines.delayed[std::size_t(slot)].take_over(recalled.ground);
   if (older.empty()) return;
   older.simplify(0.0, KNOTS);
   lines.press_older(slot, older);

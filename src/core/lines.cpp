@@ -67,6 +67,7 @@ GrooveLines::GrooveLines(const Runner& runner, double spacing) : spacing_(spacin
   values.resize(size);
   for (Column* each : {&place, &depth, &slope}) each->assign(std::size_t(size) * KNOTS, 0.0);
   knots.assign(std::size_t(size), 0);
+  delayed.resize(std::size_t(size));
   filled_.assign(std::size_t(size / BLOCK), 1);
   energy_.assign(std::size_t(size), 0.0);
   counted_.assign(std::size_t(size), 0.0);
@@ -160,6 +161,7 @@ void GrooveLines::lay(std::int64_t number, const Pose& pose, double station, con
   values[EXCESS][at] = (snow.unloading_ratio - 1.0) * hardness;
   values[STRENGTH][at] = snow.strength.at(origin[0], origin[1]).value;
   keep(at, Ground());
+  delayed[std::size_t(at)] = DelayedGround{snow.rate.spacing};
   energy_[std::size_t(at)] = counted_[std::size_t(at)] = 0.0;
 }
 
@@ -211,19 +213,21 @@ double GrooveLines::groove_energy() const {
   return total;
 }
 
-Track GrooveLines::track(std::int64_t number, int strip) const {
+Track GrooveLines::track(std::int64_t number, int strip, double time) const {
   const int at = slot(number);
   const Ground here = ground(at);
-  Track out{origin(at), get(*this, AHEAD_X, at), lateral(at), strip, number, here.count, {}, {}};
+  Track out{origin(at), get(*this, AHEAD_X, at), lateral(at), strip, number, here.count, {}, {}, {}, time};
   std::copy_n(here.place, here.count, out.place);
   std::copy_n(here.depth, here.count, out.depth);
+  const DelayedGround& springing = delayed[std::size_t(at)];
+  for (int j = 0; j < here.count && !springing.empty(); j++) out.delayed[j] = springing.depth_at(here.place[j]);
   return out;
 }
 
 void GrooveLines::leave(std::int64_t number, Archive* archive, int strip) {
   if (archive == nullptr) return;
   count_energy(slot(number), spacing_);
-  archive->add(track(number, strip), energy_[std::size_t(slot(number))]);
+  archive->add(track(number, strip, archive->time), energy_[std::size_t(slot(number))]);
 }
 
 void GrooveLines::drop_left(const Runner& runner, const Pose& pose, Archive* archive, int strip) {

@@ -8,6 +8,7 @@
 
 #include "archive.hpp"
 #include "columns.hpp"
+#include "delayed.hpp"
 #include "groove.hpp"
 #include "lanes.hpp"
 #include "runner.hpp"
@@ -51,6 +52,7 @@ class GrooveLines {
   int tile(int slot, int knot) const { return ((slot / BLOCK) * KNOTS + knot) * BLOCK + slot % BLOCK; }
   Column place, depth, slope;
   std::vector<std::uint8_t> knots;
+  std::vector<DelayedGround> delayed;  // (capacity,), empty where the snow has none
 
   Vector3 origin(int slot) const;
   Vector3 lateral(int slot) const;  // unit vector along the line, to the left
@@ -65,7 +67,7 @@ class GrooveLines {
   };
   Line line(int slot) const;
   void put_back(const Line& line);
-  Track track(std::int64_t number, int strip) const;
+  Track track(std::int64_t number, int strip, double time) const;  // as it would be left at a time
 
   // Position along the straight ski under which a line passes (m).
   double station(std::int64_t number, const Pose& pose) const;

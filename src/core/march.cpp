@@ -46,6 +46,27 @@ struct Pressing {
   }
 };
 
+constexpr long MOST_PLACES = 24;  // of a delayed depth that are pressed into a ground, which keeps fewer knots
+
+// Press into a ground what of the depths is not delayed.
+bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Ground& ground) {
+  if (delayed.empty()) return ground.press(pressing.place, pressing.depth, pressing.count);
+  std::vector<double> place, depth;
+  const double span = pressing.place[pressing.count - 1] - pressing.place[0];
+  const long every = 1 + long(span / delayed.spacing) / MOST_PLACES;
+  const double spacing = double(every) * delayed.spacing;  // places that are the same in the mirror image
+  const auto add = [&](double at, double deep) { place.push_back(at), depth.push_back(deep - delayed.depth_at(at)); };
+  for (int j = 0; j < pressing.count; j++) {
+    add(pressing.place[j], pressing.depth[j]);
+    if (j + 1 == pressing.count) break;
+    const double a = pressing.place[j], width = pressing.place[j + 1] - a;
+    const double growth = pressing.depth[j + 1] - pressing.depth[j];
+    for (long n = long(std::floor(a / spacing)) + 1; double(n) * spacing < a + width; n++)
+      add(double(n) * spacing, pressing.depth[j] + growth * (double(n) * spacing - a) / width);
+  }
+  return ground.press(place.data(), depth.data(), int(place.size()));
+}
+
 // Keep the base that touches a line: the way of its edge since it was marked last, and all that lies under it.
 void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, int slot) {
   const double edge = s[EDGE_PLACE][i], depth = s[EDGE_DEPTH][i], fall = s[DEPTH_FALL][i];
@@ -60,7 +81,7 @@ void press_base(const Sections& s, int i, const Snow& snow, GrooveLines& lines, 
     pressing.fill(-to, -from, -fall, -way, way_fall);
   pressing.put_at(edge, depth, sense);
   Ground ground = lines.ground(slot);
-  if (!ground.press(pressing.place, pressing.depth, pressing.count)) return;
+  if (!press_undelayed(pressing, lines.delayed[std::size_t(slot)], ground)) return;
   ground.simplify(snow.knot_area * s[DEEPEST][i] * (to - from), KNOTS);
   lines.keep(slot, ground);
 }

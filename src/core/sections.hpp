@@ -36,6 +36,7 @@ enum SectionField {
   DEPTH_FALL, DEPTH_CLIMB, BASE_WIDENING, WET_FROM, WET_TO,
   // the answer of the snow: force (N) and its moment about the edge; elastic energy of the snow (J)
   FORCE, MOMENT, SNOW_ENERGY,
+  RATE_POWER,  // that c of snow that takes time takes (W)
   // the edge: share of the strength that is left after slip, shear strength S_f and the thrust off the snow that comes
   // with it (Pa), the share of the displacement to full strength in use
   STRENGTH_LEFT, EDGE_STRENGTH, EDGE_THRUST, SHEAR_USED,

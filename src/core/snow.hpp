@@ -25,6 +25,17 @@ struct ShearLaw {
   bool by_angle() const { return cuts || decrease != 0.0; }
 };
 
+// Answer of the snow that depends on time: a dashpot beside the law, and a Kelvin element in series with it.
+struct RateLaw {
+  double damping = 0.0;        // c (N s/m³)
+  double delayed_share = 0.0;  // H_V/H₂: delayed depth under a load that stays, over that at once
+  double retardation = 0.1;    // c₂/H₂ (s)
+  double spacing = 1e-3;       // of the places on a line that keep their delayed depth (m)
+
+  bool is_delayed() const { return delayed_share > 0.0; }
+  bool acts() const { return damping > 0.0 || is_delayed(); }
+};
+
 struct Snow {
   Grid surface;                         // height (m)
   Grid hardness, strength;              // H_V (N/m³), S_f (Pa)
@@ -37,6 +48,7 @@ struct Snow {
   FrictionLaw friction;
   bool friction_on_base = false;  // of what presses on the base, or of the pressure along the snow's normal
   ShearLaw shear;
+  RateLaw rate;
   double knot_area = 1e-4;  // share of depth times width of a contact below which a knot is dropped
   // longest way (m) of tip and tail, along the ski and across it, over which the history is marched at once
   double part_along = 0.01, part_across = 2e-3;

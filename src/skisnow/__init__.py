@@ -24,7 +24,7 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
 ``simulate``, ``Run``, ``verify``, ``Refinement``
     A sledge on two flexible skis: the run that comes out of a scenario, and how exact it is.
 ``chain``, ``TurnChain``
-    From a campaign to a turn in one call, with a band over the uncertainty of the snow.
+    From a campaign to a turn in one call, with a band over what is not known of it.
 ``read_track``, ``Track``, ``GeodeticPoint``, ``in_slope_frame``, ``track_summary``, ``TrackSummary``
     Where something was on a slope, and when: from the files of receivers and watches, into the slope's frame; what a
     track says: distance, speed, runs and lifts, turns with their radii.

@@ -43,6 +43,7 @@ class Unit(NamedTuple):
 _NONE: Final = Unit("", 1.0)
 _BY_ENDING: Final = {
     "N_per_mm3": Unit("N/mm³", N_PER_MM3),
+    "N_s_per_mm3": Unit("N s/mm³", N_PER_MM3),
     "N_per_mm2": Unit("N/mm²", N_PER_MM2),
     "N_per_mm": Unit("N/mm", N_PER_MM),
     "kg_per_m3": Unit("kg/m³", 1.0),
@@ -53,6 +54,7 @@ _BY_ENDING: Final = {
     "per_rad": Unit("1/rad", 1.0),
     "kg_m2": Unit("kg m²", 1.0),
     "N_m2": Unit("N m²", 1.0),
+    "Nm_per_deg": Unit("N m/°", 1.0 / DEGREE),
     "deg": Unit("°", DEGREE),
     "mm": Unit("mm", MM),
     "ms": Unit("ms", MS),

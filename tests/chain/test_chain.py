@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,11 +17,13 @@ from referencing import Registry, Resource
 import skisnow
 from skisnow import Analysis, Run, Scenario
 from skisnow.chain import chaining, ensemble
+from skisnow.chain.priors import MEASURED, PRIORS
 from skisnow.cli import main
 from skisnow.errors import ParameterError
 from skisnow.field.reference import reference_campaign
+from skisnow.inputs import values_of
 from skisnow.report.turn_dict import turn_dict
-from skisnow.snow.drawn import drawn_snows
+from skisnow.scenario.prior import prior_of
 
 from ..report.runs import circle_run
 
@@ -50,28 +53,84 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[Scenario]:
     return scenarios
 
 
-def test_the_chain_asks_for_the_turn_with_each_contact_and_on_each_snow(
+def test_the_chain_asks_for_the_turn_with_each_contact_and_for_each_that_was_drawn(
     analysis: Analysis, asked: list[Scenario]
 ) -> None:
     said: list[str] = []
     turn = skisnow.scenario("carved-46m", changes=TURN)
     found = skisnow.chain(analysis, "C", turn, ski="carver", runs=4, seed=3, workers=1, progress=said.append)
     snow = analysis.snow("site C", unloading_ratio=10.0)
-    snows = drawn_snows(snow, 4, np.random.default_rng(3))
+    drawn = ensemble.drawn_scenarios(asked[0], PRIORS, 4, 3)
     assert found.snow == snow
-    assert [each.contact.snow for each in asked] == [snow, snow, snow, *snows]
-    assert [each.contact.unloading_ratio for each in asked] == [10.0, 1.0, *[10.0] * 5]
-    assert [each.solver.fixed for each in asked] == [False] * 2 + [True] * 5
-    assert {each.solver.step for each in asked[2:]} == {1e-3}
+    assert [each.contact.snow for each in asked[:7]] == [snow, snow, snow, *(each.contact.snow for each in drawn)]
+    assert [each.contact.unloading_ratio for each in asked[:3]] == [10.0, 1.0, 10.0]
+    assert [each.contact.unloading_ratio for each in asked[3:7]] == [each.contact.unloading_ratio for each in drawn]
+    assert [each.solver.method for each in asked] == ["default"] * 2 + ["fast"] * 13
     assert {each.ski.name for each in asked} == {skisnow.read_ski("carver").name}
-    assert {each.sledge.edge_angle for each in asked} == {turn.sledge.edge_angle}
+    assert {each.sledge.edge_angle for each in asked[:7]} == {turn.sledge.edge_angle}
     assert (found.site, found.synthetic, found.seed, found.ensemble_error) == ("site C", True, 3, 0.0)
     assert list(found.runs) == ["hypoplastic, k_u / H_V = 10", "elastic"]
-    assert [each.snow for each in found.ensemble] == snows
+    assert [each.snow for each in found.ensemble] == [each.contact.snow for each in drawn]
+    assert [each.values["ski.stiffness_factor"] for each in found.ensemble] == [each.stiffness_factor for each in drawn]
     assert found.analysis is analysis
-    assert said[-1] == "run 5 of 5"
+    assert said[-1] == "run 13 of 13"
     assert "is wider than that with" in found.sentences[0]
     assert "<" not in "".join(found.sentences)
+
+
+def test_a_measured_unloading_ratio_is_the_one_of_the_turn(analysis: Analysis, asked: list[Scenario]) -> None:
+    """Over all sites of the reference campaign it is measured; a given one comes first."""
+    measured = analysis.snow().unloading_ratio
+    assert measured is not None
+    found = skisnow.chain(analysis, scenario=skisnow.scenario("carved-46m", changes=TURN), runs=3, workers=1)
+    assert found.snow.unloading_ratio == measured
+    assert [each.contact.unloading_ratio for each in asked[:2]] == [measured, 1.0]
+    assert next(iter(found.runs)) == f"hypoplastic, k_u / H_V = {measured:.3g}"
+    turn = skisnow.scenario("carved-46m", changes=TURN)
+    given = skisnow.chain(analysis, scenario=turn, unloading_ratio=4.0, runs=3, workers=1)
+    assert given.snow.unloading_ratio == 4.0
+
+
+def test_all_that_is_not_known_is_drawn_over_its_prior(analysis: Analysis) -> None:
+    nominal = skisnow.scenario("carved-46m").with_(snow=analysis.snow("C", unloading_ratio=10.0))
+    drawn = [values_of(each) for each in ensemble.drawn_scenarios(nominal, PRIORS, 400, 1)]
+    for prior in PRIORS:
+        values = np.array([each[prior.key] for each in drawn])
+        low, high = prior.ends(values_of(nominal)[prior.key])
+        # a Latin hypercube: one in each of 400 slices of the logarithm
+        assert np.quantile(values, [0.0, 0.5, 1.0]) == pytest.approx([low, np.sqrt(low * high), high], rel=0.02)
+    logs = np.log([[each[key] for key in (*MEASURED, *(prior.key for prior in PRIORS))] for each in drawn])
+    assert np.max(np.abs(np.corrcoef(logs.T) - np.eye(6))) < 0.15  # 3 / √400
+
+
+@pytest.mark.usefixtures("asked")
+def test_a_prior_that_is_given_takes_the_place_of_the_usual_one(analysis: Analysis) -> None:
+    given = (prior_of("unloading_ratio=7:7"), prior_of("drag_area=0.2:0.4"))
+    found = skisnow.chain(analysis, "C", priors=given, runs=3, workers=1)
+    assert [each.key for each in found.priors] == [*(each.key for each in PRIORS), "drag.drag_area_m2"]
+    assert {each.values["snow.unloading_ratio"] for each in found.ensemble} == {7.0}
+    assert all(0.2 < each.values["drag.drag_area_m2"] < 0.4 for each in found.ensemble)
+
+
+def test_a_turn_near_the_limit_of_grip_is_warned_of(analysis: Analysis, monkeypatch: pytest.MonkeyPatch) -> None:
+    """More than 34.8 degrees and the turn is another: 0.1 % of 34.79° reach it."""
+
+    def folded(scenario: Scenario) -> Run:
+        beyond = scenario.sledge.edge_angle > math.radians(34.8)
+        return replace(circle_run(radius=20.0 if beyond else 12.0, count=61), scenario=scenario)
+
+    monkeypatch.setattr(chaining, "simulate", folded)
+    monkeypatch.setattr(ensemble, "simulate", folded)
+    for angle, near in ((34.79, True), (34.0, False)):
+        turn = skisnow.scenario("carved-46m").with_(edge_angle_deg=angle)
+        found = skisnow.chain(analysis, "C", turn, runs=3, workers=1)
+        assert bool(found.warnings) is near
+    assert (
+        "near the limit of grip: the end moves"
+        in skisnow.chain(
+            analysis, "C", skisnow.scenario("carved-46m").with_(edge_angle_deg=34.79), runs=3, workers=1
+        ).warnings[0]
+    )
 
 
 @pytest.mark.usefixtures("asked", "undrawn")
@@ -91,6 +150,7 @@ def test_the_report_is_that_of_the_chain(analysis: Analysis, tmp_path: Path) -> 
     [
         ({"site": "A"}, "has no interval of S_f"),
         ({"site": "Z"}, "no used penetration experiment of site 'Z'"),
+        ({"priors": [prior_of("H_V=0.1:0.2")]}, "its interval comes from the campaign"),
         ({"unloading_ratio": 1.0}, "k_u/H_V must be above 1 here"),
         ({"runs": 2}, "a band needs 3 or more"),
         ({"workers": 0}, "workers is 0"),
@@ -139,7 +199,7 @@ def test_the_command_s_json_is_that_of_the_report(asked: list[Scenario], tmp_pat
     assert told["runs"][0]["distance_from_first_m"] is None
     assert 0.0 < told["runs"][1]["distance_from_first_m"] < 2.0
     assert [each["H_V_N_per_mm3"] * 1e9 for each in told["ensemble"]["runs"]] == pytest.approx(
-        [each.contact.snow.snow_hardness for each in asked[3:]], rel=1e-12
+        [each.contact.snow.snow_hardness for each in asked[3:6]], rel=1e-12
     )
 
 
@@ -162,7 +222,7 @@ def test_the_json_keeps_to_its_schema(analysis: Analysis, asked: list[Scenario])
 def test_the_command_refuses_in_words(tmp_path: Path, capsys: Printed) -> None:
     assert main(["turn", str(tmp_path / "nowhere"), "--site", "C"]) == 1
     assert "a folder that exists" in capsys.readouterr().err
-    for words in (["--runs", "2"], ["--unloading-ratio", "1"], ["--set", "mas=3"]):
+    for words in (["--runs", "2"], ["--prior", "mu_0=2"], ["--unloading-ratio", "1"], ["--set", "mas=3"]):
         try:
             status = main(["turn", str(tmp_path), *words])
         except SystemExit as ended:
@@ -174,4 +234,4 @@ def test_the_command_refuses_in_words(tmp_path: Path, capsys: Printed) -> None:
 
 def test_defaults_of_the_command_are_those_of_the_call() -> None:
     defaults = {name: each.default for name, each in inspect.signature(skisnow.chain).parameters.items()}
-    assert (defaults["runs"], defaults["unloading_ratio"], defaults["scenario"]) == (32, 10.0, "carved-46m")
+    assert (defaults["runs"], defaults["unloading_ratio"], defaults["scenario"]) == (64, None, "carved-46m")

@@ -175,6 +175,7 @@ def test_table_has_skis_own_names_sidecut_radius_and_bearing_length(tmp_path: Pa
         (["--moment-balance", "free"], "moment_balance", "free"),
         (["--no-twist"], "twist", False),
         (["--clamp-length-m", "0"], "clamp_length_m", 0.0),
+        (["--footprint-stiffness-N-per-mm2", "30"], "footprint_stiffness_N_per_mm2", 30.0),
         (["--elements", "80"], "elements", 80),
         (["--moment-Nm", "40"], "moment_Nm", 40.0),
     ],

@@ -27,7 +27,7 @@ CASES: Final = {
 
 def accounts(dynamics: Dynamics) -> FloatArray:
     """Kinetic, potential, elastic in the skis, taken by shear and friction, not given by the snow, air, damping (J)."""
-    shear, friction, normal, drag, damping = dynamics.work
+    shear, friction, normal, drag, damping, _ = dynamics.work
     return np.array([*dynamics.energies, shear, friction, -normal, drag, damping])
 
 

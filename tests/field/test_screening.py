@@ -27,6 +27,9 @@ CODES = [
     "zero_depth",
     "beyond_tool",
     "below_resolution",
+    "creeps",
+    "unloading_not_falling",
+    "unloading_sinks",
 ]
 
 
@@ -98,7 +101,7 @@ def marked(campaign: Campaign, index: int = 0, geometry: GeometryForm = "extende
 
 
 def test_the_marks_and_their_default() -> None:
-    assert list(MARKS) == [*CODES, "layered", "hardness_outlier"]
+    assert sorted(MARKS) == sorted([*CODES, "layered", "rebound_unresolved", "hardness_outlier"])
     assert [code for code, mark in MARKS.items() if mark.excludes_by_default] == CODES[:5]
     assert all(mark.code == code and mark.sentence.endswith(".") for code, mark in MARKS.items())
 
@@ -255,3 +258,30 @@ def test_a_mark_that_was_added_is_told_at_the_largest_load() -> None:
     campaign = campaign_of(GOOD, GOOD)
     (problem,) = mark_problems(campaign, {"hardness_outlier": np.array([False, True])}, {})
     assert (problem.code, problem.row, problem.experiment) == ("hardness_outlier", 7, "P1")
+
+
+@pytest.mark.parametrize(
+    ("depth", "after", "codes"),
+    [
+        (3.0, 3.03, []),  # 1 % of 3 mm
+        (3.0, 3.031, ["creeps"]),
+        (1.5, 1.52, []),  # two steps of the gauge
+        (1.5, 1.521, ["creeps"]),
+        (3.0, float("nan"), []),
+        (3.0, 2.0, []),
+    ],
+)
+def test_creep_is_marked_beyond_the_gauge_and_a_share_of_the_depth(
+    depth: float, after: float, codes: list[str]
+) -> None:
+    campaign = campaign_of(GOOD, [(70.5, 0.5), (140.5, depth), (210.5, 4.0)])
+    tests = campaign.penetration
+    assert tests is not None
+    waited = np.full(6, np.nan)
+    waited[4] = after * 1e-3
+    campaign = dataclasses.replace(campaign, penetration=dataclasses.replace(tests, depth_after=waited))
+    masks = screen_penetration(campaign)
+    assert [code for code, mask in masks.items() if mask[1]] == codes
+    assert not any(mask[0] for mask in masks.values())
+    problems = mark_problems(campaign, masks, {})
+    assert [(each.code, each.row, each.column) for each in problems] == [("creeps", 6, "depth_after_mm")] * len(codes)

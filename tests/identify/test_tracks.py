@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
 from skisnow.errors import FieldDataError, ParameterError
-from skisnow.identify import Identification, identification_dict, identify
+from skisnow.identify import Identification, identification_dict, identify, track_positions
 from skisnow.identify.track_positions import estimated_noise
-from skisnow.scenario import read_scenario
+from skisnow.inputs import values_of
+from skisnow.parallel.kept_rows import Row
+from skisnow.scenario import Scenario, read_scenario
+from skisnow.simulate.run import Run
 from skisnow.simulate.simulated_run import simulate
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.track import Track
 
+from ..simulate.straight_run import straight_run
 from . import straight_tracks
 from .straight_tracks import SCENARIO, SD, TRUE_FRICTION, TRUE_SPEED, track
 
@@ -44,6 +50,35 @@ class TestStraight:
         assert found.outcome == "converged"
         assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
         assert found["speed"].value == pytest.approx(TRUE_SPEED, abs=1e-4)
+
+    def test_a_run_near_the_limit_of_grip_is_warned_of(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """S_f above 0.5002 N/mm² and the run ends a metre aside: from 0.5 a thousandth reaches that, from 0.49 not."""
+
+        def folded(scenario: Scenario) -> Run:
+            run = straight_run(scenario)
+            strength = scenario.contact.snow.failure_shear_stress
+            assert strength is not None
+            return replace(run, place=run.place + np.array([0.0, float(strength > 0.5002e6), 0.0]))
+
+        module = ModuleType("skisnow.simulate.simulated_run")
+        vars(module)["simulate"] = folded
+        monkeypatch.setitem(sys.modules, "skisnow.simulate.simulated_run", module)
+        told = "one: near the limit of grip: the end moves 1 m for 0.1 % of snow.S_f_N_per_mm2"
+        for strength, near in ((0.5, True), (0.49, False)):
+            found = identify(
+                "carved-46m", track(), "mu_0,speed", changes=SCENARIO | {"snow.S_f_N_per_mm2": strength}, workers=1
+            )
+            assert found.outcome == "converged"
+            assert any(text.startswith(told) for text in found.warnings) is near
+
+    def test_ctrl_c_while_the_limit_is_looked_at_keeps_the_answer(self) -> None:
+        def stopped(tasks: object) -> list[Row]:  # noqa: ARG001
+            raise KeyboardInterrupt
+
+        positions = track_positions.TrackPositions((track_positions.measured(track()),), stopped)
+        values = values_of(read_scenario("carved-46m", changes=SCENARIO))
+        (told,) = replace(positions, scenario_values=values)._near_limit({})
+        assert "not looked at: interrupted" in told
 
     def test_standard_errors_are_those_of_linear_least_squares(self) -> None:
         """x = v₀ t + g (sin α - μ cos α) t²/2."""

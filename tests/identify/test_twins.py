@@ -12,11 +12,12 @@ import pytest
 from skisnow.scenario import Solver, read_scenario
 from skisnow.simulate.simulated_run import simulate
 
-from .twins import grooves, tables
+from .twins import grooves, shears, tables
 from .twins.__main__ import DOCS, KINDS, main
 from .twins.glides import one_glide
 from .twins.kept import KeptTwins, Row
 from .twins.pool import run_twins
+from .twins.shears import truth_of_shear
 from .twins.truth import DRIFT, ERRORS, FREE, NOISE, SCENARIOS, Truth, finer, track_of, truth_of
 from .twins.turns import track_as
 
@@ -147,6 +148,26 @@ def test_a_sliding_groove_balances_and_a_holding_one_carves() -> None:
     assert fast.turn_radius / slow.turn_radius == pytest.approx(fast.needed / 0.1e6, rel=1e-9)
     assert fast.needed / slow.needed == pytest.approx(9.0, rel=1e-9)
     assert slow.depth / 0.9 / slow.width == pytest.approx(math.tan(math.radians(30.0)), rel=0.1)  # the ski twists
+
+
+def test_a_seed_of_the_shear_is_the_same_truth_for_ever() -> None:
+    found = [truth_of_shear(seed) for seed in range(200)]
+    assert found[0] == pytest.approx(truth_of_shear(0))
+    strength, displacement = (np.array([each[key] for each in found]) for key in shears.FREE)
+    assert 0.08 < strength.min() < 0.085
+    assert 0.45 < displacement.max() < 0.5
+
+
+def test_the_shear_is_told_by_whether_the_edge_slips(tmp_path: Path) -> None:
+    kept = KeptTwins.opened(tmp_path / "shears.csv")
+    row = {"outcome": "converged", "correlation": "-0.5", "near the limit": "0"}
+    for seed, slips in enumerate("011"):
+        ends = {f"{key} {name}": text for key in shears.FREE for name, text in zip(
+            ("true", "found", "low", "high"), ("1", "1.1", "0.9", "1.2"), strict=True)}  # fmt: skip
+        kept.add(shears.CASE, seed, {**row, **ends, "slips": slips})
+    lines = tables.shear_of_tracks(kept).splitlines()
+    assert lines[2] == "| holds | 1 | 1 of 1 | 10 | 1 of 1 | 10 | 1 of 1 | 0.50 | 0 of 1 |"
+    assert lines[3] == "| slips | 2 | 2 of 2 | 10 | 2 of 2 | 10 | 2 of 2 | 0.50 | 0 of 2 |"
 
 
 def test_places_below_the_surface_are_not_written_down() -> None:

@@ -84,6 +84,7 @@ def choices(turn: Turn) -> dict[str, Sequence[tuple[float, Mapping[str, Any], Ra
         "edge angle ± 2 sd": [(angle, {}, chord) for angle in two_sd],
         "load 500 to 2500 N": [(turn.angle, {"load": load}, chord) for load in (500.0, 800.0, 1500.0, 2500.0)],
         "clamp 0 to 0.3 m": [(turn.angle, {"clamp_length": clamp}, chord) for clamp in (0.0, 0.15, 0.3)],
+        "footprint rigid to 1 N/mm²": [(turn.angle, {"footprint_stiffness": each}, chord) for each in (None, 3e7, 1e6)],
         "k_u/H_V 1 to 50": [(turn.angle, {"unloading_ratio": ratio}, chord) for ratio in (1.0, 10.0, 50.0)],
         "H_V 0.04 to 5 N/mm³": [(turn.angle, {"snow": each}, chord) for each in snows],
         "radius at the boot, by the chord": [(turn.angle, {}, boot), (turn.angle, {}, chord)],
@@ -104,6 +105,39 @@ def turns_table() -> str:
         found = [radii(choices(turn)[name]) for turn in TURNS]
         rows.append((name, *(f"{min(each):.2f} to {max(each):.2f}" for each in found)))
     return _table(("radius (m)", *(f"{turn.name}, {turn.angle} ± {turn.angle_sd}°" for turn in TURNS)), rows)
+
+
+FOOTPRINTS: Final = (None, 1000.0, 100.0, 30.0, 10.0, 3.0, 1.0)
+"""Stiffness of boot and binding under each metre of ski (N/mm²); None: rigid."""
+
+
+def footprint_rows() -> list[tuple[str, Equilibrium, Equilibrium]]:
+    """What holds 0.3 m of the ski, from rigid to the boot's middle alone: at 45° and at 65.7°."""
+    held: list[tuple[str, Mapping[str, Any]]] = [
+        ("rigid" if each is None else f"{each:g}", {"footprint_stiffness": None if each is None else each * 1e6})
+        for each in FOOTPRINTS
+    ]
+    held.append(("the boot's middle alone", {"clamp_length": 0.0}))
+    return [(name, carved(45.0, **how), carved(65.7, **how)) for name, how in held]
+
+
+def borne_by_boot(found: Equilibrium) -> float:
+    """Share of the snow's force within 0.15 m of the boot."""
+    assert found.force_per_length is not None
+    station, force = found.station, found.force_per_length
+    length = -np.gradient(station)
+    return float((length * force)[np.abs(station) < 0.15].sum() / (length * force).sum())
+
+
+def footprint_table() -> str:
+    """Radii and what is borne under the boot, over the footprint's stiffness."""
+    rows = [
+        (name, *(cell for each in found for cell in (f"{chord(each):.2f}", f"{boot(each):.2f}",
+                                                     f"{100.0 * borne_by_boot(each):.0f}")))
+        for name, *found in footprint_rows()
+    ]  # fmt: skip
+    head = ("chord (m)", "boot (m)", "under the boot (%)")
+    return _table(("N/mm²", *(f"{degrees}: {each}" for degrees in ("45°", "65.7°") for each in head)), rows)
 
 
 GRIPS: Final = (
@@ -166,7 +200,7 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def tables() -> dict[str, str]:
     """By their marks on the page."""
-    return {"turns": turns_table(), "grip": grip_table(), "floor": floor_table()}
+    return {"turns": turns_table(), "footprint": footprint_table(), "grip": grip_table(), "floor": floor_table()}
 
 
 def filled(text: str) -> str:

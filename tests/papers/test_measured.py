@@ -53,3 +53,18 @@ def test_published_strengths_fail_at_racing_angles() -> None:
 def test_the_page_is_what_is_computed() -> None:
     text = measured.PAGE.read_text(encoding="utf-8")
     assert measured.filled(text) == text, "run python -m tests.papers.measured"
+
+
+def test_a_footprint_that_gives_bears_under_the_boot() -> None:
+    """From a rigid one to the boot's middle alone, the headline radius by less than the radius at the boot."""
+    rows = measured.footprint_rows()
+    for found in ([low for _, low, _ in rows], [high for _, _, high in rows]):
+        borne = [measured.borne_by_boot(each) for each in found]
+        assert borne[0] < 0.2
+        assert borne[-1] > 0.75
+        assert sorted(borne[:-1]) == borne[:-1]
+        for of, most in ((measured.chord, 0.2), (measured.boot, 0.5)):
+            radii = [of(each) for each in found]
+            assert sorted(radii, reverse=True) == radii
+            assert radii[-2] == pytest.approx(radii[-1], rel=0.03)
+            assert 1.0 - radii[-1] / radii[0] < most

@@ -62,14 +62,20 @@ def first_series(campaign: Campaign, count: int) -> PenetrationTests:
     by_reading: dict[str, Any] = {
         name: getattr(tests, name)[:readings] for name in ("load", "penetration_depth", "row")
     }
-    return replace(tests, **by_series, **by_reading, first=tests.first[: count + 1], further={})
+    back = tests.unloading
+    assert back is not None
+    kept = int(back.first[count])
+    cut = {name: getattr(back, name)[:kept] for name in ("load", "penetration_depth", "row")}
+    back = replace(back, **cut, first=back.first[: count + 1]) if kept else None
+    return replace(tests, **by_series, **by_reading, first=tests.first[: count + 1], further={}, unloading=back)
 
 
 def first_shear(campaign: Campaign, count: int) -> ShearTests:
     """The first shear experiments."""
     tests = campaign.shear
     assert tests is not None
-    columns: dict[str, Any] = {name: getattr(tests, name)[:count] for name in ShearTests.__slots__ if name != "further"}
+    whole = ("further", "turning")
+    columns: dict[str, Any] = {name: getattr(tests, name)[:count] for name in ShearTests.__slots__ if name not in whole}
     return replace(tests, **columns, further={})
 
 

@@ -50,7 +50,7 @@ def circle_run(
     kinetic = np.full(count, 0.5 * 85.0 * SPEED**2)
     potential = -85.0 * 9.81 * math.sin(10.0 * DEGREE) * (place[:, 0] - place[0, 0])
     gone = -potential
-    shares = {"penetration": 0.3, "shear": 0.25, "friction": 0.25, "drag": 0.15, "damping": 0.05}
+    shares = {"penetration": 0.3, "shear": 0.25, "friction": 0.25, "drag": 0.15, "damping": 0.03, "snow_damping": 0.02}
     energies = {
         "kinetic": kinetic, "potential": potential, "elastic_ski": np.full(count, 12.0),
         "elastic_snow": np.full(count, 3.0), **{name: share * gone for name, share in shares.items()},

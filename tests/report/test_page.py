@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from skisnow.field import Campaign
+from skisnow.field.records import TurningReadings
 from skisnow.report.report_data import ReportData
 
 from .conftest import Reported, analysis_of, first_series, first_shear, reported
@@ -184,7 +185,7 @@ def test_pictures_inside_the_page_fetch_nothing_either(reference: Reported) -> N
 def test_the_page_is_built_of_meaning(read: _Reader) -> None:
     names = [tag for tag, _ in read.tags]
     assert names.count("h1") == names.count("main") == 1
-    assert names.count("figure") == names.count("figcaption") == names.count("img") == 10
+    assert names.count("figure") == names.count("figcaption") == names.count("img") == 11
     assert all(attributes.get("alt") for tag, attributes in read.tags if tag == "img")
     assert all(attributes.get("scope") in ("row", "col") for tag, attributes in read.tags if tag == "th")
     assert names.count("caption") == names.count("table")
@@ -255,7 +256,7 @@ def test_what_is_not_stated_is_said(campaign: Campaign, tmp_path: Path) -> None:
     ("case", "figures"),
     [
         ("only shear", 4),
-        ("only penetration", 5),
+        ("only penetration", 6),
         ("one of each", 5),
         ("nothing used", 0),
     ],
@@ -280,7 +281,7 @@ def test_small_campaigns_have_a_report(case: str, figures: int, campaign: Campai
     assert len([tag for tag, _ in reader.tags if tag == "img"]) == figures
     visible = " ".join(text for text in reader.text)
     assert not re.search(r"\bnan\b|\bNone\b(?! of the)|\binf\b", visible)
-    assert ("Figures left out for lack of data" in visible) == (figures < 10)
+    assert ("Figures left out for lack of data" in visible) == (figures < 11)
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -291,6 +292,25 @@ def test_a_mark_says_its_sentence_its_count_and_whom_it_concerns(campaign: Campa
     cancelled = next(row for row in rows if row[0] == "cancelled")
     assert cancelled[1].startswith("The experiment was cancelled")
     assert cancelled[2:] == ["yes", "1", "0", tests.experiment[0]]
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_what_was_not_measured_has_no_section_and_what_was_has(campaign: Campaign, tmp_path: Path) -> None:
+    """Two tests turned by 1° up to 80 % of their moment: u_y = 1°/0.8 × 250 mm = 5.45 mm."""
+    shear = first_shear(campaign, 2)
+    share = np.tile([0.2, 0.4, 0.8, 1.0], 2)
+    angle = np.radians(np.tile([0.25, 0.5, 1.0, 1.25], 2))
+    turning = TurningReadings(np.array([0, 4, 8]), angle, share * np.repeat(shear.moment, 4))
+    plain = reported(replace(campaign, penetration=None, shear=shear), tmp_path / "plain").html
+    both = reported(
+        replace(campaign, penetration=first_series(campaign, 40), shear=replace(shear, turning=turning)), tmp_path
+    ).html
+    for title in ("Shear displacement: how far", "Unloading: how much of the groove"):
+        assert title not in plain
+        assert title in both
+    text = " ".join(" ".join(_Reader(both).text).split())
+    assert "from 2 shear experiments with turning angles" in text
+    assert _Reader(both).tables["shear_displacement_sites"][1][2].startswith("5.45")
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -305,7 +325,7 @@ def test_long_tables_are_cut_with_a_sentence(campaign: Campaign, tmp_path: Path)
         for name in ("edge_angle", "snow_density", "drop_cone_depth", "load", "penetration_depth", "row")
     }
     first = np.concatenate((tests.first, tests.first[1:] + tests.first[-1]))
-    twice = replace(tests, **names, **columns, first=first, further={})
+    twice = replace(tests, **names, **columns, first=first, further={}, unloading=None)
     found = reported(replace(campaign, penetration=twice, shear=None), tmp_path)
     reader = _Reader(found.html)
     assert len(reader.tables["penetration_experiments"]) == 301

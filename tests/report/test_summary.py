@@ -30,7 +30,9 @@ def test_it_has_what_a_person_looks_for(reference: Reported) -> None:
 
 
 def test_synthetic_stands_beside_the_numbers(reference: Reported, campaign: Campaign) -> None:
-    assert summary(reference.results).count("(synthetic)") == 4 + 8 + 7  # a line for each site of H_V and of S_f
+    assert (
+        summary(reference.results).count("(synthetic)") == 4 + 8 + 7 + 4
+    )  # a line for each site of H_V, of S_f, and of k_u/H_V
     real = replace(campaign, name="Hintertux", place="", penetration=None)
     assert "synthetic" not in summary(results_of(real))
 

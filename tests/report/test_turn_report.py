@@ -12,10 +12,11 @@ import pytest
 
 from skisnow.errors import ParameterError
 from skisnow.report.figures.track_band import TimedTrack
-from skisnow.report.tables.turn import contacts_table, ensemble_table, parameters_table
+from skisnow.report.tables.turn import contacts_table, ensemble_table, parameters_table, shares_table
 from skisnow.report.turn_chain import EnsembleRun, TurnChain
 from skisnow.report.turn_numbers import (
     afterbody_depth_ratio,
+    band_shares,
     band_width,
     loaded_skis,
     maximum_distance,
@@ -23,7 +24,8 @@ from skisnow.report.turn_numbers import (
     used_grip,
 )
 from skisnow.report.turn_report import FIGURES, write_turn_report
-from skisnow.report.turn_sentences import contrast, meaning
+from skisnow.report.turn_sentences import contrast, ensemble_sentence, key_sentences, meaning
+from skisnow.scenario.prior import Prior
 from skisnow.simulate.run import Run
 from skisnow.snow import SnowProperties
 from skisnow.units import N_PER_MM2, N_PER_MM3
@@ -192,6 +194,51 @@ def test_distance_of_paths_and_width_of_a_band() -> None:
     assert band_width(nominal, tracks) == pytest.approx((0.05 * 1.8 * 2.0, 0.1 * 1.8 * 2.0))
     ended = [TimedTrack(track.time[:21], track.x[:21], track.y[:21]) for track in tracks]
     assert band_width(nominal, ended) == pytest.approx((0.09, 0.18))  # at 1 s, where they ended
+
+
+def drawn_over(keys: tuple[str, ...], aside: np.ndarray, inputs: np.ndarray) -> list[EnsembleRun]:
+    """Straight runs that end so far to the left (m), with values of inputs (runs, keys)."""
+    time = np.linspace(0.0, 2.0, 11)
+    return [
+        EnsembleRun(SNOW, "finished", TimedTrack(time, 5.0 * time, end * time / 2.0), dict(zip(keys, row, strict=True)))
+        for end, row in zip(aside.tolist(), inputs.tolist(), strict=True)
+    ]
+
+
+def test_shares_of_the_band_are_those_of_what_was_drawn(chain: TurnChain) -> None:
+    """Offset = 2 ln u_y + ln S_f, both even in their logarithm over the same range: 4/5 and 1/5."""
+    logs = np.random.default_rng(4).uniform(-1.0, 1.0, (200, 2))
+    inputs = np.column_stack([np.full(200, 0.3), np.exp(logs)])
+    keys = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.shear_displacement_mm")
+    runs = drawn_over(keys, logs @ [1.0, 2.0], inputs)
+    time = np.linspace(0.0, 2.0, 11)
+    found = band_shares(TimedTrack(time, 5.0 * time, 0.0 * time), runs)
+    assert found is not None
+    assert found.keys == keys[1:]  # what does not vary has no share
+    assert found.aside.share == pytest.approx([0.2, 0.8], abs=0.05)
+    assert found.ahead.share == pytest.approx([0.0, 0.0])
+    prior = Prior(key=keys[2], low=0.02, high=0.5, origin="not measured")
+    table = shares_table(replace(chain, ensemble=runs, priors=(prior,)))
+    assert [row[0] for row in table.rows] == [*keys, "left over"]
+    assert table.rows[0][3] == (None, None)
+    assert table.rows[2][1] == (0.02, 0.5)
+    assert table.rows[2][3][0] == pytest.approx(80.0, abs=5.0)
+    said = " ".join(str(each.striptags()) for each in key_sentences(replace(chain, ensemble=runs, warnings=("near",))))
+    assert "across the track comes from the shear displacement uy: 8" in said
+    assert "next is the failure shear stress Sf" in said
+    assert "Warning: near." in said
+
+
+def test_few_runs_tell_no_shares(chain: TurnChain) -> None:
+    logs = np.random.default_rng(5).uniform(-1.0, 1.0, (4, 2))
+    keys = ("snow.S_f_N_per_mm2", "snow.shear_displacement_mm")
+    assert band_shares(middle_track(chain.nominal), drawn_over(keys, logs[:, 0], np.exp(logs))) is None
+    assert band_shares(middle_track(chain.nominal), chain.ensemble) is None  # nothing is known of what was drawn
+
+
+def test_runs_beyond_their_grip_are_counted(chain: TurnChain) -> None:
+    runs = [replace(run, slips=0.3 if number < 2 else 0.01) for number, run in enumerate(chain.ensemble)]
+    assert "in 2 of them" in ensemble_sentence(replace(chain, ensemble=runs))
 
 
 def test_too_little_to_compare_is_refused(chain: TurnChain, tmp_path: Path) -> None:

@@ -59,6 +59,7 @@ def straight_run(
         "friction": scenario.contact.friction * weight * math.cos(scenario.slope.angle) * path,
         "drag": none,
         "damping": none,
+        "snow_damping": none,
     }
     return Run(
         scenario=scenario,

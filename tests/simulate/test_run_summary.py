@@ -28,6 +28,7 @@ ENERGIES = {
     *("kinetic_J", "potential_J", "elastic_ski_J", "elastic_snow_J"),
     *("kinetic_start_J", "potential_start_J", "elastic_ski_start_J", "elastic_snow_start_J"),
     *("lost_penetration_J", "lost_shear_J", "lost_friction_J", "lost_drag_J", "lost_damping_J"),
+    "lost_snow_damping_J",
 }
 MASS = 80.0 + 2.0 * ASKED.scenario.ski.mass
 # 10 degrees, μ = 0.05, g = 9.81 m/s², from 5 m/s over 2 s

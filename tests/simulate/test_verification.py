@@ -41,6 +41,13 @@ def test_a_fixed_step_is_halved_in_place_of_the_tolerance() -> None:
     assert found["solver.step_ms"].step == pytest.approx(0.2e-3, rel=1e-15)
 
 
+def test_the_places_of_a_delayed_depth_are_refined_where_there_is_one() -> None:
+    run = straight_run(read_scenario("carved-46m", changes={**STRAIGHT, "delayed_share": 0.2}))
+    found = refined_solvers(run)
+    assert list(found) == [*KEYS, "solver.delayed_spacing_mm"]
+    assert found["solver.delayed_spacing_mm"].delayed_spacing == pytest.approx(0.5e-3)
+
+
 def test_end_moves_by_what_the_choice_changes() -> None:
     """The made-up run misses by 40 mm / elements: from 40 to 80 its end moves by 0.5 mm."""
     found = verification_dict(verify(straight_run(read_scenario("carved-46m", changes=STRAIGHT)), straight_run))

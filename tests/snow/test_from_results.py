@@ -39,8 +39,8 @@ def test_means_and_intervals_by_hand(tmp_path: Path) -> None:
     factor = math.exp(4.302653 * math.log(2) / math.sqrt(3))
     assert (low, high) == pytest.approx((0.2e9 / factor, 0.2e9 * factor), rel=1e-6)
     assert snow.failure_shear_stress == pytest.approx(0.2e6)
-    half = 4.302653 * 0.1e6 / math.sqrt(3)
-    assert snow.failure_shear_stress_interval == pytest.approx((0.2e6 - half, 0.2e6 + half), rel=1e-6)
+    ratio = math.exp(4.302653 * 0.1 / math.sqrt(3) / 0.2)
+    assert snow.failure_shear_stress_interval == pytest.approx((0.2e6 / ratio, 0.2e6 * ratio), rel=1e-6)
 
 
 def test_intervals_cover_in_19_of_20(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from skisnow.field.store import Journals, Store, grown
+from skisnow.field.store.grown_files import campaign_files
 
 from .conftest import Served, fill, has_text, ready
 from .test_day import correct_the_typing_error, create, enter_series, next_series
@@ -46,6 +47,65 @@ def test_the_curve_follows_the_readings(page: Page, served: Served) -> None:
     left, top = zip(*(map(float, each.removesuffix("h0").split()) for each in own.split("M")[1:]), strict=True)
     assert sorted(left) == list(left)  # deeper and deeper
     assert sorted(top, reverse=True) == list(top)  # under more and more load, which counts upwards
+
+
+def test_discs_that_are_taken_off_have_fields_of_their_own(page: Page, served: Served) -> None:
+    """They come behind the loading, are told from it everywhere, and give k_u/H_V beside the same H_V."""
+    create(page, served)
+    enter_series(page, "1")
+    correct_the_typing_error(page)
+    hardness = page.locator(".beside .value")
+    page.wait_for_function("document.querySelector('.beside .value').innerText.includes('H_V = ')")
+    before = hardness.inner_text()
+    assert "k_u" not in before
+    page.locator("summary", has_text="Discs taken off one by one").press("Enter")
+    ready(page)
+    page.get_by_label("Depth back under 60 N (mm)").focus()
+    page.keyboard.type("2.95\n2.89\n2,8\n")
+    page.get_by_text("Stored: 2.8 mm under 20 N on the way back.").wait_for()
+    page.wait_for_function("document.querySelector('.beside .value').innerText.includes('k_u/H_V = ')")
+    assert hardness.inner_text().startswith(before)
+    page.reload()
+    has_text(page.get_by_label("Depth back under 20 N (mm)"), "2.8")
+    has_text(page.get_by_label("Depth under 20 N (mm)"), "1.5")
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        campaign = grown(Journals(store).entries(head.id))
+    rows = [row.split(",") for row in campaign_files(campaign)["penetration.csv"].splitlines()]
+    load, depth, branch = (rows[0].index(name) for name in ("load_N", "depth_mm", "branch"))
+    assert [(row[load], row[depth], row[branch]) for row in rows[-3:]] == [
+        ("60", "2.95", "unloading"),
+        ("40", "2.89", "unloading"),
+        ("20", "2.8", "unloading"),
+    ]
+    assert [row[branch] for row in rows[1:-3]] == [""] * 4
+
+
+def test_a_moment_for_each_turning_angle(page: Page, served: Served) -> None:
+    """Rows of one shear test: the next angle is asked for by itself, what a test has once stays, S_f is the largest's.
+
+    30 N m/0.25 m/(100 mm × 6 mm) = 0.2 N/mm²; 20 N m take 2°, so u_y = 30/20 × 2° × 250 mm = 13.1 mm.
+    """
+    create(page, served)
+    page.get_by_role("link", name="Shear").press("Enter")
+    page.get_by_role("heading", name="New test").wait_for()
+    fill(page, {"Site": "A", "Turning angle (°)": "0", "Edge angle (°)": "90", "Depth (mm)": "6"})
+    fill(page, {"Lever arm (mm)": "250", "Moment (N m)": "5"})
+    page.keyboard.press("Enter")
+    page.get_by_text("Stored: test 1.").wait_for()
+    page.get_by_label("Turning angle (°)").and_(page.locator(":focus")).wait_for()
+    has_text(page.get_by_label("Depth (mm)"), "6")
+    page.keyboard.type("1\n15\n")
+    page.locator(".so-far li").nth(1).wait_for()
+    page.keyboard.type("2\n25\n")
+    page.locator(".so-far li").nth(2).wait_for()
+    page.keyboard.type("3\n30\n")
+    page.get_by_text("S_f = 0.200 N/mm²").wait_for()
+    page.get_by_text("u_y = 13.1 mm").wait_for()
+    ready(page)
+    fill(page, {"Depth (mm)": "7", "Turning angle (°)": "4", "Moment (N m)": "30"})
+    page.keyboard.press("Enter")
+    page.get_by_text("Not stored: the rows of test 1 have one Depth (mm).").wait_for()
 
 
 def test_what_is_no_number_is_not_stored(page: Page, served: Served) -> None:

@@ -69,6 +69,8 @@ def asked_snow(question: CarveQuestion, sources: Sources) -> SnowProperties:
 
 
 def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_angle: float) -> Equilibrium:
+    stiffness = question.footprint_stiffness_N_per_mm2
+    footprint = None if stiffness is None else stiffness * CARVE_KEYS["footprint_stiffness_N_per_mm2"].factor
     shared = {"edge_angle": edge_angle, "load": question.load_N, "moment": question.moment_Nm}
     if question.at_rest or question.unloading_ratio is None:
         return rest(
@@ -76,6 +78,7 @@ def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_a
             snow,
             **shared,
             clamp_length=question.clamp_length_m,
+            footprint_stiffness=footprint,
             twist=question.twist,
             elements=question.elements,
         )
@@ -85,6 +88,7 @@ def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_a
         **shared,
         unloading_ratio=question.unloading_ratio,
         clamp_length=question.clamp_length_m,
+        footprint_stiffness=footprint,
         side_force_bending=question.side_force_bending,
         groove=question.groove,
         moment_balance=question.moment_balance,

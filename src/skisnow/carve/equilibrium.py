@@ -51,6 +51,7 @@ def carve(
     unloading_ratio: float | None = None,
     moment: float = 0.0,
     clamp_length: float = CLAMP_LENGTH,
+    footprint_stiffness: float | None = None,
     side_force_bending: bool = True,
     groove: GrooveForm = "edge",
     moment_balance: MomentBalance = "boot",
@@ -72,8 +73,9 @@ def carve(
         does not converge, 500, 300 or 200 is taken and a warning says so. Left out: that of the snow.
     moment
         At the boot, positive where it presses the tip down (N m); about which axis, `moment_balance` says.
-    clamp_length
-        Length of ski kept straight by boot and binding (m).
+    clamp_length, footprint_stiffness
+        Length of ski that boot and binding hold (m), and how stiff they are between the boot and each metre of it
+        (N/m²); None: rigid, the ski stays straight there.
     side_force_bending
         Whether the side force, too, bends and twists the ski (it does: the part sin ϑ of it is normal to the base).
     groove
@@ -125,7 +127,7 @@ def carve(
     require_within(ski, load, moment)
     require_strength(snow)
     require_choices(groove, moment_balance)
-    model = clamped(ski, clamp_length, elements)
+    model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), side_force_bending, twist)
     if moment_balance == "free":
         conditions = conditions._replace(pitch_of_force=math.cos(edge_angle), pitch_of_shear=math.sin(edge_angle))
@@ -149,6 +151,7 @@ def rest(
     load: float,
     moment: float = 0.0,
     clamp_length: float = CLAMP_LENGTH,
+    footprint_stiffness: float | None = None,
     twist: bool = True,
     elements: int = ELEMENTS,
 ) -> Equilibrium:
@@ -156,7 +159,7 @@ def rest(
 
     Parameters
     ----------
-    ski, snow, edge_angle, load, moment, clamp_length, twist, elements
+    ski, snow, edge_angle, load, moment, clamp_length, footprint_stiffness, twist, elements
         As in `carve`; the snow needs no S_f.
 
     Returns
@@ -177,7 +180,7 @@ def rest(
     require_kinds(ski, snow)
     require_ranges(edge_angle, load, 1.0, moment)
     require_within(ski, load, moment)
-    model = clamped(ski, clamp_length, elements)
+    model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twist)._replace(side_force=0.0)
     return equilibrium_of(model, conditions, snow, solved(model, conditions))
 

@@ -85,6 +85,17 @@ class CarveQuestion:
             origin="choice: about a boot's sole",
         ),
     ] = CLAMP_LENGTH
+    footprint_stiffness_N_per_mm2: Annotated[
+        float | None,
+        Quantity(
+            "footprint_stiffness_N_per_mm2",
+            "stiffness of boot and binding under each metre of the clamp length, against bending; left out: rigid",
+            label="footprint stiffness",
+            lowest=0.0,
+            highest=1e4,
+            above=True,
+        ),
+    ] = None
     side_force_bending: Annotated[
         bool,
         Quantity(

@@ -1,12 +1,11 @@
-"""The whole chain: a campaign, its snow with intervals, a turn with each contact, an ensemble over the uncertainty."""
+"""The chain: a campaign, its snow with intervals, a turn with each contact, an ensemble over what is not known."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
-
-import numpy as np
 
 from ..errors import ParameterError
 from ..estimate import Analysis, analyse
@@ -18,17 +17,19 @@ from ..report.report_data import is_synthetic
 from ..report.turn_chain import TurnChain
 from ..scenario import Scenario, read_scenario
 from ..scenario.contact import ELASTIC
+from ..scenario.prior import Prior
 from ..simulate import Run
 from ..simulate.simulated_run import simulate
 from ..ski import Ski
-from ..snow.drawn import drawn_snows
+from ..snow.drawn import measured_intervals
 from ..snow.mean_snow import site_in_words
-from .ensemble import ensemble_of
+from .ensemble import drawn_scenarios, ensemble_of
+from .priors import priors_with
 
 UNLOADING_RATIO: Final = 10.0
-"""k_u/H_V of hypoplastic snow (modelling assumption: none is published)."""
-RUNS: Final = 32
-"""Of the ensemble (modelling assumption: the band of 90 % then leaves three out)."""
+"""k_u/H_V of hypoplastic snow whose unloading was not measured (modelling assumption: none is published)."""
+RUNS: Final = 64
+"""Of the ensemble (modelling assumption: the band of 90 % then leaves six out, and shares are known to a tenth)."""
 
 
 def chain(
@@ -37,13 +38,14 @@ def chain(
     scenario: Scenario | str | Path = "carved-46m",
     *,
     ski: Ski | str | Path | None = None,
-    unloading_ratio: float = UNLOADING_RATIO,
+    unloading_ratio: float | None = None,
+    priors: Sequence[Prior] = (),
     runs: int = RUNS,
     seed: int = 1,
     workers: int | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> TurnChain:
-    """From a campaign to a turn: its snow, the turn on it with two contacts, and a band over the snow's uncertainty.
+    """From a campaign to a turn: its snow, the turn on it with two contacts, and a band over what is not known of it.
 
     Parameters
     ----------
@@ -56,9 +58,13 @@ def chain(
     ski
         In place of the scenario's: a ski, a name of the catalogue, or a file.
     unloading_ratio
-        k_u/H_V > 1 of the hypoplastic contact; the other contact is elastic.
+        k_u/H_V > 1 of the hypoplastic contact; left out: the measured one of the site, or 10 where none is. The other
+        contact is elastic.
+    priors
+        In place of those of `skisnow.chain.priors.PRIORS` with the same key, or beside them: what the band counts
+        beside H_V and S_f.
     runs
-        Of the ensemble, 3 or more: H_V and S_f are drawn from their intervals.
+        Of the ensemble, 3 or more: H_V and S_f are drawn from their intervals, all else from its prior.
     seed
         Of those draws.
     workers
@@ -101,15 +107,20 @@ def chain(
     say = progress or _silent
     found = campaign if isinstance(campaign, Analysis) else analyse(campaign, progress=progress)
     snow = found.snow(site, unloading_ratio=unloading_ratio)
-    snows = drawn_snows(snow, runs, np.random.default_rng(seed))
+    if snow.unloading_ratio is None:
+        snow = replace(snow, unloading_ratio=UNLOADING_RATIO)
+    measured_intervals(snow)
+    every = priors_with(priors)
     turn = (scenario if isinstance(scenario, Scenario) else read_scenario(scenario)).with_(snow=snow)
     turn = turn if ski is None else turn.with_(ski=ski)
+    drawn = drawn_scenarios(turn, every, runs, seed)
     contacts = {
-        f"hypoplastic, k_u / H_V = {unloading_ratio:g}": turn,
+        f"hypoplastic, k_u / H_V = {snow.unloading_ratio:.3g}": turn,
         "elastic": turn.with_(unloading_ratio=ELASTIC),
     }
     simulated = {name: _run(name, each, say) for name, each in contacts.items()}
-    ensemble, moved = ensemble_of(next(iter(simulated.values())), snows, workers=workers, progress=say)
+    nominal = next(iter(simulated.values()))
+    ensemble, moved, warnings = ensemble_of(nominal, drawn, every, workers=workers, progress=say)
     return TurnChain(
         campaign=found.campaign.name,
         site=site_in_words(site_of_campaign(found.campaign, site)),
@@ -119,6 +130,8 @@ def chain(
         ensemble=ensemble,
         seed=seed,
         ensemble_error=moved,
+        priors=every,
+        warnings=warnings,
         analysis=found,
     )
 
@@ -131,8 +144,8 @@ def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
     return run
 
 
-def _require(unloading_ratio: float, runs: int) -> None:
-    if not unloading_ratio > ELASTIC:
+def _require(unloading_ratio: float | None, runs: int) -> None:
+    if unloading_ratio is not None and not unloading_ratio > ELASTIC:
         raise ParameterError(
             f"unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
         )

@@ -60,6 +60,8 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
     choices.add_argument(
         "--clamp-length-m", type=number("m"), metavar="M", help="length that boot and binding keep straight"
     )
+    footprint = "stiffness of boot and binding under each metre of it; left out: rigid"
+    choices.add_argument("--footprint-stiffness-N-per-mm2", type=number("N/mm²"), metavar="K", help=footprint)
     off: dict[str, Any] = {"action": "store_const", "const": False}
     choices.add_argument(
         "--no-side-force-bending", dest="side_force_bending", **off, help="the side force does not bend the ski"

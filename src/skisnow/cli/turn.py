@@ -19,9 +19,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "turn",
-        help="from a campaign to a turn: analysis, the snow of a site, a simulated turn, a band over the uncertainty",
+        help="from a campaign to a turn: analysis, the snow of a site, a simulated turn, a band over what is not known",
         description="Analyse a campaign and simulate a turn on the snow of a site, with hypoplastic and with "
-        "elastic contact, and over the uncertainty of the snow.",
+        "elastic contact, and over what is not known of snow, friction and ski.",
     )
     parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of the campaign")
     parser.add_argument("--site", metavar="SITE", help='whose snow it is, "C" or "site C"; left out: all sites')
@@ -43,12 +43,21 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--unloading-ratio",
         type=number("", lowest=1.0, highest=1000.0, above=True),
         metavar="RATIO",
-        help="k_u/H_V of the hypoplastic contact; left out: 10",
+        help="k_u/H_V of the hypoplastic contact; left out: what the site's unloading says, else 10",
     )
     parser.add_argument(
-        "--runs", type=whole_number(3, MOST_RUNS), metavar="N", help="of the ensemble, 3 or more; left out: 32"
+        "--runs", type=whole_number(3, MOST_RUNS), metavar="N", help="of the ensemble, 3 or more; left out: 64"
     )
-    parser.add_argument("--seed", type=seed_number, help="seed of the ensemble's snows, a whole number from 0 on")
+    parser.add_argument(
+        "--prior",
+        action="append",
+        default=[],
+        dest="priors",
+        metavar="key=low:high",
+        help="range of a key of the scenario that the ensemble is drawn over, in place of the usual one or beside the "
+        "usual ones, several times for several; equal ends: it is known",
+    )
+    parser.add_argument("--seed", type=seed_number, help="seed of the ensemble, a whole number from 0 on")
     parser.add_argument(
         "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
     )
@@ -65,7 +74,9 @@ def run(options: argparse.Namespace) -> int:
         from ..chain.chaining import chain
         from ..scenario import scenario_file
         from ..scenario.given import change_of
+        from ..scenario.prior import prior_of
 
+        priors = [prior_of(word) for word in options.priors]
         asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
     for text in asked.warnings:
         print(f"warning: {text}", file=sys.stderr)
@@ -74,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
     names = ("unloading_ratio", "runs", "seed", "workers")
     chosen = {name: getattr(options, name) for name in names if getattr(options, name) is not None}
     with Progress() as progress:
-        found = chain(options.campaign, options.site, asked.scenario, progress=progress, **chosen)
+        found = chain(options.campaign, options.site, asked.scenario, priors=priors, progress=progress, **chosen)
         page = None if options.out is None else found.report(options.out)
     if options.json:
         from ..report.turn_dict import turn_dict
@@ -82,6 +93,8 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps(turn_dict(found), ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
         print(f"snow: {found.snow.in_words}", *found.sentences, sep="\n")
+    for text in found.warnings:
+        print(f"warning: {text}", file=sys.stderr)
     if page is not None:
         print(f"The whole chain: {page}", file=sys.stderr)
     return 0

@@ -36,6 +36,12 @@ class ShearLaw:
     residual_ratio: float
     weakening: float
 
+class RateLaw:
+    damping: float
+    delayed_share: float
+    retardation: float
+    spacing: float
+
 class Snow:
     surface: Grid
     hardness: Grid
@@ -48,6 +54,7 @@ class Snow:
     friction: FrictionLaw
     friction_on_base: bool
     shear: ShearLaw
+    rate: RateLaw
     knot_area: float
     part_along: float
     part_across: float
@@ -73,6 +80,7 @@ class Contact:
     def tracks(self, snow: Snow) -> FloatArray: ...
     def groove_energy(self) -> float: ...
     def elastic_energy(self) -> float: ...
+    def delayed_energy(self) -> float: ...
     def state(self) -> State: ...
     def restore(self, state: State) -> None: ...
     def set_laws(
@@ -125,7 +133,7 @@ class Dynamics:
     held_energy: float
     touches: bool
     energies: tuple[float, float, float]
-    work: tuple[float, float, float, float, float]
+    work: tuple[float, float, float, float, float, float]
     counts: tuple[int, int, int, int, int]
     def __init__(self, body: Body, contact: Contact, rule: StepRule) -> None: ...
     def set_pose(self, position: FloatArray, rotation: FloatArray) -> None: ...

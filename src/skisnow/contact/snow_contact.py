@@ -224,6 +224,11 @@ class SnowContact(Shown):
         """Energy (J) that the snow would give back, at the last pose looked at."""
         return self.compiled.elastic_energy()
 
+    @property
+    def delayed_energy(self) -> float:
+        """Energy (J) that the delayed depth of the snow has taken and not given back, lost or stored."""
+        return self.compiled.delayed_energy()
+
     def state(self) -> State:
         """All that this contact remembers, to go back to; tracks of others that came later are forgotten with it."""
         return self.compiled.state()

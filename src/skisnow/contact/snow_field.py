@@ -14,6 +14,7 @@ from ..errors import ParameterError
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from ..forces.friction.load import ActsOn
 from ..forces.penetration import PointLaw
+from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, DELAYED_SPACING, RETARDATION_TIME
 from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear, NaturalDensityShear, ShearLaw
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING
@@ -59,13 +60,18 @@ class SnowField(Shown):
     penetration
         A law for the stress over depth and deepest depth, asked at three Gauss points of each straight piece; ``None``:
         H_V and k_u, in closed form.
+    damping
+        c ≥ 0 of p = H_V ε + c ε̇ (N s/m³); only without ``penetration``.
+    delayed_share, retardation_time
+        H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of a Kelvin element in series with H_V: the delayed depth under a load that stays
+        over that at once, and the time it takes; only without ``penetration``.
     surface
         ``Plane()`` or heights as a `Grid` (m).
     compaction_resistance
         Whether the snow that is pressed down resists along the edge.
     shear_displacement
         Of an edge across to its full strength (m), > 0: a penalty stiffness in front of Coulomb-like slip.
-    edge_blend_angle, fade_speed, knot_area, part_along, part_across
+    edge_blend_angle, fade_speed, knot_area, part_along, part_across, delayed_spacing
         Numerics, see the constants of this module for what each does.
 
     Raises
@@ -87,6 +93,9 @@ class SnowField(Shown):
     residual_ratio: float = RESIDUAL_RATIO
     slip_weakening: float = SLIP_WEAKENING
     penetration: PointLaw | None = None
+    damping: float = DAMPING
+    delayed_share: float = DELAYED_SHARE
+    retardation_time: float = RETARDATION_TIME
     surface: Plane | Grid = field(default_factory=Plane)
     compaction_resistance: bool = True
     shear_displacement: float = SHEAR_DISPLACEMENT
@@ -95,6 +104,7 @@ class SnowField(Shown):
     knot_area: float = KNOT_AREA
     part_along: float = PART_ALONG
     part_across: float = PART_ACROSS
+    delayed_spacing: float = DELAYED_SPACING
     compiled: core.Snow = field(init=False, repr=False)
 
     def _facts(self) -> Facts:
@@ -128,9 +138,13 @@ class SnowField(Shown):
             "fade_speed",
             "part_along",
             "part_across",
+            "retardation_time",
+            "delayed_spacing",
         ):
             _require(name, getattr(self, name), above=0.0)
-        _require("knot_area", self.knot_area, least=0.0)
+        for name in ("knot_area", "damping", "delayed_share"):
+            _require(name, getattr(self, name), least=0.0)
+        self._require_own_law_for_rate()
         object.__setattr__(self, "compiled", self._compiled())
 
     def _require_one_hold(self) -> None:
@@ -143,6 +157,13 @@ class SnowField(Shown):
                 "give it failure_shear_stress 0 and no shear law"
             )
 
+    def _require_own_law_for_rate(self) -> None:
+        if self.penetration is not None and (self.damping > 0.0 or self.delayed_share > 0.0):
+            raise ParameterError(
+                "SnowField: damping and delayed_share act beside H_V and k_u, not beside "
+                f"{type(self.penetration).__name__}; leave them 0, or give no penetration law"
+            )
+
     def _compiled(self) -> core.Snow:
         snow = core.Snow()
         snow.hardness, snow.strength = _grid(self.snow_hardness), _grid(self._strength())
@@ -151,8 +172,15 @@ class SnowField(Shown):
         snow.edge_blend_sine = math.sin(self.edge_blend_angle)
         snow.compaction_resistance, snow.friction = self.compaction_resistance, self._friction()
         snow.friction_on_base, snow.shear = self.friction_acts_on == "base-normal", self._shear()
+        snow.rate = self._rate()
         snow.knot_area, snow.part_along, snow.part_across = self.knot_area, self.part_along, self.part_across
         return snow
+
+    def _rate(self) -> core.RateLaw:
+        out = core.RateLaw()
+        out.damping, out.delayed_share = self.damping, self.delayed_share
+        out.retardation, out.spacing = self.retardation_time, self.delayed_spacing
+        return out
 
     def _friction(self) -> core.FrictionLaw:
         """Coefficients of μ = c₀ + c₁ v + c₂ v² + a/(1 + v/v₀), which the laws of `forces.friction` are."""

@@ -194,8 +194,11 @@ class Dynamics:
         return float(self._core.snow_energy), float(self._core.held_energy)
 
     @property
-    def work(self) -> tuple[float, float, float, float, float]:
-        """Since `begin` (J): taken by shear and friction, given by the normal force, taken by air and damping."""
+    def work(self) -> tuple[float, float, float, float, float, float]:
+        """Since `begin` (J): taken by shear and friction, given by the normal force, taken by air and skis.
+
+        The last: what of the normal force's work the snow's dashpot took.
+        """
         return self._core.work
 
     @property

@@ -20,6 +20,7 @@ from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness
 from .fit_warnings import fit_warnings
+from .growing_hardness import growing_hardness, site_growth
 from .hardness import DEFINITIONS, ReadingUncertainty, hardness
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model
@@ -37,9 +38,11 @@ from .readings import readings_of
 from .regressions import Regression, Source, regressions
 from .screening import screened_penetration, screened_shear
 from .seating import seating
+from .shear_displacement import shear_displacement, site_displacement
 from .shear_stress import shear_stress
 from .site_snow import site_snow
 from .sites import SiteComparison, SiteMean, compare_sites, site_means
+from .unloading import NOT_FALLING, site_unloading, unloading
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -104,6 +107,9 @@ class Analysis(Shown):
     def snow(self, site: str | None = None, *, unloading_ratio: float | None = None) -> SnowProperties:
         """The snow of a site: the geometric mean of H_V and the mean of S_f over the used experiments, with intervals.
 
+        k_u/H_V is that of the site's unloading readings, where they say both ends of its interval; the shear
+        displacement u_y the geometric mean of its shear tests with turning angles.
+
         The same numbers as `skisnow.snow_from_results` reads from results.json.
 
         Parameters
@@ -111,8 +117,8 @@ class Analysis(Shown):
         site
             As the campaign calls it; "C" is also its "site C". Left out: all sites together.
         unloading_ratio
-            k_u/H_V, which no experiment of the campaign says: 1 is snow that springs back, 10 or more snow that keeps
-            its grooves. `Scenario.with_` takes it over.
+            k_u/H_V in place of the measured one: 1 is snow that springs back, 10 or more snow that keeps its grooves.
+            `Scenario.with_` takes either over.
 
         Raises
         ------
@@ -244,10 +250,16 @@ def _penetration(
     uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
     _say(progress, f"hardness of {readings.n_series} penetration experiments")
     found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
+    back = unloading(campaign.penetration, readings, found["H_V"], uncertainty, screened.marks[NOT_FALLING])
+    back_by_site = site_unloading(back, screened.used, campaign.penetration.site)
+    growing = growing_hardness(readings, found["H_V"].value, uncertainty)
+    growth_by_site = site_growth(growing, screened.used, campaign.penetration.site)
     offsets = seating(readings, found["H_V"].value, uncertainty)
     fitted = fitted_hardness(readings, offsets, uncertainty)
     if not screened.used.any():
-        return PenetrationAnalysis(screened, readings, found, offsets, fitted, None, (), None, None)
+        return PenetrationAnalysis(
+            screened, readings, found, offsets, fitted, growing, (), back, back_by_site, None, (), None, None
+        )
 
     used = readings.of(screened.used)
     _say(progress, f"model table over {used.n} readings")
@@ -263,6 +275,10 @@ def _penetration(
         hardness=found,
         seating=offsets,
         fitted=fitted,
+        growing=growing,
+        site_growth=growth_by_site,
+        unloading=back,
+        site_unloading=back_by_site,
         table=ModelTable(fits, intervals),
         nested=compare_nested_rows(fits),
         selected=selected,
@@ -274,7 +290,9 @@ def _penetration(
 def _shear(campaign: Campaign) -> ShearAnalysis | None:
     if campaign.shear is None:
         return None
-    return ShearAnalysis(screened_shear(campaign), shear_stress(campaign, campaign.shear))
+    screened, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
+    by_site = site_displacement(displacement, screened.used, campaign.shear.site)
+    return ShearAnalysis(screened, shear_stress(campaign, campaign.shear), displacement, by_site)
 
 
 def _observations(

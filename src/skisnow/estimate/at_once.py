@@ -11,7 +11,9 @@ from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_lar
 from .readings import readings_of
 from .results import penetration_experiments, shear_experiments, without_nan
 from .screening import screened_both
+from .shear_displacement import shear_displacement
 from .shear_stress import shear_stress
+from .unloading import NOT_FALLING, unloading
 
 if TYPE_CHECKING:
     from ..field.records import Campaign
@@ -46,9 +48,10 @@ def experiments_at_once(
         readings = readings_of(tests, campaign.tools, geometry=geometry)
         uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
         found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
-        penetration = penetration_experiments(tests, pressed, found)
+        back = unloading(tests, readings, found["H_V"], uncertainty, pressed.marks[NOT_FALLING])
+        penetration = penetration_experiments(tests, pressed, found, back)
     if (sheared := campaign.shear) is not None:
-        shear = shear_experiments(sheared, cut, shear_stress(campaign, sheared))
+        shear = shear_experiments(sheared, cut, shear_stress(campaign, sheared), shear_displacement(campaign, sheared))
     answer: Json = without_nan({"penetration": {"experiments": penetration}, "shear": {"experiments": shear}})
     return answer
 

@@ -137,7 +137,7 @@ class _Fit:
         gain = np.array([sums(weight * J[i] * residual) for i in range(3)])
         normal[2, 2] += self._prior
         gain[2] -= self._prior * b[2]
-        inverse = _inverse(np.moveaxis(normal, 2, 0))
+        inverse = inverse_of_each(np.moveaxis(normal, 2, 0))
         return np.einsum("mik,km->im", inverse, gain), np.einsum("mii->im", inverse)
 
     def scatter_step(self, b: FloatArray, scatter2: FloatArray) -> FloatArray:
@@ -149,7 +149,7 @@ class _Fit:
         return np.clip(np.where(fall > 0, moved, 0.0), 1e-12, 10.0)
 
 
-def _inverse(normal: FloatArray) -> FloatArray:
+def inverse_of_each(normal: FloatArray) -> FloatArray:
     """Inverse of each (3, 3), scaled to a unit diagonal on the way; NaN where it is singular."""
     root = np.sqrt(np.einsum("mii->mi", normal))
     scale = root[:, :, None] * root[:, None, :]

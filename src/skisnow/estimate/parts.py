@@ -9,13 +9,16 @@ import numpy.typing as npt
 
 from ..shown import Facts, Shown, amount, field_facts
 from .errors_in_depth import FittedHardness
+from .growing_hardness import GrowingHardness, SiteGrowth
 from .hardness import Hardness
 from .model_choice import NestedRows
 from .models import Model, ModelFit
 from .readings import Readings
 from .screening import Screened
 from .seating import Seating
+from .shear_displacement import ShearDisplacement, SiteDisplacement
 from .shear_stress import ShearStress
+from .unloading import SiteUnloading, Unloading
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,8 +39,10 @@ class ModelTable(Shown):
 class PenetrationAnalysis(Shown):
     """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
 
-    ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say. ``table``,
-    ``errors_in_depth`` and ``selected`` are None where no experiment is used; ``warnings`` are those of `fit_warnings`.
+    ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say, ``growing`` what
+    they say of a hardness that grows with depth, ``unloading`` what those say that were read while discs were taken
+    off. ``table``, ``errors_in_depth`` and ``selected`` are None where no experiment is used; ``warnings`` are those of
+    `fit_warnings`.
     """
 
     screened: Screened
@@ -45,6 +50,10 @@ class PenetrationAnalysis(Shown):
     hardness: dict[str, Hardness]
     seating: Seating
     fitted: FittedHardness
+    growing: GrowingHardness
+    site_growth: tuple[SiteGrowth, ...]
+    unloading: Unloading
+    site_unloading: tuple[SiteUnloading, ...]
     table: ModelTable | None
     nested: tuple[NestedRows, ...]
     selected: ModelFit | None
@@ -61,6 +70,8 @@ class ShearAnalysis(Shown):
 
     screened: Screened
     stress: ShearStress
+    displacement: ShearDisplacement
+    site_displacement: tuple[SiteDisplacement, ...]
 
     def _facts(self) -> Facts:
         return Facts(used_of(self.screened))

@@ -100,6 +100,10 @@ class Readings(ShownFields):
         """Contact area A (m²) of each reading's tool at another depth (m)."""
         return self._by_tool(lambda tool, e, angle: tool.contact_area(e, angle), penetration_depth, self.series)
 
+    def volume_at_depth(self, penetration_depth: FloatArray) -> FloatArray:
+        """Displaced volume V (m³) of each reading's tool at another depth (m)."""
+        return self._by_tool(lambda tool, e, angle: tool.displaced_volume(e, angle), penetration_depth, self.series)
+
     def depth_at_volume(self, displaced_volume: FloatArray) -> FloatArray:
         """Depth (m) at which each reading's tool displaces the given volume (m³)."""
         return self._by_tool(lambda tool, V, angle: tool.depth_at_volume(V, angle), displaced_volume, self.series)

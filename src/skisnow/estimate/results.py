@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..units import MM, N_PER_MM2, N_PER_MM3
+from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .hardness import DEFINITIONS
 from .model_rows import model_rows, nested_row, selected_model
 from .remarks import remarks
@@ -29,8 +29,10 @@ if TYPE_CHECKING:
     from .parts import PenetrationAnalysis, ShearAnalysis
     from .regressions import Regression
     from .screening import Screened
+    from .shear_displacement import ShearDisplacement
     from .shear_stress import ShearStress
     from .sites import SiteMean
+    from .unloading import SiteUnloading, Unloading
 
 FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
@@ -131,6 +133,7 @@ def _campaign(analysis: Analysis) -> Json:
         "lever_arm_uncertainty_mm": None
         if campaign.lever_arm_uncertainty is None
         else campaign.lever_arm_uncertainty / MM,
+        "pole_stiffness_Nm_per_deg": None if campaign.pole_stiffness is None else campaign.pole_stiffness * DEGREE,
         "excluding": sorted(campaign.excluding),
         "warnings": [problem.as_dict() for problem in campaign.problems],
         "corrections": [asdict(correction) for correction in campaign.corrections],
@@ -149,9 +152,11 @@ def _penetration(analysis: Analysis) -> Json:
             "warnings": [],
             "seating": [],
             "errors_in_depth": {"models": model_rows(None), "experiments": []},
+            "unloading": [],
+            "growing_hardness": {"experiments": [], "sites": []},
         }
     return {
-        "experiments": penetration_experiments(tests, found.screened, found.hardness),
+        "experiments": penetration_experiments(tests, found.screened, found.hardness, found.unloading),
         "models": model_rows(found.table),
         "tests": [nested_row(row) for row in found.nested],
         "selected": selected_model(found),
@@ -161,13 +166,33 @@ def _penetration(analysis: Analysis) -> Json:
             "models": model_rows(found.errors_in_depth),
             "experiments": _fitted_hardness(tests.experiment, found),
         },
+        "unloading": [_site_unloading(row) for row in found.site_unloading],
+        "growing_hardness": {
+            "experiments": _rows(
+                {
+                    "experiment": list(tests.experiment),
+                    "H_0_N_per_mm3": _numbers(found.growing.surface_hardness / N_PER_MM3),
+                    "growth_percent": _numbers(100.0 * found.growing.growth),
+                    "growth_interval_percent": _numbers(100.0 * found.growing.growth_interval),
+                }
+            ),
+            "sites": [
+                {
+                    "site": row.site,
+                    "n": row.n,
+                    "growth_percent": 100.0 * row.growth,
+                    "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
+                }
+                for row in found.site_growth
+            ],
+        },
     }
 
 
 def penetration_experiments(
-    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness]
+    tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness], unloading: Unloading
 ) -> list[Json]:
-    """The rows ``penetration.experiments``: of each series what it was, its marks, its hardness by each definition."""
+    """The rows ``penetration.experiments``: of each series what it was, its marks, its hardness, its unloading."""
     columns: dict[str, list[Any]] = {
         "experiment": list(tests.experiment),
         "site": list(tests.site),
@@ -181,7 +206,31 @@ def penetration_experiments(
         columns[definition.key] = _numbers(hardness[symbol].value / definition.si)
     for symbol, definition in DEFINITIONS.items():
         columns[f"{symbol}_interval_{definition.unit_key}"] = _numbers(hardness[symbol].interval / definition.si)
-    return _rows(columns)
+    return _rows(columns | _unloading(unloading))
+
+
+def _unloading(found: Unloading) -> dict[str, list[Any]]:
+    return {
+        "n_unloading": found.n_readings.tolist(),
+        "unloading_ratio": _numbers(found.unloading_ratio),
+        "unloading_ratio_interval": _numbers(found.unloading_ratio_interval),
+        "rebound_ratio": _numbers(found.rebound_ratio),
+        "rebound_ratio_interval": _numbers(found.rebound_ratio_interval),
+        "k_u_N_per_mm3": _numbers(found.unloading_stiffness / N_PER_MM3),
+        "k_u_interval_N_per_mm3": _numbers(found.unloading_stiffness_interval / N_PER_MM3),
+    }
+
+
+def _site_unloading(row: SiteUnloading) -> Json:
+    return {
+        "site": row.site,
+        "n": row.n,
+        "unloading_ratio": row.ratio,
+        "unloading_ratio_interval": [row.low, row.high],
+        "rebound_ratio_interval": [row.low_rebound, row.high_rebound],
+        "k_u_N_per_mm3": row.stiffness / N_PER_MM3,
+        "k_u_interval_N_per_mm3": [row.stiffness_low / N_PER_MM3, row.stiffness_high / N_PER_MM3],
+    }
 
 
 def _degrees(angle: FloatArray) -> list[float]:
@@ -217,11 +266,24 @@ def _shear(analysis: Analysis) -> Json:
     found: ShearAnalysis | None = analysis.shear
     tests = analysis.campaign.shear
     if found is None or tests is None:
-        return {"experiments": []}
-    return {"experiments": shear_experiments(tests, found.screened, found.stress)}
+        return {"experiments": [], "displacement": []}
+    return {
+        "experiments": shear_experiments(tests, found.screened, found.stress, found.displacement),
+        "displacement": [
+            {
+                "site": row.site,
+                "n": row.n,
+                "shear_displacement_mm": row.value / MM,
+                "shear_displacement_interval_mm": [row.low / MM, row.high / MM],
+            }
+            for row in found.site_displacement
+        ],
+    }
 
 
-def shear_experiments(tests: ShearTests, screened: Screened, stress: ShearStress) -> list[Json]:
+def shear_experiments(
+    tests: ShearTests, screened: Screened, stress: ShearStress, displacement: ShearDisplacement
+) -> list[Json]:
     """The rows ``shear.experiments``: of each test what it was, its marks, its force and stress."""
     return _rows(
         {
@@ -234,6 +296,9 @@ def shear_experiments(tests: ShearTests, screened: Screened, stress: ShearStress
             "S_f_interval_N_per_mm2": _numbers(stress.interval / N_PER_MM2),
             "used": screened.used.tolist(),
             "flags": screened.flags(),
+            "n_turning": displacement.n_readings.tolist(),
+            "shear_displacement_mm": _numbers(displacement.value / MM),
+            "shear_displacement_interval_mm": _numbers(displacement.interval / MM),
         }
     )
 

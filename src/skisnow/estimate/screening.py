@@ -13,10 +13,11 @@ from ..field.screening import mark_problems, screen_penetration, screen_shear
 from ..names import numbered
 from ..shown import ShownFields
 from ..units import N_PER_MM3
-from .hardness import DEFINITIONS, ReadingUncertainty, hardness_at_largest_load
+from .hardness import DEFINITIONS, ReadingUncertainty, hardness, hardness_at_largest_load
 from .layering import layered
 from .readings import readings_of
 from .shear_stress import shear_stress
+from .unloading import NOT_FALLING, unloading
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -61,6 +62,10 @@ def screened_penetration(campaign: Campaign, *, geometry: GeometryForm) -> Scree
     H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
     used = _used(marks, campaign, len(tests)) & np.isfinite(H_V)
     marks["layered"] = layered(readings, np.where(used, H_V, np.nan), _uncertainty(campaign))
+    used = _used(marks, campaign, len(tests)) & np.isfinite(H_V)
+    found = hardness(readings, DEFINITIONS["H_V"], _uncertainty(campaign))
+    back = unloading(tests, readings, found, _uncertainty(campaign), marks[NOT_FALLING])
+    marks["rebound_unresolved"] = back.is_unresolved
     used = _used(marks, campaign, len(tests)) & np.isfinite(H_V)
     marks["hardness_outlier"] = hardness_outliers(H_V, used, tests.site)
     return Screened(marks, _used(marks, campaign, len(tests)) & np.isfinite(H_V))

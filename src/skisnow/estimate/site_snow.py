@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,8 +10,15 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..snow import SnowProperties
-from ..snow.mean_snow import known_sites, mean_snow, site_in_words, site_named
-from ..units import N_PER_MM2, N_PER_MM3
+from ..snow.mean_snow import (
+    known_sites,
+    mean_snow,
+    site_in_words,
+    site_named,
+    with_measured_displacement,
+    with_measured_unloading,
+)
+from ..units import MM, N_PER_MM2, N_PER_MM3
 
 if TYPE_CHECKING:
     from ..field.records import Campaign
@@ -37,9 +45,15 @@ def site_snow(
         sites = sorted({str(each) for each in pressed[1]})
         raise ParameterError(f"{name} has no used penetration experiment{known_sites(site, sites)}")
     source = f"{name}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
-    return mean_snow(
-        hardness / N_PER_MM3, stress / N_PER_MM2, source=source, where=name, unloading_ratio=unloading_ratio
-    )
+    snow = mean_snow(hardness / N_PER_MM3, stress / N_PER_MM2, source=source, where=name)
+    turned = next((each for each in shear.site_displacement if each.site == site), None) if shear else None
+    if turned is not None:
+        snow = with_measured_displacement(snow, turned.value / MM, (turned.low / MM, turned.high / MM))
+    if unloading_ratio is not None:
+        return replace(snow, unloading_ratio=unloading_ratio)
+    found = () if penetration is None else penetration.site_unloading
+    ratio = next((each for each in found if each.site == site and each.is_resolved), None)
+    return snow if ratio is None else with_measured_unloading(snow, ratio.ratio, (ratio.low, ratio.high))
 
 
 def _pressed(found: PenetrationAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:

@@ -7,21 +7,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..units import MM
+from .creep import creeping
 from .largest_load import greatest_depths, reading_at_largest_load
-from .marks import FEWEST_LOADS, MARKS, RESOLUTIONS
+from .marks import CREEP_SHARE, CREEP_STEPS, FEWEST_LOADS, MARKS, RESOLUTIONS
 from .problems import Problem
 from .reading.table_forms import PENETRATION, SHEAR
+from .wrong_unloading import wrong_unloading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from ..geometry import GeometryForm
-    from .records import BoolArray, Campaign, PenetrationTests
+    from .records import BoolArray, Campaign, PenetrationTests, UnloadingReadings
 
 _UNMARKED_STATUS = "a blank status"
 _UNMARKED_ZERO = "a depth above 0 mm"
 _UNMARKED_LAYERED = "depths that grow with the load as F = H_V V has it"
+_UNMARKED_REBOUND = "a rebound that is large beside the step of the gauge and the scatter of the readings"
 _UNMARKED_OUTLIER = "a logarithm of the hardness nearer to its site's median"
+_OF_UNLOADING = ("unloading_not_falling", "unloading_sinks", "rebound_unresolved")
 
 
 def mark_problems(
@@ -98,7 +102,9 @@ class _PenetrationPlaces:
     def problem(self, index: int, code: str) -> Problem:
         """Tell one mark."""
         reading, column, value, allowed = getattr(self, f"_{code}")(index)
-        row = int(self._tests.row[reading])
+        unloading = self._tests.unloading
+        rows = self._tests.row if unloading is None or code not in _OF_UNLOADING else unloading.row
+        row = int(rows[reading])
         experiment = self._tests.experiment[index]
         follows = _follows(self._campaign, code)
         return Problem("mark", code, PENETRATION.file, row, column, experiment, value, allowed, follows)
@@ -141,6 +147,35 @@ class _PenetrationPlaces:
 
     def _layered(self, index: int) -> tuple[int, str, None, str]:
         return int(self._largest[index]), "depth_mm", None, _UNMARKED_LAYERED
+
+    def _creeps(self, index: int) -> tuple[int, str, str, str]:
+        first, end = self._tests.first[index : index + 2].tolist()
+        reading = first + int(np.flatnonzero(creeping(self._campaign, self._tests)[first:end])[0])
+        assert self._tests.depth_after is not None
+        value = f"{self._tests.depth_after[reading] / MM:.10g}"
+        allowed = f"at most {CREEP_STEPS:g} steps of the gauge or {CREEP_SHARE:.0%} more than {self._depth(reading)} mm"
+        return reading, "depth_after_mm", value, allowed
+
+    def _unloading_not_falling(self, index: int) -> tuple[int, str, str, str]:
+        reading = self._first_wrong(index, "unloading_not_falling")
+        return reading, "load_N", f"{self._unloading.load[reading]:.10g}", "less than the load of the reading before"
+
+    def _unloading_sinks(self, index: int) -> tuple[int, str, str, str]:
+        reading = self._first_wrong(index, "unloading_sinks")
+        depth = f"{self._unloading.penetration_depth[reading] / MM:.10g}"
+        return reading, "depth_mm", depth, "at most the depth of the reading before and one step of the gauge"
+
+    def _rebound_unresolved(self, index: int) -> tuple[int, str, None, str]:
+        return int(self._unloading.first[index + 1]) - 1, "depth_mm", None, _UNMARKED_REBOUND
+
+    @property
+    def _unloading(self) -> UnloadingReadings:
+        assert self._tests.unloading is not None
+        return self._tests.unloading
+
+    def _first_wrong(self, index: int, code: str) -> int:
+        own = self._unloading.series_of_reading == index
+        return int(np.flatnonzero(wrong_unloading(self._campaign, self._tests)[code] & own)[0])
 
     def _hardness_outlier(self, index: int) -> tuple[int, None, None, str]:
         return int(self._largest[index]), None, None, _UNMARKED_OUTLIER

@@ -14,6 +14,11 @@ FEWEST_LOADS: Final = 3
 RESOLUTIONS: Final = 5.0
 """A depth of fewer gauge resolutions is read with more than some 6 % of standard uncertainty: 1/(5 √12) (modelling
 assumption)."""
+CREEP_STEPS: Final = 2.0
+"""Growth under a constant load that a gauge tells from its own rounding (modelling assumption)."""
+CREEP_SHARE: Final = 0.01
+"""The same as a share of the depth: of an edged tool it moves H_V by 2 %, as much as its readings scatter (modelling
+assumption). The paper cancelled a series whose depth "constantly and slowly increased", without a number."""
 
 
 ALWAYS_EXCLUDE: Final = frozenset({"cancelled", "zero_depth"})
@@ -47,6 +52,24 @@ _ALL: Final = (
         False,
     ),
     Mark(
+        "creeps",
+        f"Under one load the depth grew by more than {CREEP_STEPS:g} steps of the gauge and {CREEP_SHARE:.0%} of it.",
+        False,
+    ),
+    Mark(
+        "unloading_not_falling",
+        "A load of the unloading is not below the one before it, so that no unloading ratio follows.",
+        False,
+    ),
+    Mark(
+        "unloading_sinks", "The tool went deeper while the discs were taken off: the snow was still giving way.", False
+    ),
+    Mark(
+        "rebound_unresolved",
+        "The tool came back by too little to tell how steep the unloading is: the ratio is only known from below.",
+        False,
+    ),
+    Mark(
         "hardness_outlier",
         "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's median.",
         False,
@@ -55,5 +78,5 @@ _ALL: Final = (
 MARKS: Final[Mapping[str, Mark]] = MappingProxyType({mark.code: mark for mark in _ALL})
 """Every mark by its code, in the order in which they are listed."""
 
-NEED_HARDNESS: Final = frozenset({"layered", "hardness_outlier"})
+NEED_HARDNESS: Final = frozenset({"layered", "rebound_unresolved", "hardness_outlier"})
 """Marks that are set where hardness is estimated."""

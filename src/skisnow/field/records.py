@@ -56,8 +56,42 @@ class PenetrationSeries(Shown):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
+class UnloadingReadings(Shown):
+    """Readings while the discs were taken off, series after series, each in the order in which they were read.
+
+    Attributes
+    ----------
+    first
+        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
+    load, penetration_depth
+        Load that is left F (N) and depth e (m), one per reading.
+    row
+        Line of the file of each reading.
+    """
+
+    first: IntArray
+    load: FloatArray
+    penetration_depth: FloatArray
+    row: IntArray
+
+    def _facts(self) -> Facts:
+        series = int(np.count_nonzero(np.diff(self.first)))
+        return Facts(f"of {series} experiments, {len(self.load)} readings, loads {ends(self.load, 'N')}")
+
+    @property
+    def count(self) -> IntArray:
+        """How many readings each experiment has."""
+        return np.diff(self.first)
+
+    @property
+    def series_of_reading(self) -> IntArray:
+        """Index of the experiment that each reading belongs to."""
+        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int64), self.count)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
 class PenetrationTests(Shown):
-    """All m penetration experiments of a campaign, n readings in the order of the file.
+    """All m penetration experiments of a campaign, n readings under rising loads in the order of the file.
 
     Attributes
     ----------
@@ -78,6 +112,11 @@ class PenetrationTests(Shown):
         Line of the file of each reading; the header is line 1.
     further
         Every further column of the file as text, one cell per reading: kept, not interpreted.
+    unloading
+        Readings while the discs were taken off, which no estimate of hardness knows of; None where there are none.
+    depth_after
+        e (m) read once more under the same load after waiting, one per reading, NaN where it was not; None where the
+        campaign has none.
     """
 
     experiment: tuple[str, ...]
@@ -93,6 +132,8 @@ class PenetrationTests(Shown):
     penetration_depth: FloatArray
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    unloading: UnloadingReadings | None = None
+    depth_after: FloatArray | None = None
 
     def __len__(self) -> int:
         """Count the experiments."""
@@ -127,8 +168,34 @@ class PenetrationTests(Shown):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
+class TurningReadings(Shown):
+    """Moments over turning angles of the shear experiments, test after test, each in the order of reading.
+
+    Attributes
+    ----------
+    first
+        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to experiment i, which may have none.
+    turning_angle, moment
+        φ (rad) from any zero, and M (N m), one per reading.
+    """
+
+    first: IntArray
+    turning_angle: FloatArray
+    moment: FloatArray
+
+    def _facts(self) -> Facts:
+        tests = int(np.count_nonzero(np.diff(self.first)))
+        return Facts(f"of {tests} experiments, {len(self.moment)} readings, {ends(self.moment, 'N m')}")
+
+    @property
+    def test_of_reading(self) -> IntArray:
+        """Index of the experiment that each reading belongs to."""
+        return np.repeat(np.arange(len(self.first) - 1, dtype=np.int64), np.diff(self.first))
+
+
+@dataclass(frozen=True, slots=True, repr=False)
 class ShearTests(Shown):
-    """All shear experiments of a campaign, one row each.
+    """All shear experiments of a campaign; one of several rows has what its row of the largest moment says.
 
     Attributes
     ----------
@@ -140,6 +207,8 @@ class ShearTests(Shown):
         The experiment's own ρ (kg/m³) and H_p (m), NaN where absent.
     row
         Line of the file.
+    turning
+        Moments over turning angles; None where the campaign has none.
     """
 
     experiment: tuple[str, ...]
@@ -155,6 +224,7 @@ class ShearTests(Shown):
     cancelled: tuple[str, ...]
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    turning: TurningReadings | None = None
 
     def __len__(self) -> int:
         """Count the experiments."""
@@ -274,6 +344,8 @@ class Campaign(Shown):
         What corrections.csv changed, in its order.
     unread_files
         Names of files in the folder that are no part of a campaign.
+    pole_stiffness
+        Moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
 
     See Also
     --------
@@ -300,6 +372,7 @@ class Campaign(Shown):
     file_hashes: Mapping[str, str]
     corrections: tuple[AppliedCorrection, ...] = ()
     unread_files: tuple[str, ...] = ()
+    pole_stiffness: float | None = None
 
     def _facts(self) -> Facts:
         tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}

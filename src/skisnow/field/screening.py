@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .creep import creeping
 from .largest_load import greatest_depths, reading_at_largest_load
 from .mark_problems import mark_problems
 from .marks import FEWEST_LOADS, MARKS, NEED_HARDNESS, RESOLUTIONS, Mark
+from .wrong_unloading import wrong_unloading
 
 if TYPE_CHECKING:
     from ..geometry import GeometryForm
@@ -57,7 +59,22 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
         "zero_depth": largest_depth == 0,
         "beyond_tool": deepest > greatest_depths(campaign, tests, geometry) * (1 + _ROUNDING),
         "below_resolution": _is_below_resolution(largest_depth, campaign.gauge_resolution),
+        "creeps": _any_reading(tests, creeping(campaign, tests)),
+        **{code: _marked_series(tests, bad) for code, bad in wrong_unloading(campaign, tests).items()},
     }
+
+
+def _any_reading(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
+    found = np.zeros(len(tests), dtype=np.bool_)
+    found[tests.series_of_reading[bad]] = True
+    return found
+
+
+def _marked_series(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
+    found = np.zeros(len(tests), dtype=np.bool_)
+    if tests.unloading is not None:
+        found[tests.unloading.series_of_reading[bad]] = True
+    return found
 
 
 def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:

@@ -237,8 +237,8 @@ def _groove(asked: ScenarioFile, of: Mapping[str, Any]) -> Groove | None:
     snow = SnowProperties(float(of[HARDNESS]) * N_PER_MM3, 1.0 * N_PER_MM2, source="looked for")
     try:
         found = carve(
-            asked.scenario.ski, snow, edge_angle=angle, load=load, unloading_ratio=ratio,
-            clamp_length=asked.scenario.clamp_length,
+            asked.scenario.flexing_ski, snow, edge_angle=angle, load=load, unloading_ratio=ratio,
+            clamp_length=asked.scenario.clamp_length, footprint_stiffness=asked.scenario.footprint_stiffness,
         )  # fmt: skip
     except SkisnowError:
         return None

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import FitError, ParameterError
 from ..former_names import with_former_keywords
+from ..inputs import values_of
 from ..parallel.kept_rows import KeptRows
 from ..scenario import Scenario, ScenarioFile
 from ..scenario.free_keys import free_keys
@@ -181,7 +182,7 @@ def _observations(
 ) -> tuple[Observations, ...]:
     found: list[Observations] = []
     if read.tracks:
-        found.append(TrackPositions(read.tracks, simulations, read.fixed, read.starts))
+        found.append(TrackPositions(read.tracks, simulations, read.fixed, read.starts, values_of(asked.scenario)))
     found += [PhotoCellTimes(each, asked, read.starts, clock_is_free) for each in read.cells]
     for each in read.grooves:
         require_groove_stays(asked)

@@ -14,6 +14,7 @@ from ..errors import ParameterError
 from ..parallel.kept_rows import Row
 from ..track.solution import inexact_sentence
 from ..track.track import Track
+from .near_limit import limit_of, nudged_tasks
 from .observations import Fit, Kind, Values, values_of_run
 from .run_simulation import RunTask
 
@@ -152,12 +153,15 @@ class TrackPositions:
         Values of keys in every run, such as the snow's numbers where one of them is looked for.
     starts
         Values of ``start.…`` keys by run, where a run has its own.
+    scenario_values
+        Of the scenario, for a look at whether the run that is found is near the limit of grip; empty: no look.
     """
 
     tracks: tuple[Measured, ...]
     simulate: Simulate
     fixed: Mapping[str, float] = field(default_factory=dict)
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    scenario_values: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def kind(self) -> Kind:
@@ -223,7 +227,7 @@ class TrackPositions:
         return tuple(found)
 
     def warnings(self, values: Values) -> tuple[str, ...]:
-        """Points left out, a run that ends early, a track that begins elsewhere, points far off."""
+        """Points left out, a run that ends early, a track that begins elsewhere, points far off, the limit of grip."""
         found = []
         rows = self.simulate(self._tasks(values, final=True))
         for track, row in zip(self.tracks, rows, strict=True):
@@ -232,7 +236,25 @@ class TrackPositions:
             if track.inexact:
                 found.append(track.inexact)
             found += _warned(track, row)
-        return tuple(found)
+        return (*found, *self._near_limit(values))
+
+    def _near_limit(self, values: Values) -> list[str]:
+        """Sentences on runs that are near the limit of grip; Ctrl-C ends the look and keeps what was identified."""
+        if not self.scenario_values:
+            return []
+        tasks = self._tasks(values, final=False)
+        nudged = [nudged_tasks(task, self.scenario_values) for task in tasks]
+        try:
+            own = self.simulate(tasks)
+            rows = iter(self.simulate([task for each in nudged for pair in each.values() for task in pair]))
+        except KeyboardInterrupt:
+            return ["whether the run is near the limit of grip was not looked at: interrupted"]
+        found = [{key: [next(rows) for _ in pair] for key, pair in each.items()} for each in nudged]
+        return [
+            f"{track.name}: {text}"
+            for track, first, others in zip(self.tracks, own, found, strict=True)
+            for text in limit_of(first, others)
+        ]
 
     def _residuals(self, many: Sequence[Values], *, final: bool) -> list[FloatArray | None]:
         tasks = [self._tasks(values, final=final) for values in many]

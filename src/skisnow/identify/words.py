@@ -31,6 +31,10 @@ _HELPS: Final = {
     frozenset({"snow.S_f_N_per_mm2", "snow.H_V_N_per_mm3"}): "grip is S_f times the depth, and H_V sets the depth. "
     "Depth and width of the groove that stayed, or a field test, give H_V",
     frozenset(
+        {"snow.S_f_N_per_mm2", "snow.shear_displacement_mm"}
+    ): "an edge that holds gives way in proportion to u_y "
+    "over S_f. A run that slips, or a shear test with its turning angle, tells them apart",
+    frozenset(
         {"snow.H_V_N_per_mm3", "sledge.edge_angle_deg"}
     ): "a ski that cuts deeper bends more and turns tighter, as "
     "one on a larger edge angle does. Measure the edge angle, or the depth of the groove",
@@ -43,6 +47,8 @@ _ALONE: Final = {
     "snow.H_V_N_per_mm3": "The path hardly depends on the depth of the groove. Depth and width of the groove, or a "
     "penetration test, tell it",
     "drag.drag_area_m2": "At these speeds drag is too small. A faster run tells it",
+    "snow.shear_displacement_mm": "An edge that hardly gives way shows no u_y. A tighter turn tells it, or a shear "
+    "test with its turning angle",
     "snow.unloading_ratio": "The path hardly depends on how the groove springs back. Fix it",
 }
 _COMMON: Final = "fix one of them, give it a prior from elsewhere, or add a run in which they act differently"

@@ -69,6 +69,8 @@ def _with_interval(answer: Json, symbol: str, unit: str) -> str:
 
 def _choices(inputs: Json) -> str:
     words = [f"clamp length {significant(inputs['clamp_length_m'], style='plain')} m"]
+    if inputs["footprint_stiffness_N_per_mm2"] is not None:
+        words.append(f"footprint stiffness {significant(inputs['footprint_stiffness_N_per_mm2'], style='plain')} N/mm²")
     if not inputs["at_rest"]:
         words.append(f"side force bends the ski: {_yes(inputs['side_force_bending'])}")
         words.append(f"groove follows the {inputs['groove']}")

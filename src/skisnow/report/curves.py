@@ -25,7 +25,10 @@ POINTS: Final = 31
 
 @dataclass(frozen=True, slots=True)
 class SeriesCurve:
-    """The readings of a series, e (mm) and F (N), and its law as points; no law where H_V does not exist."""
+    """The readings of a series, e (mm) and F (N), and its law as points; no law where H_V does not exist.
+
+    The readings of the unloading stand behind those of the loading.
+    """
 
     experiment: str
     depth_mm: tuple[float, ...]
@@ -56,9 +59,18 @@ def series_curves(
     curves = []
     for index in range(len(tests)):
         series = tests.series(index)
-        numbers = (series.penetration_depth / MM, series.load, *laws.get(index, _NOTHING))
+        back_depth, back_load = _way_back(tests, index)
+        depth, load = np.append(series.penetration_depth, back_depth) / MM, np.append(series.load, back_load)
+        numbers = (depth, load, *laws.get(index, _NOTHING))
         curves.append(SeriesCurve(series.experiment, *(tuple(each.tolist()) for each in numbers)))
     return tuple(curves)
+
+
+def _way_back(tests: PenetrationTests, index: int) -> tuple[FloatArray, FloatArray]:
+    if tests.unloading is None:
+        return _NOTHING
+    own = slice(*tests.unloading.first[index : index + 2].tolist())
+    return tests.unloading.penetration_depth[own], tests.unloading.load[own]
 
 
 def _laws(

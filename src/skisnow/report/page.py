@@ -12,7 +12,7 @@ from markupsafe import Markup
 from .numerals import counted, significant, whole
 from .sentences.caveats import caveats
 from .sentences.key_results import key_results
-from .sentences.penetration import procedures_compared, readings_used, seating_found
+from .sentences.penetration import procedures_compared, readings_used, seating_found, unloading_found
 from .sentences.regressions import regression_sentences
 from .table_html import table_html
 
@@ -28,6 +28,8 @@ SECTIONS: Final = {
     "caveats": "Warnings, and what was not stated",
     "law": "The law of the penetration force",
     "seating": "Seating: offsets of the depth zero",
+    "unloading": "Unloading: how much of the groove stays",
+    "displacement": "Shear displacement: how far until the snow holds",
     "relations": "Relations between snow parameters",
     "sites": "Sites compared",
     "published": "Compared with published values",
@@ -36,7 +38,7 @@ SECTIONS: Final = {
     "methods": "Methods",
     "provenance": "Provenance",
 }
-_ONLY_WITH_PENETRATION: Final = ("law", "seating")
+_ONLY_WITH_PENETRATION: Final = ("law", "seating", "unloading")
 
 
 def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]) -> str:
@@ -69,6 +71,10 @@ class _Tables:
 def _frame(data: ReportData) -> dict[str, Any]:
     results, has_penetration = data.results, bool(data.penetration)
     ids = [name for name in SECTIONS if has_penetration or name not in _ONLY_WITH_PENETRATION]
+    if has_penetration and not data.unloaded:
+        ids.remove("unloading")
+    if not data.results["shear"]["displacement"]:
+        ids.remove("displacement")
     return {
         "campaign": results["campaign"],
         "provenance": results["provenance"],
@@ -79,6 +85,8 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "dates": data.dates,
         "counts": _counts(data),
         "has_penetration": has_penetration,
+        "has_unloading": bool(data.unloaded),
+        "has_displacement": bool(results["shear"]["displacement"]),
         "selected": results["penetration"]["selected"],
         "sections": [(name, SECTIONS[name]) for name in ids],
         "titles": SECTIONS,
@@ -116,5 +124,6 @@ def _words(data: ReportData) -> dict[str, Any]:
         "readings_used": readings_used(data),
         "procedures_compared": procedures_compared(data),
         "seating_found": seating_found(data),
+        "unloading_found": unloading_found(data),
         "regression_sentences": regression_sentences(data),
     }

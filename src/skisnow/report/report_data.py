@@ -158,6 +158,11 @@ class ReportData:
         rows = zip(self.penetration, self.results["penetration"]["seating"], strict=True)
         return [own | found for own, found in rows if own["used"] and found["depth_offset_mm"] is not None]
 
+    @cached_property
+    def unloaded(self) -> list[Json]:
+        """Rows of the penetration experiments, used or not, that were read while discs were taken off."""
+        return [row for row in self.penetration if row["n_unloading"]]
+
     @property
     def observations(self) -> Mapping[Source, Observations]:
         """Used experiments with the snow they were made on, by penetration, shear and spots."""

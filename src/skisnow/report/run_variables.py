@@ -86,6 +86,7 @@ def _energies() -> list[RunVariable]:
         "friction": "work lost to glide friction since the start",
         "drag": "work lost to air drag since the start",
         "damping": "work lost to damping of the skis since the start",
+        "snow_damping": "work lost to damping and delayed depth of the snow since the start",
     }
     found = [RunVariable(f"{name}_energy", (TIME,), "J", stored[name], of(name)) for name in STORED]
     return found + [RunVariable(f"lost_{name}", (TIME,), "J", lost[name], of(name)) for name in LOST]

@@ -36,7 +36,9 @@ def _lines(results: Json) -> Iterator[str]:
     yield ""
     yield from _experiments(results)
     yield from _measured(results, "H_V_N_per_mm3", f"H_V{tag}", "N/mm³", "geometric mean")
+    yield from _unloading(results, tag)
     yield from _measured(results, "S_f_N_per_mm2", f"S_f{tag}", "N/mm²", "mean")
+    yield from _displacement(results, tag)
     yield from _not_stated(results["campaign"])
     if results["penetration"]["selected"]:
         yield ""
@@ -88,6 +90,31 @@ def _measured(results: Json, quantity: str, symbol: str, unit: str, kind: str) -
     if 1 < len(sites) < FEWEST_SITES:
         yield from (_ratio(pair, symbol) for pair in results["site_comparisons"] if pair["quantity"] == quantity[:3])
         yield pooled
+
+
+def _unloading(results: Json, tag: str) -> Iterator[str]:
+    """k_u/H_V of each site whose discs were taken off, and of all."""
+    found = results["penetration"]["unloading"]
+    for row in found if len(found) > 2 else found[:1]:
+        where = "over all" if row["site"] is None else f"at {row['site']}"
+        yield f"k_u/H_V{tag} {where}: {_ratio_in_words(row)}, n = {row['n']} series"
+
+
+def _displacement(results: Json, tag: str) -> Iterator[str]:
+    """u_y over all tests with turning angles."""
+    for row in results["shear"]["displacement"][-1:]:
+        ends = row["shear_displacement_interval_mm"]
+        known = f", 95 % interval {interval(ends, style='plain')}" if ends else ""
+        yield f"u_y{tag}: {significant(row['shear_displacement_mm'], style='plain')} mm{known}, n = {row['n']} tests"
+
+
+def _ratio_in_words(row: Json) -> str:
+    ends, rebound = row["unloading_ratio_interval"], row["rebound_ratio_interval"]
+    if ends:
+        return f"{significant(row['unloading_ratio'], style='plain')}, 95 % interval {interval(ends, style='plain')}"
+    if rebound and rebound[1] > 0:
+        return f"above {significant(1.0 / rebound[1], style='plain')}"
+    return "not resolved"
 
 
 def _over(sites: list[Json]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ from ..shown import Facts, Shown, amount
 
 if TYPE_CHECKING:
     from ..estimate import Analysis
+    from ..scenario.prior import Prior
     from ..simulate.run import Run
     from ..snow import SnowProperties
     from .figures.track_band import TimedTrack
@@ -29,11 +30,17 @@ class EnsembleRun(Shown):
         How it ended.
     track
         Of the middle between the boots.
+    values
+        What was drawn, by the scenario's keys in their units.
+    slips
+        Share of the time in which the more heavily loaded ski side-slips; None where it is not known.
     """
 
     snow: SnowProperties
     outcome: str
     track: TimedTrack
+    values: Mapping[str, float] = field(default_factory=dict)
+    slips: float | None = None
 
     def _facts(self) -> Facts:
         return Facts(f"{self.outcome.replace('_', ' ')} on {self.snow.in_words}")
@@ -60,6 +67,10 @@ class TurnChain(Shown):
     ensemble_error
         Distance between the ends of the nominal run and of the same run computed like the ensemble (m); None where
         both are computed alike.
+    priors
+        What the ensemble was drawn from beside the snow's intervals.
+    warnings
+        Of the nominal run, where it is near the limit of grip.
     analysis
         Of the campaign, where it was made on the way.
 
@@ -76,6 +87,8 @@ class TurnChain(Shown):
     ensemble: Sequence[EnsembleRun]
     seed: int
     ensemble_error: float | None = None
+    priors: Sequence[Prior] = ()
+    warnings: tuple[str, ...] = ()
     analysis: Analysis | None = None
 
     @property

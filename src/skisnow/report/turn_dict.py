@@ -38,9 +38,14 @@ def turn_dict(chain: TurnChain) -> dict[str, Any]:
             "band_across_m": json_number(across),
             "band_along_m": json_number(along),
             "nominal_end_moves_m": json_number(chain.ensemble_error),
+            "priors": [
+                {"key": each.key, "low": each.low, "high": each.high, "times_own": each.about, "origin": each.origin}
+                for each in chain.priors
+            ],
             "runs": [_ensemble_dict(each) for each in chain.ensemble],
         },
         "sentences": chain.sentences,
+        "warnings": list(chain.warnings),
     }
 
 
@@ -61,7 +66,9 @@ def _ensemble_dict(run: EnsembleRun) -> dict[str, Any]:
     ends = {"end_time_s": track.time, "end_x_m": track.x, "end_y_m": track.y}
     return {
         **_numbers_dict(run.snow),
+        "values": {key: json_number(value) for key, value in run.values.items()},
         "outcome": run.outcome,
+        "side_slip_share": json_number(run.slips),
         **{name: json_number(column[-1]) for name, column in ends.items()},
     }
 

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from ..statistics import VarianceShares, variance_shares
 from ..track.nearest_place import distance_beside
 from .figures.run_grip import used_share_of_skis
-from .figures.track_band import TimedTrack, band_of, offsets
+from .figures.track_band import FEWEST, TimedTrack, band_of, offsets
 
 if TYPE_CHECKING:
     from ..simulate.run import Run
+    from .turn_chain import EnsembleRun
 
 FloatArray = npt.NDArray[np.float64]
+MORE_THAN_INPUTS: Final = 3
+"""Runs at least, more than inputs, that tell shares with an interval."""
 YIELDS: Final = 0.95
 """Share of the shear strength from which a ski counts as side-slipping: short parts at its ends may have grip."""
 
@@ -71,7 +76,42 @@ def middle_track(run: Run) -> TimedTrack:
 
 def band_width(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[float, float]:
     """Width of the band of 90 % of the tracks to the side, and ahead, at the last time that three runs reach (m)."""
+    aside, ahead = (band_of(values[:, None])[:, 0] for values in end_offsets(nominal, tracks))
+    return float(aside[4] - aside[0]), float(ahead[4] - ahead[0])
+
+
+def end_offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[FloatArray, FloatArray]:
+    """How far each track lies to the left and ahead (m), (tracks,), at the last time that three reach; nan: ended."""
     aside, ahead = offsets(nominal, tracks)
-    sides, leads = (band_of(values)[4] - band_of(values)[0] for values in (aside, ahead))
-    last = int(np.flatnonzero(np.isfinite(sides))[-1])
-    return float(sides[last]), float(leads[last])
+    last = int(np.flatnonzero(np.isfinite(aside).sum(axis=0) >= FEWEST)[-1])
+    return aside[:, last], ahead[:, last]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BandShares:
+    """What each input of an ensemble adds to the variance at the end of the band, aside and ahead.
+
+    Attributes
+    ----------
+    keys
+        What varies, by the scenario's keys.
+    aside, ahead
+        Shares of these.
+    """
+
+    keys: tuple[str, ...]
+    aside: VarianceShares
+    ahead: VarianceShares
+
+
+def band_shares(nominal: TimedTrack, ensemble: Sequence[EnsembleRun]) -> BandShares | None:
+    """First-order Sobol shares by regression on logarithms; None with fewer than three runs more than inputs."""
+    keys = [key for key in (ensemble[0].values if ensemble else ()) if len({run.values[key] for run in ensemble}) > 1]
+    if not keys:
+        return None
+    aside, ahead = end_offsets(nominal, [run.track for run in ensemble])
+    reached = np.isfinite(aside)
+    if reached.sum() < len(keys) + MORE_THAN_INPUTS:
+        return None
+    inputs = np.log([[run.values[key] for key in keys] for run in ensemble])[reached]
+    return BandShares(tuple(keys), *(variance_shares(each[reached], inputs) for each in (aside, ahead)))

@@ -23,7 +23,7 @@ from .pictures import write_pictures
 from .sheet import Header, Section, sheet
 from .symbols import html, prose
 from .tables.run import scenario_table
-from .tables.turn import contacts_table, ensemble_table, parameters_table
+from .tables.turn import contacts_table, ensemble_table, parameters_table, shares_table
 from .turn_dict import turn_dict
 from .turn_numbers import middle_track
 from .turn_sentences import ensemble_accuracy, ensemble_sentence, key_sentences, meaning
@@ -98,8 +98,8 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
     yield Drawing(
         "band",
         prose(
-            "The turn ({name}) over the uncertainty of the snow: tracks from above, and below how far each run lies "
-            "beside and ahead of the nominal one at the same time.",
+            "The turn ({name}) over what is not known of snow, friction and ski: tracks from above, and below how far "
+            "each run lies beside and ahead of the nominal one at the same time.",
             name=html(name),
         ),
         "Band of tracks from above, and offsets over time.",
@@ -135,9 +135,9 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
         "parameter."
     )
     drawn = prose(
-        "{count} runs with H_V drawn from a log-normal and S_f from a normal distribution, both with the 95 % "
-        "intervals above (seed {seed}). The intervals are those of the site's means: the snow's change from place to "
-        "place would widen the band, and everything else of the scenario is taken as known.",
+        "{count} runs with all that the table below names drawn at random (Latin hypercube, seed {seed}). The "
+        "intervals of H_V and S_f are those of the site's means: the snow's change from place to place would widen the "
+        "band. What the table does not name is taken as known.",
         count=len(chain.ensemble),
         seed=chain.seed,
     )
@@ -156,10 +156,10 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
         ),
         Section(
             "ensemble",
-            "Over the uncertainty of the snow",
+            "Over what is not known",
             words=[drawn, *ensemble_accuracy(chain)],
             pictures=[by_name["band"]],
-            tables=[ensemble_table(chain.ensemble)],
+            tables=[shares_table(chain), ensemble_table(chain.ensemble)],
             after=[ensemble_sentence(chain)],
         ),
         Section("meaning", "What it means", words=meaning(chain)),

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from ..units import N_PER_MM2, N_PER_MM3
 from .numerals import counted, interval, significant
 from .symbols import html, prose
 from .turn_numbers import (
+    BandShares,
     afterbody_depth_ratio,
+    band_shares,
     band_width,
     maximum_distance,
     median_radius,
@@ -26,19 +30,55 @@ ALIKE: Final = 0.002
 """Two numbers that differ by less of their size are called alike."""
 HELD: Final = 0.05
 """A ski that side-slips in no larger share of the time keeps its grip."""
-_UNLOADING: Final = (
-    "How the snow unloads matters more here than how exactly it was measured: a test that presses, lifts and presses "
-    "again would tell more about this turn than further tests of the kinds that were made."
-)
-_MEASURING: Final = (
-    "How exactly the snow was measured matters more here than how it unloads: further tests at this site would tell "
-    "more about this turn than a better contact."
-)
+_INPUTS: Final = {
+    "snow.H_V_N_per_mm3": ("the snow hardness H_V", "further penetration tests at this site"),
+    "snow.S_f_N_per_mm2": ("the failure shear stress S_f", "further shear tests at this site"),
+    "snow.unloading_ratio": ("k_u/H_V", "a test that presses, lifts and presses again, for k_u"),
+    "snow.shear_displacement_mm": (
+        "the shear displacement u_y",
+        "the turning angle read beside the moment of the shear device, for u_y",
+    ),
+    "friction.mu_0": ("the friction μ_0", "a straight glide past photo cells, for μ_0"),
+    "ski.stiffness_factor": ("the stiffness of the ski", "the bending and torsion of the ski, measured"),
+}
+"""Inputs of the band in words, and what would tell more of them."""
 
 
 def key_sentences(chain: TurnChain) -> list[Markup]:
-    """Snow, contacts, band."""
-    return [_snow(chain), *(_contact(name, run) for name, run in chain.runs.items()), *contrast(chain), _band(chain)]
+    """Snow, contacts, band, and a warning near the limit of grip."""
+    contacts = [_contact(name, run) for name, run in chain.runs.items()]
+    return [_snow(chain), *contacts, *contrast(chain), _band(chain), *_largest_share(chain), *_warned(chain)]
+
+
+def _warned(chain: TurnChain) -> list[Markup]:
+    return [prose("Warning: {text}.", text=text) for text in chain.warnings]
+
+
+def _largest_share(chain: TurnChain) -> list[Markup]:
+    """Which input moves the end of the band most to the side."""
+    found = _shares(chain)
+    if found is None:
+        return []
+    first, *others = np.argsort(-found.aside.share, kind="stable").tolist()
+    return [
+        prose(
+            "Most of that across the track comes from {key}: {percent} % of the variance {interval}{then}.",
+            key=_in_words(found.keys[first]),
+            percent=significant(100.0 * float(found.aside.share[first]), 2),
+            interval=interval((100.0 * found.aside.interval[first]).tolist(), 2),
+            then=html("; next is ") + _in_words(found.keys[others[0]]) if others else "",
+        )
+    ]
+
+
+def _in_words(key: str) -> Markup:
+    return html(_INPUTS[key][0] if key in _INPUTS else key)
+
+
+def _shares(chain: TurnChain) -> BandShares | None:
+    """Shares of the band's inputs, where some input moves its end at all."""
+    found = band_shares(middle_track(chain.nominal), chain.ensemble)
+    return found if found is not None and found.aside.share.any() else None
 
 
 def _snow(chain: TurnChain) -> Markup:
@@ -134,7 +174,7 @@ def _both(value: float | None, other: float | None, unit: str = "") -> str:
 def _band(chain: TurnChain) -> Markup:
     aside, ahead = _widths(chain)
     return prose(
-        "Over the uncertainty of the snow, 90 % of {runs} end within {aside} m across and {ahead} m along the track.",
+        "Over all that is not known, 90 % of {runs} end within {aside} m across and {ahead} m along the track.",
         runs=counted(len(chain.ensemble), "run"),
         aside=significant(aside, 2),
         ahead=significant(ahead, 2),
@@ -147,11 +187,15 @@ def _widths(chain: TurnChain) -> tuple[float, float]:
 
 
 def ensemble_sentence(chain: TurnChain) -> Markup:
-    """How many of the runs ended like the nominal one."""
+    """How many of the runs ended like the nominal one, and how many side-slipped."""
     nominal = next(iter(chain.runs.values()))
     alike = sum(run.outcome == nominal.outcome for run in chain.ensemble)
+    slipped = sum((run.slips or 0.0) > HELD for run in chain.ensemble)
     return prose(
-        "{alike} of {all} runs ended like the nominal one ({outcome}).",
+        "{alike} of {all} runs ended like the nominal one ({outcome}); in {slipped} of them the more heavily loaded "
+        "ski side-slips for more than {held} % of the time, beyond the limit of its grip.",
+        slipped=slipped,
+        held=significant(100.0 * HELD, 1),
         alike=alike,
         all=len(chain.ensemble),
         outcome=nominal.outcome.replace("_", " "),
@@ -172,19 +216,30 @@ def ensemble_accuracy(chain: TurnChain) -> list[Markup]:
 
 
 def meaning(chain: TurnChain) -> list[Markup]:
-    """Model against measurement: which of the two moves the track more."""
+    """Model against what is not known: which of the two moves the track more, and what would tell most."""
     reference, *others = chain.runs.values()
     aside, _ = _widths(chain)
     far = max(maximum_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
-    contacts = (
-        "The choice of the contact moves the track by up to {far} m, the uncertainty of the measured snow by {aside} m "
-        "(width of the band that holds 90 % at the end). "
+    contacts = prose(
+        "The choice of the contact moves the track by up to {far} m, all that is not known of the turn by {aside} m "
+        "(width of the band that holds 90 % at the end). ",
+        far=significant(far, 2),
+        aside=significant(aside, 2),
     )
-    more = _UNLOADING if far > aside else _MEASURING
     grip = "The grip holds while the side force stays below the shear capacity: S_f times depth times length. "
     if any((used_grip(run)[1] or 0.0) > HELD for run in (reference, *others)):
         grip += (
             "Hard snow lets an edge in little and so offers little to hold on to: here the skis side-slip, and a "
             "slower start, a gentler slope or softer snow brings them back on their edges."
         )
-    return [prose(contacts + more, far=significant(far, 2), aside=significant(aside, 2)), html(grip)]
+    return [contacts + _would_tell(chain), html(grip)]
+
+
+def _would_tell(chain: TurnChain) -> Markup:
+    """What would narrow the band most."""
+    found = _shares(chain)
+    if found is None:
+        return html("")
+    key = found.keys[int(np.argmax(found.aside.share))]
+    test = _INPUTS[key][1] if key in _INPUTS else f"a better value of {key}"
+    return prose("Most would be told by {test}.", test=html(test))

@@ -53,7 +53,8 @@ def _on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
             "it, or the name of a published snow"
         )
     ratio = contact.unloading_ratio if found.unloading_ratio is None else found.unloading_ratio
-    return replace(contact, snow=found, unloading_ratio=ratio)
+    way = contact.shear_displacement if found.shear_displacement is None else found.shear_displacement
+    return replace(contact, snow=found, unloading_ratio=ratio, shear_displacement=way)
 
 
 def _require_part_of(scenario: Scenario, values: Mapping[str, object]) -> None:

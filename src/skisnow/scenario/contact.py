@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias, get_args
 
 from ..forces.friction.load import ActsOn
+from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..inputs import Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
@@ -34,6 +35,8 @@ class Contact:
         Whether the base's slope along the ski counts as resistance.
     shear_displacement
         u_y > 0 (m).
+    damping, delayed_share, retardation_time
+        c ≥ 0 (N s/m³) of the snow's answer to the rate of depth; H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of its delayed depth.
     friction, friction_by_speed, friction_acts_on
         μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m); and what it is multiplied with.
 
@@ -82,6 +85,39 @@ class Contact:
             search=Search(0.2e-3, 0.01e-3, 5e-3, logarithmic=True),
         ),
     ] = SHEAR_DISPLACEMENT
+    damping: Annotated[
+        float,
+        Quantity(
+            "snow.damping_N_s_per_mm3",
+            "c of p = H_V ε + c dε/dt, snow that answers to how fast it is pressed; 0: none",
+            lowest=0.0,
+            highest=10.0,
+            origin="choice: none, as the paper; steady penetration of snow hardly depends on speed",
+            search=Search(0.002, 0.0, 0.1),
+        ),
+    ] = DAMPING
+    delayed_share: Annotated[
+        float,
+        Quantity(
+            "snow.delayed_share",
+            "delayed elastic depth under a load that stays, over the depth at once; 0: none",
+            lowest=0.0,
+            highest=10.0,
+            origin="choice: none; not measured for groomed snow",
+            search=Search(0.1, 0.0, 2.0),
+        ),
+    ] = DELAYED_SHARE
+    retardation_time: Annotated[
+        float,
+        Quantity(
+            "snow.retardation_time_ms",
+            "time in which 63 % of the delayed depth has come; without effect where there is none",
+            lowest=1.0,
+            highest=1e7,
+            origin="choice: what a ski takes to pass; not measured",
+            search=Search(0.1, 0.001, 1e4, logarithmic=True),
+        ),
+    ] = RETARDATION_TIME
     friction: Annotated[
         float,
         Quantity(

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from ..constants import STANDARD_GRAVITY
 from ..errors import ParameterError
 from ..from_above import from_above
-from ..inputs import Quantity, Word, require_declared
+from ..inputs import Quantity, Search, Word, require_declared
 from ..shown import Facts, Shown, amount
 from ..ski import Ski, ski_names
 from ..ski.beam.clamped import CLAMP_LENGTH
@@ -50,8 +50,9 @@ class Scenario(Shown):
         Snow with friction; the law of its shear strength; drag.
     sledge
         The rigid part with its edge angle, without the skis.
-    ski, clamp_length, damping_ratio
-        The ski of both sides, the length that its binding keeps straight (m), damping of its first bending mode.
+    ski, stiffness_factor, clamp_length, footprint_stiffness, damping_ratio
+        The ski of both sides, what its EI and GJ are multiplied with, the length that its binding keeps straight (m),
+        or holds with a stiffness (N/m²; None: rigid), damping of its first bending mode.
     start, stop, solver
         Where it begins, when it ends, how it is computed.
     gravity
@@ -82,6 +83,17 @@ class Scenario(Shown):
         Word("ski.name", "a ski of the catalogue", word_of=_ski_name),
         Word("ski.file", "the path of a ski file, in place of a name", word_of=_ski_file, names_file=True),
     ]
+    stiffness_factor: Annotated[
+        float,
+        Quantity(
+            "ski.stiffness_factor",
+            "what the ski's EI and GJ are multiplied with",
+            lowest=0.01,
+            highest=100.0,
+            origin="the ski as it is given",
+            search=Search(0.5, 0.1, 10.0, logarithmic=True),
+        ),
+    ] = 1.0
     clamp_length: Annotated[
         float,
         Quantity(
@@ -91,6 +103,16 @@ class Scenario(Shown):
             origin="choice: about a boot's sole",
         ),
     ] = CLAMP_LENGTH
+    footprint_stiffness: Annotated[
+        float | None,
+        Quantity(
+            "ski.footprint_stiffness_N_per_mm2",
+            "stiffness of boot and binding under each metre of the clamp length, against bending; left out: rigid",
+            lowest=0.0,
+            highest=1e4,
+            above=True,
+        ),
+    ] = None
     damping_ratio: Annotated[
         float,
         Quantity(
@@ -160,6 +182,11 @@ class Scenario(Shown):
         """
         changed: Scenario = from_above("scenario.changed", "changed_scenario")(self, changes)
         return changed
+
+    @property
+    def flexing_ski(self) -> Ski:
+        """The ski with the stiffness that is computed with."""
+        return self.ski.stiffened(self.stiffness_factor)
 
     def _facts(self) -> Facts:
         contact, sledge, start, solver = self.contact, self.sledge, self.start, self.solver

@@ -6,6 +6,7 @@ import warnings
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
+from ..forces.penetration.rate import DELAYED_SPACING
 from ..inputs import Quantity, declared_text, require_declared
 from ..ski.beam.clamped import MOST_ELEMENTS
 
@@ -87,6 +88,16 @@ class Solver:
             origin="choice: see the tests of convergence",
         ),
     ] = 1e-4
+    delayed_spacing: Annotated[
+        float,
+        Quantity(
+            "solver.delayed_spacing_mm",
+            "distance across a groove between the places that keep their delayed depth",
+            lowest=0.01,
+            highest=20.0,
+            origin="choice: see the page on rate",
+        ),
+    ] = DELAYED_SPACING
     cell: Annotated[
         float | None,
         Quantity(

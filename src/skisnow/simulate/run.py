@@ -43,7 +43,7 @@ WARNED_SHARE, OPEN_SHARE, LEAST_OPEN = 0.02, 0.1, 1.0
 STEADY_SPEED, STEADY_FROM = 1.0, 0.5
 """Speed (m/s) above which, and time (s) from which on, a run's turn radius counts: before, it is that of the start."""
 STORED: Final = ("kinetic", "potential", "elastic_ski", "elastic_snow")
-LOST: Final = ("penetration", "shear", "friction", "drag", "damping")
+LOST: Final = ("penetration", "shear", "friction", "drag", "damping", "snow_damping")
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)

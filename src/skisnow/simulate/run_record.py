@@ -32,8 +32,8 @@ class Moment:
     time, place, attitude, velocity
         Of the boots' middle, in space: (), (3,), (3, 3), (3,).
     energies
-        Kinetic, potential, elastic in the skis and in the snow; lost to penetration, shear, friction, drag and damping
-        since the start (J), (9,).
+        Kinetic, potential, elastic in the skis and in the snow; lost to penetration, shear, friction, drag, damping of
+        the skis and of the snow since the start (J), (10,).
     along
         Depth of the edge (m), force and shear per length (N/m), deflection (m) and twist (rad) at the nodes, of both
         skis: (5, 2, m).
@@ -88,17 +88,19 @@ class Record:
     def _energies(self) -> FloatArray:
         """Where the energy is, and where it went.
 
-        Penetration: what the normal force took, less what the snow gives back. An edge that is pressed deeper holds
+        Penetration: what the normal force took, less what the snow gives back, and what its damping and its delayed
+        depth took. An edge that is pressed deeper holds
         more: what its hold gains so is paid by what presses. And what sideways motion stressed and then lifts the skis
         comes from the shear, which pays for sideways motion.
         """
         dynamics = self.setup.dynamics
         (springy, held), (springy_first, held_first) = dynamics.snow_energies, self._snow_first
-        by_shear, by_friction, normal, by_drag, by_damping = dynamics.work
-        penetration, shear = -normal - (springy - springy_first), by_shear - (held - held_first)
+        by_shear, by_friction, normal, by_drag, by_damping, by_dashpot = dynamics.work
+        by_rate = by_dashpot + dynamics.contact.delayed_energy
+        penetration, shear = -normal - (springy - springy_first) - by_rate, by_shear - (held - held_first)
         by_press = min(shear, 0.0)
         lifted = min(penetration + by_press, 0.0)
-        lost = (penetration + by_press - lifted, shear - by_press + lifted, by_friction, by_drag, by_damping)
+        lost = (penetration + by_press - lifted, shear - by_press + lifted, by_friction, by_drag, by_damping, by_rate)
         return np.array([*dynamics.energies, springy + held, *lost])
 
     @property

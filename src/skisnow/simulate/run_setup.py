@@ -128,7 +128,7 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])
     elements = solver.elements or max(ELEMENTS, math.ceil(5.0 * length / wavelength))
     spacing = solver.line_spacing or min(LINE_SPACING, wavelength / 10.0)  # two to an element
-    ski = clamped(scenario.ski, scenario.clamp_length, elements)
+    ski = clamped(scenario.flexing_ski, scenario.clamp_length, elements, scenario.footprint_stiffness)
     body = sledge_body(
         scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity(scenario),
         drag=0.5 * air.density * air.drag_area, drag_height=air.centre_of_pressure_height,
@@ -152,7 +152,7 @@ def _control(scenario: Scenario) -> StepControl:
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
     """Load on a ski along the snow normal (N), depth of its edge (m) as if rigid, and 1/λ of its contact (m)."""
-    ski, sledge = scenario.ski, scenario.sledge
+    ski, sledge = scenario.flexing_ski, scenario.sledge
     station = np.asarray(ski.station)
     at = ski.at(np.linspace(float(station[-1]), float(station[0]), 101))
     length = float(station[0] - station[-1])
@@ -184,6 +184,10 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
         residual_ratio=scenario.shear.residual_ratio,
         slip_weakening=scenario.shear.slip_weakening,
         penetration=laws.penetration,
+        damping=contact.damping,
+        delayed_share=contact.delayed_share,
+        retardation_time=contact.retardation_time,
+        delayed_spacing=scenario.solver.delayed_spacing,
         surface=_surface(scenario),
         compaction_resistance=contact.compaction_resistance,
         shear_displacement=contact.shear_displacement,

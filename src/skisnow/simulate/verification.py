@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final, TypeAlias
@@ -71,15 +71,18 @@ def refined_solvers(run: Run) -> dict[str, Solver]:
     """Solvers that are finer in one choice each, by the scenario's key.
 
     A run with control of the error gets half the tolerance, one with a fixed step half the step; twice the elements,
-    half the spacing of the snow's lines, and half the tolerance of the groove.
+    half the spacing of the snow's lines, and half the tolerance of the groove; where the snow has a delayed depth, half
+    the spacing of its places.
     """
     solver = run.scenario.solver
+    nearer = replace(solver, delayed_spacing=solver.delayed_spacing / FINER)
     shorter, stricter = replace(solver, step=solver.step / FINER), replace(solver, tolerance=solver.tolerance / FINER)
     return {
         **({"solver.step_ms": shorter} if solver.fixed else {"solver.tolerance_mm": stricter}),
         "solver.elements": replace(solver, elements=round(run.numbers["elements"] * FINER)),
         "solver.line_spacing_mm": replace(solver, line_spacing=run.numbers["line_spacing_m"] / FINER),
         "solver.groove_tolerance": replace(solver, groove_tolerance=solver.groove_tolerance / FINER),
+        **({"solver.delayed_spacing_mm": nearer} if run.scenario.contact.delayed_share else {}),
     }
 
 
@@ -161,13 +164,16 @@ def _nudge(run: Run, simulate: Simulate) -> Iterator[Refinement]:
 
 def limit_warnings(run: Run, refinements: Iterable[Refinement]) -> tuple[str, ...]:
     """A sentence where a thousandth of an input moves the end by more than five thousandths of the run."""
-    path = run.run_length
-    worst = [each for each in refinements if each.key in NUDGED and (each.end_moves or 0.0) > NEAR * NUDGE * path]
-    if not worst:
+    return limit_sentences({each.key: each.end_moves or 0.0 for each in refinements}, run.run_length)
+
+
+def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...]:
+    """The sentence of `limit_warnings`, from distances (m) by key, where those of `NUDGED` count, and a length (m)."""
+    worst = max((key for key in moves if key in NUDGED), key=lambda key: moves[key], default=None)
+    if worst is None or not moves[worst] > NEAR * NUDGE * length:
         return ()
-    most = max(worst, key=lambda each: each.end_moves or 0.0)
     return (
-        f"near the limit of grip: the end moves {most.end_moves:.2g} m for {100.0 * NUDGE:g} % of {most.key}. A run "
+        f"near the limit of grip: the end moves {moves[worst]:.2g} m for {100.0 * NUDGE:g} % of {worst}. A run "
         "there tells what may happen and not where it ends: look at many, over what the inputs leave open",
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -117,6 +117,16 @@ class Ski(Shown):
         where = np.asarray(station, dtype=float)
         require_on_ski(self.name, self.station, where)
         return self._tables.at(where)
+
+    def stiffened(self, factor: float) -> Ski:
+        """The ski with EI and GJ times a factor > 0; itself with 1."""
+        if factor == 1.0:
+            return self
+        return replace(
+            self,
+            bending_stiffness=self.bending_stiffness * factor,
+            torsional_stiffness=self.torsional_stiffness * factor,
+        )
 
     def _facts(self) -> Facts:
         """Name, length, widths, the radius of the side line in use, mass."""

@@ -6,35 +6,47 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from scipy.special import ndtr, ndtri
+from scipy.special import ndtri
 
 from ..constants import CONFIDENCE
 from ..errors import ParameterError
 from .properties import Interval, SnowProperties
 
 
-def drawn_snows(snow: SnowProperties, count: int, generator: np.random.Generator) -> list[SnowProperties]:
-    """Snows whose H_V is log-normal and whose S_f is normal, each with the 95 % interval of a measured snow.
+def drawn_snows(snow: SnowProperties, shares: npt.NDArray[np.float64]) -> list[SnowProperties]:
+    """Snows whose H_V and S_f are log-normal, each with the 95 % interval of a measured snow.
 
     Parameters
     ----------
     snow
         With both values and both intervals, as `snow_from_results` gives it for two experiments or more of each kind.
-    count
-        How many, 0 or more.
-    generator
-        Of random numbers; the snows follow from its state.
+    shares
+        Shape (count, 2), between 0 and 1 and independent: where in the distributions of H_V and S_f each snow lies.
 
     Raises
     ------
     ParameterError
-        A value or an interval is not known, or the upper end of the interval of S_f is not above 0.
+        A value or an interval is not known, or the lower end of the interval of S_f is not above 0.
 
     Notes
     -----
-    The middle of each distribution is that of the interval, of H_V on logarithms. S_f is drawn only above 0: the normal
-    distribution is cut there. The intervals are those of means, so the snows show how well the mean is known, not how
-    much the snow of a slope changes from place to place. H_V and S_f are drawn independently (modelling assumption).
+    The middle of each distribution is that of the interval on logarithms. The intervals are those of means, so the
+    snows show how well the mean is known, not how much the snow of a slope changes from place to place. H_V and S_f are
+    drawn independently (modelling assumption).
+    """
+    hardness, stress = measured_intervals(snow)
+    of_hardness, of_stress = _drawn(hardness, shares[:, 0]), _drawn(stress, shares[:, 1])
+    source = f"drawn from the intervals of {snow.source}"
+    return [SnowProperties(H_V, S_f, source=source) for H_V, S_f in zip(of_hardness, of_stress, strict=True)]
+
+
+def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
+    """The intervals of H_V and S_f.
+
+    Raises
+    ------
+    ParameterError
+        One is not known, or that of S_f does not begin above 0.
     """
     hardness, stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     if hardness is None or stress is None:
@@ -42,25 +54,14 @@ def drawn_snows(snow: SnowProperties, count: int, generator: np.random.Generator
             f"the snow ({snow.source}) has no interval of {'H_V' if hardness is None else 'S_f'}; it takes two used "
             "experiments of each kind. Choose a site that has them"
         )
-    if not stress[1] > 0.0:
-        raise ParameterError(f"the interval of S_f ends at {stress[1]:g} N/m²; no snow above 0 can be drawn from it")
-    middle, spread = _normal((math.log(hardness[0]), math.log(hardness[1])))
-    of_hardness = np.exp(middle + spread * generator.standard_normal(count))
-    of_stress = _above_zero(_normal(stress), generator.random(count))
-    source = f"drawn from the intervals of {snow.source}"
-    return [SnowProperties(H_V, S_f, source=source) for H_V, S_f in zip(of_hardness.tolist(), of_stress, strict=True)]
+    if not stress[0] > 0.0:
+        raise ParameterError(f"the interval of S_f begins at {stress[0]:g} N/m²; no snow above 0 can be drawn from it")
+    return hardness, stress
 
 
-def _normal(interval: Interval) -> tuple[float, float]:
-    """Mean and standard deviation of the normal distribution that has this interval."""
+def _drawn(interval: Interval, shares: npt.NDArray[np.float64]) -> list[float]:
+    """Quantiles of the log-normal distribution with this 95 % interval."""
+    low, high = map(math.log, interval)
     half = float(ndtri(0.5 + CONFIDENCE / 2.0))
-    return (interval[0] + interval[1]) / 2.0, (interval[1] - interval[0]) / 2.0 / half
-
-
-def _above_zero(normal: tuple[float, float], uniform: npt.NDArray[np.float64]) -> list[float]:
-    """Values above 0 of a normal distribution from uniform numbers in [0, 1)."""
-    mean, spread = normal
-    if spread == 0.0:
-        return [mean] * len(uniform)
-    below = ndtr(-mean / spread)
-    return np.asarray(mean + spread * ndtri(below + (1.0 - below) * (1.0 - uniform))).tolist()
+    drawn: list[float] = np.exp((low + high) / 2.0 + (high - low) / 2.0 / half * ndtri(shares)).tolist()
+    return drawn

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -10,16 +11,23 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..given import GivenError, read_json
-from .mean_snow import known_sites, mean_snow, site_in_words, site_named
-from .properties import SnowProperties
+from .mean_snow import (
+    known_sites,
+    mean_snow,
+    site_in_words,
+    site_named,
+    with_measured_displacement,
+    with_measured_unloading,
+)
+from .properties import Interval, SnowProperties
 
 
 def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowProperties:
     """Read the snow of an analysed campaign from its results.json.
 
     H_V is the geometric mean over the used penetration experiments, S_f the mean over the used shear experiments, of
-    one site or of all. With two experiments or more each mean has its 95 % interval by Student's t: that of H_V on
-    logarithms, that of S_f on the values themselves (its lower end may lie below 0 with few experiments).
+    one site or of all. With two experiments or more each mean has its 95 % interval by Student's t on logarithms; for
+    the mean m of S_f with the half-width h that is m exp(± h/m), as in site_means.
 
     Parameters
     ----------
@@ -31,7 +39,8 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     Returns
     -------
     SnowProperties
-        With intervals where there are two experiments or more, without an unloading ratio.
+        With intervals where there are two experiments or more, and with k_u/H_V where the unloading readings say both
+        ends of its interval.
 
     Raises
     ------
@@ -63,7 +72,31 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
         sites = sorted({str(row["site"]) for row in results["penetration"]["experiments"] if row["used"]})
         raise ParameterError(f"{path} has no used penetration experiment{known_sites(site, sites)}")
     source = f"{path}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
-    return mean_snow(hardness, stress, source=source, where=str(path))
+    snow = mean_snow(hardness, stress, source=source, where=str(path))
+    ratio, interval = _of_site(
+        results, ("penetration", "unloading"), ("unloading_ratio", "unloading_ratio_interval"), site, path
+    )
+    snow = snow if ratio is None or interval is None else with_measured_unloading(snow, ratio, interval)
+    way, ends = _of_site(
+        results, ("shear", "displacement"), ("shear_displacement_mm", "shear_displacement_interval_mm"), site, path
+    )
+    return snow if way is None else with_measured_displacement(snow, way, ends or (math.nan, math.nan))
+
+
+def _of_site(
+    results: dict[str, Any], place: tuple[str, str], keys: tuple[str, str], site: str | None, path: str | Path
+) -> tuple[float | None, Interval | None]:
+    """A mean of the site and its interval; files of earlier versions have none."""
+    try:
+        rows = [row for row in results[place[0]].get(place[1], ()) if row["site"] == site]
+        value, interval = (rows[0][key] for key in keys) if rows else (None, None)
+        ends = None if interval is None else (float(interval[0]), float(interval[1]))
+        return None if value is None else float(value), ends
+    except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
+        raise ParameterError(
+            f"{path}: {'.'.join(place)} is not a list with site, {' and '.join(keys)} ({error!r}); "
+            "give the results.json that `skisnow analyse` wrote"
+        ) from error
 
 
 def _results(path: Path) -> dict[str, Any]:

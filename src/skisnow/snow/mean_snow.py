@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from ..constants import CONFIDENCE
 from ..errors import ParameterError
-from ..units import N_PER_MM2, N_PER_MM3
+from ..units import MM, N_PER_MM2, N_PER_MM3
 from .properties import Interval, SnowProperties
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,12 +24,11 @@ def mean_snow(
     *,
     source: str,
     where: str,
-    unloading_ratio: float | None = None,
 ) -> SnowProperties:
     """The snow of experiments: the geometric mean of H_V, one value or more, and the mean of S_f, which may be missing.
 
-    With two experiments or more each mean has its 95 % interval by Student's t: that of H_V on logarithms, that of S_f
-    on the values themselves.
+    With two experiments or more each mean has its 95 % interval by Student's t, both on logarithms: for the mean m of
+    S_f with the half-width h, m exp(± h/m) (delta method), so that no end is below 0, as in `site_means`.
 
     Parameters
     ----------
@@ -38,8 +38,6 @@ def mean_snow(
         Where the numbers come from, for `SnowProperties.source`.
     where
         The same for messages.
-    unloading_ratio
-        k_u/H_V, where it is known.
 
     Raises
     ------
@@ -53,6 +51,9 @@ def mean_snow(
         raise ParameterError(f"{where}: H_V and S_f of a used experiment must lie from 1e-9 to 1e9 N/mm³ and N/mm²")
     H_V, H_V_interval = _mean(np.log(hardness))
     S_f, S_f_interval = _mean(stress) if stress.size else (None, None)
+    if S_f is not None and S_f_interval is not None:
+        ratio = math.exp((S_f_interval[1] - S_f) / S_f)
+        S_f_interval = (S_f / ratio, S_f * ratio)
     return SnowProperties(
         snow_hardness=math.exp(H_V) * N_PER_MM3,
         failure_shear_stress=None if S_f is None else S_f * N_PER_MM2,
@@ -61,8 +62,19 @@ def mean_snow(
             H_V_interval and (math.exp(H_V_interval[0]), math.exp(H_V_interval[1])), N_PER_MM3
         ),
         failure_shear_stress_interval=_scaled(S_f_interval, N_PER_MM2),
-        unloading_ratio=unloading_ratio,
     )
+
+
+def with_measured_unloading(snow: SnowProperties, ratio: float, interval: Interval) -> SnowProperties:
+    """The snow with its k_u/H_V and its 95 % interval, cut at 1: below, unloading would give energy away."""
+    low, high = (max(1.0, end) for end in interval)
+    return replace(snow, unloading_ratio=max(1.0, ratio), unloading_ratio_interval=(low, high))
+
+
+def with_measured_displacement(snow: SnowProperties, displacement_mm: float, ends_mm: Interval) -> SnowProperties:
+    """The snow with its shear displacement, and the 95 % interval of it where both ends are known."""
+    interval = (ends_mm[0] * MM, ends_mm[1] * MM) if all(map(math.isfinite, ends_mm)) else None
+    return replace(snow, shear_displacement=displacement_mm * MM, shear_displacement_interval=interval)
 
 
 def site_named(site: str | None, sites: Iterable[str]) -> str | None:

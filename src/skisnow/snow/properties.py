@@ -8,7 +8,7 @@ from typing import Annotated, Final, TypeAlias
 from ..errors import ParameterError
 from ..inputs import Quantity, Search, Word, require_declared
 from ..shown import Facts, Shown, amount, span
-from ..units import N_PER_MM2, N_PER_MM3
+from ..units import MM, N_PER_MM2, N_PER_MM3
 
 Interval: TypeAlias = tuple[float, float]
 
@@ -34,6 +34,11 @@ class SnowProperties(Shown):
         experiments or the source gives none.
     unloading_ratio
         k_u/H_V ≥ 1 where it is known, which `Scenario.with_` then takes over; 1 is elastic snow, which springs back.
+    unloading_ratio_interval
+        95 % interval of it where it was measured.
+    shear_displacement, shear_displacement_interval
+        u_y (m), the way of an edge across until the snow holds it with all of S_f, and its 95 % interval, where they
+        were measured; `Scenario.with_` then takes u_y over.
 
     See Also
     --------
@@ -87,6 +92,9 @@ class SnowProperties(Shown):
     snow_hardness_interval: Interval | None = None
     failure_shear_stress_interval: Interval | None = None
     unloading_ratio: float | None = None
+    unloading_ratio_interval: Interval | None = None
+    shear_displacement: float | None = None
+    shear_displacement_interval: Interval | None = None
 
     def __post_init__(self) -> None:
         require_declared(self)
@@ -98,8 +106,11 @@ class SnowProperties(Shown):
         """Both values with their intervals, the unloading ratio where it is known, and the source."""
         hardness = _with_interval(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")
         stress = _with_interval(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")
-        ratio = "" if self.unloading_ratio is None else f", k_u/H_V {amount(self.unloading_ratio)}"
-        return f"H_V {hardness}, S_f {stress}{ratio}: {self.source}"
+        ratio = _with_interval(self.unloading_ratio, self.unloading_ratio_interval, 1.0, "")
+        ratio = "" if self.unloading_ratio is None else f", k_u/H_V {ratio}"
+        way = _with_interval(self.shear_displacement, self.shear_displacement_interval, MM, "mm")
+        way = "" if self.shear_displacement is None else f", u_y {way}"
+        return f"H_V {hardness}, S_f {stress}{ratio}{way}: {self.source}"
 
     def _facts(self) -> Facts:
         return Facts(self.in_words)

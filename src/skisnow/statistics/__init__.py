@@ -10,6 +10,7 @@ from .nonlinear import NonlinearFit, nonlinear_fit
 from .regress import Regress, RegressStatistics, regress
 from .resampling import percentile_interval, resampling_counts
 from .two_groups import RatioOfMeans, ratio_of_means, tests_per_group
+from .variance_shares import VarianceShares, variance_shares
 
 __all__ = [
     "Anova",
@@ -21,6 +22,7 @@ __all__ = [
     "RatioOfMeans",
     "Regress",
     "RegressStatistics",
+    "VarianceShares",
     "cluster_intervals",
     "expanded_factor",
     "linear_fit",
@@ -35,5 +37,6 @@ __all__ = [
     "regress",
     "resampling_counts",
     "tests_per_group",
+    "variance_shares",
     "welch_satterthwaite",
 ]

@@ -48,6 +48,7 @@ RESULTS: Final = (
     "lost_friction_J",
     "lost_drag_J",
     "lost_damping_J",
+    "lost_snow_damping_J",
     "energy_balance_error",
     "steps",
     "rejected_steps",

@@ -54,6 +54,7 @@
     const number = newOnce();
     const head = JSON.parse(row.parentElement.dataset.head);
     const cells = { ...head, load_N: row.dataset.load, depth_mm: depth };
+    if (row.dataset.branch) cells.branch = row.dataset.branch;
     const who = document.querySelector(".who")?.dataset.who ?? "";
     keep("localStorage", READING + number, { once: number, at: Date.now(), campaign: campaign(), who, cells });
     return number;

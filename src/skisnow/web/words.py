@@ -18,8 +18,11 @@ LABELS: Final = {
     "edge_angle_deg": "Edge angle (°)",
     "load_N": "Load (N)",
     "depth_mm": "Depth (mm)",
+    "depth_after_mm": "Depth after waiting (mm)",
+    "branch": "Branch (loading or unloading)",
     "lever_arm_mm": "Lever arm (mm)",
     "moment_Nm": "Moment (N m)",
+    "turning_angle_deg": "Turning angle (°)",
     "snow_density_kg_per_m3": "Density (kg/m³)",
     "drop_cone_depth_mm": "Drop-cone depth (mm)",
     "remark": "Remark",
@@ -46,9 +49,23 @@ def hardness_words(row: dict[str, Any]) -> str:
     return _estimate(row["H_V_N_per_mm3"], row["H_V_interval_N_per_mm3"], "N/mm³")
 
 
+def unloading_words(row: dict[str, Any]) -> str:
+    """k_u/H_V with its interval, from a row of ``penetration.experiments``; nothing where none was measured."""
+    if not row["n_unloading"]:
+        return ""
+    return f"k_u/H_V = {_estimate(row['unloading_ratio'], row['unloading_ratio_interval'], '').replace(' ,', ',')}"
+
+
 def stress_words(row: dict[str, Any]) -> str:
     """S_f with its interval, from a row of ``shear.experiments``."""
     return _estimate(row["S_f_N_per_mm2"], row["S_f_interval_N_per_mm2"], "N/mm²")
+
+
+def displacement_words(row: dict[str, Any]) -> str:
+    """u_y with its interval, from a row of ``shear.experiments``; nothing where none was measured."""
+    if row["shear_displacement_mm"] is None:
+        return ""
+    return f"u_y = {_estimate(row['shear_displacement_mm'], row['shear_displacement_interval_mm'], 'mm')}"
 
 
 def _estimate(value: float | None, pair: list[float] | None, unit: str) -> str:

@@ -11,14 +11,14 @@ import sys
 from pathlib import Path
 from typing import Final
 
-from . import glides, grooves, tables
+from . import glides, grooves, shears, tables
 from .kept import KeptTwins
 from .pool import run_twins
 from .truth import SCENARIOS, SEEDS
 from .turns import NOISELESS, one_noiseless, one_turn
 
 DOCS: Final = Path(__file__).parents[3] / "docs" / "validation"
-KINDS: Final = ("glides", "grooves", "noiseless", "turns")
+KINDS: Final = ("glides", "grooves", "noiseless", "turns", "shears")
 
 
 def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
@@ -36,6 +36,7 @@ def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
         "glides": (glides.one_glide, [(case, seed) for case in glides.CASES for seed in seeds]),
         "grooves": (grooves.one_groove, [(case, seed) for case in grooves.CASES for seed in seeds]),
         "noiseless": (one_noiseless, [(scenario + NOISELESS, 0) for scenario in SCENARIOS]),
+        "shears": (shears.one_shear, [(shears.CASE, seed) for seed in seeds]),
         "turns": (one_turn, [(scenario, seed) for seed in seeds for scenario in SCENARIOS]),
     }
     seconds = None if options.minutes is None else 60.0 * options.minutes

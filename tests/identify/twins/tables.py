@@ -13,7 +13,7 @@ from scipy.stats import binomtest
 
 from skisnow.files import write_file
 
-from . import glides, grooves
+from . import glides, grooves, shears
 from .kept import KeptTwins
 from .truth import ERRORS, FREE, SCENARIOS
 from .turns import ELASTIC, NOISELESS
@@ -38,6 +38,7 @@ def write(page: Path, kept: Mapping[str, KeptTwins]) -> None:
         "elastic": elastic(kept["turns"]),
         "photo cells": photo_cells(kept["glides"]),
         "marks": snow_from_marks(kept["grooves"]),
+        "shear": shear_of_tracks(kept["shears"]),
     }
     for name, table_of in filled.items():
         before, rest = text.split(f"<!-- {name} -->")
@@ -163,6 +164,26 @@ def _marks_row(twins: Rows) -> tuple[str, ...]:
         covered_words(twins, HARDNESS), str(len(slid)), str(len(seen)), str(len(held)), str(len(rightly)),
         rms_factor(seen, STRENGTH), covered_words(seen, STRENGTH), f"{bounded} of {len(rightly)}",
     )  # fmt: skip
+
+
+def shear_of_tracks(twins: KeptTwins) -> str:
+    """By whether the edge slips: errors of S_f and u_y, how many intervals hold the truth, how they hang together."""
+    rows = []
+    for words, slips in (("holds", "0"), ("slips", "1")):
+        those = [row for row in twins.of(shears.CASE) if row["slips"] == slips]
+        known = [row for row in those if row["outcome"] == "converged"]
+        told = np.abs(column(those, "correlation"))
+        rows.append((
+            words, str(len(those)), f"{len(known)} of {len(those)}",
+            *(cell for key in shears.FREE for cell in (rms_factor(known, key), covered_words(known, key))),
+            f"{np.nanmedian(told):.2f}" if those else "",
+            f"{sum(row['near the limit'] == '1' for row in those)} of {len(those)}",
+        ))  # fmt: skip
+    head = (
+        "the edge", "twins", "converged", "error of S_f (%)", "S_f covered", "error of u_y (%)", "u_y covered",
+        "correlation, median of its size", "warned: near the limit",
+    )  # fmt: skip
+    return table(head, rows, words=1)
 
 
 COVERAGE: Final = ("parameter", "twins", "rms error", "covered", "99 % interval of that share (%)", "holds 95 %")

@@ -130,8 +130,8 @@ def test_energies_stack_to_a_level_rim(run: Run) -> None:
     with journal_style():
         figure = run_energies(run)
     every, losses = axes_of(figure)
-    assert len(every.collections) == 9
-    assert len(losses.collections) == 5
+    assert len(every.collections) == 10
+    assert len(losses.collections) == 6
     (level,) = every.lines
     assert np.asarray(level.get_ydata()) == pytest.approx(np.full(2, total[0]))
     assert losses.dataLim.y1 == pytest.approx(-run.energies["potential"][-1])

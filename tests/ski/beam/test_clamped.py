@@ -151,3 +151,42 @@ def test_frequencies_do_not_depend_on_the_mesh() -> None:
 def test_what_cannot_be_clamped(clamp: float, elements: int) -> None:
     with pytest.raises(ParameterError):
         clamped(plain_ski(), clamp, elements)
+
+
+def test_a_footprint_is_a_bed_of_springs() -> None:
+    """Its part of the stiffness does k w² + k W²/12 φ² for each metre: with w = s² and φ = s from -a to a."""
+    ski, half, stiffness, width = plain_ski(), 0.15, 2e6, 0.07
+    once, twice = (dense(clamped(ski, 2.0 * half, 160, each).stiffness) for each in (stiffness, 2.0 * stiffness))
+    model = clamped(ski, 2.0 * half, 160, stiffness)
+    first = np.append(model.dof[:, 0], model.dof[-1, 3])
+    u, free = np.zeros(model.size), first >= 0
+    u[first[free]], u[first[free] + 1], u[first[free] + 2] = (
+        model.node[free] ** 2,
+        -2.0 * model.node[free],
+        model.node[free],
+    )
+    done = stiffness * (2.0 * half**5 / 5.0 + width**2 / 12.0 * 2.0 * half**3 / 3.0)
+    assert u @ (twice - once) @ u == pytest.approx(done, rel=1e-9)
+
+
+def test_a_footprint_is_between_a_rigid_clamp_and_one_section() -> None:
+    """A load at the tip bends a ski on a stiff footprint as a clamped one, on a soft one as held at a section."""
+    ski = read_ski("slalom")
+
+    def tip(clamp: float, stiffness: float | None) -> float:
+        model = clamped(ski, clamp, 160, stiffness)
+        load = np.zeros(model.size)
+        load[model.dof[0, 0]] = 10.0
+        return float(np.linalg.solve(dense(model.stiffness), load)[model.dof[0, 0]])
+
+    rigid, section = tip(0.3, None), tip(0.0, None)
+    deflections = [tip(0.3, stiffness) for stiffness in (1e13, 1e8, 1e6, 1.0)]
+    assert sorted(deflections) == deflections
+    assert deflections[0] == pytest.approx(rigid, rel=1e-2)
+    assert deflections[-1] == pytest.approx(section, rel=1e-3)
+    assert section > 1.2 * rigid
+
+
+def test_a_footprint_without_stiffness_is_refused() -> None:
+    with pytest.raises(ParameterError, match="footprint_stiffness is 0"):
+        clamped(plain_ski(), 0.3, 40, 0.0)

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...units import DEGREE, MM
-from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
+from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, TurningReadings, UnloadingReadings
+from .branches import is_unloading
 from .experiments import Blocks
+from .table_forms import BRANCH
+from .turning import shear_blocks
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ..records import BoolArray
     from .columns import NameColumn
     from .table import Table
 
@@ -19,6 +26,10 @@ def penetration_tests(table: Table) -> PenetrationTests:
     """Make the penetration experiments; their rows stand together and agree."""
     blocks = Blocks.of_runs(table.names["experiment"])
     spot = table.names["spot"]
+    taken_off = is_unloading(table.names[BRANCH])
+    is_unloaded = bool(taken_off.any())
+    laid_on = ~taken_off if is_unloaded else slice(None)
+    after = table.numbers["depth_after_mm"][laid_on]
     return PenetrationTests(
         experiment=_at(table.names["experiment"], blocks.start),
         site=_at(table.names["site"], blocks.start),
@@ -28,30 +39,53 @@ def penetration_tests(table: Table) -> PenetrationTests:
         snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
         drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
         cancelled=blocks.texts(table.names["status"]),
-        first=blocks.first,
-        load=table.numbers["load_N"],
-        penetration_depth=table.numbers["depth_mm"] * MM,
-        row=table.row,
-        further=table.further,
+        first=blocks.first_of(~taken_off),
+        load=table.numbers["load_N"][laid_on],
+        penetration_depth=table.numbers["depth_mm"][laid_on] * MM,
+        row=table.row[laid_on],
+        further=_of_rows(table.further, ~taken_off) if is_unloaded else table.further,
+        unloading=_unloading(table, blocks, taken_off) if is_unloaded else None,
+        depth_after=None if np.isnan(after).all() else after * MM,
+    )
+
+
+def _of_rows(further: Mapping[str, tuple[str, ...]], chosen: BoolArray) -> dict[str, tuple[str, ...]]:
+    return {name: tuple(compress(cells, chosen.tolist())) for name, cells in further.items()}
+
+
+def _unloading(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingReadings:
+    return UnloadingReadings(
+        first=blocks.first_of(taken_off),
+        load=table.numbers["load_N"][taken_off],
+        penetration_depth=table.numbers["depth_mm"][taken_off] * MM,
+        row=table.row[taken_off],
     )
 
 
 def shear_tests(table: Table) -> ShearTests:
-    """Make the shear experiments, one a row."""
+    """Make the shear experiments, one a row, or one of the rows of its turning: that of the largest moment."""
+    blocks = shear_blocks(table)
+    moment, angle = table.numbers["moment_Nm"], table.numbers["turning_angle_deg"]
+    largest = blocks.first_given(moment == np.maximum.reduceat(moment, blocks.start)[blocks.of_row])
+    is_turned = ~np.isnan(angle)
+    spot = table.names["spot"]
     return ShearTests(
-        experiment=table.names["experiment"].cells(),
-        site=table.names["site"].cells(),
-        plate=table.names["plate"].cells(),
-        spot=table.names["spot"].cells(),
-        edge_angle=table.numbers["edge_angle_deg"] * DEGREE,
-        penetration_depth=table.numbers["depth_mm"] * MM,
-        lever_arm=table.numbers["lever_arm_mm"] * MM,
-        moment=table.numbers["moment_Nm"],
-        snow_density=table.numbers["snow_density_kg_per_m3"],
-        drop_cone_depth=table.numbers["drop_cone_depth_mm"] * MM,
-        cancelled=table.names["status"].cells(),
-        row=table.row,
-        further=table.further,
+        experiment=_at(table.names["experiment"], largest),
+        site=_at(table.names["site"], largest),
+        plate=_at(table.names["plate"], largest),
+        spot=_at(spot, blocks.first_given(~spot.is_blank)),
+        edge_angle=table.numbers["edge_angle_deg"][largest] * DEGREE,
+        penetration_depth=table.numbers["depth_mm"][largest] * MM,
+        lever_arm=table.numbers["lever_arm_mm"][largest] * MM,
+        moment=moment[largest],
+        snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
+        drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
+        cancelled=blocks.texts(table.names["status"]),
+        row=table.row[largest],
+        further={name: tuple(cells[row] for row in largest.tolist()) for name, cells in table.further.items()},
+        turning=TurningReadings(blocks.first_of(is_turned), angle[is_turned] * DEGREE, moment[is_turned])
+        if is_turned.any()
+        else None,
     )
 
 

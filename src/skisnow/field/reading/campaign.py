@@ -262,4 +262,5 @@ def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
         file_hashes=contents.hashes,
         corrections=contents.corrections,
         unread_files=contents.unread,
+        pole_stiffness=described.pole_stiffness,
     )

@@ -67,6 +67,16 @@ class CampaignFile:
     lever_arm_uncertainty: Annotated[
         float | None, Quantity("lever_arm_uncertainty_mm", "standard uncertainty of a lever arm", lowest=0.0)
     ] = None
+    pole_stiffness: Annotated[
+        float | None,
+        Quantity(
+            "pole_stiffness_Nm_per_deg",
+            "moment that twists the shear device's pole by a degree between where its turning angle is read and the "
+            "plate; left out: rigid, or read at the plate",
+            lowest=0.0,
+            above=True,
+        ),
+    ] = None
     load_steps: Annotated[
         tuple[float, ...], Quantity("load_steps_N", "the campaign's own discs, for entry", lowest=0.0, above=True)
     ] = ()
@@ -113,6 +123,7 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
         load_uncertainty=top.number(CAMPAIGN_KEYS["load_uncertainty_N"]),
         moment_uncertainty=top.number(CAMPAIGN_KEYS["moment_uncertainty_Nm"]),
         lever_arm_uncertainty=_length(top, CAMPAIGN_KEYS["lever_arm_uncertainty_mm"]),
+        pole_stiffness=_stiffness(top),
         load_steps=top.numbers(CAMPAIGN_KEYS["load_steps_N"]),
         tools=tools,
         plates=plates,
@@ -212,6 +223,12 @@ def _length(entry: TomlValues, quantity: Quantity) -> float | None:
                 action=f"If this is in {unit} convert it to mm; if it is in mm nothing need be done.",
             )
         )
+    return None if value is None else quantity.in_si(value)
+
+
+def _stiffness(top: TomlValues) -> float | None:
+    quantity = CAMPAIGN_KEYS["pole_stiffness_Nm_per_deg"]
+    value = top.number(quantity)
     return None if value is None else quantity.in_si(value)
 
 

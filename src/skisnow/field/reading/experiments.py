@@ -45,6 +45,11 @@ class Blocks:
         """Block of each row."""
         return np.repeat(np.arange(len(self.start), dtype=np.int64), np.diff(self.first))
 
+    def first_of(self, chosen: BoolArray) -> IntArray:
+        """Offsets of the blocks among the chosen rows alone: m + 1 of them."""
+        count = np.add.reduceat(chosen.astype(np.int64), self.start)
+        return np.concatenate(([0], np.cumsum(count))).astype(np.int64)
+
     def first_given(self, given: BoolArray) -> IntArray:
         """First row of each block for which ``given`` holds, or the block's first row."""
         chosen = self.start.copy()
@@ -88,12 +93,6 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
     for row in np.flatnonzero(differs).tolist():
         other = float(angle[reference[row]])
         yield _mixed(table, row, int(reference[row]), "edge_angle_deg", f"{angle[row]:.12g}", f"{other:.12g}")
-
-
-def check_single_rows(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Find experiments that should be one row and are several."""
-    if table.form.key not in table.absent:
-        yield from _told_again(table, blocks)
 
 
 def check_one_site(table: Table) -> Iterator[Problem]:

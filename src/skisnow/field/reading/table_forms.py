@@ -84,6 +84,10 @@ class PenetrationRow:
     ]
     load: Annotated[float, Quantity("load_N", "load", lowest=0.0, above=True)]
     depth: Annotated[float, _DEPTH]
+    depth_after: Annotated[
+        float | None,
+        Quantity("depth_after_mm", "depth read once more under the same load, after waiting: creep", lowest=0.0),
+    ] = None
     snow_density: Annotated[float | None, _DENSITY] = None
     drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
     air_temperature: Annotated[float | None, _AIR] = None
@@ -98,6 +102,15 @@ class ShearRow:
     depth: Annotated[float, _DEPTH]
     lever_arm: Annotated[float, Quantity("lever_arm_mm", "lever arm", lowest=0.0, above=True)]
     moment: Annotated[float, Quantity("moment_Nm", "moment", lowest=0.0)]
+    turning_angle: Annotated[
+        float | None,
+        Quantity(
+            "turning_angle_deg",
+            "how far the device was turned under this moment, from any zero; an experiment may then have several rows",
+            lowest=-360.0,
+            highest=360.0,
+        ),
+    ] = None
     snow_density: Annotated[float | None, _DENSITY] = None
     drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
     air_temperature: Annotated[float | None, _AIR] = None
@@ -131,6 +144,13 @@ class CorrectionRow:
     row: Annotated[float, Quantity("row", "line of the file", lowest=1.0)]
 
 
+BRANCH: Final = "branch"
+"""Column that tells whether a disc was laid on or taken off."""
+LOADING: Final = "loading"
+UNLOADING: Final = "unloading"
+BRANCHES: Final = ("", LOADING, UNLOADING)
+"""What may stand in it; a blank cell is loading."""
+
 _REMARKS: Final = ("time", "air_temperature_C", "snow_temperature_C", "snow_type", "remark")
 
 PENETRATION: Final = TableForm(
@@ -138,7 +158,7 @@ PENETRATION: Final = TableForm(
     key="experiment",
     names=("experiment", "site", "tool"),
     numbers=own_quantities(PenetrationRow),
-    optional=("spot", "status"),
+    optional=("spot", "status", BRANCH),
     further=_REMARKS,
 )
 SHEAR: Final = TableForm(

@@ -8,11 +8,13 @@ import numpy as np
 
 from ..problems import error
 from .angles import check_flat_tools, check_steepness, check_unit
+from .branches import check_branches
 from .campaign_file import CAMPAIGN_FILE
-from .experiments import Blocks, check_one_site, check_series, check_single_rows
+from .experiments import Blocks, check_one_site, check_series
 from .likely_units import check_likely_units
 from .repeated_rows import check_repeated_rows
 from .table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR
+from .turning import check_turning, shear_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,6 +40,7 @@ def check_together(table: Table, described: CampaignFile | None) -> Iterator[Pro
 def _check_penetration(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
     blocks = Blocks.of_runs(table.names["experiment"])
     yield from check_series(table, blocks)
+    yield from check_branches(table, blocks)
     yield from check_unit(table)
     yield from check_steepness(table, blocks)
     if described is not None:
@@ -46,8 +49,9 @@ def _check_penetration(table: Table, described: CampaignFile | None) -> Iterator
 
 
 def _check_shear(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
-    blocks = Blocks.of_single_rows(len(table))
-    yield from check_single_rows(table, blocks)
+    blocks = shear_blocks(table)
+    yield from check_series(table, blocks)
+    yield from check_turning(table, blocks)
     yield from check_unit(table)
     if described is not None:
         yield from _unknown_names(table, blocks, "plate", described.plate_names)

@@ -43,6 +43,8 @@ class ReferenceCampaign:
         κ of each series.
     penetration_depth
         True depth of each penetration reading under its true load (m).
+    unloading_ratio
+        True k_u/H_V of each series whose discs were taken off again, NaN of the others.
     failure_shear_stress
         True S_f (N/m²), one per shear test.
     """
@@ -57,6 +59,7 @@ class ReferenceCampaign:
     seating_offset: FloatArray = field(repr=False)
     layering: FloatArray = field(repr=False)
     penetration_depth: FloatArray = field(repr=False)
+    unloading_ratio: FloatArray = field(repr=False)
     failure_shear_stress: FloatArray = field(repr=False)
 
     @property
@@ -129,6 +132,10 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
     A series planned flat whose snow would let the flat tool no deeper than 0.2 mm at the largest load is done at one of
     the other angles instead (modelling assumption: nobody measures 0.0004 mm).
 
+    Unloading. At three sites the discs are taken off again one by one, to the first load. The tool starts at the depth
+    e_m at which the gauge read it, seating apart, and comes back by d = (e_m - ê(V(e_m) F/F_m))/κ with κ = k_u/H_V,
+    which is normal in its logarithm about 10 from spot to spot; each rebound scatters by 2 %.
+
     Shear. S_f is 0.25 N/mm² at every angle on the hard snow, Eqn 13 on the soft snow, Eqn 14 of the spot's own density
     for the 58 tests at 90° (redrawn where S_f leaves 0.04-0.40 N/mm²), each plus its scatter. Depths are
     drawn evenly from 2 mm to 12 mm, or to the depth at which the moment S_f e L r is 60 N m where that is less. The
@@ -147,10 +154,11 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:  # type: ignore[redundant-expr]
         raise ParameterError(f"reference_campaign: the seed is {seed!r}; it must be an integer of at least 0")
     # One stream per kind of draw, so that none depends on how many numbers another took.
-    spots, spread, readings, shear, beside = np.random.default_rng(seed).spawn(5)
+    spots, spread, readings, shear, beside, back = np.random.default_rng(seed).spawn(6)
     snow_hardness = draws.snow_hardness(spread, noise)
     edge_angle = draws.edge_angle(spots, snow_hardness)
-    penetration = draws.penetration(readings, snow_hardness, edge_angle, noise)
+    pressed = draws.penetration(readings, snow_hardness, edge_angle, noise)
+    penetration = draws.unloaded(back, pressed, noise)
     shear_tests, stress = draws.shear(shear, noise)
     return ReferenceCampaign(
         seed=seed,
@@ -163,5 +171,6 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
         seating_offset=penetration.seating_offset,
         layering=penetration.layering,
         penetration_depth=penetration.true_depth,
+        unloading_ratio=penetration.unloading_ratio,
         failure_shear_stress=stress,
     )

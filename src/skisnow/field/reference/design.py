@@ -85,6 +85,11 @@ PENETRATION_SITES: Final = tuple(
     )
 )
 
+UNLOADED_SITES: Final = ("site B", "site D", "site F")
+"""Sites at which the discs are taken off again one by one: soft, middle and hard snow."""
+UNLOADING_RATIO: Final = 10.0
+"""Median k_u/H_V everywhere: of the order that the published runs of a sledge are simulated with."""
+
 PLATE: Final = "plate 100 mm"
 PLATE_LENGTH: Final = 100.0 * MM
 LEVER_ARM: Final = 250.0 * MM

@@ -5,27 +5,33 @@ What is drawn, and from which law, stands in `skisnow.field.reference_campaign`.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ...snow.published.moessner_2013 import failure_shear_stress_from_angle, failure_shear_stress_from_density
 from ...units import DEGREE, MM
-from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
+from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, UnloadingReadings
 from . import design
 
 if TYPE_CHECKING:
-    from ..records import FloatArray
+    from ..records import BoolArray, FloatArray
     from .noise import ReferenceNoise
 
 
 class DrawnPenetration(NamedTuple):
-    """Readings, and per series the seating offset (m) and κ, and per reading the true depth (m)."""
+    """Readings, and per series the seating offset (m), κ, the tool's depth under the largest load (m) and k_u/H_V.
+
+    The last is NaN where no disc was taken off. ``true_depth`` (m), one per reading, is that of the law.
+    """
 
     tests: PenetrationTests
     seating_offset: FloatArray
     layering: FloatArray
     true_depth: FloatArray
+    deepest: FloatArray
+    unloading_ratio: FloatArray
 
 
 def snow_hardness(generator: np.random.Generator, noise: ReferenceNoise) -> FloatArray:
@@ -57,9 +63,40 @@ def penetration(
     volume = (nominal[-1] / snow_hardness)[:, np.newaxis] * (load / nominal[-1]) ** exponent[:, np.newaxis]
     true_depth = design.SKI_PIECE.depth_at_volume(volume, edge_angle[:, np.newaxis])
     # A gauge does not read below its zero.
-    reading = np.maximum(true_depth * (1.0 + scatter) + seating_offset[:, np.newaxis], 0.0)
+    depth = true_depth * (1.0 + scatter)
+    reading = np.maximum(depth + seating_offset[:, np.newaxis], 0.0)
     tests = _penetration_tests(edge_angle, _on_gauge(reading, noise).ravel())
-    return DrawnPenetration(tests, seating_offset, layering, true_depth.ravel())
+    unknown = np.full(shape[0], np.nan)
+    return DrawnPenetration(tests, seating_offset, layering, true_depth.ravel(), depth[:, -1], unknown)
+
+
+def unloaded(generator: np.random.Generator, drawn: DrawnPenetration, noise: ReferenceNoise) -> DrawnPenetration:
+    """Add the readings while the discs are taken off, at the sites where they are.
+
+    The tool starts at its depth e_m under the largest load, and feels at e_m - d what it felt at the depth e_m - κ d.
+    """
+    tests, shape = drawn.tests, (len(drawn.tests), len(design.LOADS) - 1)
+    ratio = design.UNLOADING_RATIO * np.exp(noise.unloading_log_sd * generator.standard_normal(shape[0]))
+    load = np.array(design.LOADS[-2::-1]) + noise.load_sd * generator.standard_normal(shape)
+    scatter = noise.rebound_scatter * generator.standard_normal(shape)
+    angle, deepest = tests.edge_angle[:, np.newaxis], drawn.deepest[:, np.newaxis]
+    volume = design.SKI_PIECE.displaced_volume(deepest, angle) * load / design.LOADS[-1]
+    rebound = (deepest - design.SKI_PIECE.depth_at_volume(volume, angle)) / ratio[:, np.newaxis] * (1.0 + scatter)
+    depth = np.maximum(deepest - rebound + drawn.seating_offset[:, np.newaxis], 0.0)
+    there = np.isin(tests.site, design.UNLOADED_SITES)
+    readings = _unloading_readings(there, _on_gauge(depth, noise)[there])
+    row = tests.row + readings.first[:-1][tests.series_of_reading]
+    tests = replace(tests, unloading=readings, row=row)
+    return drawn._replace(tests=tests, unloading_ratio=np.where(there, ratio, np.nan))
+
+
+def _unloading_readings(there: BoolArray, depth: FloatArray) -> UnloadingReadings:
+    """Readings behind those of their own series in the file."""
+    up, down = len(design.LOADS), depth.shape[1]
+    first = np.concatenate(([0], np.cumsum(np.where(there, down, 0)))).astype(np.int64)
+    before = 2 + (np.flatnonzero(there) + 1) * up
+    row = np.repeat(before, down) + np.arange(depth.size)
+    return UnloadingReadings(first, np.tile(design.LOADS[-2::-1], len(depth)), depth.ravel(), row.astype(np.int64))
 
 
 def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearTests, FloatArray]:

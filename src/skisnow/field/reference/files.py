@@ -13,6 +13,7 @@ import numpy as np
 
 from ...errors import OutputError
 from ...units import DEGREE, MM, N_PER_MM2
+from ..reading.table_forms import LOADING, UNLOADING
 from . import design
 from .campaign import reference_campaign
 
@@ -115,12 +116,20 @@ def _written(values: FloatArray, unit: float, decimals: int) -> list[str]:
 
 
 def _penetration_csv(drawn: ReferenceCampaign) -> str:
-    tests = drawn.penetration
-    header = ("experiment", "site", "spot", "tool", "edge_angle_deg", "load_N", "depth_mm")
-    owner = tests.series_of_reading.tolist()
-    names = [[column[index] for index in owner] for column in (tests.experiment, tests.site, tests.spot, tests.tool)]
-    angle = _written(tests.edge_angle[owner], DEGREE, 0)
-    return _csv(header, [*names, angle, _written(tests.load, 1.0, 0), _written(tests.penetration_depth, MM, 2)])
+    tests, unloading = drawn.penetration, drawn.penetration.unloading
+    header = ("experiment", "site", "spot", "tool", "edge_angle_deg", "load_N", "depth_mm", "branch")
+    row, load, depth = tests.row, tests.load, tests.penetration_depth
+    owner, branch = tests.series_of_reading, [LOADING] * len(row)
+    if unloading is not None:
+        row, load = np.append(row, unloading.row), np.append(load, unloading.load)
+        depth = np.append(depth, unloading.penetration_depth)
+        owner, branch = np.append(owner, unloading.series_of_reading), branch + [UNLOADING] * len(unloading.row)
+    order = np.argsort(row, kind="stable")
+    of_row = owner[order].tolist()
+    names = [[column[index] for index in of_row] for column in (tests.experiment, tests.site, tests.spot, tests.tool)]
+    angle = _written(tests.edge_angle[of_row], DEGREE, 0)
+    numbers = (_written(load[order], 1.0, 0), _written(depth[order], MM, 2))
+    return _csv(header, [*names, angle, *numbers, [branch[index] for index in order.tolist()]])
 
 
 def _shear_csv(drawn: ReferenceCampaign) -> str:
@@ -163,6 +172,8 @@ def _campaign_toml(drawn: ReferenceCampaign) -> str:
 #   load: the true load is the stated one plus {noise.load_sd:g} N
 #   placement: the depth zero of a series is off by {noise.seating_sd / MM:g} mm;
 #     each depth scatters by {noise.depth_scatter:.0%}
+#   unloading at {", ".join(design.UNLOADED_SITES)}: k_u/H_V is {design.UNLOADING_RATIO:g}, its logarithm varies by
+#     {noise.unloading_log_sd:g} from spot to spot; each rebound scatters by {noise.rebound_scatter:.0%}
 #   snow: ln H_V varies by {noise.hardness_log_sd:g} within a site, redrawn outside 0.04-90 N/mm3; layering of a series:
 #     F = H_V V(e7) (V(e)/V(e7))^(1 + kappa/2), kappa with {noise.layering_sd:g}
 #   shear: S_f scatters by {hard:g} N/mm2 (hard), {soft:g} (soft, about Eqn 13), {about_density:g} (about Eqn 14),

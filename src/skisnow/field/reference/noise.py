@@ -37,6 +37,10 @@ class ReferenceNoise:
         Error of the moment (N m).
     lever_arm_sd
         True lever arm less the stated one (m).
+    unloading_log_sd
+        Spread of ln(k_u/H_V) between the spots of one site.
+    rebound_scatter
+        Relative scatter of the rebound from reading to reading, while discs are taken off.
     """
 
     gauge_resolution: float = 0.01 * MM
@@ -49,6 +53,8 @@ class ReferenceNoise:
     shear_scatter: float = 1.0
     moment_sd: float = 0.2
     lever_arm_sd: float = 1.0 * MM
+    unloading_log_sd: float = 0.15
+    rebound_scatter: float = 0.02
 
     def __post_init__(self) -> None:
         for name in (entry.name for entry in fields(self)):

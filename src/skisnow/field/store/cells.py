@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import ParameterError
 from ..reading.number_cells import number
-from ..reading.table_forms import TABLES, allowed_words
+from ..reading.table_forms import BRANCH, BRANCHES, TABLES, allowed_words
 
 if TYPE_CHECKING:
     from ...inputs import Quantity
@@ -35,6 +35,8 @@ def checked_cell(form: TableForm, column: str, typed: str) -> str:
     rule = next((rule for rule in form.numbers if rule.name == column), None)
     if rule is not None:
         return _number_cell(rule, text)
+    if column == BRANCH and text.casefold() not in BRANCHES:
+        raise ParameterError(f"{column} is {' or '.join(filter(None, BRANCHES))}, or blank; {text!r} stands there")
     if not text and column in form.names:
         raise ParameterError(f"{column} is blank; give it a name")
     if len(text) > LONGEST_TEXT or not all(letter.isprintable() for letter in text):

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from ..reading.branches import is_unloading_cell
+from ..reading.table_forms import BRANCH
 from .journal_entry import DESCRIPTION
 
 if TYPE_CHECKING:
@@ -56,9 +58,18 @@ class ReplayedTest:
         counting = (each for each in reversed(self.history) if each.action != "undo" and not each.is_from_file)
         return next((each for each in counting if each.sequence not in self.undone), None)
 
-    def row_under(self, load: str) -> ReplayedRow | None:
-        """The reading of a series under a load (N)."""
-        return next((row for row in self.rows if float(row.cells["load_N"]) == float(load)), None)
+    def row_under(self, load: str, branch: str = "") -> ReplayedRow | None:
+        """The reading of a series under a load (N), of the loading or, with its word, of the unloading."""
+        taken_off = is_unloading_cell(branch)
+        return next(
+            (
+                row
+                for row in self.rows
+                if float(row.cells["load_N"]) == float(load)
+                and is_unloading_cell(row.cells.get(BRANCH, "")) == taken_off
+            ),
+            None,
+        )
 
     @property
     def next_position(self) -> int:
@@ -117,10 +128,13 @@ def _test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
     return test
 
 
-def _order(row: ReplayedRow) -> tuple[float, int, int]:
-    """Readings that were entered stand in the order of their loads, whichever came first; rows of a file stay."""
+def _order(row: ReplayedRow) -> tuple[bool, float, int, int]:
+    """Readings that were entered rise with their loads, then fall with those of the unloading; rows of a file stay."""
     position, load = row.entered.position, row.cells.get("load_N")
-    return float(load) if load and position is not None else 0.0, position or 0, row.entered.sequence
+    if not load or position is None:
+        return False, 0.0, position or 0, row.entered.sequence
+    taken_off = is_unloading_cell(row.cells.get(BRANCH, ""))
+    return taken_off, -float(load) if taken_off else float(load), position, row.entered.sequence
 
 
 def _take(test: ReplayedTest, rows: dict[int, ReplayedRow], entry: JournalEntry) -> None:

@@ -16,6 +16,7 @@ from .stress_angle import stress_angle
 from .stress_density import stress_density
 from .stress_hardness import stress_hardness
 from .style import journal_style, site_styles
+from .unloading_ratios import unloading_ratios
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,6 +30,7 @@ DRAWERS = (
     model_rmse,
     residuals,
     seating_offsets,
+    unloading_ratios,
     hardness_density,
     shear_force_depth,
     stress_angle,

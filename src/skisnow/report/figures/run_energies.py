@@ -13,6 +13,7 @@ from ..numerals import significant
 from .style import (
     BLACK,
     BLUE,
+    BROWN,
     DOUBLE_MM,
     GREEN,
     GREY,
@@ -43,6 +44,7 @@ _STYLES: Final = {
     "friction": (ORANGE, "lost: friction"),
     "drag": (PURPLE, "lost: air"),
     "damping": (BLACK, "lost: damping"),
+    "snow_damping": (BROWN, "lost: damping of the snow"),
 }
 
 
@@ -57,9 +59,8 @@ def run_energies(run: Run) -> Figure:
     every.set_title(_closing(run), loc="left", fontsize=7.5)
     _stack(losses, run, shares, LOST)
     losses.set_title("losses alone", loc="left", fontsize=7.5)
-    legend_below(
-        figure, [Line2D([], [], color=colour, linewidth=5.0, label=label) for colour, label in _STYLES.values()]
-    )
+    drawn = [style for name, style in _STYLES.items() if name != "snow_damping" or shares[name].any()]
+    legend_below(figure, [Line2D([], [], color=colour, linewidth=5.0, label=label) for colour, label in drawn])
     return figure
 
 

@@ -22,7 +22,7 @@ LISTED: Final = 12
 
 def key_results(data: ReportData) -> list[Markup]:
     """One sentence for each result that the campaign has."""
-    found = [_hardness(data), _stress(data), _law(data), _relations(data)]
+    found = [_hardness(data), _unloading(data), _stress(data), _displacement(data), _law(data), _relations(data)]
     return [sentence for sentence in found if sentence is not None]
 
 
@@ -39,9 +39,41 @@ def _hardness(data: ReportData) -> Markup | None:
     return _mean(data, quantity, data.penetration, len(data.hardness), data.penetration_site)
 
 
+def _unloading(data: ReportData) -> Markup | None:
+    """Of all sites, or of the only one: one sentence."""
+    found = data.results["penetration"]["unloading"]
+    if not found:
+        return None
+    row = found[-1]
+    if row["unloading_ratio_interval"] is None:
+        least = row["rebound_ratio_interval"] and row["rebound_ratio_interval"][1]
+        known = prose("above {least}", least=significant(1.0 / least)) if least and least > 0 else html("not resolved")
+        return prose("Unloading ratio k_u / H_V: {known}, from {n} series.", known=known, n=whole(row["n"]))
+    return prose(
+        "Unloading ratio k_u / H_V {value} (95 % interval {ends}), from {n} series that were unloaded step by step.",
+        value=_strong(row["unloading_ratio"]),
+        ends=interval(row["unloading_ratio_interval"]),
+        n=whole(row["n"]),
+    )
+
+
 def _stress(data: ReportData) -> Markup | None:
     quantity = Quantity("Failure shear stress S_f: mean", "S_f", "S_f_N_per_mm2", "N/mm²", "shear experiment")
     return _mean(data, quantity, data.shear, len(data.stress), data.shear_site)
+
+
+def _displacement(data: ReportData) -> Markup | None:
+    found = data.results["shear"]["displacement"]
+    if not found:
+        return None
+    row = found[-1]
+    ends = row["shear_displacement_interval_mm"]
+    return prose(
+        "Shear displacement u_y: geometric mean {value} mm{ends}, from {n} with turning angles.",
+        value=_strong(row["shear_displacement_mm"]),
+        ends="" if ends is None else prose(" (95 % interval {pair} mm)", pair=interval(ends)),
+        n=counted(row["n"], "shear experiment"),
+    )
 
 
 class Quantity(NamedTuple):

@@ -69,5 +69,21 @@ def seating_found(data: ReportData) -> list[Markup]:
     return found
 
 
+def unloading_found(data: ReportData) -> list[Markup]:
+    """How many series tell k_u / H_V, and what they say together."""
+    used = [row for row in data.unloaded if row["used"]]
+    told = [row for row in used if row["unloading_ratio_interval"] is not None]
+    found = [
+        prose(
+            "{told} of {all} tell both ends of k_u / H_V; of the others only the lower end is known, the "
+            "inverse of the upper end of H_V / k_u. Every series stands in {file}.",
+            told=whole(len(told)),
+            all=counted(len(used), "used series with unloading", "used series with unloading"),
+            file=_file("unloading", data),
+        )
+    ]
+    return found if used else [html("No used series was unloaded.")]
+
+
 def _file(name: str, data: ReportData) -> Markup:
     return Markup("<code>tables/{}{}.csv</code>").format(name, "_synthetic" if data.synthetic else "")

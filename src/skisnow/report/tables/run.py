@@ -28,6 +28,7 @@ _LOST: Final = (
     ("lost_friction_J", "lost to friction"),
     ("lost_drag_J", "lost to air drag"),
     ("lost_damping_J", "lost to damping of the skis"),
+    ("lost_snow_damping_J", "lost to damping and delayed depth of the snow"),
 )
 
 

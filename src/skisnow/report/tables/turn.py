@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...inputs import values_of
 from ...units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..table import Column, Table
-from ..turn_numbers import afterbody_depth_ratio, median_radius, used_grip
+from ..turn_numbers import BandShares, afterbody_depth_ratio, band_shares, median_radius, middle_track, used_grip
 
 if TYPE_CHECKING:
     from ...simulate.run import Run
     from ...snow import SnowProperties
-    from ..turn_chain import EnsembleRun
+    from ..turn_chain import EnsembleRun, TurnChain
 
 
 def parameters_table(snow: SnowProperties) -> Table:
@@ -106,3 +107,55 @@ def ensemble_table(ensemble: Sequence[EnsembleRun]) -> Table:
         ),
         rows,
     )
+
+
+def shares_table(chain: TurnChain) -> Table:
+    """What the band was drawn from, and what each input adds to its variance at the end."""
+    found = band_shares(middle_track(chain.nominal), chain.ensemble)
+    return Table(
+        "band_inputs",
+        "What the band counts, and what each of it adds to the variance of the places at its end.",
+        (
+            Column("key", "Input", "text"),
+            Column("range", "Range", "range"),
+            Column("origin", "Distribution and origin", "words"),
+            Column("aside_percent", "Share of the offset across", "estimate", unit="%", digits=2),
+            Column("ahead_percent", "Share of the offset along", "estimate", unit="%", digits=2),
+        ),
+        [*_inputs(chain, found), *_left(found)],
+        note="Shares: first-order Sobol indices by linear regression on the logarithms of the inputs, with 95 % "
+        "intervals. What is left over does not follow any input in proportion: curvature, thresholds such as an edge "
+        "that loses its grip, and the interplay of inputs.",
+    )
+
+
+def _inputs(chain: TurnChain, found: BandShares | None) -> Iterator[tuple[Any, ...]]:
+    snow, own = chain.snow, values_of(chain.nominal.scenario)
+    measured = (
+        ("snow.H_V_N_per_mm3", _both(snow.snow_hardness_interval, N_PER_MM3), "log-normal"),
+        ("snow.S_f_N_per_mm2", _both(snow.failure_shear_stress_interval, N_PER_MM2), "normal, above 0"),
+    )
+    for key, ends, shape in measured:
+        yield key, ends, f"{shape}; the 95 % interval above", *_shares_of(key, found)
+    for prior in chain.priors:
+        value = own[prior.key]
+        yield prior.key, prior.ends(value), f"even in its logarithm; {prior.origin}", *_shares_of(prior.key, found)
+
+
+def _shares_of(key: str, found: BandShares | None) -> tuple[Any, Any]:
+    """Of the variance across and along, in per cent with intervals; none where it does not vary."""
+    if found is None or key not in found.keys:
+        return (None, None), (None, None)
+    place = found.keys.index(key)
+    across, along = (
+        (100.0 * float(each.share[place]), tuple((100.0 * each.interval[place]).tolist()))
+        for each in (found.aside, found.ahead)
+    )
+    return across, along
+
+
+def _left(found: BandShares | None) -> list[tuple[Any, ...]]:
+    if found is None:
+        return []
+    across, along = ((100.0 * each.left, None) for each in (found.aside, found.ahead))
+    return [("left over", None, "", across, along)]

@@ -53,7 +53,7 @@ class Stations:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClampedSki:
-    """Finite-element model of a ski whose clamped length is rigid and moves with the boot.
+    """Finite-element model of a ski whose clamped length is rigid, or bedded on a boot that is, and moves with it.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class ClampedSki:
 
 
 @functools.lru_cache(maxsize=32)
-def clamped(ski: Ski, clamp_length: float, elements: int) -> ClampedSki:
+def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: float | None = None) -> ClampedSki:
     """Divide a ski into about that many elements of equal length and clamp it at the boot.
 
     Parameters
@@ -93,6 +93,9 @@ def clamped(ski: Ski, clamp_length: float, elements: int) -> ClampedSki:
         0 ≤ length (m); it must lie within the ski.
     elements
         ≥ 4, number of elements over the whole ski.
+    footprint_stiffness
+        > 0, of boot and binding between the boot and each metre of the clamped length (N/m²): the ski is then held at
+        the boot's middle and bedded on it over that length, with k W²/12 against twist; None: rigid.
     """
     front, rear = float(ski.station[0]), float(ski.station[-1])
     if not 0.0 <= clamp_length / 2.0 < min(front, -rear):
@@ -102,11 +105,19 @@ def clamped(ski: Ski, clamp_length: float, elements: int) -> ClampedSki:
         )
     if elements < 4:
         raise ParameterError(f"elements is {elements}; a ski needs 4 or more")
-    node = _nodes(front, rear, clamp_length, elements)
-    dof, size = _numbering(node, clamp_length)
+    if footprint_stiffness is not None and not footprint_stiffness > 0.0:
+        raise ParameterError(
+            f"footprint_stiffness is {footprint_stiffness} N/m²; it must be above 0, or left out: rigid"
+        )
+    bedded = footprint_stiffness is not None
+    node = _nodes(front, rear, clamp_length, elements, bedded=bedded)
+    dof, size = _numbering(node, 0.0 if bedded else clamp_length)
     length = node[:-1] - node[1:]
     at = ski.at(node[:-1, None] - length[:, None] * GAUSS_POINTS)
     stiffness = stiffness_matrices(length, at.bending_stiffness, at.torsional_stiffness)
+    if footprint_stiffness is not None:  # as a mass, which resists in the same shapes
+        under = np.where(np.abs(node[:-1] + node[1:]) < clamp_length, footprint_stiffness, 0.0)[:, None]
+        stiffness = stiffness + mass_matrices(length, under + 0.0 * at.width, under * at.width**2 / 12.0)
     mass = mass_matrices(length, at.mass_per_length, at.mass_per_length * at.width**2 / 12.0)
     return ClampedSki(
         ski,
@@ -139,14 +150,17 @@ def beam_at_stations(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, Floa
     return np.einsum("ij,ij->i", stations.deflection, value), np.einsum("ij,ij->i", stations.twist, value)
 
 
-def _nodes(front: float, rear: float, clamp_length: float, elements: int) -> FloatArray:
+def _nodes(front: float, rear: float, clamp_length: float, elements: int, *, bedded: bool) -> FloatArray:
     half = clamp_length / 2.0
     spacing = (front - rear) / elements
 
     def spaced(start: float, end: float) -> FloatArray:
         return np.linspace(start, end, max(1, round((start - end) / spacing)) + 1)
 
-    parts = [spaced(front, half)[:-1], spaced(half, -half) if half > 0 else np.zeros(1), spaced(-half, rear)[1:]]
+    under = np.zeros(1)
+    if half > 0.0:
+        under = np.append(spaced(half, 0.0)[:-1], spaced(0.0, -half)) if bedded else spaced(half, -half)
+    parts = [spaced(front, half)[:-1], under, spaced(-half, rear)[1:]]
     return np.concatenate(parts)
 
 

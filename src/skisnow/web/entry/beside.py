@@ -10,7 +10,7 @@ from nicegui import background_tasks, run, ui
 from ...errors import FieldDataError, StoreError
 from ..error_pages import error_sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
-from ..words import hardness_words, label, stress_words
+from ..words import displacement_words, hardness_words, label, stress_words, unloading_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -77,7 +77,9 @@ class Beside:
 def _value(row: dict[str, Any] | None, *, pressed: bool) -> str:
     if row is None:
         return ""
-    return f"H_V = {hardness_words(row)}" if pressed else f"S_f = {stress_words(row)}"
+    if not pressed:
+        return "; ".join(filter(None, (f"S_f = {stress_words(row)}", displacement_words(row))))
+    return "; ".join(filter(None, (f"H_V = {hardness_words(row)}", unloading_words(row))))
 
 
 def _lines(name: str, curves: dict[str, SeriesCurve]) -> Iterator[ChartLine]:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ...field.reading.branches import is_unloading_cell
+from ...field.reading.table_forms import BRANCH
 from ...field.store.kept_tables import cell_of
 from ..answering import asking_button, form
 from ..fields import button, field
@@ -155,7 +157,8 @@ def _done(entry: JournalEntry) -> str:
     if entry.action == "correct" and all("/" in key for key in cells):
         what = ", ".join(_cell_words(key, text) for key, text in cells.items())
     elif entry.action == "add" and "load_N" in cells:
-        what = f"{cells['depth_mm']} mm under {cells['load_N']} N"
+        back = " on the way back" if is_unloading_cell(cells.get(BRANCH, "")) else ""
+        what = f"{cells['depth_mm']} mm under {cells['load_N']} N{back}"
     else:
         what = ", ".join(f"{label(column)} {text}" for column, text in cells.items() if text and column not in _SAME)
     why = f" ({entry.why})" if entry.why else ""

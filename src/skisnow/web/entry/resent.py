@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import ui
 
 from ...errors import ParameterError, StoreError
+from ...field.reading.table_forms import BRANCH
 from ...field.store import NewEntry
 from ...field.store.cells import FORMS, checked_cell
 from ..answering import LONGEST
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 FILE: Final = "penetration.csv"
 HEAD: Final = ("experiment", "site", "spot", "tool", "edge_angle_deg")
 """What a series has once."""
-READING: Final = ("load_N", "depth_mm")
+READING: Final = ("load_N", "depth_mm", BRANCH)
 MOST: Final = 10_000
 
 
@@ -62,7 +63,10 @@ def _once(record: Any) -> str:
 
 def _cells(record: Any) -> dict[str, str]:
     said = record.get("cells") if isinstance(record, dict) else None
-    return {column: str(said.get(column) or "") for column in (*HEAD, *READING)} if isinstance(said, dict) else {}
+    if not isinstance(said, dict):
+        return {}
+    cells = {column: str(said.get(column) or "") for column in (*HEAD, *READING)}
+    return cells if cells[BRANCH] else {column: text for column, text in cells.items() if column != BRANCH}
 
 
 def _words(record: Any) -> str:
@@ -79,7 +83,7 @@ def _stored(session: EditSession, record: Any, once: str) -> str:
     if cells["tool"] not in session.described.tools:
         raise ParameterError(f"the campaign has no tool {cells['tool']!r}")
     test = session.test(FILE, cells["experiment"])
-    there = test.row_under(cells["load_N"])
+    there = test.row_under(cells["load_N"], cells.get(BRANCH, ""))
     if there is not None and there.entered.once != once:
         raise ParameterError(f"a reading of {there.cells['depth_mm']} mm is there already")
     if test.rows and test.rows[0].cells["site"] != cells["site"]:

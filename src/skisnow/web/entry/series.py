@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from nicegui import ui
 
+from ...field.reading.table_forms import BRANCH, UNLOADING
 from ..answering import answering, asked, asking_button, form
 from ..fields import choice, field
 from ..layout import heading, sentence
@@ -18,6 +19,8 @@ from .checking import Field, checked_fields, faults, refuse
 from .resent import HEAD
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     from ...field.store import ReplayedRow, ReplayedTest
     from .beside import Beside
     from .table_view import TableView
@@ -35,17 +38,34 @@ class _Reading:
     row: ui.element
 
 
+class _Step(NamedTuple):
+    """What tells the readings of a series apart: the load (N, as text), and whether discs were laid on or taken off."""
+
+    load: str
+    branch: str = ""
+
+    @property
+    def words(self) -> str:
+        """As a person says it."""
+        return f"{self.load} N on the way back" if self.branch else f"{self.load} N"
+
+    @property
+    def asked(self) -> str:
+        """Name of its field."""
+        return f"Depth back under {self.load} N (mm)" if self.branch else f"Depth under {self.load} N (mm)"
+
+
 class SeriesForm:
-    """The form of one series at a time. Its readings are told apart by their loads (N, as text)."""
+    """The form of one series at a time."""
 
     def __init__(self, view: TableView, beside: Beside, places: Places) -> None:
         self._view = view
         self._beside = beside
         self._places = places
         self._head: dict[str, str] = {}
-        self._readings: dict[str, _Reading] = {}
-        self._asking: tuple[str, str] | None = None
-        self._refused: dict[str, str] = {}
+        self._readings: dict[_Step, _Reading] = {}
+        self._asking: tuple[_Step, str] | None = None
+        self._refused: dict[_Step, str] = {}
         self._shown = ""
 
     # The head of a series
@@ -106,7 +126,9 @@ class SeriesForm:
             self._beside.follow(name, head["site"])
 
     def _focus_next(self, test: ReplayedTest) -> None:
-        empty = [each.depth for each in self._readings.values() if not each.depth.value]
+        back = any(row.cells.get(BRANCH) for row in test.rows)
+        shown = self._readings.items()
+        empty = [each.depth for step, each in shown if not each.depth.value and (back or not step.branch)]
         if empty and not test.cancelled:
             empty[0].run_method("focus")
         else:
@@ -123,27 +145,42 @@ class SeriesForm:
             sentence(f"{self._head['site']} · {self._head['tool']} · {self._head['edge_angle_deg']}°", "quiet")
             if test.cancelled:
                 sentence(f"Cancelled: {test.cancelled}", "bad")
-            with ui.element("div").classes("readings") as readings:
-                readings.props["data-head"] = json.dumps(self._head)
-                for load in self._loads(test):
-                    self._readings[load] = self._reading(test, load, unstored.get(load, ""))
+            loads = self._loads(test)
+            self._fields(test, map(_Step, loads), unstored)
             self._ask = ui.element("div")
             self._then = asking_button("Next series", self._next, "main then")
+            self._way_back(test, [_Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
         with self._places.below:
             self._changes = ui.element("div")
             self._further(test)
         self._show_changes()
 
-    def _unstored(self) -> dict[str, str]:
-        """What is typed in fields whose reading is not stored, by load."""
+    def _fields(self, test: ReplayedTest, steps: Iterable[_Step], unstored: Mapping[_Step, str]) -> None:
+        with ui.element("div").classes("readings") as readings:
+            readings.props["data-head"] = json.dumps(self._head)
+            for step in steps:
+                self._readings[step] = self._reading(test, step, unstored.get(step, ""))
+
+    def _way_back(self, test: ReplayedTest, steps: list[_Step], unstored: Mapping[_Step, str]) -> None:
+        """Fields for discs that are taken off one by one; open where there is a reading already."""
+        if not steps:
+            return
+        begun = any(test.row_under(*step) or step in unstored for step in steps)
+        with ui.element("details").props("open" if begun else ""):
+            with ui.element("summary"):
+                ui.label("Discs taken off one by one")
+            self._fields(test, steps, unstored)
+
+    def _unstored(self) -> dict[_Step, str]:
+        """What is typed in fields whose reading is not stored, by step."""
         shown = self._readings.items()
-        return {load: each.depth.value for load, each in shown if each.depth.value and not each.stored.text}
+        return {step: each.depth.value for step, each in shown if each.depth.value and not each.stored.text}
 
     def _next(self) -> bool:
         """Begin the next series, where all that is typed in this one is stored."""
         missing = self._unstored()
         if missing:
-            loads = ", ".join(f"{load} N" for load in missing)
+            loads = ", ".join(step.words for step in missing)
             self._view.say(f"Not stored yet: {loads}. Put it right or empty the field, then go on.", "bad")
             self._readings[next(iter(missing))].depth.run_method("focus")
             return False
@@ -168,21 +205,22 @@ class SeriesForm:
         also = [load for load in steps if test.row_under(load) is None]
         return sorted(dict.fromkeys([*entered, *also]), key=float)
 
-    def _reading(self, test: ReplayedTest, load: str, typed: str) -> _Reading:
-        row = test.row_under(load)
+    def _reading(self, test: ReplayedTest, step: _Step, typed: str) -> _Reading:
+        row = test.row_under(*step)
         with ui.element("div").classes("reading") as made:
-            made.props["data-load"] = load
-            ui.label(f"{load} N").classes("load")
+            made.props["data-load"] = step.load
+            made.props["data-branch"] = step.branch
+            ui.label(f"{step.load} N").classes("load")
             depth = field(label("depth_mm"), row.cells["depth_mm"] if row else typed, numeric=True)
-            depth.props(f'aria-label="Depth under {load} N (mm)"')
+            depth.props(f'aria-label="{step.asked}"')
             depth.props("readonly" if test.cancelled else "")
             stored = ui.label("stored" if row else "").classes("stored")
             if row is not None:
                 made.props["data-stored"] = row.cells["depth_mm"]
             if row is not None and row.corrections:
                 stored.set_text(f"corrected from {row.entered.cells['depth_mm']}")
-        depth.on("keydown.enter", answering(lambda: self._entered(load)), js_handler=TOLD)
-        depth.on("blur", answering(lambda: self._entered(load, left=True)), js_handler=LEFT)
+        depth.on("keydown.enter", answering(lambda: self._entered(step)), js_handler=TOLD)
+        depth.on("blur", answering(lambda: self._entered(step, left=True)), js_handler=LEFT)
         return _Reading(depth, stored, made)
 
     def _further(self, test: ReplayedTest) -> None:
@@ -203,50 +241,55 @@ class SeriesForm:
                 depth = field("Its depth (mm)", numeric=True)
                 asking_button("Store it", done)
 
-    def _entered(self, load: str, *, left: bool = False) -> bool:
+    def _entered(self, step: _Step, *, left: bool = False) -> bool:
         """Take a depth: the first one is stored, another one is a correction; ``left``: its field is left already."""
-        test, made = self._test, self._readings[load]
+        test, made = self._test, self._readings[step]
         if (sent := asked().text) is not None and sent != str(made.depth.value or "").strip():
             made.depth.set_value(sent)  # what was typed was lost on its way, and is sent again
-        row, typed = test.row_under(load), str(made.depth.value or "").strip()
+        row, typed = test.row_under(*step), str(made.depth.value or "").strip()
         if typed == (row.cells["depth_mm"] if row is not None else ""):
             made.row.classes(remove="refused")
-            self._refused.pop(load, None)
+            self._refused.pop(step, None)
             return True
-        if left and typed == self._refused.get(load):  # said at its Enter; by now something else may be said
+        if left and typed == self._refused.get(step):  # said at its Enter; by now something else may be said
             return False
-        taken = self._ask_correction(row, load, focus=not left) if row is not None else self._store(load, made)
-        if not taken and self._readings.get(load) is made:  # the series was not drawn anew meanwhile
-            self._refused[load] = typed
+        taken = self._ask_correction(row, step, focus=not left) if row is not None else self._store(step, made)
+        if not taken and self._readings.get(step) is made:  # the series was not drawn anew meanwhile
+            self._refused[step] = typed
         return taken
 
-    def _store(self, load: str, made: _Reading) -> bool:
+    def _store(self, step: _Step, made: _Reading) -> bool:
         """Store the first depth under a load, and show whether it is stored."""
-        stored = self._add(load, made.depth)
-        row = self._test.row_under(load)
+        stored = self._add(step, made.depth)
+        row = self._test.row_under(*step)
         if stored and row is not None:
             cell = row.cells["depth_mm"]
             made.stored.set_text("stored")
             made.row.props["data-stored"] = cell
             made.row.classes(remove="refused")
             made.depth.set_value(cell)
-        elif self._readings.get(load) is made:  # the series was not drawn anew meanwhile
+        elif self._readings.get(step) is made:  # the series was not drawn anew meanwhile
             made.row.classes("refused")
         return stored
 
-    def _add(self, load: ui.input | str, depth: ui.input) -> bool:
+    def _add(self, load: ui.input | _Step, depth: ui.input) -> bool:
         """Store a reading; what cannot be is said at its field, and stays there."""
         test = self._test
-        given = {"depth_mm": depth} if isinstance(load, str) else {"load_N": load, "depth_mm": depth}
+        given = {"depth_mm": depth} if isinstance(load, _Step) else {"load_N": load, "depth_mm": depth}
         cells = checked_fields(self._view.form, given)
-        if cells is not None and not isinstance(load, str) and test.row_under(cells["load_N"]) is not None:
+        if cells is not None and isinstance(load, _Step) and load.branch and not test.rows:
+            refuse(depth, "the depths under rising loads come first")
+            cells = None
+        if cells is not None and not isinstance(load, _Step) and test.row_under(cells["load_N"]) is not None:
             refuse(load, f"there is a reading under {cells['load_N']} N already; correct it in its own field")
             cells = None
         if cells is None:
             self._view.say(f"Not stored: {'; '.join(faults(given.values()))}.", "bad")
             return False
-        cells = {**self._head, **({"load_N": load} if isinstance(load, str) else {}), **cells}
-        said = f"Stored: {cells['depth_mm']} mm under {cells['load_N']} N."
+        step = load if isinstance(load, _Step) else _Step(cells["load_N"])
+        branch = {BRANCH: step.branch} if step.branch else {}
+        cells = {**self._head, "load_N": step.load, **cells, **branch}
+        said = f"Stored: {cells['depth_mm']} mm under {step.words}."
         stored = self._view.add(test.name, cells, position=test.next_position, seen=test.last, said=said)
         if stored:
             self._show_changes()
@@ -255,8 +298,8 @@ class SeriesForm:
             self._draw(self._test)
         return stored
 
-    def _ask_correction(self, row: ReplayedRow, load: str, *, focus: bool) -> bool:
-        test, entered, depth = self._test, row.entered, self._readings[load].depth
+    def _ask_correction(self, row: ReplayedRow, step: _Step, *, focus: bool) -> bool:
+        test, entered, depth = self._test, row.entered, self._readings[step].depth
         cells = checked_fields(self._view.form, {"depth_mm": depth})
         if cells is None:
             self._view.say(f"Not corrected: {'; '.join(faults([depth]))}.", "bad")
@@ -268,10 +311,10 @@ class SeriesForm:
             self.show(test.name, self._head)
             return True
 
-        if self._asking == (load, cells["depth_mm"]):  # Enter, and then the field was left: one question is enough
+        if self._asking == (step, cells["depth_mm"]):  # Enter, and then the field was left: one question is enough
             return True
-        self._asking = (load, cells["depth_mm"])
-        words = f"{load} N: {row.cells['depth_mm']} mm becomes {cells['depth_mm']} mm."
+        self._asking = (step, cells["depth_mm"])
+        words = f"{step.words}: {row.cells['depth_mm']} mm becomes {cells['depth_mm']} mm."
         act = ("Correct it", correct)
         ask_reason(
             self._ask, words, act, usual=USUAL_REASON, leave=lambda: self.show(test.name, self._head), focus=focus

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ...field.reading.turning import TURNING
 from ..answering import asking_button, form
 from ..fields import choice, field
 from ..layout import heading, sentence
@@ -18,9 +19,11 @@ if TYPE_CHECKING:
     from .beside import Beside
     from .table_view import TableView
 
-OPTIONAL: Final = {"shear.csv": ("spot",)}
+OPTIONAL: Final = {"shear.csv": ("spot", TURNING)}
 KEPT: Final = ("site", "plate", "edge_angle_deg", "lever_arm_mm")
 """What the next test has in common with the one before: filled in already."""
+ONCE: Final = ("site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm")
+"""What all rows of one shear test say, where it is a moment over turning angles."""
 
 
 class SingleForm:
@@ -60,6 +63,8 @@ class SingleForm:
         if "repeat" in self._columns:
             cells[key] = before.get(key, cells[key])
             cells["repeat"] = str(len(tests[-1].rows) + 1) if tests else "1"
+        if before.get(TURNING):
+            cells |= {column: before.get(column, "") for column in (key, *ONCE)}
         return cells
 
     def _draw(self, cells: dict[str, str], correcting: tuple[ReplayedTest, ReplayedRow] | None) -> None:
@@ -100,7 +105,9 @@ class SingleForm:
 
     def _focus_first(self) -> None:
         empty = [each for each in self._fields.values() if not each.value and isinstance(each, ui.input)]
-        wanted = [each for each in empty if each is not self._fields.get("spot")]
+        goes_on = TURNING in self._fields and bool(self._fields["depth_mm"].value)  # the next angle of the same test
+        left = [column for column in OPTIONAL.get(self._view.file, ()) if not (column == TURNING and goes_on)]
+        wanted = [each for each in empty if all(each is not self._fields[column] for column in left)]
         if wanted:
             wanted[0].run_method("focus")
 
@@ -134,6 +141,10 @@ class SingleForm:
         return True
 
     def _second_row_fault(self, test: ReplayedTest, cells: dict[str, str]) -> str:
+        if cells.get(TURNING) and all(row.cells.get(TURNING) for row in test.rows):
+            now = test.rows[0].cells if test.rows else cells
+            changed = [column for column in ONCE if cells.get(column, "") != now.get(column, "")]
+            return f"the rows of test {test.name} have one {label(changed[0])}" if changed else ""
         if "repeat" not in cells:
             return f"there is a test {test.name} already; give this one another name"
         if any(row.cells["repeat"] == cells["repeat"] for row in test.rows):
