@@ -109,7 +109,7 @@ def main() -> None:
     rng = np.random.default_rng(1)
     theta, shares, rmse = drawn_campaigns(parser.parse_args().campaigns, rng)
     X, logs = design(theta, shares), np.log(rmse)
-    coefficients, *_ = np.linalg.lstsq(X, logs, rcond=None)
+    coefficients = np.asarray(np.linalg.lstsq(X, logs, rcond=None)[0], dtype=np.float64)
     left = logs - X @ coefficients
     covariance = left.T @ left / (len(X) - X.shape[1])
     print("what the function leaves over (%):", np.round(100.0 * np.sqrt(np.diag(covariance)), 1).tolist())
