@@ -182,15 +182,7 @@ nb::tuple force(SnowContact& self, const Array& position, const Array& rotation,
   return nb::make_tuple(array(wrench, {found.size(), 6}), loads);
 }
 
-void bind_snow(nb::module_& m) {
-  nb::class_<Grid>(m, "Grid").def(nb::init<double>()).def("at", [](const Grid& g, double x, double y) {
-    const Grid::Value found = g.at(x, y);
-    return nb::make_tuple(found.value, found.slope_x, found.slope_y);
-  });
-  m.def("grid", &grid);
-  nb::class_<Runner>(m, "Runner");
-  m.def("runner", &runner);
-
+void bind_laws(nb::module_& m) {
   nb::class_<FrictionLaw>(m, "FrictionLaw")
       .def(nb::init<>())
       .def_rw("constant", &FrictionLaw::constant)
@@ -215,6 +207,16 @@ void bind_snow(nb::module_& m) {
       .def_rw("delayed_share", &RateLaw::delayed_share)
       .def_rw("retardation", &RateLaw::retardation)
       .def_rw("spacing", &RateLaw::spacing);
+}
+
+void bind_snow(nb::module_& m) {
+  nb::class_<Grid>(m, "Grid").def(nb::init<double>()).def("at", [](const Grid& g, double x, double y) {
+    const Grid::Value found = g.at(x, y);
+    return nb::make_tuple(found.value, found.slope_x, found.slope_y);
+  });
+  m.def("grid", &grid);
+  nb::class_<Runner>(m, "Runner");
+  m.def("runner", &runner);
 
   nb::class_<Snow>(m, "Snow")
       .def(nb::init<>())
@@ -314,6 +316,7 @@ NB_MODULE(_core, m) {
     return names;
   });
 
+  bind_laws(m);
   bind_snow(m);
   bind_contact(m);
   bind_carve(m);

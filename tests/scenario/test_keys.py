@@ -63,6 +63,7 @@ def test_units_come_from_the_names() -> None:
     numbers = {name.rpartition(".")[2] for name, key in SCENARIO_KEYS.items() if key.kind == "number"}
     assert {name for name in numbers if not found[name]} == {
         "unloading_ratio",
+        "delayed_share",
         "mu_0",
         "damping_ratio",
         "groove_tolerance",

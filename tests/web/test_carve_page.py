@@ -44,6 +44,7 @@ def test_the_radius_follows_the_slider(page: Page, served: Served) -> None:
     for _ in range(3):
         page.keyboard.press("ArrowRight")
     page.get_by_text("Edge angle (°): 48").wait_for()
-    page.get_by_role("cell", name=radius(48.0), exact=True).wait_for()
+    row = page.get_by_role("row", name="Turn radius at the boot")
+    row.get_by_role("cell", name=radius(48.0), exact=True).wait_for()
     assert slider.get_attribute("aria-valuetext") == "48"
     assert radius(48.0) != radius(45.0)

@@ -131,7 +131,8 @@ def carve(page: Page, served: Served) -> None:
     page.keyboard.press("ArrowRight")
     asked = {"ski": "carver", "edge_angle_deg": 46.0, "load_N": 800.0, "H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
     answer = answer_dict(answered(carve_question({**asked, "unloading_ratio": 10.0})))
-    page.get_by_role("cell", name=f"{significant(answer['turn_radius_boot_m'])} m", exact=True).wait_for()
+    row = page.get_by_role("row", name="Turn radius at the boot")
+    row.get_by_role("cell", name=f"{significant(answer['turn_radius_boot_m'])} m", exact=True).wait_for()
 
 
 def simulate(page: Page, served: Served) -> dict[str, Any]:

@@ -126,11 +126,8 @@ class Equilibrium(Shown):
         limit = f"of {amount(self.side_force_limit, 'N')}: {holds}"
         rows = (
             ("side force", f"{amount(self.side_force, 'N')} {limit}"),
-            (
-                "turn radius",
-                f"{amount(self.turn_radius_boot, 'm')} ({amount(self.turn_radius_boot_other_spread, 'm')} with "
-                "the side force spread the other way)",
-            ),
+            ("turn radius", amount(self.turn_radius_boot, "m")),
+            ("side force spread otherwise", amount(self.turn_radius_boot_other_spread, "m")),
             ("contact", amount(self.contact_length, "m")),
             ("edge depth", f"at most {amount(deepest, 'mm')}"),
             ("afterbody", f"{amount(self.afterbody_depth_ratio)} of the forebody's depth"),
