@@ -16,7 +16,8 @@ from matplotlib.lines import Line2D
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from benchmarks.contrast.found import Found, demand_and_strength, found, read_rows
-from benchmarks.contrast.pairs import PARTED, SCENARIOS, Pairs, turn
+from benchmarks.contrast.pairs import PARTED, SCENARIOS, turn
+from benchmarks.contrast.unknowns import design
 
 from skisnow import simulate
 from skisnow.report.figures.figure_file import write_figure
@@ -26,24 +27,19 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from skisnow.parallel.kept_rows import Row
-
 DOCS = Path(__file__).resolve().parent
 PAIRS = DOCS / "gallery" / "contrast"
 FOLD = PAIRS / "fold.json"
 RATIOS = np.array([1.0, 1.02, 1.05, 1.1, 1.15, 1.2, 1.3, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0])
 FACTORS = np.geomspace(0.5, 2.0, 13)
 """Of S_f."""
+FOLDED = 5
+"""Point of the design whose carver pair is looked at: it parts by 13 m."""
 
 
-def farthest(each: Found) -> Row:
-    """The row of the pair that parts farthest."""
-    return each.rows[int(np.nanargmax(each.apart))]
-
-
-def compute_fold(row: Row) -> None:
-    """Ends over k_u/H_V, and over S_f with both contacts, about the pair that parts farthest."""
-    point = {name: row[name] for name in Pairs().keys}
+def compute_fold() -> None:
+    """Ends over k_u/H_V, and over S_f with both contacts, about a pair of the carver."""
+    point = {"scenario": SCENARIOS[0], **design()[FOLDED]}
     ratio, strength = "snow.unloading_ratio", "snow.S_f_N_per_mm2"
     kept: dict[str, Any] = {"point": point, "ratio": [end_of(point | {ratio: float(each)}) for each in RATIOS]}
     for contact, own in (("elastic", 1.0), ("hypoplastic", point[ratio])):
@@ -124,7 +120,7 @@ def _handles() -> list[Line2D]:
 
 
 def the_fold() -> Figure:
-    """Ends of runs about the pair that parts farthest."""
+    """Ends of runs about one pair."""
     kept = json.loads(FOLD.read_text(encoding="utf-8"))
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=66.0)
     left, right = figure.subplots(1, 2, sharey=True)
@@ -150,7 +146,7 @@ def main() -> None:
     """Draw; with --fold its runs are computed anew."""
     pairs = found(read_rows(PAIRS))
     if "--fold" in sys.argv[1:]:
-        compute_fold(farthest(pairs[SCENARIOS[0]]))
+        compute_fold()
     write_figure(DOCS / "_static" / "gallery" / "turn-contrast-map.png", lambda: the_map(pairs))
     write_figure(DOCS / "_static" / "gallery" / "turn-contrast-fold.png", the_fold)
 

@@ -142,13 +142,18 @@ def likelihood(count: int, of: int) -> str:
 def both_published(pairs: dict[str, Found]) -> tuple[int, int]:
     """Of points with both pairs complete: at how many the carver's parts by the published distance or more, the giant
     slalom's by no more than its own."""
+    common = _common(pairs)
+    least, most = (each.published_range[place] for place, each in enumerate(pairs.values()))
+    return sum(carver >= least and giant <= most for carver, giant in common), len(common)
+
+
+def _common(pairs: dict[str, Found]) -> list[tuple[float, float]]:
+    """Distances (m) of both pairs at the points at which both are complete."""
     carver, giant = (
         {point(row): far for row, far in zip(each.rows, each.apart, strict=True) if np.isfinite(far)}
         for each in pairs.values()
     )
-    least, most = (each.published_range[place] for place, each in enumerate(pairs.values()))
-    common = carver.keys() & giant.keys()
-    return sum(carver[key] >= least and giant[key] <= most for key in common), len(common)
+    return [(carver[key], giant[key]) for key in carver.keys() & giant.keys()]
 
 
 def point(row: Row) -> tuple[Any, ...]:
@@ -162,6 +167,7 @@ def numbers(pairs: dict[str, Found]) -> dict[str, str]:
     told = {
         "pairs": str(sum(each.asked for each in pairs.values())),
         "both published": likelihood(count, of),
+        "giant less": likelihood(sum(giant < carver for carver, giant in _common(pairs)), of),
         "unknowns": _unknowns_table(),
         "outcomes": _outcomes_table(pairs),
         "ratios": _ratios_table(pairs),

@@ -72,7 +72,7 @@ class TestStraight:
             assert any(text.startswith(told) for text in found.warnings) is near
 
     def test_ctrl_c_while_the_limit_is_looked_at_keeps_the_answer(self) -> None:
-        def stopped(tasks: object) -> list[Row]:  # noqa: ARG001
+        def stopped(tasks: object) -> list[Row]:  # noqa: ARG001 - as it is called
             raise KeyboardInterrupt
 
         positions = track_positions.TrackPositions((track_positions.measured(track()),), stopped)

@@ -1,4 +1,4 @@
-"""The chain: a campaign, its snow with intervals, a turn with each contact, an ensemble over what is not known."""
+"""The whole chain: a campaign, its snow with intervals, a turn with each contact, a band over what is not known."""
 
 from __future__ import annotations
 

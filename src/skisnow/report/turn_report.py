@@ -131,8 +131,8 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
     contacts = html(
         "The hypoplastic contact depends on the history of loading: the forebody leaves a permanent groove, and the "
         "afterbody runs in it. The elastic contact has no history: the groove closes under the afterbody as the load "
-        "passes. What that changes in this turn stands under the key results. k_u / H_V is not published; it is a "
-        "parameter."
+        "passes. What that changes in this turn stands under the key results: most where the turn needs a little more "
+        "side force than elastic snow can give. k_u / H_V is not published; it is a parameter."
     )
     drawn = prose(
         "{count} runs with all that the table below names drawn at random (Latin hypercube, seed {seed}). The "

@@ -209,7 +209,7 @@ def ensemble_accuracy(chain: TurnChain) -> list[Markup]:
     return [
         prose(
             "The ensemble is computed in fewer time steps than the turns above: so computed, the nominal run ends "
-            "{error} m from where it ends with control of the error.",
+            "{error} m from where it ends above.",
             error=significant(chain.ensemble_error, 2),
         )
     ]

@@ -82,7 +82,7 @@ class Contact:
             lowest=0.01,  # below, a step's corrections are as large
             highest=10.0,
             origin="not measured: a choice near the law of the paper, which is its limit 0",
-            search=Search(0.2e-3, 0.01e-3, 5e-3, logarithmic=True),
+            search=Search(3.0, 0.01, 5.0, logarithmic=True),
         ),
     ] = SHEAR_DISPLACEMENT
     damping: Annotated[
