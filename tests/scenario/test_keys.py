@@ -69,6 +69,7 @@ def test_units_come_from_the_names() -> None:
         "groove_tolerance",
         "transverse_friction",
         "residual_ratio",
+        "stiffness_factor",
     }
 
 

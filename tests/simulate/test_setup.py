@@ -59,3 +59,13 @@ def test_in_soft_snow_an_element_is_four_and_a_half_centimetres_long() -> None:
     found = laid_out(read_scenario("carved-46m", changes={"snow.H_V_N_per_mm3": 0.02})).numbers
     assert 1.8 / found["elements"] == pytest.approx(0.045)
     assert found["line_spacing_m"] == 0.02
+
+
+def test_a_stiffness_factor_multiplies_both_stiffnesses() -> None:
+    """Sixteen times EI: waves, and with them the spacing of lines, of twice the length. 1 is the ski itself."""
+    plain = scenario(ski=plain_ski(length=1.6, width=0.065, bending=300.0), hardness=20.0)
+    stiff = plain.with_(stiffness_factor=16.0)
+    assert stiff.flexing_ski.torsional_stiffness == pytest.approx(16.0 * plain.ski.torsional_stiffness)
+    ratio = laid_out(stiff).numbers["line_spacing_m"] / laid_out(plain).numbers["line_spacing_m"]
+    assert ratio == pytest.approx(2.0, rel=1e-9)
+    assert plain.flexing_ski is plain.ski
