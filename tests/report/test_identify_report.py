@@ -179,7 +179,7 @@ def test_residuals_are_measured_minus_identified_in_a_band_of_two_deviations(fou
     assert zero[:, 1].tolist() == [0.0, 0.0]
     band = axes.collections[0].get_paths()[0].get_extents()
     assert (band.x0, band.x1, band.y0, band.y1) == pytest.approx((20.0, 60.0, -0.008, 0.008))
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("station (m)", "time\nmeasured − identified (s)")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("distance from the start (m)", "time\nmeasured − identified (s)")
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a", "b"]
 
 

@@ -115,7 +115,7 @@ class Contact:
             lowest=1.0,
             highest=1e7,
             origin="choice: what a ski takes to pass; not measured",
-            search=Search(0.1, 0.001, 1e4, logarithmic=True),
+            search=Search(1.0, 1.0, 1e4, logarithmic=True),
         ),
     ] = RETARDATION_TIME
     friction: Annotated[
