@@ -250,11 +250,21 @@ void SnowContact::settle_history(int k, const Pose& pose) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   if (snow_->rate.is_delayed()) state_.delayed_energy += advance_delayed(*snow_, sections(k), dt_, lines);
   remember(k, lines);
-  const Sections& s = sections(k);
-  for (std::int64_t n = lines.first; n < lines.end; n++)
-    if (s.touches(s.index(n))) lines.count_energy(lines.slot(n), s[SHARE][s.index(n)]);
+  count_energy(k, lines);
   if (lines.is_uneven(pose, *snow_)) lay_anew(k, pose);
   lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
+}
+
+// A line that tip or tail passes stands for the whole spacing: what the ski presses there first is pressed for good.
+void SnowContact::count_energy(int k, GrooveLines& lines) const {
+  const Sections& s = sections(k);
+  const double half = 0.5 * lines.spacing(), tail = runner(k).tail + half, tip = runner(k).tip - half;
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int i = s.index(n);
+    if (!s.touches(i)) continue;
+    const bool is_whole = s[STATION][i] > tail && s[STATION][i] < tip;
+    lines.count_energy(lines.slot(n), is_whole ? s[SHARE][i] : lines.spacing());
+  }
 }
 
 // Leave all lines to the archive and lay others, on which the edge is displaced and has slipped as it had at the same

@@ -118,6 +118,7 @@ class SnowContact {
   void prepare(int k, GrooveLines& lines, const Pose& pose);
   void learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const;
   void settle_history(int k, const Pose& pose);
+  void count_energy(int k, GrooveLines& lines) const;
   void stand(const std::vector<Pose>& poses);
   void pass_time(double dt);
   void lay_anew(int k, const Pose& pose);
