@@ -105,5 +105,7 @@ def _links(kind: str, id_: str, key: str) -> None:
         if kind == "entry":
             link("Enter tests", entering(id_))
         link("Open the report", f"/report/{key}/report.html").props("target=_blank")
-        link("Download everything", f"/report/{key}/analysis.zip")
+        # asked for over the connection of the page, so that it comes after what was chosen before it
+        everything = link("Download everything", "#")
+        everything.on("click.prevent", lambda: ui.download(f"/report/{key}/analysis.zip"))
         link("Export the campaign", export(kind, id_))
