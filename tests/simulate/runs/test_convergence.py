@@ -39,14 +39,8 @@ def test_carving(hardness: float, strength: float) -> None:
     assert min(found.values()) > 0.0  # the choice reached the solver
 
 
-TREMBLES = pytest.mark.xfail(strict=True, reason="a finer choice moves the end of a skid on ice by 5.7 cm")
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("hardness", "strength"),
-    [pytest.param(*each, marks=[TREMBLES] if each == (90.0, 0.3) else []) for each in SKIDS],
-)
+@pytest.mark.parametrize(("hardness", "strength"), SKIDS)
 def test_skidding(hardness: float, strength: float) -> None:
     """An edge that gives way by half a millimetre; nearer to the limit a skid hangs on its last decimetres."""
     found = moves(hardness, strength, shear_displacement_mm=0.5)
