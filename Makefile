@@ -11,6 +11,9 @@ SBOM ?= dist/skisnow.cdx.json
 # the same examples every time (test-all seeks others); neighbours stay in one process, which has what they share
 QUICK := -n 2 --dist worksteal -q --hypothesis-profile=ci
 
+# tests start hundreds of Python processes; where compiled modules are not kept, each compiles the package anew
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help demo test test-repeating test-all test-minimum coverage lint tidy sanitize docs bench lock sbom clean
 
 help:

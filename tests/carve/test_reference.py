@@ -103,11 +103,11 @@ def test_a_plain_ski_with_a_shovel() -> None:
     compare(replace(base(ski), unloading_ratio=10.0, clamp_length=0.3))
 
 
-@pytest.mark.parametrize("moment", [0.0, 40.0])
+@pytest.mark.parametrize("moment", [pytest.param(0.0, marks=pytest.mark.slow), 40.0])
 def test_a_boot_that_takes_no_moment_of_the_side_force(moment: float) -> None:
     compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, boot_is_free=True, moment=moment))
 
 
-@pytest.mark.parametrize("boot_is_free", [False, True])
+@pytest.mark.parametrize("boot_is_free", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_a_side_force_that_goes_as_the_force_on_the_base(boot_is_free: bool) -> None:
     compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, by_reaction=True, boot_is_free=boot_is_free))

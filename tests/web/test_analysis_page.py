@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import urllib.request
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +19,7 @@ from skisnow.web.analysing import choosable_marks
 from .conftest import DRAWING_MS, Served, downloaded_results
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Page, WebSocketRoute
 
 SEED = 3
 DESCRIPTION = """name = "growing"
@@ -119,6 +120,31 @@ def test_the_numbers_are_there_with_the_page_until_something_is_entered(
     assert "1 penetration experiment" not in html(served, path)
     page.reload()
     page.get_by_text("1 penetration experiment, 0 used").first.wait_for()
+
+
+def test_the_report_is_of_what_was_chosen_just_before(page: Page, served: Served, tmp_path: Path) -> None:
+    id_ = kept_campaign(served, tmp_path / "reference")
+    said: list[tuple[WebSocketRoute, str | bytes]] = []
+    is_slow = False
+
+    def pass_on(socket: WebSocketRoute) -> None:
+        lab = socket.connect_to_server()
+        socket.on_message(lambda message: said.append((lab, message)) if is_slow else lab.send(message))
+
+    page.route_web_socket("**/*", pass_on)
+    page.goto(f"{served.address}analysis/kept/{id_}")
+    page.locator(".status", has_text="used.").wait_for()
+    page.locator("summary", has_text="Included experiments").press("Enter")
+    is_slow = True
+    page.get_by_role("checkbox", name=re.compile("^Penetration P001,")).press("Space")
+    with page.expect_popup() as opened:
+        page.get_by_role("link", name="Open the report").press("Enter")
+        is_slow = False
+        for lab, message in said:
+            lab.send(message)
+    report = opened.value
+    report.wait_for_load_state()
+    assert "cancelled" in report.content()
 
 
 @pytest.mark.slow

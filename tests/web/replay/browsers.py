@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from ..conftest import PATIENCE_MS
+from ..conftest import CHROMIUM, PATIENCE_MS
 
 SOFTWARE = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
 
@@ -15,8 +14,7 @@ SOFTWARE = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftsha
 @contextmanager
 def drawing_in_software(other: Any) -> Iterator[Any]:
     """A Chromium of its own beside one that runs: of Playwright there can be only one at a time."""
-    place = shutil.which("chromium") or shutil.which("chromium-browser")
-    browser = other.browser_type.launch(executable_path=place, args=list(SOFTWARE))
+    browser = other.browser_type.launch(executable_path=CHROMIUM, args=list(SOFTWARE))
     try:
         yield browser
     finally:

@@ -104,8 +104,9 @@ def _links(kind: str, id_: str, key: str) -> None:
     with ui.element("div").classes("acts"):
         if kind == "entry":
             link("Enter tests", entering(id_))
-        link("Open the report", f"/report/{key}/report.html").props("target=_blank")
-        # asked for over the connection of the page, so that it comes after what was chosen before it
+        # both are asked for over the connection of the page, so that they come after what was chosen before
+        report = link("Open the report", f"/report/{key}/report.html").props("target=_blank")
+        report.on("click.prevent", lambda: ui.navigate.to(f"/report/{key}/report.html", new_tab=True))
         everything = link("Download everything", "#")
         everything.on("click.prevent", lambda: ui.download(f"/report/{key}/analysis.zip"))
         link("Export the campaign", export(kind, id_))
