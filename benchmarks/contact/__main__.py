@@ -54,6 +54,7 @@ LITERALS = [
     Literal("EDGE_ASIDE", "lines.cpp", "0.04", ("0.02", "0.08")),
     Literal("MOST_UNEVEN", "lines.cpp", "0.25", ("0.12", "0.5")),
     Literal("MOST_TURN", "lines.cpp", "0.3", ("0.15", "0.6")),
+    Literal("MOST_OFF", "lines.cpp", "2e-4", ("1e-4", "4e-4")),
     Literal("FURTHER", "lines.cpp", "0.03", ("0.01", "0.1")),
     Literal("SPARE", "learn.cpp", "0.01", ("0.005", "0.05")),
     Literal("KNOTS", "groove.hpp", "16", ("12", "32")),
@@ -64,6 +65,9 @@ LITERALS = [
     Literal("PARTS", "archive.cpp", "4", ("2", "8")),
     Literal("TANGENT_STEP", "contact.cpp", "1e-8", ("1e-9", "1e-7")),
     Literal("LEVEL", "contact.cpp", "1e-6", ("1e-7", "1e-5")),
+    Literal("NONE", "delayed.hpp", "1e-10", ("1e-12", "1e-8")),
+    Literal("RATE_STEP", "rate.cpp", "1e-4", ("1e-5", "1e-3")),
+    Literal("MOST_PLACES", "march.cpp", "24", ("12", "48")),
     Literal("SLOW", "dynamics.cpp", "0.15", ("0.08", "0.3")),
     Literal("UNSEEN", "dynamics.cpp", "0.3", ("0.15", "0.6")),
     Literal("LEAST_ERROR", "dynamics.cpp", "0.1", ("0.05", "0.2")),
@@ -124,7 +128,7 @@ def _other(package: Path) -> tuple[dict[str, Answer], dict[str, End]]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.contact")
-    parser.add_argument("--literals", action="store_true", help="those of the C++ sources too")
+    parser.add_argument("--literals", nargs="*", metavar="NAME", help="those of the C++ sources too, or some of them")
     parser.add_argument("--answers", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     base = all_answers({})
@@ -137,11 +141,12 @@ def main() -> None:
     for name, standard, values in KEYS:
         for value, changes in values.items():
             print(row(name, standard, value, all_answers(dict(changes)), base), flush=True)
-    if not options.literals:
+    if options.literals is None:
         return
+    chosen = [each for each in LITERALS if not options.literals or each.name in options.literals]
     ends, rows = all_ends(), []
     with tempfile.TemporaryDirectory() as folder:
-        for literal in LITERALS:
+        for literal in chosen:
             for value in literal.values:
                 found, moved = _other(_built(Path(folder), literal, value))
                 if literal.file != "dynamics.cpp":

@@ -12,7 +12,8 @@ from skisnow.simulate.run_setup import set_up
 from ..turns.cases import SCENARIO, SKID
 
 SECONDS = 5
-TURNS: dict[str, dict[str, object]] = {"carve": {}, "skid": dict(SKID)}
+RATE = {"snow.damping_N_s_per_mm3": 0.01, "snow.delayed_share": 0.3}
+TURNS: dict[str, dict[str, object]] = {"carve": {}, "skid": dict(SKID), "rate": dict(RATE)}
 
 
 @dataclass(frozen=True)

@@ -252,6 +252,7 @@ void SnowContact::settle_history(int k, const Pose& pose) {
   remember(k, lines);
   count_energy(k, lines);
   if (lines.is_uneven(pose, *snow_)) lay_anew(k, pose);
+  follow_snow(k, lines);
   lines.drop_left(runner(k), pose, &snow_->archive, state_.strips[std::size_t(k)]);
 }
 
@@ -264,6 +265,16 @@ void SnowContact::count_energy(int k, GrooveLines& lines) const {
     if (!s.touches(i)) continue;
     const bool is_whole = s[STATION][i] > tail && s[STATION][i] < tip;
     lines.count_energy(lines.slot(n), is_whole ? s[SHARE][i] : lines.spacing());
+  }
+}
+
+// Where hardness or strength vary in place, each line has those of where its edge is now.
+void SnowContact::follow_snow(int k, GrooveLines& lines) const {
+  if (snow_->hardness.is_constant() && snow_->strength.is_constant()) return;
+  const Sections& s = sections(k);
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const int i = s.index(n);
+    if (s.touches(i)) lines.follow_snow(lines.slot(n), s[EDGE_PLACE][i], *snow_);
   }
 }
 

@@ -119,6 +119,7 @@ class SnowContact {
   void learn(GrooveLines& lines, int slot, double from, double to, const Standing& standing) const;
   void settle_history(int k, const Pose& pose);
   void count_energy(int k, GrooveLines& lines) const;
+  void follow_snow(int k, GrooveLines& lines) const;
   void stand(const std::vector<Pose>& poses);
   void pass_time(double dt);
   void lay_anew(int k, const Pose& pose);

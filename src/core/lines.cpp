@@ -13,7 +13,6 @@ constexpr int NEWTON_STEPS = 3;      // to the place on a curved surface
 constexpr double MOST_UNEVEN = 0.25;  // of the spacing, between neighbours
 constexpr double MOST_TURN = 0.3;     // (rad) between a line's direction ahead and the ski
 constexpr double MOST_OFF = 2e-4;     // (m) between a line and the surface under the ski
-constexpr double MOST_OTHER = 0.01;   // share by which the snow under the ski is harder or softer than a line's
 constexpr double FURTHER = 0.03;      // (m) beyond what is needed, over which older tracks are looked for
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -156,13 +155,24 @@ void GrooveLines::lay(std::int64_t number, const Pose& pose, double station, con
   put(*this, AHEAD_X, at, unit(ahead));
   put(*this, NORMAL_X, at, normal);
   for (int field = ANCHORED; field < LINE_FIELDS; field++) values[LineField(field)][at] = 0.0;
-  const double hardness = snow.hardness.at(origin[0], origin[1]).value;
-  values[HARDNESS][at] = hardness;
-  values[EXCESS][at] = (snow.unloading_ratio - 1.0) * hardness;
-  values[STRENGTH][at] = snow.strength.at(origin[0], origin[1]).value;
+  take_snow(at, origin, snow);
   keep(at, Ground());
   delayed[std::size_t(at)] = DelayedGround{snow.rate.spacing};
   energy_[std::size_t(at)] = counted_[std::size_t(at)] = 0.0;
+}
+
+void GrooveLines::take_snow(int slot, const Vector3& at, const Snow& snow) {
+  const double hardness = snow.hardness.at(at[0], at[1]).value;
+  values[HARDNESS][slot] = hardness;
+  values[EXCESS][slot] = (snow.unloading_ratio - 1.0) * hardness;
+  values[STRENGTH][slot] = snow.strength.at(at[0], at[1]).value;
+}
+
+void GrooveLines::follow_snow(int slot, double place, const Snow& snow) {
+  const double before = energy_per_metre(slot, ground(slot));
+  const Vector3 from = origin(slot), across = lateral(slot);
+  take_snow(slot, {from[0] + place * across[0], from[1] + place * across[1], 0.0}, snow);
+  counted_[std::size_t(slot)] += energy_per_metre(slot, ground(slot)) - before;
 }
 
 double GrooveLines::aside(int slot, const Pose& pose) const {
@@ -256,20 +266,15 @@ bool GrooveLines::is_uneven(const Pose& pose, const Snow& snow) const {
     if (std::fabs(here - before - spacing_) > MOST_UNEVEN * spacing_) return true;
     before = here;
   }
-  return is_other_snow(slot((first + end) / 2), pose, snow);
+  return is_off_surface(slot((first + end) / 2), pose, snow);
 }
 
-// Whether the snow under the ski is not that of a line any more, because the ski has gone aside on it.
-bool GrooveLines::is_other_snow(int slot, const Pose& pose, const Snow& snow) const {
+// Whether the surface under the ski is not that of a line any more, because the ski has gone aside on it.
+bool GrooveLines::is_off_surface(int slot, const Pose& pose, const Snow& snow) const {
   const double across = aside(slot, pose);
   const Vector3 from = origin(slot), along = lateral(slot);
   const double x = from[0] + across * along[0], y = from[1] + across * along[1], z = from[2] + across * along[2];
-  const auto differs = [&](const Grid& grid, LineField field) {
-    const double kept = values[field][slot];
-    return std::fabs(grid.at(x, y).value - kept) > MOST_OTHER * kept;
-  };
-  return std::fabs(snow.surface.at(x, y).value - z) > MOST_OFF || differs(snow.hardness, HARDNESS) ||
-         differs(snow.strength, STRENGTH);
+  return std::fabs(snow.surface.at(x, y).value - z) > MOST_OFF;
 }
 
 void GrooveLines::leave_all(Archive& archive, int strip) {

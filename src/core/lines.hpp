@@ -84,9 +84,11 @@ class GrooveLines {
   // runner in the archive.
   void drop_left(const Runner& runner, const Pose& pose, Archive* archive, int strip);
 
-  // Whether they have come to lie unevenly, the ski has turned away from them, or the snow is another one there.
+  // Whether they have come to lie unevenly, the ski has turned away from them, or the surface is another one there.
   bool is_uneven(const Pose& pose, const Snow& snow) const;
   void leave_all(Archive& archive, int strip);
+  // Take hardness and strength of a place (m) across a line; its ground stays as it is.
+  void follow_snow(int slot, double place, const Snow& snow);
 
   // Of a ground, for each metre of ski (J/m); empty: that of the core's own law.
   std::function<double(const Ground&)> lost;
@@ -107,7 +109,8 @@ class GrooveLines {
   double energy_per_metre(int slot, const Ground& ground) const;
   void lay(std::int64_t number, const Pose& pose, double station, const Snow& snow);
   void leave(std::int64_t number, Archive* archive, int strip);
-  bool is_other_snow(int slot, const Pose& pose, const Snow& snow) const;
+  bool is_off_surface(int slot, const Pose& pose, const Snow& snow) const;
+  void take_snow(int slot, const Vector3& at, const Snow& snow);
 };
 
 }  // namespace skisnow

@@ -33,7 +33,7 @@ void take_lines(const Pose& pose, const GrooveLines& lines, Sections& s) {
 
 template <class V>
 inline void store_table_place(const Runner& runner, Sections& s, int i, V station) {
-  store(s[TABLE_PLACE] + i, within((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.000001));
+  store(s[TABLE_PLACE] + i, within((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.0));
 }
 
 // [edge_side] From the ski's middle (0) to one of its edges (1, -1) as the edge angle grows to that of the blend. Of a
@@ -62,7 +62,7 @@ void cross_axis(const Runner& runner, const Snow& snow, const GrooveLines& lines
 }
 
 inline double looked_up(const Runner& runner, const Sections& s, int i, int column) {
-  const int row = int(s[TABLE_PLACE][i]);
+  const int row = std::min(int(s[TABLE_PLACE][i]), runner.places - 2);
   const double part = s[TABLE_PLACE][i] - row;
   const double* table = runner.table.data() + 4 * row;
   return table[column] + part * (table[4 + column] - table[column]);

@@ -132,6 +132,27 @@ def test_snow_may_differ_from_place_to_place() -> None:
     assert found[4] == pytest.approx(-0.2 * H * 0.06 * 1e-3 / 12.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("angle_deg", [-50.0, 50.0])
+def test_an_edge_that_slips_aside_meets_the_snow_of_where_it_is(angle_deg: float) -> None:
+    """Ridges 0.2 m apart in H_V and S_f: over the forces in level snow those at the edge are the ridge's own."""
+    angle, side = math.radians(angle_deg), math.copysign(1.0, angle_deg)
+    y = np.linspace(-0.5, 0.5, 201)
+
+    def ridge(place: FloatArray | float) -> FloatArray:
+        return np.asarray(1.0 + 0.3 * np.sin(2.0 * math.pi * place / 0.2))
+
+    varied = [Grid(np.array([-2.0, 2.0]), y, np.tile(size * ridge(y), (2, 1))) for size in (H, S)]
+    contacts = [SnowContact(SnowField(*sizes, 10.0), [straight()]) for sizes in (varied, (H, S))]
+    for n in range(300):  # towards the base, which presses all that the edge then cuts
+        position = np.array([[0.0, -side * 5e-4 * n, 0.03 * math.sin(abs(angle)) - 2e-3]])
+        for contact in contacts:
+            contact.update(position, edged(angle)[None], 1e-3)
+        if n > 10:
+            rugged, level = (c.force(position, edged(angle)[None], SPEED * 0.0, 0.0).wrench[0, 1:3] for c in contacts)
+            edge = position[0, 1] + side * 0.03 * math.cos(angle)
+            assert rugged == pytest.approx(level * ridge(edge), rel=2e-4)
+
+
 @dataclass(frozen=True)
 class _Kinked(FrictionLaw):
     """A law written here."""
