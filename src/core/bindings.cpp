@@ -237,45 +237,50 @@ void bind_snow(nb::module_& m) {
       .def_rw("part_across", &Snow::part_across);
 }
 
+void make_contact(SnowContact* at, std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
+                  const std::optional<std::string>& set) {
+  const Kernels* chosen = set ? kernels_named(set->c_str()) : &kernels();
+  if (chosen == nullptr) throw std::invalid_argument("this processor or library lacks the instruction set " + *set);
+  new (at) SnowContact(std::move(snow), std::move(runners), spacing, *chosen);
+}
+
+void update(SnowContact& self, const Array& position, const Array& rotation, double dt, const Beams& beams) {
+  const Situation to = situation(self.runners(), position, rotation, nullptr, dt, beams, {});
+  nb::gil_scoped_release free;
+  self.update(to);
+}
+
+nb::tuple tangent(SnowContact& self, const Array& position, const Array& rotation, const Array& velocity, double dt,
+                  const Beams& beams, const Beams& rates) {
+  const Situation at = situation(self.runners(), position, rotation, &velocity, dt, beams, rates);
+  std::vector<double> stiffness, damping;
+  {
+    nb::gil_scoped_release free;
+    self.tangent(at, stiffness, damping);
+  }
+  const auto count = std::size_t(self.runners());
+  return nb::make_tuple(array(stiffness, {count, 6, 6}), array(damping, {count, 6, 6}));
+}
+
+void set_laws(SnowContact& self, nb::object friction, nb::object shear, double fade_speed) {
+  self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
+}
+
+void set_penetration(SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
+  self.set_penetration(python_penetration(law, bends, along_base_normal));
+}
+
 void bind_contact(nb::module_& m) {
   nb::class_<SnowContact::State>(m, "State");
   nb::class_<SnowContact>(m, "Contact")
-      .def(
-          "__init__",
-          [](SnowContact* at, std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
-             std::optional<std::string> set) {
-            const Kernels* chosen = set ? kernels_named(set->c_str()) : &kernels();
-            if (chosen == nullptr)
-              throw std::invalid_argument("this processor or library lacks the instruction set " + *set);
-            new (at) SnowContact(std::move(snow), std::move(runners), spacing, *chosen);
-          },
-          nb::arg("snow"), nb::arg("runners"), nb::arg("spacing"), nb::arg("instruction_set").none() = nb::none())
+      .def("__init__", &make_contact, nb::arg("snow"), nb::arg("runners"), nb::arg("spacing"),
+           nb::arg("instruction_set").none() = nb::none())
       .def_prop_ro("instruction_set", [](const SnowContact& self) { return self.kernels().name; })
       .def("force", &force, nb::arg("position"), nb::arg("rotation"), nb::arg("velocity"), nb::arg("dt"),
            nb::arg("beams").none(), nb::arg("rates").none())
-      .def(
-          "update",
-          [](SnowContact& self, const Array& position, const Array& rotation, double dt, const Beams& beams) {
-            const Situation to = situation(self.runners(), position, rotation, nullptr, dt, beams, {});
-            nb::gil_scoped_release free;
-            self.update(to);
-          },
-          nb::arg("position"), nb::arg("rotation"), nb::arg("dt"), nb::arg("beams").none())
-      .def(
-          "tangent",
-          [](SnowContact& self, const Array& position, const Array& rotation, const Array& velocity, double dt,
-             const Beams& beams, const Beams& rates) {
-            const Situation at = situation(self.runners(), position, rotation, &velocity, dt, beams, rates);
-            std::vector<double> stiffness, damping;
-            {
-              nb::gil_scoped_release free;
-              self.tangent(at, stiffness, damping);
-            }
-            const auto count = std::size_t(self.runners());
-            return nb::make_tuple(array(stiffness, {count, 6, 6}), array(damping, {count, 6, 6}));
-          },
-          nb::arg("position"), nb::arg("rotation"), nb::arg("velocity"), nb::arg("dt"), nb::arg("beams").none(),
-          nb::arg("rates").none())
+      .def("update", &update, nb::arg("position"), nb::arg("rotation"), nb::arg("dt"), nb::arg("beams").none())
+      .def("tangent", &tangent, nb::arg("position"), nb::arg("rotation"), nb::arg("velocity"), nb::arg("dt"),
+           nb::arg("beams").none(), nb::arg("rates").none())
       .def("sections", &sections_of)
       .def("tracks", [](const SnowContact& self, const Snow& snow) { return tracks_of(snow, self); })
       .def("groove_energy", &SnowContact::groove_energy)
@@ -283,18 +288,8 @@ void bind_contact(nb::module_& m) {
       .def("delayed_energy", &SnowContact::delayed_energy)
       .def("state", &SnowContact::state)
       .def("restore", &SnowContact::restore)
-      .def(
-          "set_laws",
-          [](SnowContact& self, nb::object friction, nb::object shear, double fade_speed) {
-            self.laws = PythonLaws{std::move(friction), std::move(shear), fade_speed};
-          },
-          nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"))
-      .def(
-          "set_penetration",
-          [](SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
-            self.set_penetration(python_penetration(law, bends, along_base_normal));
-          },
-          nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
+      .def("set_laws", &set_laws, nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"))
+      .def("set_penetration", &set_penetration, nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
 }
 
 }  // namespace

@@ -301,6 +301,39 @@ void Dynamics::begin() {
   step_ = rule_.fixed ? rule_.first : on_ladder(rule_.first);
 }
 
+// Take back the step that was tried.
+void Dynamics::reject() {
+  contact_->take_back();
+  counts_.rejected++;
+  kept_ = 0;
+}
+
+// After a fixed step: halved where it was not solved, and so on.
+Dynamics::Tried Dynamics::after_fixed(bool solved) {
+  if (solved) {
+    share_ = std::min(1.0, 2.0 * share_);
+    return Tried::TAKEN;
+  }
+  reject();
+  share_ *= 0.5;
+  return share_ < LEAST_SHARE ? Tried::GIVEN_UP : Tried::AGAIN;
+}
+
+// After a step h under error control: the next one's length.
+Dynamics::Tried Dynamics::after_controlled(const Formula& f, double h, bool solved) {
+  const double wanted = solved ? SAFETY * std::cbrt(rule_.tolerance / std::max(error(f), 1e-30)) : 0.5;
+  if (!solved || wanted < SAFETY) {
+    reject();
+    step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
+    return step_ < rule_.shortest ? Tried::GIVEN_UP : Tried::AGAIN;
+  }
+  if (h * wanted > UP * step_)
+    step_ = std::min(rule_.longest, on_ladder(step_ * 1.19));
+  else if (h * wanted < DOWN * step_)
+    step_ = on_ladder(h * wanted);
+  return Tried::TAKEN;
+}
+
 Advance Dynamics::advance(double until, long most) {
   const auto entered = std::chrono::steady_clock::now();
   for (long tries = 0; time < until; tries++) {
@@ -317,31 +350,9 @@ Advance Dynamics::advance(double until, long most) {
     end_.dt = h;
     contact_->begin(end_);
     const bool solved = solve_step(f) && is_sound(h);
-    if (rule_.fixed) {
-      if (!solved) {  // in two halves, and so on
-        contact_->take_back();
-        counts_.rejected++;
-        kept_ = 0;
-        share_ *= 0.5;
-        if (share_ < LEAST_SHARE) return Advance::NOT_FINITE;
-        continue;
-      }
-      share_ = std::min(1.0, 2.0 * share_);
-    } else {
-      const double wanted = solved ? SAFETY * std::cbrt(rule_.tolerance / std::max(error(f), 1e-30)) : 0.5;
-      if (!solved || wanted < SAFETY) {
-        contact_->take_back();
-        counts_.rejected++;
-        kept_ = 0;
-        step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
-        if (step_ < rule_.shortest) return Advance::STEP_TOO_SMALL;
-        continue;
-      }
-      if (h * wanted > UP * step_)
-        step_ = std::min(rule_.longest, on_ladder(step_ * 1.19));
-      else if (h * wanted < DOWN * step_)
-        step_ = on_ladder(h * wanted);
-    }
+    const Tried tried = rule_.fixed ? after_fixed(solved) : after_controlled(f, h, solved);
+    if (tried == Tried::GIVEN_UP) return rule_.fixed ? Advance::NOT_FINITE : Advance::STEP_TOO_SMALL;
+    if (tried == Tried::AGAIN) continue;
     const bool reached = h >= left * (1.0 - ROUNDING);
     time = reached ? until : time + h;
     accept(f, reached);

@@ -101,11 +101,17 @@ class Dynamics {
   void add_work(double h);
   bool is_sound(double h) const;
   double on_ladder(double h) const;
+  enum class Tried { TAKEN, AGAIN, GIVEN_UP };
+  void reject();
+  Tried after_fixed(bool solved);
+  Tried after_controlled(const Formula& f, double h, bool solved);
   double static_length(const Numbers& step) const;
   bool factor_static(double inertia);
   double static_square(const Numbers& left) const;
   void find_height(Numbers& left);
   double find_equilibrium();
+  void stand();
+  double static_step(double inertia, Numbers& left, Numbers& step);
   void static_residual(const BodyState& at, Numbers& out);
 };
 

@@ -37,24 +37,59 @@ std::vector<double> of_beams(const Layout& layout, const Numbers& numbers) {
   return out;
 }
 
-}  // namespace
+Body body(const Array& inertia, double mass, const Array& first_moment, std::vector<FlexibleSki> skis,
+          const Array& gravity, double drag, double drag_height) {
+  Body out;
+  std::copy_n(inertia.data(), 36, &out.inertia[0][0]);
+  out.mass = mass;
+  std::copy_n(first_moment.data(), 3, out.first_moment.begin());
+  out.skis = std::move(skis);
+  std::copy_n(gravity.data(), 3, out.gravity.begin());
+  out.drag = drag;
+  out.drag_height = drag_height;
+  return out;
+}
 
-void bind_dynamics(nb::module_& m) {
+void set_pose(Dynamics& self, const Array& position, const Array& rotation) {
+  std::copy_n(position.data(), 3, self.state.position.begin());
+  std::copy_n(rotation.data(), 9, &self.state.rotation[0][0]);
+}
+
+Result bend_of(const Dynamics& self) {
+  std::vector<double> all = of_beams(self.layout(), self.state.bend);
+  const std::size_t n = all.size();
+  return array(std::move(all), {n});
+}
+
+Result along_of(const Dynamics& self, int k) {
+  const Along& a = self.along(k);
+  std::vector<double> all(a.depth);
+  all.insert(all.end(), a.force.begin(), a.force.end());
+  all.insert(all.end(), a.shear.begin(), a.shear.end());
+  const std::size_t n = a.depth.size();
+  return array(std::move(all), {3, n});
+}
+
+nb::tuple energies_of(const Dynamics& self) {
+  const Energies e = energies(self.body(), self.layout(), self.state);
+  return nb::make_tuple(e.kinetic, e.potential, e.elastic);
+}
+
+nb::tuple work_of(const Dynamics& self) {
+  const Work& w = self.work();
+  return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping, w.snow_damping);
+}
+
+nb::tuple counts_of(const Dynamics& self) {
+  const Counts& c = self.counts();
+  return nb::make_tuple(c.steps, c.rejected, c.looks, c.factored, c.iterations);
+}
+
+void bind_body(nb::module_& m) {
   nb::class_<FlexibleSki>(m, "FlexibleSki");
   m.def("flexible_ski", &flexible_ski);
   nb::class_<Body>(m, "Body");
-  m.def("body", [](const Array& inertia, double mass, const Array& first_moment, std::vector<FlexibleSki> skis,
-                   const Array& gravity, double drag, double drag_height) {
-    Body out;
-    std::copy_n(inertia.data(), 36, &out.inertia[0][0]);
-    out.mass = mass;
-    std::copy_n(first_moment.data(), 3, out.first_moment.begin());
-    out.skis = std::move(skis);
-    std::copy_n(gravity.data(), 3, out.gravity.begin());
-    out.drag = drag;
-    out.drag_height = drag_height;
-    return out;
-  });
+  m.def("body", &body);
   nb::class_<StepRule>(m, "StepRule")
       .def(nb::init<>())
       .def_rw("first", &StepRule::first)
@@ -64,21 +99,12 @@ void bind_dynamics(nb::module_& m) {
       .def_rw("longest", &StepRule::longest)
       .def_rw("closeness", &StepRule::closeness)
       .def_rw("keep", &StepRule::keep);
-  nb::class_<Dynamics>(m, "Dynamics")
-      .def(nb::init<Body, SnowContact&, const StepRule&>(), nb::keep_alive<1, 3>())
-      .def_rw("time", &Dynamics::time)
-      .def("set_pose",
-           [](Dynamics& self, const Array& position, const Array& rotation) {
-             std::copy_n(position.data(), 3, self.state.position.begin());
-             std::copy_n(rotation.data(), 9, &self.state.rotation[0][0]);
-           })
+}
+
+void bind_motion(nb::class_<Dynamics>& bound) {
+  bound
       .def("set_velocity",
            [](Dynamics& self, const Array& rate) { std::copy_n(rate.data(), 6, self.state.rate.begin()); })
-      .def("settle", &Dynamics::settle, nb::call_guard<nb::gil_scoped_release>())
-      .def("begin", &Dynamics::begin, nb::call_guard<nb::gil_scoped_release>())
-      .def(
-          "advance", [](Dynamics& self, double until, long most) { return int(self.advance(until, most)); },
-          nb::call_guard<nb::gil_scoped_release>())
       .def_prop_ro(
           "position",
           [](const Dynamics& self) { return array({self.state.position.begin(), self.state.position.end()}, {3}); },
@@ -92,42 +118,32 @@ void bind_dynamics(nb::module_& m) {
       .def_prop_ro(
           "velocity",
           [](const Dynamics& self) { return array({self.state.rate.begin(), self.state.rate.begin() + BODY}, {BODY}); },
-          nb::rv_policy::move)
-      .def_prop_ro(
-          "bend",
-          [](const Dynamics& self) {
-            std::vector<double> all = of_beams(self.layout(), self.state.bend);
-            const std::size_t n = all.size();
-            return array(std::move(all), {n});
-          },
-          nb::rv_policy::move)
-      .def("along",
-           [](const Dynamics& self, int k) {
-             const Along& a = self.along(k);
-             std::vector<double> all(a.depth);
-             all.insert(all.end(), a.force.begin(), a.force.end());
-             all.insert(all.end(), a.shear.begin(), a.shear.end());
-             const std::size_t n = a.depth.size();
-             return array(std::move(all), {3, n});
-           })
+          nb::rv_policy::move);
+}
+
+}  // namespace
+
+void bind_dynamics(nb::module_& m) {
+  bind_body(m);
+  nb::class_<Dynamics> bound(m, "Dynamics");
+  bound.def(nb::init<Body, SnowContact&, const StepRule&>(), nb::keep_alive<1, 3>())
+      .def_rw("time", &Dynamics::time)
+      .def("set_pose", &set_pose)
+      .def("settle", &Dynamics::settle, nb::call_guard<nb::gil_scoped_release>())
+      .def("begin", &Dynamics::begin, nb::call_guard<nb::gil_scoped_release>())
+      .def(
+          "advance", [](Dynamics& self, double until, long most) { return int(self.advance(until, most)); },
+          nb::call_guard<nb::gil_scoped_release>())
+      .def_prop_ro("bend", &bend_of, nb::rv_policy::move)
+      .def("along", &along_of)
       .def_prop_ro("snow_energy", &Dynamics::snow_energy)
       .def_prop_ro("held_energy", &Dynamics::held_energy)
       .def_prop_ro("touches", &Dynamics::touches)
       .def_prop_ro("next_step", &Dynamics::next_step)
-      .def_prop_ro("energies",
-                   [](const Dynamics& self) {
-                     const Energies e = energies(self.body(), self.layout(), self.state);
-                     return nb::make_tuple(e.kinetic, e.potential, e.elastic);
-                   })
-      .def_prop_ro("work",
-                   [](const Dynamics& self) {
-                     const Work& w = self.work();
-                     return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping, w.snow_damping);
-                   })
-      .def_prop_ro("counts", [](const Dynamics& self) {
-        const Counts& c = self.counts();
-        return nb::make_tuple(c.steps, c.rejected, c.looks, c.factored, c.iterations);
-      });
+      .def_prop_ro("energies", &energies_of)
+      .def_prop_ro("work", &work_of)
+      .def_prop_ro("counts", &counts_of);
+  bind_motion(bound);
 }
 
 }  // namespace skisnow

@@ -60,6 +60,31 @@ struct CutGround {
   }
 };
 
+template <class V>
+V inside(V x, V low, V high) {
+  return minimum(maximum(x, low), high);
+}
+
+// Add a piece of ground between two places, over the base by `lift` at the edge and `rise` more for each metre; over
+// the cut the deeper of both.
+template <class V>
+void add_piece(const CutGround<V>& cut, V low, V high, V lift, V rise, Pressure<V>& out) {
+  if (!any((cut.from < high) & (cut.to > low) & (cut.from < cut.to))) {
+    out.add(low, high, lift, rise);
+    return;
+  }
+  const V first = inside(cut.from, low, high), last = inside(cut.to, low, high);
+  const V cut_rise = cut.slope - out.fall, apart = rise - cut_rise;
+  V meet = -lift / select(absolute(apart) > 1e-30, apart, all<V>(1e-30));
+  meet = inside(meet, first, last);
+  const V at_first = 0.5 * (first + meet), at_last = 0.5 * (meet + last);
+  const MaskOf<V> old_first = lift + apart * at_first > 0.0, old_last = lift + apart * at_last > 0.0;
+  out.add(low, first, lift, rise);
+  out.add(first, meet, select(old_first, lift, V{}), select(old_first, rise, cut_rise));
+  out.add(meet, last, select(old_last, lift, V{}), select(old_last, rise, cut_rise));
+  out.add(last, high, lift, rise);
+}
+
 // [press_line] Pressure of the ground's pieces; what was cut within the step counts where it lies deeper.
 template <class V>
 void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, Pressure<V>& out) {
@@ -70,7 +95,6 @@ void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, P
   const double* depth = lines.depth.data() + lines.tile(j, 0);
   const double* slope = lines.slope.data() + lines.tile(j, 0);
   // over the cut: the part before the ground's first knot, the pieces, the part behind the last one
-  const auto inside = [](V x, V low, V high) { return minimum(maximum(x, low), high); };
   const auto cut_piece = [&](V a, V b) {
     const V low = inside(a, cut.from, cut.to), high = inside(b, cut.from, cut.to);
     out.add(low, maximum(low, high), V{}, cut.slope - out.fall);
@@ -87,22 +111,7 @@ void add_ground(const GrooveLines& lines, int j, V edge, V wet_from, V wet_to, P
     const V lift = load<V>(depth + BLOCK * k) - ground * a - out.depth, rise = ground - out.fall;
     const V low = inside(a, wet_from, wet_to), high = inside(b, wet_from, wet_to);
     a = b;
-    if (!any(low < high)) continue;
-    if (!any((cut.from < high) & (cut.to > low) & (cut.from < cut.to))) {
-      out.add(low, high, lift, rise);
-    } else {
-      // beside the cut the ground as it was, over it the deeper of both
-      const V first = inside(cut.from, low, high), last = inside(cut.to, low, high);
-      const V cut_rise = cut.slope - out.fall, apart = rise - cut_rise;
-      V meet = -lift / select(absolute(apart) > 1e-30, apart, all<V>(1e-30));
-      meet = inside(meet, first, last);
-      const V at_first = 0.5 * (first + meet), at_last = 0.5 * (meet + last);
-      const MaskOf<V> old_first = lift + apart * at_first > 0.0, old_last = lift + apart * at_last > 0.0;
-      out.add(low, first, lift, rise);
-      out.add(first, meet, select(old_first, lift, V{}), select(old_first, rise, cut_rise));
-      out.add(meet, last, select(old_last, lift, V{}), select(old_last, rise, cut_rise));
-      out.add(last, high, lift, rise);
-    }
+    if (any(low < high)) add_piece(cut, low, high, lift, rise, out);
   }
   if (cuts) cut_piece(a, cut.to);
 }

@@ -127,36 +127,46 @@ double Dynamics::settle() {
   return last;
 }
 
+// Meet the snow at rest in the present pose.
+void Dynamics::stand() {
+  next_ = state;
+  fill_end();
+  end_.dt = 0.0;
+  contact_->begin(end_);
+}
+
+// A step of Newton's from the forces left, with an inertia (1/s²) against it; its length (m) before it is cut to the
+// longest, infinite where the matrix cannot be factored, NaN where the step is no number.
+double Dynamics::static_step(double inertia, Numbers& left, Numbers& step) {
+  if (!factor_static(inertia)) return std::numeric_limits<double>::infinity();
+  step = left;
+  system_.solve(step);
+  const double length = static_length(step);
+  if (!std::isfinite(length)) return std::numeric_limits<double>::quiet_NaN();
+  const double share = std::min(1.0, LONGEST / std::max(length, 1e-300));
+  for (double& each : step) each *= share;
+  return length;
+}
+
 double Dynamics::find_equilibrium() {
   Numbers left = state.rate, step = state.rate;
   BodyState trial = state;
   double longest = std::numeric_limits<double>::infinity(), inertia = FIRST_INERTIA;
-  const auto stand = [&] {
-    next_ = state;
-    fill_end();
-    end_.dt = 0.0;
-    contact_->begin(end_);
-  };
   stand();
   find_height(left);
   for (int tries = 0; tries < MOST_STEPS && inertia < MOST_INERTIA; tries++) {
     stand();
     static_residual(state, left);
     const double square = static_square(left), before = longest;
-    if (!factor_static(inertia)) return std::numeric_limits<double>::infinity();
-    step = left;
-    system_.solve(step);
-    const double length = static_length(step);
-    if (!std::isfinite(length)) {
-      inertia *= 4.0;
-      continue;
+    const double length = static_step(inertia, left, step);
+    if (std::isinf(length)) return length;
+    double change = std::numeric_limits<double>::infinity();
+    if (!std::isnan(length)) {
+      move(state, step, trial);
+      static_residual(trial, left);
+      change = std::sqrt(static_square(left) / std::max(square, 1e-300));
     }
-    const double share = std::min(1.0, LONGEST / std::max(length, 1e-300));
-    for (double& each : step) each *= share;
-    move(state, step, trial);
-    static_residual(trial, left);
-    const double change = std::sqrt(static_square(left) / std::max(square, 1e-300));
-    if (!(change < 2.0) && length > ROUNDING) {
+    if (!(change < 2.0) && !(length <= ROUNDING)) {
       inertia *= 4.0;
       continue;
     }
