@@ -52,6 +52,14 @@ Vector3 place_under(const Pose& pose, double station, const Snow& snow) {
   return {x, y, snow.surface.at(x, y).value};
 }
 
+// The ski's direction ahead in a surface, a unit vector.
+Vector3 ahead_on(const Vector3& normal, const Pose& pose) {
+  Vector3 ahead = pose.axis(0);
+  const double up = dot(ahead, normal);
+  for (int a = 0; a < 3; a++) ahead[a] -= up * normal[a];
+  return unit(ahead);
+}
+
 int power_of_two(int least) {
   int size = 2 * BLOCK;
   while (size < least) size *= 2;
@@ -148,11 +156,8 @@ void GrooveLines::lay(std::int64_t number, const Pose& pose, double station, con
   const Vector3 origin = place_under(pose, station, snow);
   const Grid::Value here = snow.surface.at(origin[0], origin[1]);
   const Vector3 normal = unit({-here.slope_x, -here.slope_y, 1.0});
-  Vector3 ahead = pose.axis(0);
-  const double up = dot(ahead, normal);
-  for (int a = 0; a < 3; a++) ahead[a] -= up * normal[a];
   put(*this, ORIGIN_X, at, origin);
-  put(*this, AHEAD_X, at, unit(ahead));
+  put(*this, AHEAD_X, at, ahead_on(normal, pose));
   put(*this, NORMAL_X, at, normal);
   for (int field = ANCHORED; field < LINE_FIELDS; field++) values[LineField(field)][at] = 0.0;
   take_snow(at, origin, snow);
@@ -257,9 +262,8 @@ void GrooveLines::lay_ahead(const Runner& runner, const Pose& pose, const Snow& 
 
 bool GrooveLines::is_uneven(const Pose& pose, const Snow& snow) const {
   if (count() == 0) return false;
-  const Vector3 ahead = pose.axis(0), left = pose.axis(1);
-  const Vector3 there = get(*this, AHEAD_X, slot(first));
-  if (std::fabs(dot(there, left)) > std::sin(MOST_TURN) || dot(there, ahead) < 0.0) return true;
+  const Vector3 there = get(*this, AHEAD_X, slot(first)), ahead = ahead_on(get(*this, NORMAL_X, slot(first)), pose);
+  if (dot(there, ahead) < std::cos(MOST_TURN)) return true;
   double before = station(first, pose);
   for (std::int64_t n = first + 1; n < end; n++) {
     const double here = station(n, pose);

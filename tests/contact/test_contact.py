@@ -153,6 +153,17 @@ def test_an_edge_that_slips_aside_meets_the_snow_of_where_it_is(angle_deg: float
             assert rugged == pytest.approx(level * ridge(edge), rel=2e-4)
 
 
+def test_a_ski_that_drags_its_tail_goes_on_over_its_lines() -> None:
+    """Tail down and rolled the lines lie as evenly as level: they are not laid anew each step, a strip of tracks each."""
+    contact = SnowContact(SnowField(H, S, 10.0), [straight()])
+    rotation = edged(math.radians(55), lean=math.radians(40))[None]
+    height = -min(float((rotation[0] @ [-0.8, side, 0.0])[2]) for side in (0.03, -0.03)) - 0.03
+    for n in range(50):
+        contact.update(np.array([[5e-3 * n, 0.0, height]]), rotation, 1e-3)
+    assert contact.force([[0.25, 0.0, height]], rotation, SPEED * 0.0, 1e-3).wrench[0][2] > 0.0
+    assert len(set(contact.tracks()[:, 0])) == 1
+
+
 @dataclass(frozen=True)
 class _Kinked(FrictionLaw):
     """A law written here."""
