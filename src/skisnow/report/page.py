@@ -28,7 +28,7 @@ SECTIONS: Final = {
     "caveats": "Warnings, and what was not stated",
     "law": "The law of the penetration force",
     "seating": "Seating: offsets of the depth zero",
-    "unloading": "Unloading: how much of the groove stays",
+    "unloading": "Unloading: the permanent depth of a groove",
     "displacement": "Shear displacement: how far until the snow holds",
     "relations": "Relations between snow parameters",
     "sites": "Sites compared",
