@@ -19,7 +19,7 @@ from skisnow.carve.question import carve_question
 from skisnow.cli import main
 from skisnow.field.store import Journals, Store, replayed
 from skisnow.field.store.description import Description, description_text
-from skisnow.report.numerals import significant
+from skisnow.report.number_formatting import significant
 
 from .conftest import Served, downloaded_results, fill, follow, has_text, killed_and_started_again, ready
 

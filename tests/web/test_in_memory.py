@@ -13,7 +13,7 @@ from skisnow.errors import ParameterError, StoreError
 from skisnow.estimate import analyse
 from skisnow.field import read_campaign
 from skisnow.field.store import Journals, NewEntry, Store, export_corrected
-from skisnow.report.numerals import significant
+from skisnow.report.number_formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.analyses import CampaignSource
 from skisnow.web.analysing import Choice, Numbers, numbers_of

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from ..report.numerals import counted
+from ..report.number_formatting import counted
 from .analysing import Choice, Numbers, Refusal, choosable_flags
 from .error_pages import error_sentence
 from .layout import heading, sentence

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ..numerals import whole
+from ..number_formatting import whole
 from ..report_data import numbers, pairs, texts
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
