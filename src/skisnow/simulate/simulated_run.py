@@ -141,15 +141,15 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
             moment = now + max(left / setup.speed, 1e-9)
         if strength_along is not None:
             setup.snow.compiled.strength_share = strength_along(record.run_length)
-        trouble = record.advance(moment, replace=was_near)
+        ended = record.advance(moment, replace=was_near)
         number = math.floor(setup.time / interval + 1e-9)
         if record.gains_energy:
             record.drop()
             return "not_finite"
         if progress is not None and number % OUTPUTS_AT_ONCE == 0:
             progress(setup.time, min(1.0, max(setup.time / duration, record.run_length / length)))
-        if trouble is not None:
-            return trouble
+        if ended is not None:
+            return ended
         flying = 0.0 if setup.touches else flying + record.last_interval
         ended = _ended(setup, flying)
         if ended is not None:
