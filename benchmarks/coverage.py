@@ -103,7 +103,7 @@ def simulate(seed: int, noise: ReferenceNoise) -> Outcome:
             covered[procedure, name] = inside(intervals[model][index][None, :], np.array([true_value]))
     width = np.log(fitted.interval[:, 1] / fitted.interval[:, 0]) / 2.0
     alone = np.log(seated.hardness_interval[:, 1] / seated.hardness_interval[:, 0]) / 2.0
-    return Outcome(errors, covered, screened.marks["layered"][used], width, alone)
+    return Outcome(errors, covered, screened.flags["layered"][used], width, alone)
 
 
 def coefficients(fit: ModelFit) -> tuple[float, float, float, float]:

@@ -25,7 +25,7 @@ PANELS: Final = {
     "solver.groove_tolerance": "tolerance of the groove",
     "snow.shear_displacement_mm": "shear displacement (mm)",
 }
-MARKS: Final = "osD^v"
+MARKERS: Final = "osD^v"
 EDGE: Final = {"default": "black", "fast": "grey"}
 TICKS: Final = (0.3, 0.5, 1.0, 2.0)
 
@@ -55,7 +55,7 @@ def chart(rows: list[dict[str, str]]) -> Figure:
 def _panel(axes: Axes, rows: list[dict[str, str]], key: str) -> None:
     of_edge = key.startswith("snow.")
     groups = dict.fromkeys(row["method" if of_edge else "snow"] for row in rows)
-    for mark, group in zip(MARKS, groups, strict=False):
+    for mark, group in zip(MARKERS, groups, strict=False):
         of = [row for row in rows if row["method" if of_edge else "snow"] == group]
         x, y = [float(row["cpu_s"]) for row in of], [float(row["end_off_mm"]) for row in of]
         (line,) = axes.plot(x, y, marker=mark, markersize=3, linewidth=0.9, label=group,

@@ -20,7 +20,7 @@ from skisnow.estimate.models import ModelFit, fit_models
 from skisnow.estimate.readings import readings_of
 from skisnow.estimate.screening import screened_penetration
 from skisnow.field import reference_campaign as drawn_campaign
-from skisnow.report.numerals import significant
+from skisnow.report.number_formatting import significant
 
 DOCS = Path(__file__).resolve().parent
 

@@ -110,6 +110,28 @@ def test_a_former_function_is_the_present_one_with_a_warning(module: str, former
         names[former]()
 
 
+@pytest.mark.parametrize(
+    ("package", "former", "now"),
+    [
+        ("field", "MARKS", "QUALITY_FLAGS"),
+        ("field", "Mark", "QualityFlag"),
+        ("field", "mark_problems", "flag_problems"),
+        ("field.store", "KeptTable", "StoredTable"),
+        ("field.store", "grown", "replayed"),
+        ("field.store", "kept_tables", "stored_tables"),
+        ("estimate", "marks_of", "quality_flags"),
+        ("estimate", "remarks", "campaign_notes"),
+    ],
+)
+def test_a_renamed_part_of_a_package_is_found_with_a_warning(package: str, former: str, now: str) -> None:
+    package = f"skisnow.{package}"
+    with pytest.warns(DeprecationWarning, match=rf"{package}\.{former} is called {package}\.{now} now") as caught:
+        assert getattr(import_module(package), former) is getattr(import_module(package), now)
+    assert caught[0].filename == __file__
+    with pytest.raises(AttributeError, match=rf"module '{package}' has no attribute 'Plain'"):
+        _ = import_module(package).Plain
+
+
 def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="simulat"):
         _ = skisnow.simulat

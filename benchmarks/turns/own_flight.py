@@ -23,7 +23,7 @@ def released(step_ms: float, lifted_m: float = LIFTED_M) -> Record:
     """The sledge with skis bent as they rest in the snow, lifted off it."""
     setup = laid_out(read_scenario(SCENARIO, changes=fixed(step_ms)))
     dynamics = setup.dynamics
-    dynamics.settle()
+    dynamics.find_equilibrium()
     dynamics.move_to(dynamics.position + np.array([0.0, 0.0, lifted_m]), dynamics.rotation)
     dynamics.begin(np.array([setup.scenario.start.speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
     return Record(setup)
@@ -39,6 +39,6 @@ def flown(record: Record, duration_s: float) -> None:
 def tips(record: Record) -> FloatArray:
     """Places of both skis' tips, as if the skis had no shovel (2, 3) (m)."""
     dynamics, tip = record.setup.dynamics, record.setup.node[0]
-    bent = dynamics.bend[:, 0]  # the first unknown: the deflection of the node at the tip
+    bent = dynamics.beam_dofs[:, 0]  # the first unknown: the deflection of the node at the tip
     here = [ski.boot + tip * ski.axes[0] + w * ski.axes[2] for ski, w in zip(dynamics.body.skis, bent, strict=True)]
     return np.asarray(dynamics.position + np.array(here) @ dynamics.rotation.T)

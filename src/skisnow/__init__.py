@@ -29,7 +29,7 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     Where something was on a slope, and when: from the files of receivers and watches, into the slope's frame; what a
     track says: distance, speed, runs and lifts, turns with their radii.
 ``compare_tracks``, ``Comparison``
-    A simulated track held against a measured one.
+    A simulated track compared with a measured one.
 ``identify``, ``Identification``
     Friction, drag and snow from tracks, photo-cell times or tracks left in the snow.
 ``study``, ``read_study``, ``Study``, ``StudyTable``, ``run_batch``

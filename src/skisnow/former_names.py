@@ -1,13 +1,14 @@
-"""Functions under the names that they had before; such a name stays for one release."""
+"""What had another name before; the former name stays for one release."""
 
 from __future__ import annotations
 
 import functools
+import sys
 import warnings
-from typing import TYPE_CHECKING, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 Given = ParamSpec("Given")
 Answer = TypeVar("Answer")
@@ -70,3 +71,15 @@ def with_former_keywords(**names: str) -> Callable[[Callable[Given, Answer]], Ca
         return called
 
     return decorated
+
+
+def former_attributes(package: str, names: Mapping[str, str]) -> Callable[[str], Any]:
+    """The `__getattr__` of a package with renamed parts; names: the present ones by the former ones. Each warns."""
+
+    def present(name: str) -> Any:
+        if name not in names:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        warn_of_former_name(f"{package}.{name}", f"{package}.{names[name]}")
+        return getattr(sys.modules[package], names[name])
+
+    return present

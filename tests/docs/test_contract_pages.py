@@ -9,8 +9,8 @@ import pytest
 
 import skisnow
 from skisnow.cli import build_parser
-from skisnow.field.marks import ALWAYS_EXCLUDE, MARKS
 from skisnow.field.problems import ERROR_CODES, WARNING_CODES
+from skisnow.field.quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
 from skisnow.field.reading.table_forms import CORRECTIONS, TABLES
 from skisnow.field.reading.tool_shapes import SHAPES
 
@@ -27,11 +27,11 @@ def test_every_code_of_a_problem_is_told(code: str) -> None:
     assert f"`{code}`" in CAMPAIGN
 
 
-@pytest.mark.parametrize("mark", list(MARKS.values()), ids=lambda mark: mark.code)
-def test_every_mark_is_told_with_its_default(mark: Any) -> None:
-    (row,) = [line for line in CAMPAIGN.splitlines() if line.startswith(f"| `{mark.code}` |")]
+@pytest.mark.parametrize("flag", list(QUALITY_FLAGS.values()), ids=lambda flag: flag.code)
+def test_every_flag_is_told_with_its_default(flag: Any) -> None:
+    (row,) = [line for line in CAMPAIGN.splitlines() if line.startswith(f"| `{flag.code}` |")]
     told = row.split("|")[-2].strip()
-    assert told == ("yes, always" if mark.code in ALWAYS_EXCLUDE else "yes" if mark.excludes_by_default else "no")
+    assert told == ("yes, always" if flag.code in ALWAYS_EXCLUDE else "yes" if flag.excludes_by_default else "no")
 
 
 @pytest.mark.parametrize("form", [*TABLES, CORRECTIONS], ids=lambda form: form.file)

@@ -94,7 +94,7 @@ def sledge(
 def started(scenario: Scenario, control: StepControl | None = None, *, elements: int = 40) -> Dynamics:
     """At rest on its snow, then at its start speed."""
     dynamics = sledge(scenario, control, elements=elements)
-    assert dynamics.settle() < 1e-9
+    assert dynamics.find_equilibrium() < 1e-9
     dynamics.begin(ahead(scenario.start.speed))
     return dynamics
 

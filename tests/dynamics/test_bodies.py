@@ -26,8 +26,8 @@ KINDS: Final = {1: on_one_ski, 2: body_of, 3: on_three_skis}
 def test_rests_on_all_its_skis(skis: int, body_on: Callable[[Scenario], Body]) -> None:
     body = body_on(FLAT)
     dynamics = sledge(FLAT, body=body)
-    assert dynamics.settle() < 1e-9
-    assert dynamics.bend.shape[0] == len(body.skis) == skis
+    assert dynamics.find_equilibrium() < 1e-9
+    assert dynamics.beam_dofs.shape[0] == len(body.skis) == skis
     normal = snow_forces(dynamics).wrench[:, 2]
     weight = -body.mass * body.gravity[2]
     assert normal.sum() == pytest.approx(weight, rel=1e-4)  # a pitch of 0.01 lets 5e-5 of it act along
@@ -43,7 +43,7 @@ def test_glides_straight(skis: int, body_on: Callable[[Scenario], Body]) -> None
     """Down the fall line, slower than g (sin α - μ cos α) says by what pressing the track takes."""
     body, speed, duration = body_on(FLAT), 3.0, 0.3
     dynamics = sledge(FLAT, body=body)
-    dynamics.settle()
+    dynamics.find_equilibrium()
     dynamics.begin(ahead(speed))
     assert dynamics.advance(duration) is Ended.REACHED
     assert abs(dynamics.position[1]) < 1e-9
@@ -56,3 +56,11 @@ def test_glides_straight(skis: int, body_on: Callable[[Scenario], Body]) -> None
     assert normal < 0.0
     sums = [-np.trapezoid(dynamics.along(k)[1], dynamics.contact.runners[k].nodes) for k in range(skis)]
     assert sum(sums) == pytest.approx(-body.mass * body.gravity[2], rel=0.2)
+
+
+def test_former_names_give_the_same_and_warn() -> None:
+    dynamics = sledge(FLAT, body=on_one_ski(FLAT))
+    with pytest.warns(DeprecationWarning, match=r"Dynamics\.settle is called find_equilibrium now"):
+        assert dynamics.settle() < 1e-9
+    with pytest.warns(DeprecationWarning, match=r"Dynamics\.bend is called beam_dofs now"):
+        assert np.array_equal(dynamics.bend, dynamics.beam_dofs)

@@ -60,7 +60,7 @@ def test_what_the_snow_takes_is_in_its_grooves(hardness: float, within: float) -
     scenario = given(sledge__edge_angle_deg=0.0, start__heading_deg=0.0, snow__H_V_N_per_mm3=hardness)
     straight = replace(scenario.ski, width=np.full_like(scenario.ski.width, 0.07))
     dynamics = sledge(replace(scenario, ski=straight), StepControl(tolerance=3e-7), spacing=0.01)
-    dynamics.settle()
+    dynamics.find_equilibrium()
     dynamics.begin(ahead(scenario.start.speed))
     before = in_snow(dynamics)
     assert dynamics.advance(DURATION) is Ended.REACHED

@@ -46,7 +46,7 @@ def test_a_last_bit_of_the_start_speed(changes: dict[str, float]) -> None:
 def test_twice_the_same_bits() -> None:
     one, other = run(), run()
     assert one.counts == other.counts
-    for name in ("position", "rotation", "velocity", "bend"):
+    for name in ("position", "rotation", "velocity", "beam_dofs"):
         assert np.array_equal(getattr(one, name), getattr(other, name)), name
     assert (one.energies, one.work, one.snow_energies) == (other.energies, other.work, other.snow_energies)
     assert all(np.array_equal(one.along(k), other.along(k)) for k in range(2))

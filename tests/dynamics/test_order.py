@@ -33,7 +33,7 @@ ROCKING = np.array([3.0, 0.0, -0.05, 0.02, 0.05, 0.2])
 def end(scenario: Scenario, velocity: FloatArray, step: float) -> FloatArray:
     """Place and rotation after the duration."""
     dynamics = sledge(scenario, StepControl(first=step, fixed=True, closeness=EXACT))
-    dynamics.settle()
+    dynamics.find_equilibrium()
     dynamics.begin(velocity)
     assert dynamics.advance(DURATION) is Ended.REACHED
     return np.concatenate([dynamics.position, dynamics.rotation.ravel()])

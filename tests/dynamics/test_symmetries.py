@@ -34,8 +34,8 @@ def test_mirror(changes: dict[str, float], edge_angle: float) -> None:
     assert other.position == pytest.approx(MIRROR @ one.position, abs=1e-9)
     assert other.rotation == pytest.approx(MIRROR @ one.rotation @ MIRROR, abs=1e-9)
     assert other.velocity == pytest.approx(one.velocity * [1.0, -1.0, 1.0, -1.0, 1.0, -1.0], abs=1e-7)
-    untwisted = np.where(np.arange(one.bend.shape[1]) % 3 == 2, -1.0, 1.0)
-    assert other.bend == pytest.approx(one.bend[::-1] * untwisted, abs=1e-9)
+    untwisted = np.where(np.arange(one.beam_dofs.shape[1]) % 3 == 2, -1.0, 1.0)
+    assert other.beam_dofs == pytest.approx(one.beam_dofs[::-1] * untwisted, abs=1e-9)
     assert abs(one.position[1] - 1.5) > 1.0  # it goes somewhere
 
 

@@ -1,9 +1,9 @@
-"""The mark that needs the hardness, and what marks do to an experiment."""
+"""The quality flag that needs the hardness, and what flags do to an experiment."""
 
 import numpy as np
 import pytest
 
-from skisnow.estimate import marks_of
+from skisnow.estimate import quality_flags
 from skisnow.estimate.screening import hardness_outliers, screened_penetration
 
 from .conftest import MakeCampaign
@@ -38,15 +38,15 @@ def test_an_outlier_stays_unless_it_is_excluded(make_campaign: MakeCampaign, ext
     rows = [row for i, H in enumerate((0.1, 0.11, 0.12, 0.13, 0.14, 0.9)) for row in series(f"p{i}", H)]
     campaign = make_campaign(rows, extra=extra, gauge=0.0001)
     found = screened_penetration(campaign, geometry="extended")
-    assert found.flags()[-1] == ["hardness_outlier"]
+    assert found.codes()[-1] == ["hardness_outlier"]
     assert found.used.tolist() == [True] * 5 + [used]
-    mark = next(p for p in marks_of(campaign) if p.code == "hardness_outlier")
-    assert (mark.severity, mark.file, mark.experiment, mark.row) == ("mark", "penetration.csv", "p5", 19)
+    flag = next(p for p in quality_flags(campaign) if p.code == "hardness_outlier")
+    assert (flag.severity, flag.file, flag.experiment, flag.row) == ("mark", "penetration.csv", "p5", 19)
 
 
-def test_excluded_marks_keep_a_series_out(make_campaign: MakeCampaign) -> None:
+def test_excluding_flags_keep_a_series_out(make_campaign: MakeCampaign) -> None:
     rows = [*series("p1", 0.1), ("p2", "A", "ski", 0, 100, 1.0), ("p2", "A", "ski", 0, 200, 0.9)]
     campaign = make_campaign(rows)
     found = screened_penetration(campaign, geometry="extended")
-    assert found.flags() == [[], ["too_few_loads", "depth_shrinks"]]
+    assert found.codes() == [[], ["too_few_loads", "depth_shrinks"]]
     assert found.used.tolist() == [True, False]

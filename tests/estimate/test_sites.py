@@ -43,7 +43,7 @@ def test_own_mean_over_one_site_is_the_classical_interval() -> None:
     logs = np.log(values)
     low, high = np.exp(stats.t.interval(0.95, 3, logs.mean(), logs.std(ddof=1) / 2))
     assert (own.value, own.low, own.high) == pytest.approx((math.exp(logs.mean()), low, high))
-    assert (own.least, own.greatest) == (0.1, 0.3)
+    assert (own.minimum, own.maximum) == (0.1, 0.3)
 
 
 def test_own_mean_over_balanced_sites_is_the_interval_of_their_means() -> None:

@@ -13,10 +13,10 @@ import pytest
 
 import skisnow
 from skisnow.estimate import results_dict
-from skisnow.estimate.at_once import experiments_at_once
 from skisnow.estimate.hardness import DEFINITIONS, ReadingUncertainty, hardness
+from skisnow.estimate.quick_results import experiment_results
 from skisnow.estimate.readings import readings_of
-from skisnow.estimate.screening import marks_of
+from skisnow.estimate.screening import quality_flags
 from skisnow.estimate.unloading import site_unloading, unloading
 from skisnow.field import reference_campaign, write_reference
 from skisnow.forces.penetration import HypoplasticPoint
@@ -121,8 +121,8 @@ def test_loads_that_do_not_fall_leave_the_hardness_and_take_the_ratio(make_campa
     assert row["used"]
     assert row["unloading_ratio"] is None
     assert row["H_V_N_per_mm3"] == pytest.approx(0.1)
-    (mark,) = marks_of(campaign)
-    assert (mark.code, mark.row, mark.column, mark.value) == ("unloading_not_falling", 7, "load_N", "300")
+    (flag,) = quality_flags(campaign)
+    assert (flag.code, flag.row, flag.column, flag.value) == ("unloading_not_falling", 7, "load_N", "300")
 
 
 def test_a_tool_that_sinks_on_is_flagged(make_campaign: MakeCampaign) -> None:
@@ -131,8 +131,8 @@ def test_a_tool_that_sinks_on_is_flagged(make_campaign: MakeCampaign) -> None:
     for depth, codes in ((deepest + 0.01, []), (deepest + 0.03, ["unloading_sinks"])):
         rows[4] = (*rows[4][:5], depth, rows[4][6])
         campaign = make_campaign(rows, columns=BRANCH)
-        found = [mark for mark in marks_of(campaign) if mark.code == "unloading_sinks"]
-        assert [mark.code for mark in found] == codes
+        found = [flag for flag in quality_flags(campaign) if flag.code == "unloading_sinks"]
+        assert [flag.code for flag in found] == codes
     assert found[0].row == 6
 
 
@@ -190,8 +190,8 @@ def _fields(snow: skisnow.SnowProperties, **other: Any) -> dict[str, Any]:
 def test_at_once_and_the_analysis_say_the_same(tmp_path: Path) -> None:
     write_reference(tmp_path, seed=3)
     campaign = skisnow.read_campaign(tmp_path)
-    at_once = experiments_at_once(campaign)["penetration"]["experiments"]
-    assert at_once == skisnow.analyse(campaign, n_resamples=100).results["penetration"]["experiments"]
+    quick_results = experiment_results(campaign)["penetration"]["experiments"]
+    assert quick_results == skisnow.analyse(campaign, n_resamples=100).results["penetration"]["experiments"]
 
 
 def test_truth_is_covered_without_bias() -> None:

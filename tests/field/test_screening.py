@@ -1,4 +1,4 @@
-"""Marks on single experiments: each at its limit, from both sides, with the reading that it is about."""
+"""Quality flags on single experiments: each at its limit, from both sides, with the reading that it is about."""
 
 from __future__ import annotations
 
@@ -12,7 +12,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from skisnow.field import MARKS, Campaign, PenetrationTests, ShearTests, mark_problems, screen_penetration, screen_shear
+from skisnow.field import (
+    QUALITY_FLAGS,
+    Campaign,
+    PenetrationTests,
+    ShearTests,
+    flag_problems,
+    screen_penetration,
+    screen_shear,
+)
 from skisnow.field.screening import reading_at_largest_load
 from skisnow.geometry import Disc, GeometryForm, LyingCylinder, SkiPiece
 
@@ -64,7 +72,7 @@ def campaign_of(
         load_steps=(),
         tools=TOOLS,
         plates={"b": 0.2},
-        excluding=frozenset(code for code, mark in MARKS.items() if mark.excludes_by_default),
+        excluding=frozenset(code for code, flag in QUALITY_FLAGS.items() if flag.excludes_by_default),
         penetration=tests,
         shear=None,
         density=None,
@@ -94,16 +102,16 @@ def shear_campaign(depth_mm: list[float], cancelled: list[str], resolution_mm: f
     return dataclasses.replace(campaign_of(GOOD, resolution_mm=resolution_mm), penetration=None, shear=tests)
 
 
-def marked(campaign: Campaign, index: int = 0, geometry: GeometryForm = "extended") -> list[str]:
+def flagged(campaign: Campaign, index: int = 0, geometry: GeometryForm = "extended") -> list[str]:
     masks = screen_penetration(campaign, geometry=geometry)
     assert list(masks) == CODES
     return [code for code, mask in masks.items() if mask[index]]
 
 
-def test_the_marks_and_their_default() -> None:
-    assert sorted(MARKS) == sorted([*CODES, "layered", "rebound_unresolved", "hardness_outlier"])
-    assert [code for code, mark in MARKS.items() if mark.excludes_by_default] == CODES[:5]
-    assert all(mark.code == code and mark.sentence.endswith(".") for code, mark in MARKS.items())
+def test_the_flags_and_their_default() -> None:
+    assert sorted(QUALITY_FLAGS) == sorted([*CODES, "layered", "rebound_unresolved", "hardness_outlier"])
+    assert [code for code, flag in QUALITY_FLAGS.items() if flag.excludes_by_default] == CODES[:5]
+    assert all(flag.code == code and flag.sentence.endswith(".") for code, flag in QUALITY_FLAGS.items())
 
 
 @pytest.mark.parametrize(
@@ -124,23 +132,23 @@ def test_the_marks_and_their_default() -> None:
         ),
     ],
 )
-def test_marks_of_one_series(series: Series, codes: list[str]) -> None:
-    assert marked(campaign_of(series)) == codes
+def test_flags_of_one_series(series: Series, codes: list[str]) -> None:
+    assert flagged(campaign_of(series)) == codes
 
 
 def test_neighbouring_series_do_not_touch_each_other() -> None:
-    """A step down from one series to the next is none; the mark stays with its own series."""
+    """A step down from one series to the next is none; the flag stays with its own series."""
     campaign = campaign_of(GOOD, [(70.5, 1.0), (60.5, 2.0), (210.5, 1.5)], GOOD)
-    assert [marked(campaign, index) for index in range(3)] == [[], ["loads_not_rising", "depth_shrinks"], []]
+    assert [flagged(campaign, index) for index in range(3)] == [[], ["loads_not_rising", "depth_shrinks"], []]
 
 
 @pytest.mark.parametrize("step_mm", [0.01, 0.02, 0.05, 0.1, 0.03, 0.7])
 def test_five_resolutions_are_enough(step_mm: float) -> None:
     series = [(1.0, 0.0), (2.0, 0.0), (3.0, round(5 * step_mm, 6))]
-    assert marked(campaign_of(series, resolution_mm=step_mm)) == []
+    assert flagged(campaign_of(series, resolution_mm=step_mm)) == []
     series[2] = (3.0, round(5 * step_mm, 6) * (1 - 1e-6))
-    assert marked(campaign_of(series, resolution_mm=step_mm)) == ["below_resolution"]
-    assert marked(campaign_of(series, resolution_mm=None)) == []
+    assert flagged(campaign_of(series, resolution_mm=step_mm)) == ["below_resolution"]
+    assert flagged(campaign_of(series, resolution_mm=None)) == []
 
 
 @pytest.mark.parametrize(
@@ -156,7 +164,7 @@ def test_five_resolutions_are_enough(step_mm: float) -> None:
 def test_beyond_the_tool(tool: str, angle_deg: float, geometry: GeometryForm, limit_mm: float) -> None:
     for depth, codes in ((limit_mm, []), (limit_mm * 1.001, ["beyond_tool"])):
         series = [(70.5, 1.0), (140.5, 2.0), (210.5, depth)]
-        assert marked(campaign_of(series, tool=tool, angle_deg=angle_deg), geometry=geometry) == codes
+        assert flagged(campaign_of(series, tool=tool, angle_deg=angle_deg), geometry=geometry) == codes
 
 
 def test_cancelled_and_the_order_of_experiments() -> None:
@@ -168,7 +176,7 @@ def test_cancelled_and_the_order_of_experiments() -> None:
     assert masks["too_few_loads"].tolist() == [False, False, True]
 
 
-def test_shear_marks() -> None:
+def test_shear_flags() -> None:
     campaign = shear_campaign([5.0, 0.0, 0.05, 0.049], ["", "", "rain", ""])
     masks = screen_shear(campaign)
     assert {code: mask.tolist() for code, mask in masks.items()} == {
@@ -189,7 +197,7 @@ def test_without_a_table_the_masks_are_empty() -> None:
 @given(
     st.lists(st.lists(st.tuples(st.integers(1, 4), st.integers(0, 3)), min_size=1, max_size=6), min_size=1, max_size=6)
 )
-def test_marks_and_largest_load_against_a_plain_loop(drawn: list[list[tuple[int, int]]]) -> None:
+def test_flags_and_largest_load_against_a_plain_loop(drawn: list[list[tuple[int, int]]]) -> None:
     series = [[(float(load), float(depth)) for load, depth in each] for each in drawn]
     campaign = campaign_of(*series, resolution_mm=0.5)
     assert campaign.penetration is not None
@@ -207,7 +215,7 @@ def test_marks_and_largest_load_against_a_plain_loop(drawn: list[list[tuple[int,
             + ["below_resolution"] * (each[best][1] < 2.5)
         )
     assert reading_at_largest_load(campaign.penetration).tolist() == expected
-    assert [marked(campaign, index) for index in range(len(series))] == codes
+    assert [flagged(campaign, index) for index in range(len(series))] == codes
 
 
 @pytest.mark.parametrize(
@@ -226,25 +234,25 @@ def test_marks_and_largest_load_against_a_plain_loop(drawn: list[list[tuple[int,
         ([(1.0, 0.01), (2.0, 0.02), (3.0, 0.03)], 7, "depth_mm", "0.03", "at least 5 steps of the gauge, 0.05 mm"),
     ],
 )
-def test_a_mark_names_its_reading(series: Series, row: int, column: str, value: str, allowed: str) -> None:
+def test_a_flag_names_its_reading(series: Series, row: int, column: str, value: str, allowed: str) -> None:
     campaign = campaign_of(GOOD, series)
-    (problem,) = mark_problems(campaign, screen_penetration(campaign), {})
+    (problem,) = flag_problems(campaign, screen_penetration(campaign), {})
     assert (problem.severity, problem.file, problem.experiment) == ("mark", "penetration.csv", "P1")
     assert (problem.row, problem.column, problem.value, problem.allowed) == (row, column, value, allowed)
-    assert problem.code in MARKS
+    assert problem.code in QUALITY_FLAGS
 
 
 def test_the_limit_named_is_that_of_the_geometry() -> None:
     campaign = campaign_of([(1.0, 1.0), (2.0, 30.0), (3.0, 31.5)])
-    (problem,) = mark_problems(campaign, screen_penetration(campaign, geometry="paper"), {}, geometry="paper")
+    (problem,) = flag_problems(campaign, screen_penetration(campaign, geometry="paper"), {}, geometry="paper")
     assert problem.allowed.startswith("at most 31 mm")
 
 
-def test_marks_come_by_experiment_and_say_what_follows() -> None:
+def test_flags_come_by_experiment_and_say_what_follows() -> None:
     campaign = dataclasses.replace(
         shear_campaign([0.0, 1.0], ["", "rain"]), penetration=campaign_of(GOOD[:1]).penetration
     )
-    problems = mark_problems(campaign, screen_penetration(campaign), screen_shear(campaign))
+    problems = flag_problems(campaign, screen_penetration(campaign), screen_shear(campaign))
     assert [(each.file, each.row, each.code, each.value) for each in problems] == [
         ("penetration.csv", 2, "too_few_loads", "1"),
         ("shear.csv", 2, "zero_depth", "0"),
@@ -254,9 +262,9 @@ def test_marks_come_by_experiment_and_say_what_follows() -> None:
     assert ["not included" in each.action for each in problems] == [True, True, False, True]
 
 
-def test_a_mark_that_was_added_is_told_at_the_largest_load() -> None:
+def test_a_flag_that_was_added_is_told_at_the_largest_load() -> None:
     campaign = campaign_of(GOOD, GOOD)
-    (problem,) = mark_problems(campaign, {"hardness_outlier": np.array([False, True])}, {})
+    (problem,) = flag_problems(campaign, {"hardness_outlier": np.array([False, True])}, {})
     assert (problem.code, problem.row, problem.experiment) == ("hardness_outlier", 7, "P1")
 
 
@@ -271,7 +279,7 @@ def test_a_mark_that_was_added_is_told_at_the_largest_load() -> None:
         (3.0, 2.0, []),
     ],
 )
-def test_creep_is_marked_beyond_the_gauge_and_a_share_of_the_depth(
+def test_creep_is_flagged_beyond_the_gauge_and_a_share_of_the_depth(
     depth: float, after: float, codes: list[str]
 ) -> None:
     campaign = campaign_of(GOOD, [(70.5, 0.5), (140.5, depth), (210.5, 4.0)])
@@ -283,5 +291,5 @@ def test_creep_is_marked_beyond_the_gauge_and_a_share_of_the_depth(
     masks = screen_penetration(campaign)
     assert [code for code, mask in masks.items() if mask[1]] == codes
     assert not any(mask[0] for mask in masks.values())
-    problems = mark_problems(campaign, masks, {})
+    problems = flag_problems(campaign, masks, {})
     assert [(each.code, each.row, each.column) for each in problems] == [("creeps", 6, "depth_after_mm")] * len(codes)

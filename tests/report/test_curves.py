@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.estimate.at_once import experiments_at_once, hardness_at_once
+from skisnow.estimate.quick_results import experiment_hardness, experiment_results
 from skisnow.field import read_campaign
 from skisnow.report.curves import series_curves
 
@@ -17,9 +17,9 @@ def test_a_disc_by_hand(tmp_path: Path) -> None:
     rows = ["experiment,site,tool,edge_angle_deg,load_N,depth_mm", "1,A,d,0,20,1", "1,A,d,0,40,2", "1,A,d,0,80,4"]
     (tmp_path / "penetration.csv").write_text("\n".join(rows) + "\n")
     campaign = read_campaign(tmp_path)
-    found = experiments_at_once(campaign)["penetration"]["experiments"]
+    found = experiment_results(campaign)["penetration"]["experiments"]
     assert found[0]["H_V_N_per_mm3"] == pytest.approx(0.02, rel=1e-12)
-    (curve,) = series_curves(campaign, hardness_at_once(campaign))
+    (curve,) = series_curves(campaign, experiment_hardness(campaign))
     assert curve.load_N == (20.0, 40.0, 80.0)
     assert curve.depth_mm == pytest.approx((1.0, 2.0, 4.0), rel=1e-12)
     assert (curve.law_depth_mm[-1], curve.law_load_N[-1]) == pytest.approx((4.0, 80.0), rel=1e-12)
@@ -37,7 +37,7 @@ def test_each_series_has_the_law_of_its_own_tool_and_angle(tmp_path: Path) -> No
     rows += ["3,A,d,0,20,1", "3,A,d,0,40,2", "4,A,s,30,30,1", "4,A,s,30,120,2"]
     (tmp_path / "penetration.csv").write_text("\n".join(rows) + "\n")
     campaign = read_campaign(tmp_path)
-    first, none, disc, last = series_curves(campaign, hardness_at_once(campaign))
+    first, none, disc, last = series_curves(campaign, experiment_hardness(campaign))
     assert (none.experiment, none.law_depth_mm, none.law_load_N) == ("2", (), ())
     # each lies on its law: the loads of the wedges go with the square of the depth, that of the disc with the depth
     for curve, loads in ((first, (20.0, 80.0)), (disc, (20.0, 40.0)), (last, (30.0, 120.0))):

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from skisnow.field import Campaign
-from skisnow.report.numerals import interval, significant
+from skisnow.report.number_formatting import interval, significant
 from skisnow.report.report_data import ReportData
 from skisnow.report.sentences.caveats import caveats
 from skisnow.report.sentences.key_results import key_results

@@ -305,7 +305,7 @@ def test_what_was_not_measured_has_no_section_and_what_was_has(campaign: Campaig
     both = reported(
         replace(campaign, penetration=first_series(campaign, 40), shear=replace(shear, turning=turning)), tmp_path
     ).html
-    for title in ("Shear displacement: how far", "Unloading: how much of the groove"):
+    for title in ("Shear displacement: how far", "Unloading: the permanent depth"):
         assert title not in plain
         assert title in both
     text = " ".join(" ".join(_Reader(both).text).split())

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 
 from skisnow.field import Campaign
-from skisnow.report.numerals import interval, significant
+from skisnow.report.number_formatting import interval, significant
 from skisnow.report.summary import summary
 
 from .conftest import Reported, first_series, results_of

@@ -14,7 +14,7 @@ from skisnow.estimate import analyse, results_dict
 from skisnow.field import read_campaign, write_reference
 from skisnow.field.store import Journals, NewEntry, Store
 from skisnow.web.analyses import MOST_CAMPAIGNS
-from skisnow.web.analysing import choosable_marks
+from skisnow.web.analysing import choosable_flags
 
 from .conftest import DRAWING_MS, Served, downloaded_results
 
@@ -79,7 +79,7 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
     row = next(row for row in given["penetration"]["experiments"] if row["experiment"] == first["experiment"])
     assert not row["used"] and "cancelled" in row["flags"]
     page.locator("summary", has_text="Exclude experiments with these quality flags").press("Enter")
-    box = page.get_by_role("checkbox", name=choosable_marks()["layered"], exact=True)
+    box = page.get_by_role("checkbox", name=choosable_flags()["layered"], exact=True)
     assert box.is_checked() == ("layered" in campaign.excluding)
     box.press("Space")
     excluding = campaign.excluding ^ {"layered"}

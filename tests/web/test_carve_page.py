@@ -8,7 +8,7 @@ from skisnow.carve.answer import answered
 from skisnow.carve.answer_dict import answer_dict
 from skisnow.carve.keys import CARVE_KEYS
 from skisnow.carve.question import carve_question
-from skisnow.report.numerals import significant
+from skisnow.report.number_formatting import significant
 from skisnow.web.pages.carve import RATIOS, SLIDERS
 
 from .conftest import Served

@@ -17,9 +17,9 @@ from skisnow.carve.answer import answered
 from skisnow.carve.answer_dict import answer_dict
 from skisnow.carve.question import carve_question
 from skisnow.cli import main
-from skisnow.field.store import Journals, Store, grown
+from skisnow.field.store import Journals, Store, replayed
 from skisnow.field.store.description import Description, description_text
-from skisnow.report.numerals import significant
+from skisnow.report.number_formatting import significant
 
 from .conftest import Served, downloaded_results, fill, follow, has_text, killed_and_started_again, ready
 
@@ -177,7 +177,7 @@ def test_a_day(page: Page, served: Served, tmp_path: Path, capsys: pytest.Captur
     describe(page, served)
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        found = tomllib.loads(grown(Journals(store).entries(head.id)).description)
+        found = tomllib.loads(replayed(Journals(store).entries(head.id)).description)
     listed = {key: list(value) if isinstance(value, tuple) else value for key, value in VALUES.items()}
     assert found == {**listed, "tool": [TOOL], "plate": [PLATE]}
     enter_series(page, "1")

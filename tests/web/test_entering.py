@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from skisnow.field.store import Journals, Store, grown
-from skisnow.field.store.grown_files import campaign_files
+from skisnow.field.store import Journals, Store, replayed
+from skisnow.field.store.replayed_files import campaign_files
 
 from .conftest import Served, fill, has_text, ready
 from .test_day import correct_the_typing_error, create, enter_series, next_series
@@ -23,7 +23,7 @@ def test_undo_and_a_second_look(page: Page, served: Served) -> None:
     has_text(page.get_by_label("Depth under 80 N (mm)"), "")
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        test = grown(Journals(store).entries(head.id)).test("penetration.csv", "1")
+        test = replayed(Journals(store).entries(head.id)).test("penetration.csv", "1")
     assert [row.cells["depth_mm"] for row in test.rows] == ["1.5", "22.5", "2.6"]
     assert [entry.action for entry in test.history] == ["add"] * 4 + ["undo"]
 
@@ -70,7 +70,7 @@ def test_discs_that_are_taken_off_have_fields_of_their_own(page: Page, served: S
     has_text(page.get_by_label("Depth under 20 N (mm)"), "1.5")
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        campaign = grown(Journals(store).entries(head.id))
+        campaign = replayed(Journals(store).entries(head.id))
     rows = [row.split(",") for row in campaign_files(campaign)["penetration.csv"].splitlines()]
     load, depth, branch = (rows[0].index(name) for name in ("load_N", "depth_mm", "branch"))
     assert [(row[load], row[depth], row[branch]) for row in rows[-3:]] == [
@@ -146,7 +146,7 @@ def test_two_browsers_on_one_series(page: Page, served: Served) -> None:
     other.get_by_text("Nothing was stored: Ada wrote about penetration.csv, 1 meanwhile").wait_for()
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        rows = grown(Journals(store).entries(head.id)).test("penetration.csv", "1").rows
+        rows = replayed(Journals(store).entries(head.id)).test("penetration.csv", "1").rows
     assert [row.cells["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6", "3.0"]
 
 
@@ -236,5 +236,5 @@ def test_the_keyboard_alone_on_a_phone(page: Page, served: Served) -> None:
     page.get_by_text("1 penetration experiment, 1 used; 1 shear experiment, 1 used.").wait_for()
     with Store.open(served.store) as store:
         (found,) = Journals(store).list()
-        rows = grown(Journals(store).entries(found.id)).test("penetration.csv", "1").rows
+        rows = replayed(Journals(store).entries(found.id)).test("penetration.csv", "1").rows
     assert [row.cells["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6"]

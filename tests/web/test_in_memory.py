@@ -13,7 +13,7 @@ from skisnow.errors import ParameterError, StoreError
 from skisnow.estimate import analyse
 from skisnow.field import read_campaign
 from skisnow.field.store import Journals, NewEntry, Store, export_corrected
-from skisnow.report.numerals import significant
+from skisnow.report.number_formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.analyses import CampaignSource
 from skisnow.web.analysing import Choice, Numbers, numbers_of
@@ -86,7 +86,7 @@ def experiments(results: dict[str, Any]) -> Any:
 @pytest.mark.usefixtures("no_folder")
 def test_tests_at_the_desk_say_at_once_what_the_analysis_says(lab: Lab) -> None:
     id_ = entered(lab)
-    (row,) = EditSession(lab, id_).at_once("A").penetration.values()
+    (row,) = EditSession(lab, id_).quick_results("A").penetration.values()
     found = numbers_of(entry_files(lab, id_), Choice())
     assert isinstance(found, Numbers)
     assert experiments(found.results) == [row]
@@ -112,7 +112,7 @@ def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: 
     assert experiments(found.results) == experiments(results)
     assert found.results["provenance"]["files"] == results["provenance"]["files"]
     assert found.analysis.campaign.unread_files == ("photo.jpg",)
-    assert CorrectionSession(lab, id_).at_once("A").penetration["2"] == experiments(results)[1]
+    assert CorrectionSession(lab, id_).quick_results("A").penetration["2"] == experiments(results)[1]
     unchanged = numbers_of(before, Choice())
     assert isinstance(unchanged, Numbers)
     assert experiments(unchanged.results)[1] != experiments(results)[1]

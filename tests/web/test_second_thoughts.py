@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from skisnow.field.store import Journals, Store, grown
+from skisnow.field.store import Journals, Store, replayed
 from skisnow.ski import read_ski
 
 from .conftest import Served, fill, has_text, ready
@@ -46,7 +46,7 @@ def test_tools_and_plates_in_use_keep_their_names(page: Page, served: Served) ->
     send(page)
     page.get_by_role("heading", name="New series").wait_for()
     with Store.open(served.store) as store:
-        assert "a longer one" in grown(Journals(store).entries(id_)).description
+        assert "a longer one" in replayed(Journals(store).entries(id_)).description
 
 
 def test_readings_stay_under_their_loads_when_the_discs_change(page: Page, served: Served) -> None:
@@ -72,7 +72,7 @@ def test_readings_stay_under_their_loads_when_the_discs_change(page: Page, serve
     page.get_by_role("button", name="Store it").press("Enter")
     page.get_by_text("Stored: 2.2 mm under 50 N.").wait_for()
     with Store.open(served.store) as store:
-        rows = grown(Journals(store).entries(id_)).test("penetration.csv", "2").rows
+        rows = replayed(Journals(store).entries(id_)).test("penetration.csv", "2").rows
     found = [(row.cells["load_N"], row.cells["depth_mm"]) for row in rows]
     assert found == [("20", "1.4"), ("30", "1.7"), ("40", "2.0"), ("50", "2.2"), ("60", "2.5"), ("80", "2.9")]
 

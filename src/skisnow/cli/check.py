@@ -22,7 +22,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(options: argparse.Namespace) -> int:
     """Print the problems; 1 if any is an error."""
     problems, notes = _problems(options.campaign)
-    errors, warnings, marks = (_count(problems, severity) for severity in ("error", "warning", "mark"))
+    errors, warnings, flags = (_count(problems, severity) for severity in ("error", "warning", "mark"))
     if options.json:
         entries = [problem.as_dict() for problem in problems]
         print(json.dumps({"errors": errors, "warnings": warnings, "problems": entries}, ensure_ascii=False))
@@ -31,13 +31,13 @@ def run(options: argparse.Namespace) -> int:
             print(problem)
         for note in notes:
             print(f"note: {note}")
-        print(f"errors: {errors}, warnings: {warnings}, flags: {marks}")
+        print(f"errors: {errors}, warnings: {warnings}, flags: {flags}")
     return 1 if errors else 0
 
 
 def _problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
     from ..errors import FieldDataError
-    from ..estimate import marks_of, remarks
+    from ..estimate import campaign_notes, quality_flags
     from ..field import Problem, read_campaign
     from .progress import Progress
 
@@ -46,7 +46,7 @@ def _problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
             campaign = read_campaign(folder, progress=progress)
         except FieldDataError as error:
             return [problem for problem in error.problems if isinstance(problem, Problem)], ()
-        return [*campaign.problems, *marks_of(campaign)], remarks(campaign)
+        return [*campaign.problems, *quality_flags(campaign)], campaign_notes(campaign)
 
 
 def _count(problems: list[Problem], severity: str) -> int:

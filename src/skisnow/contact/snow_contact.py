@@ -96,10 +96,10 @@ class Sections(Shown):
 
 
 class SnowContact(Shown):
-    """Runners in a snow that keeps what they press into it.
+    """Runners in history-dependent snow.
 
-    ``force`` looks at a pose and leaves the snow as it is; ``update`` accepts a step. In between the history advances
-    along the way from the last accepted pose by itself, so that forces and acceptance of a long step agree.
+    ``force`` evaluates a pose and leaves the snow as it is; ``update`` accepts a step. In between the history advances
+    along the path from the last accepted pose by itself, so that forces and acceptance of a long step agree.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ class SnowContact(Shown):
             self.compiled.set_laws(called, self._shear, snow.fade_speed)
         if snow.penetration is not None:
             law = snow.penetration
-            self.compiled.set_penetration(_Pressed(law), np.array(law.bends, float), law.along_base_normal)
+            self.compiled.set_penetration(_PointStress(law), np.array(law.bends, float), law.along_base_normal)
 
     def _facts(self) -> Facts:
         return Facts(f"of {len(self.runners)} runners, {self.compiled.instruction_set}: {self.snow._facts().title}")
@@ -167,15 +167,15 @@ class SnowContact(Shown):
         beam_dofs: Beams = None,
         beam_rates: Beams = None,
     ) -> ContactForces:
-        """Forces at a pose that may or may not be accepted later; nothing is remembered of it."""
+        """Forces at a pose that may or may not be accepted later; nothing of it is stored."""
         found, loads = self.compiled.force(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
         self.require_finite_laws()
         return ContactForces(found, tuple(loads))
 
     def update(self, position: npt.ArrayLike, rotation: npt.ArrayLike, dt: float, *, beam_dofs: Beams = None) -> None:
-        """Accept the step to a pose: the snow remembers all that the runners met on the way."""
-        where, turned, _, step, beams, _ = self._asked(position, rotation, None, dt, beam_dofs, None)
-        self.compiled.update(where, turned, step, beams)
+        """Accept the step to a pose: the snow's history (its internal variables) is updated along the path to it."""
+        where, axes, _, step, beams, _ = self._asked(position, rotation, None, dt, beam_dofs, None)
+        self.compiled.update(where, axes, step, beams)
 
     def tangent(
         self,
@@ -198,7 +198,7 @@ class SnowContact(Shown):
         return found
 
     def require_finite_laws(self) -> None:
-        """ParameterError if a shear law in Python gave no finite strength at the pose looked at last."""
+        """ParameterError if a shear law in Python gave no finite strength at the pose evaluated last."""
         if self._shear is not None and self._shear.refused:
             raise ParameterError(self._shear.refused)
 
@@ -207,7 +207,7 @@ class SnowContact(Shown):
         return Sections(**self.compiled.sections(runner))
 
     def tracks(self) -> FloatArray:
-        """The grooves left in the snow, (n, 6): track, line, x, y, z on the surface (m), greatest depth ever (m).
+        """The grooves left in the snow, (n, 6): track, line, x, y, z on the surface (m), maximum depth ever (m).
 
         Rows of a line follow each other across; between them the ground is straight. Those of all contacts in this
         snow, and those under these runners.
@@ -221,7 +221,7 @@ class SnowContact(Shown):
 
     @property
     def elastic_energy(self) -> float:
-        """Energy (J) that the snow would give back, at the last pose looked at."""
+        """Energy (J) that the snow would give back, at the last pose evaluated."""
         return self.compiled.elastic_energy()
 
     @property
@@ -230,7 +230,7 @@ class SnowContact(Shown):
         return self.compiled.delayed_energy()
 
     def state(self) -> State:
-        """All that this contact remembers, to go back to; tracks of others that came later are forgotten with it."""
+        """The history of this contact, to go back to; later tracks of others go with it."""
         return self.compiled.state()
 
     def restore(self, state: State) -> None:
@@ -247,14 +247,14 @@ class SnowContact(Shown):
         rates: Beams,
     ) -> tuple[FloatArray, FloatArray, FloatArray, float, list[FloatArray] | None, list[FloatArray] | None]:
         k = len(self.runners)
-        where, turned = _array("position", position, (k, 3)), _array("rotation", rotation, (k, 3, 3))
-        off = np.abs(np.swapaxes(turned, 1, 2) @ turned - np.eye(3)).max()
-        if off > ORTHONORMAL or np.any(np.linalg.det(turned) < 0.0):
+        where, axes = _array("position", position, (k, 3)), _array("rotation", rotation, (k, 3, 3))
+        off = np.abs(np.swapaxes(axes, 1, 2) @ axes - np.eye(3)).max()
+        if off > ORTHONORMAL or np.any(np.linalg.det(axes) < 0.0):
             raise ParameterError(f"SnowContact: rotation is none, its columns are off by {off:.1e} from orthonormal")
         if not (np.isfinite(dt) and dt >= 0.0):
             raise ParameterError(f"SnowContact: dt is {dt!r} s; it must be 0 or more")
         moves = np.zeros((k, 6)) if velocity is None else _array("velocity", velocity, (k, 6))
-        return where, turned, moves, dt, self._beams("beam_dofs", beams), self._beams("beam_rates", rates)
+        return where, axes, moves, dt, self._beams("beam_dofs", beams), self._beams("beam_rates", rates)
 
     def _beams(self, name: str, beams: Beams) -> list[FloatArray] | None:
         if beams is None:
@@ -287,7 +287,7 @@ class _coefficient:  # noqa: N801 - a function that can be pickled
 class _strength:  # noqa: N801
     """Strength and thrust of a law (2, n), for arrays of depths and edge angles.
 
-    Where they are not finite ``refused`` says so: a step that is tried may look at a pose that no ski comes to.
+    Where they are not finite ``refused`` says so: a trial step may evaluate a pose that no ski comes to.
     """
 
     def __init__(self, law: ShearLaw) -> None:
@@ -305,7 +305,7 @@ class _strength:  # noqa: N801
         return found
 
 
-class _Pressed:
+class _PointStress:
     """A penetration law as the core asks it: arrays over points, finite numbers back."""
 
     def __init__(self, law: PointLaw) -> None:

@@ -31,9 +31,9 @@ FADE_SPEED: Final = 0.01
 KNOT_AREA: Final = 1e-4
 """Share of a contact's depth times width below which a knot of the groove is dropped (modelling assumption)."""
 PART_ALONG: Final = 0.01
-"""Longest way (m) of tip or tail along the ski over which the history advances at once (modelling assumption)."""
+"""Longest path (m) of tip or tail along the ski over which the history advances at once (modelling assumption)."""
 PART_ACROSS: Final = 2e-3
-"""The same across the ski (m): what an edge cuts on the way hangs on where it was between (modelling assumption)."""
+"""The same across the ski (m): what an edge cuts depends on where it was in between (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -108,11 +108,11 @@ class SnowField(Shown):
     compiled: core.Snow = field(init=False, repr=False)
 
     def _facts(self) -> Facts:
-        def told(value: float | Grid, size: float, unit: str) -> str:
+        def in_words(value: float | Grid, size: float, unit: str) -> str:
             return "over the place" if isinstance(value, Grid) else amount(value / size, unit)
 
-        hardness = told(self.snow_hardness, N_PER_MM3, "N/mm³")
-        stress = told(self.failure_shear_stress, N_PER_MM2, "N/mm²")
+        hardness = in_words(self.snow_hardness, N_PER_MM3, "N/mm³")
+        stress = in_words(self.failure_shear_stress, N_PER_MM2, "N/mm²")
         friction = self.friction if isinstance(self.friction, int | float) else type(self.friction).__name__
         laws = f"friction {friction}, shear {'S_f' if self.shear is None else type(self.shear).__name__}"
         if self.penetration is not None:
@@ -120,11 +120,11 @@ class SnowField(Shown):
         return Facts(f"H_V {hardness}, S_f {stress}, k_u/H_V {amount(self.unloading_ratio)}, {laws}")
 
     def __post_init__(self) -> None:
-        _require("snow_hardness", _least(self.snow_hardness), above=0.0)
-        _require("failure_shear_stress", _least(self.failure_shear_stress), least=0.0)
-        _require("unloading_ratio", self.unloading_ratio, least=1.0)
-        self._require_one_hold()
-        _require("residual_ratio", self.residual_ratio, least=0.0)
+        _require("snow_hardness", _minimum(self.snow_hardness), above=0.0)
+        _require("failure_shear_stress", _minimum(self.failure_shear_stress), minimum=0.0)
+        _require("unloading_ratio", self.unloading_ratio, minimum=1.0)
+        self._require_one_side_force()
+        _require("residual_ratio", self.residual_ratio, minimum=0.0)
         if self.residual_ratio > 1.0:
             raise ParameterError(f"SnowField: residual_ratio is {self.residual_ratio!r}; it must be at most 1")
         if self.friction_acts_on not in get_args(ActsOn):
@@ -143,18 +143,18 @@ class SnowField(Shown):
         ):
             _require(name, getattr(self, name), above=0.0)
         for name in ("knot_area", "damping", "delayed_share"):
-            _require(name, getattr(self, name), least=0.0)
+            _require(name, getattr(self, name), minimum=0.0)
         self._require_own_law_for_rate()
         object.__setattr__(self, "compiled", self._compiled())
 
-    def _require_one_hold(self) -> None:
+    def _require_one_side_force(self) -> None:
         law = self.penetration
         if law is None or not law.along_base_normal:
             return
-        if self.shear is not None or _most(self.failure_shear_stress) > 0.0:
+        if self.shear is not None or _maximum(self.failure_shear_stress) > 0.0:
             raise ParameterError(
-                f"SnowField: {type(law).__name__} acts along the base's normal and so holds the edge across by itself; "
-                "give it failure_shear_stress 0 and no shear law"
+                f"SnowField: {type(law).__name__} acts along the base's normal and so carries the side force "
+                "by itself; give it failure_shear_stress 0 and no shear law"
             )
 
     def _require_own_law_for_rate(self) -> None:
@@ -196,7 +196,7 @@ class SnowField(Shown):
             out.constant, out.linear = law.lubricated_friction, law.viscous_slope
             out.film, out.film_speed = law.dry_friction, law.film_speed
         elif not isinstance(law, FrictionLaw):
-            _require("friction", law, least=0.0)
+            _require("friction", law, minimum=0.0)
             out.constant = law
         return out
 
@@ -236,17 +236,17 @@ class SnowField(Shown):
         )
 
 
-def _least(value: float | Grid) -> float:
+def _minimum(value: float | Grid) -> float:
     return float(value.values.min()) if isinstance(value, Grid) else value
 
 
-def _most(value: float | Grid) -> float:
+def _maximum(value: float | Grid) -> float:
     return float(value.values.max()) if isinstance(value, Grid) else value
 
 
-def _require(name: str, value: float, *, least: float | None = None, above: float | None = None) -> None:
-    allowed = f"at least {least:g}" if least is not None else f"above {above:g}"
-    good = math.isfinite(value) and (least is None or value >= least) and (above is None or value > above)
+def _require(name: str, value: float, *, minimum: float | None = None, above: float | None = None) -> None:
+    allowed = f"at least {minimum:g}" if minimum is not None else f"above {above:g}"
+    good = math.isfinite(value) and (minimum is None or value >= minimum) and (above is None or value > above)
     if not good:
         raise ParameterError(f"SnowField: {name} is {value!r}; it must be finite and {allowed}")
 

@@ -36,7 +36,7 @@ class FlexibleSki(ShownFields):
     axes
         Ahead, left across the base, off the base, as rows in the body's frame, (3, 3).
     unknown
-        First unknown of each node from tip to tail, -1 where the binding holds it, (nodes,).
+        First unknown of each node from tip to tail, -1 where the binding clamps it, (nodes,).
     mass, stiffness
         Symmetric bands, lower half: [i, j] is A[i, i - j], (n, 6).
     coupling

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from ..compiled import core
 from ..contact import SnowContact
 from ..errors import ParameterError
+from ..former_names import warn_of_former_name
 from .body import Body, shaped
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -19,7 +20,7 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 STEPS_AT_ONCE: Final = 1000
 """Steps after which compiled code comes back, so that an interrupt is heard."""
 TOLERANCE: Final = 1e-6
-"""Error of place (m) that one step may make by its own estimate (modelling assumption; the docs draw its frontier)."""
+"""Error of position (m) that one step may make by its own estimate (modelling assumption; see the docs' frontier)."""
 LONGEST_STEP: Final = 6e-3
 """Longest step (s) (modelling assumption: the powers are summed by the trapezoidal rule from step to step)."""
 SHORTEST_STEP: Final = 1e-7
@@ -50,7 +51,7 @@ class StepControl:
     fixed
         Whether the step stays.
     tolerance
-        Error of place of one step (m); one metre from the boots for rotations.
+        Error of position of one step (m); one metre from the boots for rotations.
     longest, shortest
         Between which the error control chooses (s).
     closeness, matrix_kept
@@ -121,9 +122,17 @@ class Dynamics:
         self._core = core.Dynamics(body.compiled(), contact.compiled, control.compiled())
         self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
 
-    def settle(self) -> float:
-        """Move to equilibrium in height, roll, pitch and bend, place and heading held; Newton's last step (m)."""
+    def find_equilibrium(self) -> float:
+        """Move to static equilibrium in height, roll, pitch and deflection; Newton's last step, the residual (m).
+
+        Position along the slope and heading stay.
+        """
         return float(self._core.settle())
+
+    def settle(self) -> float:
+        """Former name of `find_equilibrium`."""
+        warn_of_former_name("Dynamics.settle", "find_equilibrium")
+        return self.find_equilibrium()
 
     def move_to(self, position: FloatArray, rotation: FloatArray) -> None:
         """Put the body elsewhere before it begins, its skis bent as they are."""
@@ -135,7 +144,7 @@ class Dynamics:
         self._core.begin()
 
     def advance(self, until: float) -> Ended:
-        """Take steps until a time (s), which the last one meets; an interrupt is heard on the way.
+        """Take steps until a time (s), which the last one meets; an interrupt is heard in between.
 
         Raises
         ------
@@ -170,9 +179,15 @@ class Dynamics:
         return self._core.velocity
 
     @property
-    def bend(self) -> FloatArray:
-        """The beams' unknowns, (skis, n)."""
+    def beam_dofs(self) -> FloatArray:
+        """Degrees of freedom of the beams, (skis, n): deflection (m), its slope and twist (rad) at each free node."""
         return self._core.bend.reshape(len(self.body.skis), -1)
+
+    @property
+    def bend(self) -> FloatArray:
+        """Former name of `beam_dofs`."""
+        warn_of_former_name("Dynamics.bend", "beam_dofs")
+        return self.beam_dofs
 
     def along(self, ski: int) -> FloatArray:
         """At the last time reached: depth of the edge (m), force and shear per length (N/m) at the nodes, (3, m)."""
@@ -190,7 +205,7 @@ class Dynamics:
 
     @property
     def snow_energies(self) -> tuple[float, float]:
-        """Elastic in the snow, and held in the displaced shear of the edges, at the last time reached (J)."""
+        """Elastic in the snow, and in the shear displacement of the edges, at the last time reached (J)."""
         return float(self._core.snow_energy), float(self._core.held_energy)
 
     @property

@@ -1,8 +1,11 @@
 """From field records to snow parameters with uncertainty."""
 
+from ..former_names import former_attributes
 from .analysis import Analysis, analyse
-from .remarks import remarks
+from .campaign_notes import campaign_notes
 from .results import results_dict
-from .screening import marks_of
+from .screening import quality_flags
 
-__all__ = ["Analysis", "analyse", "marks_of", "remarks", "results_dict"]
+__all__ = ["Analysis", "analyse", "campaign_notes", "quality_flags", "results_dict"]
+
+__getattr__ = former_attributes(__name__, {"marks_of": "quality_flags", "remarks": "campaign_notes"})

@@ -68,7 +68,7 @@ class Analysis(Shown):
     geometry, seed, n_resamples
         How: see `analyse`.
     penetration, shear
-        What the experiments of each kind say, in SI; None where the campaign has none.
+        Results of each kind of experiment, in SI; None where the campaign has none.
     regressions, site_means, site_comparisons, comparisons
         Relations between the quantities, sites beside each other, published values beside the campaign's own.
     own_hardness, own_stress
@@ -107,7 +107,7 @@ class Analysis(Shown):
     def snow(self, site: str | None = None, *, unloading_ratio: float | None = None) -> SnowProperties:
         """The snow of a site: the geometric mean of H_V and the mean of S_f over the used experiments, with intervals.
 
-        k_u/H_V is that of the site's unloading readings, where they say both ends of its interval; the shear
+        k_u/H_V is that of the site's unloading readings, where both ends of its interval are known; the shear
         displacement u_y the geometric mean of its shear tests with turning angles.
 
         The same numbers as `skisnow.snow_from_results` reads from results.json.
@@ -176,7 +176,7 @@ def analyse(
     Raises
     ------
     FieldDataError
-        The folder holds errors; its ``problems`` list every one.
+        The folder has errors; its ``problems`` list every one.
     ParameterError
         ``n_resamples`` is too small for a 95 % interval.
 
@@ -248,9 +248,9 @@ def _penetration(
     screened = screened_penetration(campaign, geometry=geometry)
     readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
     uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
-    _say(progress, f"hardness of {readings.n_series} penetration experiments")
+    _report(progress, f"hardness of {readings.n_series} penetration experiments")
     found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
-    back = unloading(campaign.penetration, readings, found["H_V"], uncertainty, screened.marks[NOT_FALLING])
+    back = unloading(campaign.penetration, readings, found["H_V"], uncertainty, screened.flags[NOT_FALLING])
     back_by_site = site_unloading(back, screened.used, campaign.penetration.site)
     growing = growing_hardness(readings, found["H_V"].value, uncertainty)
     growth_by_site = site_growth(growing, screened.used, campaign.penetration.site)
@@ -262,7 +262,7 @@ def _penetration(
         )
 
     used = readings.of(screened.used)
-    _say(progress, f"model table over {used.n} readings")
+    _report(progress, f"model table over {used.n} readings")
     by_last = {symbol: H.value[screened.used] for symbol, H in found.items()}
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
@@ -317,6 +317,6 @@ def _angle_term(penetration: PenetrationAnalysis | None) -> tuple[OwnValue, OwnV
     return OwnValue(fit.b0, low0, high0, nan, nan), OwnValue(fit.b1, low1, high1, nan, nan)
 
 
-def _say(progress: Callable[[str], None] | None, text: str) -> None:
+def _report(progress: Callable[[str], None] | None, text: str) -> None:
     if progress:
         progress(text)

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 FEWEST_SITES: Final = 4
-"""Fewer sites do not tell how sites scatter (two leave one degree of freedom): no interval over them (assumption)."""
+"""Fewer sites do not show how sites scatter (two leave one degree of freedom): no interval over them (assumption)."""
 
 
 @dataclass(frozen=True, slots=True)
 class OwnValue:
-    """A mean of the campaign: value and 95 % interval, NaN if unknown or withheld; least and greatest value.
+    """A mean of the campaign: value and 95 % interval, NaN if unknown or withheld; minimum and maximum.
 
     With several sites the interval takes them as clusters; under four sites it is withheld.
     """
@@ -35,8 +35,8 @@ class OwnValue:
     value: float
     low: float
     high: float
-    least: float
-    greatest: float
+    minimum: float
+    maximum: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class Comparison:
             **published,
             "own": own.value,
             "own_interval": [own.low, own.high],
-            "own_range": [own.least, own.greatest],
+            "own_range": [own.minimum, own.maximum],
         }
 
 
@@ -103,7 +103,7 @@ def _half_width(data: FloatArray, sites: npt.NDArray[np.int64]) -> float:
 def compare_with_published(
     hardness: OwnValue, stress: OwnValue, angle_term: tuple[OwnValue, OwnValue], shear_density: OwnValue
 ) -> tuple[Comparison, ...]:
-    """The published ranges, Federolf 2006 converted, Eqns 11 and 14, Domine 2011; units as the keys say."""
+    """The published ranges, Federolf 2006 converted, Eqns 11 and 14, Domine 2011; units as in the keys."""
     H_V, S_f = "H_V_N_per_mm3", "S_f_N_per_mm2"
     paper = moessner_2013.SOURCE
     rows = [

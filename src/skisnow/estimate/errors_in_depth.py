@@ -11,7 +11,7 @@ with the campaign's own relative scatter s. Rows, bounds and units are those of 
 
 Notes
 -----
-H of a series absorbs the level of b(ϑ) at its own edge angle, here as in the paper: the rows tell how the *shape* of
+H of a series absorbs the level of b(ϑ) at its own edge angle, here as in the paper: the rows show how the *shape* of
 the force over depth changes with the angle, not how the force does.
 """
 
@@ -88,7 +88,7 @@ def fitted_hardness(readings: Readings, seated: Seating, uncertainty: ReadingUnc
 
 
 def _with_layering(readings: Readings, seated: Seating, uncertainty: ReadingUncertainty) -> FloatArray:
-    """What holds the interval for even snow and that for layered snow; NaN where one of them is not known."""
+    """Hull of the interval for even snow and that for layered snow; NaN where one of them is not known."""
     other = layering(readings, seated.hardness, seated.offset, uncertainty).hardness_interval
     low, high = np.minimum(seated.hardness_interval, other)[:, 0], np.maximum(seated.hardness_interval, other)[:, 1]
     return np.stack((low, high), axis=-1)
@@ -130,7 +130,7 @@ def fit_models_with_depth_errors(
 
 
 def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: FloatArray) -> FloatArray:
-    """End values of a weighted fit by its normal equations: good enough on the way to the final factorised fit."""
+    """End values of a weighted fit by its normal equations: good enough before the final factorised fit."""
     projection, fixed = basis.projection(model), basis.offset(model)
     # column by column: a weighted copy of all columns would cost more in memory traffic than the sums do
     columns = basis.columns.T

@@ -18,7 +18,7 @@ POOR: Final = 0.5
 assumption)."""
 _LISTED: Final = 3
 _DEPTH: Final = " with errors in depth"
-_LOOK: Final = "Look for wrong units, depths or tools, and for snow that follows none of these laws."
+_ACTION: Final = "Look for wrong units, depths or tools, and for snow that follows none of these laws."
 
 
 def fit_warnings(
@@ -33,7 +33,7 @@ def _poor(selected: ModelFit, size: float) -> Iterator[str]:
     if POOR * size < selected.rmse <= size:
         yield (
             f"Even the selected law misses the loads by {100.0 * selected.rmse / size:.0f} % of their root mean square "
-            f"({selected.rmse:.4g} N of {size:.4g} N). {_LOOK}"
+            f"({selected.rmse:.4g} N of {size:.4g} N). {_ACTION}"
         )
 
 
@@ -44,5 +44,5 @@ def _worse_than_nothing(fits: tuple[ModelFit, ...], how: str, size: float) -> It
         listed = ", ".join(f"{fit.model.id} ({fit.rmse:.5g} N)" for fit in rows[:_LISTED])
         yield (
             f"The rmse of {listed}{more}{how} is above the root mean square of the loads, {size:.4g} N: "
-            f"no force at all would describe the readings better. {_LOOK}"
+            f"no force at all would describe the readings better. {_ACTION}"
         )

@@ -6,8 +6,9 @@ the largest load, and γ = 0 for F = H_V V. Over the tool
     F = H_0 (V + γ W/e₇),    W = ∫ ε² dA = 2 ∫ V de,
 
 V and W up to the depth of the reading. Fitted are H = F/V at e₇, γ and the offset δ of the depth zero, all of which
-bend the curve: δ is said beforehand to be about 0 within `SEATING_SD`, as where layering is marked (`layering`). Seven
-readings leave much of γ open; the mean over a site says more. The whole module is our modelling assumption.
+bend the curve: δ has a prior about 0 with the standard deviation `SEATING_SD`, as for the flag of layering
+(`layering`). Seven readings leave much of γ open; the mean over a site is narrower. The whole module is our modelling
+assumption.
 """
 
 from __future__ import annotations
@@ -157,12 +158,12 @@ class _Fit:
         gain[2] -= self._prior * self._b[2]
         inverse = inverse_of_each(np.moveaxis(normal, 2, 0))
         step = np.einsum("mik,km->im", inverse, gain)
-        dof = sums(np.ones(self._readings.n)) - 2.0  # δ is held by what is said of it beforehand
+        dof = sums(np.ones(self._readings.n)) - 2.0  # δ is held by its prior
         Q = sums(weight * residual**2) + self._prior * self._b[2] ** 2
         fall = sums((weight * residual * slope) ** 2)
         scatter2 = self._scatter2 + (Q / dof - 1.0) * Q / fall  # Newton on 1/Q towards Q = dof, as in `seating`
         scatter2 = np.clip(np.where(fall > 0, scatter2, 0.0), 1e-12, 10.0)
-        scatter2 = np.sqrt(scatter2 * self._scatter2)  # half the way on logarithms: the whole one goes in circles
+        scatter2 = np.sqrt(scatter2 * self._scatter2)  # half a step on logarithms: whole ones oscillate
         drift = np.abs(scatter2 - self._scatter2) / (scatter2 + _LITTLE_SCATTER)
         changed = np.maximum(np.abs(step[:2]).max(axis=0), drift)
         at_end = (changed < _SETTLED) & (sums((moved > _SETTLED).astype(float)) == 0)

@@ -28,16 +28,16 @@ BoolArray = npt.NDArray[np.bool_]
 SEATING_SD: Final = 0.1 * MM
 """Offsets of the depth zero that are put down to seating when layering is looked for; more bends the curve too far."""
 SHOWS: Final = 0.99
-"""Layering is marked where this interval of g leaves out 1: one series in a hundred of even snow."""
+"""Layering is flagged where this interval of g leaves out 1: one series in a hundred of even snow."""
 FEWEST_READINGS: Final = 5
-"""With fewer, nothing is marked: three numbers are fitted."""
+"""With fewer, nothing is flagged: three numbers are fitted."""
 _ITERATIONS: Final = 40
-_LEAST_DETERMINANT: Final = 1e-14
+_MINIMUM_DETERMINANT: Final = 1e-14
 
 
 @dataclass(frozen=True, slots=True)
 class Layering:
-    """What m series say with layering allowed; NaN where the fit found no answer.
+    """Estimates of m series with layering allowed; NaN where the fit found no solution.
 
     Attributes
     ----------
@@ -80,13 +80,13 @@ def layering(
     """Fit e = ê(V) + δ, ln V = ln V₇ + g ln(F/F₇), g = 1/(1 + κ/2), to each series by weighted Gauss-Newton.
 
     From ``hardness`` (N/m³), g = 1 and ``offset`` (m). Error model and weights are those of `seating`. A finite
-    ``offset_sd`` (m) says beforehand that δ is about 0.
+    ``offset_sd`` (m) is the prior of δ about 0.
     """
     fit = _Fit(readings, uncertainty, offset_sd)
     b = np.stack((np.log(hardness), np.ones(readings.n_series), np.where(np.isfinite(offset), offset, 0.0)))
     scatter2 = np.full(readings.n_series, 1e-4)
     step = np.full_like(b, np.inf)
-    with np.errstate(all="ignore"):  # series without an answer run through as NaN and are told apart at the end
+    with np.errstate(all="ignore"):  # series without a solution run through as NaN and are separated at the end
         for _ in range(_ITERATIONS):
             step, _ = fit.step(b, scatter2)
             b = b + np.clip(step, [[-0.5], [-0.3], [-np.inf]], [[0.5], [0.3], [np.inf]])
@@ -150,13 +150,13 @@ class _Fit:
 
 
 def inverse_of_each(normal: FloatArray) -> FloatArray:
-    """Inverse of each (3, 3), scaled to a unit diagonal on the way; NaN where it is singular."""
+    """Inverse of each (3, 3), scaled to a unit diagonal in between; NaN where it is singular."""
     root = np.sqrt(np.einsum("mii->mi", normal))
     scale = root[:, :, None] * root[:, None, :]
     scaled = np.where(scale > 0, normal / scale, np.nan)
     regular = np.isfinite(scaled).all(axis=(1, 2))
     scaled[~regular] = np.eye(3)
-    regular &= np.linalg.det(scaled) > _LEAST_DETERMINANT
+    regular &= np.linalg.det(scaled) > _MINIMUM_DETERMINANT
     scaled[~regular] = np.eye(3)
     inverse = np.linalg.inv(scaled) / scale
     inverse[~regular] = np.nan

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
-LEAST_DETERMINANT: Final = 1e-12
+MINIMUM_DETERMINANT: Final = 1e-12
 """Of a normal matrix of columns of length one: below it, some combination of coefficients is free but for rounding."""
 EQUAL_PERCENT: Final = 1e-9
 """Rows whose rmse differ by no more (in percent) are equal."""
@@ -85,7 +85,7 @@ def bootstrap_intervals(
     ``MOST_UNITS`` experiments, random groups of them are drawn in their place: experiments are independent, so groups
     are too, and their number still is large.
     """
-    if readings.n_series < 2:  # one experiment cannot tell how experiments differ
+    if readings.n_series < 2:  # one experiment cannot show how experiments differ
         return {model: np.full((4, 2), np.nan) for model in MODELS if model.n_parameters}
     groups = _groups(readings, {symbol: end_basis(readings, hardnesses[symbol]) for symbol in DEFINITIONS}, weights)
     products = [group.products for group in groups]
@@ -134,7 +134,7 @@ def _undetermined(normal: FloatArray) -> BoolArray:
     present = (length > 0).all(axis=1)
     scale = np.where(length > 0, length, 1.0)
     determinant: FloatArray = np.linalg.det(normal / scale[:, :, None] / scale[:, None, :])
-    return ~present | ~(determinant > LEAST_DETERMINANT)
+    return ~present | ~(determinant > MINIMUM_DETERMINANT)
 
 
 def _groups(readings: Readings, bases: dict[str, EndBasis], weights: dict[Model, FloatArray] | None) -> list[_Group]:

@@ -1,4 +1,4 @@
-"""What the experiments of each kind say: the parts of an `Analysis`."""
+"""Results of each kind of experiment: the parts of an `Analysis`."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ModelTable(Shown):
 
 @dataclass(frozen=True, repr=False)
 class PenetrationAnalysis(Shown):
-    """All that the penetration experiments say; arrays run over all m experiments, the table over the used ones.
+    """Results of the penetration experiments; arrays run over all m experiments, the table over the used ones.
 
     ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say, ``growing`` what
     they say of a hardness that grows with depth, ``unloading`` what those say that were read while discs were taken
@@ -66,7 +66,7 @@ class PenetrationAnalysis(Shown):
 
 @dataclass(frozen=True, repr=False)
 class ShearAnalysis(Shown):
-    """All that the shear experiments say, over all experiments."""
+    """Results of the shear experiments, over all experiments."""
 
     screened: Screened
     stress: ShearStress

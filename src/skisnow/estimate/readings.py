@@ -131,12 +131,12 @@ class Readings(ShownFields):
         """Keep the chosen series (mask over the m series)."""
         if chosen.all():
             return self
-        kept = chosen[self.series]
+        included = chosen[self.series]
         first = np.concatenate(([0], np.cumsum(np.diff(self.first)[chosen])))
-        moved = np.cumsum(kept) - 1
+        moved = np.cumsum(included) - 1
         return Readings(
-            load=self.load[kept],
-            penetration_depth=self.penetration_depth[kept],
+            load=self.load[included],
+            penetration_depth=self.penetration_depth[included],
             edge_angle=self.edge_angle[chosen],
             first=first.astype(np.int64),
             largest=moved[self.largest[chosen]].astype(np.int64),

@@ -58,7 +58,7 @@ class Regression(ShownFields):
     """A regression with intercept on one predictor; ``fit`` is None where the data do not determine it.
 
     ``predictor_values`` counts the different values that the predictor takes. ``interval_by_site`` (2, 2) treats sites
-    as clusters; None for a single site, NaN where sites do not tell.
+    as clusters; None for a single site, NaN where the sites leave it open.
     """
 
     plan: RegressionPlan

@@ -16,9 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from .campaign_notes import campaign_notes
 from .hardness import DEFINITIONS
 from .model_rows import model_rows, nested_row, selected_model
-from .remarks import remarks
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -55,7 +55,7 @@ def results_dict(analysis: Analysis) -> Json:
 
     See Also
     --------
-    skisnow.Analysis.results : the same, kept.
+    skisnow.Analysis.results : the same, stored.
     skisnow.write_report : writes it, too.
 
     References
@@ -137,7 +137,7 @@ def _campaign(analysis: Analysis) -> Json:
         "excluding": sorted(campaign.excluding),
         "warnings": [problem.as_dict() for problem in campaign.problems],
         "corrections": [asdict(correction) for correction in campaign.corrections],
-        "remarks": list(remarks(campaign)),
+        "remarks": list(campaign_notes(campaign)),
     }
 
 
@@ -192,7 +192,7 @@ def _penetration(analysis: Analysis) -> Json:
 def penetration_experiments(
     tests: PenetrationTests, screened: Screened, hardness: Mapping[str, Hardness], unloading: Unloading
 ) -> list[Json]:
-    """The rows ``penetration.experiments``: of each series what it was, its marks, its hardness, its unloading."""
+    """The rows ``penetration.experiments``: of each series what it was, its flags, its hardness, its unloading."""
     columns: dict[str, list[Any]] = {
         "experiment": list(tests.experiment),
         "site": list(tests.site),
@@ -200,7 +200,7 @@ def penetration_experiments(
         "edge_angle_deg": _degrees(tests.edge_angle),
         "n_loads": np.diff(tests.first).tolist(),
         "used": screened.used.tolist(),
-        "flags": screened.flags(),
+        "flags": screened.codes(),
     }
     for symbol, definition in DEFINITIONS.items():
         columns[definition.key] = _numbers(hardness[symbol].value / definition.si)
@@ -234,7 +234,7 @@ def _site_unloading(row: SiteUnloading) -> Json:
 
 
 def _degrees(angle: FloatArray) -> list[float]:
-    """Degrees as a person wrote them: the last bits that the way over radians costs are taken off."""
+    """Degrees as a person wrote them: the last bits that the conversion to radians costs are taken off."""
     degrees: list[float] = np.round(np.degrees(angle), 11).tolist()
     return degrees
 
@@ -284,7 +284,7 @@ def _shear(analysis: Analysis) -> Json:
 def shear_experiments(
     tests: ShearTests, screened: Screened, stress: ShearStress, displacement: ShearDisplacement
 ) -> list[Json]:
-    """The rows ``shear.experiments``: of each test what it was, its marks, its force and stress."""
+    """The rows ``shear.experiments``: of each test what it was, its flags, its force and stress."""
     return _rows(
         {
             "experiment": list(tests.experiment),
@@ -295,7 +295,7 @@ def shear_experiments(
             "S_f_N_per_mm2": _numbers(stress.value / N_PER_MM2),
             "S_f_interval_N_per_mm2": _numbers(stress.interval / N_PER_MM2),
             "used": screened.used.tolist(),
-            "flags": screened.flags(),
+            "flags": screened.codes(),
             "n_turning": displacement.n_readings.tolist(),
             "shear_displacement_mm": _numbers(displacement.value / MM),
             "shear_displacement_interval_mm": _numbers(displacement.interval / MM),
@@ -337,7 +337,7 @@ def _site_mean(row: SiteMean) -> Json:
         "n": row.n,
         "mean": own.value,
         "interval": [own.low, own.high],
-        "range": [own.least, own.greatest],
+        "range": [own.minimum, own.maximum],
     }
 
 

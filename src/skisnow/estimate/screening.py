@@ -1,4 +1,4 @@
-"""Which experiments take part: the marks of the field screening and those that need the hardness."""
+"""Which experiments are included: the quality flags of the field screening and those that need the hardness."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..field.screening import mark_problems, screen_penetration, screen_shear
+from ..field.screening import flag_problems, screen_penetration, screen_shear
 from ..names import numbered
 from ..shown import ShownFields
 from ..units import N_PER_MM3
@@ -38,47 +38,47 @@ NORMAL_MAD: Final = 1.4826
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Screened(ShownFields):
-    """Marks of each experiment by code, and which experiments are used (masks over the experiments)."""
+    """Quality flags of each experiment by code, and which experiments are used (masks over the experiments)."""
 
-    marks: Mapping[str, BoolArray]
+    flags: Mapping[str, BoolArray]
     used: BoolArray
 
-    def flags(self) -> list[list[str]]:
-        """Codes of the marks of each experiment, in the order of the table of marks."""
+    def codes(self) -> list[list[str]]:
+        """Codes of the flags of each experiment, in the order of `QUALITY_FLAGS`."""
         found: list[list[str]] = [[] for _ in range(len(self.used))]
-        for code, mask in self.marks.items():
+        for code, mask in self.flags.items():
             for index in np.flatnonzero(mask).tolist():
                 found[index].append(code)
         return found
 
 
 def screened_penetration(campaign: Campaign, *, geometry: GeometryForm) -> Screened:
-    """Marks of the penetration experiments, those that need the hardness included, and which of them are used."""
+    """Quality flags of the penetration experiments, also those that need the hardness, and which of them are used."""
     tests = campaign.penetration
     if tests is None:
         return Screened({}, np.zeros(0, dtype=bool))
-    marks = dict(screen_penetration(campaign, geometry=geometry))
+    flags = dict(screen_penetration(campaign, geometry=geometry))
     readings = readings_of(tests, campaign.tools, geometry=geometry)
     H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
-    used = _used(marks, campaign, len(tests)) & np.isfinite(H_V)
-    marks["layered"] = layered(readings, np.where(used, H_V, np.nan), _uncertainty(campaign))
-    used = _used(marks, campaign, len(tests)) & np.isfinite(H_V)
+    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
+    flags["layered"] = layered(readings, np.where(used, H_V, np.nan), _uncertainty(campaign))
+    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
     found = hardness(readings, DEFINITIONS["H_V"], _uncertainty(campaign))
-    back = unloading(tests, readings, found, _uncertainty(campaign), marks[NOT_FALLING])
-    marks["rebound_unresolved"] = back.is_unresolved
-    used = _used(marks, campaign, len(tests)) & np.isfinite(H_V)
-    marks["hardness_outlier"] = hardness_outliers(H_V, used, tests.site)
-    return Screened(marks, _used(marks, campaign, len(tests)) & np.isfinite(H_V))
+    back = unloading(tests, readings, found, _uncertainty(campaign), flags[NOT_FALLING])
+    flags["rebound_unresolved"] = back.is_unresolved
+    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
+    flags["hardness_outlier"] = hardness_outliers(H_V, used, tests.site)
+    return Screened(flags, _used(flags, campaign, len(tests)) & np.isfinite(H_V))
 
 
 def screened_shear(campaign: Campaign) -> Screened:
-    """Marks of the shear experiments and which of them are used."""
+    """Quality flags of the shear experiments and which of them are used."""
     tests = campaign.shear
     if tests is None:
         return Screened({}, np.zeros(0, dtype=bool))
-    marks = dict(screen_shear(campaign))
+    flags = dict(screen_shear(campaign))
     defined = np.isfinite(shear_stress(campaign, tests).value)
-    return Screened(marks, _used(marks, campaign, len(tests)) & defined)
+    return Screened(flags, _used(flags, campaign, len(tests)) & defined)
 
 
 def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]) -> BoolArray:
@@ -105,22 +105,22 @@ def screened_both(campaign: Campaign, *, geometry: GeometryForm) -> tuple[Screen
     return screened_penetration(campaign, geometry=geometry), screened_shear(campaign)
 
 
-def marks_of(
+def quality_flags(
     campaign: Campaign, *, geometry: GeometryForm = "extended", screened: tuple[Screened, Screened] | None = None
 ) -> list[Problem]:
-    """Every mark of a campaign as a problem of severity ``mark``, the one that needs the hardness included.
+    """Every quality flag of a campaign as a problem of severity ``mark``, the one that needs the hardness included.
 
     ``screened`` is what `screened_both` gives, where that is at hand.
     """
     penetration, shear = screened or screened_both(campaign, geometry=geometry)
-    problems = mark_problems(campaign, penetration.marks, shear.marks, geometry=geometry)
+    problems = flag_problems(campaign, penetration.flags, shear.flags, geometry=geometry)
     tests = campaign.penetration
     if tests is None:
         return problems
     H_V = hardness_at_largest_load(readings_of(tests, campaign.tools, geometry=geometry), DEFINITIONS["H_V"])
-    told = {name: f"H_V = {H:.4g} N/mm³" for name, H in zip(tests.experiment, H_V / N_PER_MM3, strict=True)}
+    values = {name: f"H_V = {H:.4g} N/mm³" for name, H in zip(tests.experiment, H_V / N_PER_MM3, strict=True)}
     return [
-        replace(problem, value=told[problem.experiment or ""]) if problem.code == "hardness_outlier" else problem
+        replace(problem, value=values[problem.experiment or ""]) if problem.code == "hardness_outlier" else problem
         for problem in problems
     ]
 
@@ -129,9 +129,9 @@ def _uncertainty(campaign: Campaign) -> ReadingUncertainty:
     return ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
 
 
-def _used(marks: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:
+def _used(flags: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:
     excluded = np.zeros(count, dtype=bool)
-    for code, mask in marks.items():
+    for code, mask in flags.items():
         if code in campaign.excluding:
             excluded |= mask
     return ~excluded

@@ -56,7 +56,7 @@ def seating(
     n = readings.sums(np.ones(readings.n))
     log_H, offset, scatter2 = np.log(hardness), np.zeros(readings.n_series), np.full(readings.n_series, 1e-4)
     step = np.full(readings.n_series, np.inf)
-    with np.errstate(all="ignore"):  # series without an answer run through as NaN and are told apart at the end
+    with np.errstate(all="ignore"):  # series without a solution run through as NaN and are separated at the end
         for _ in range(n_iterations):
             line = _linearise(readings, log_H, offset, scatter2, uncertainty)
             step, shift, _, _ = _solve(readings, line)

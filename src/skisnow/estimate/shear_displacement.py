@@ -1,8 +1,8 @@
-"""Shear displacement: how far the plate moves until the snow holds it with all of S_f, from moments over angles.
+"""Shear displacement: how far the plate moves until the snow's shear stress reaches S_f, from moments over angles.
 
-The law of the simulations (`skisnow.forces.shear`): the force grows in proportion to the way across up to S_f e L,
-which it reaches at u_y. At a plate on the lever arm r the way is r φ, so the moment is M_f (φ - φ₀)/φ_y up to the
-largest moment M_f, and u_y = r φ_y. φ on M is a straight line over the rising part, whose intercept φ₀ takes
+The law of the simulations (`skisnow.forces.shear`): the force grows in proportion to the displacement up to S_f e L,
+which it reaches at u_y. At a plate on the lever arm r the displacement is r φ, so the moment is M_f (φ - φ₀)/φ_y up
+to the largest moment M_f, and u_y = r φ_y. φ on M is a straight line over the rising part, whose intercept φ₀ takes
 slack and the zero of the angle; its slope times M_f r is u_y. A pole that twists by M/k between gauge and plate takes
 1/k of the slope. The whole module is our modelling assumption: the paper records the largest moment alone.
 """

@@ -54,7 +54,7 @@ def failure_shear_stress(
 def shear_stress(campaign: Campaign, tests: ShearTests) -> ShearStress:
     """F_t and S_f of every test; u²(ln S_f) = (u_M/M)² + (u_r/r)² + (u_e/e)².
 
-    One reading has no scatter of its own: the interval says what the instruments allow, not how the snow varies. It is
+    One reading has no scatter of its own: the interval is that of the instruments, without the snow's variation. It is
     NaN where the campaign states no uncertainty at all. At M = 0 the stress is 0 and the interval one-sided.
     """
     length = np.array([campaign.plates[name] for name in tests.plate])

@@ -1,4 +1,4 @@
-"""What each site has, whether one is harder than another, and how many tests would tell."""
+"""What each site has, whether one is harder than another, and how many tests would show it."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class SiteComparison:
     ratio, interval, p
         Welch's test on logarithms; NaN where a site has fewer than two tests.
     n_for_10_percent
-        Tests at each site that would tell ±10 % with a power of 80 % at 5 %, given the scatter within these two sites;
+        Tests at each site that would detect ±10 % with a power of 80 % at 5 %, given the scatter within the two sites;
         None where the scatter is unknown.
     """
 

@@ -1,7 +1,7 @@
 """Unloading: how steep the force falls where the discs are taken off one by one.
 
 Snow of the hypoplastic law (`skisnow.forces.penetration.HypoplasticPoint`) that was pressed to the depth e_m under F_m
-gives the tool that came back by d the pressure H_V ε_m - k_u d where that is above 0. So the tool feels what it felt at
+gives the tool that came back by d the pressure H_V ε_m - k_u d where that is above 0. Its force is that of
 the depth e_m - κ d of the loading, κ = k_u/H_V, whatever its shape:
 
     F = H_V V(e_m - κ d),    d = (e_m - ê(V_m F/F_m)) / κ,    V_m = V(e_m).
@@ -13,8 +13,8 @@ under the largest load among the others. The variance of a depth is
     u_e² + (s dê/dF u_F)² + σ² d²
 
 with gauge and load as in `hardness` and the relative scatter σ of the rebound from the series itself (Paule and Mandel
-1982). Intervals of k_u/H_V are those of s turned over. The whole module is our modelling assumption: the paper names
-the steepness and prints neither method nor value.
+1982). Intervals of k_u/H_V are the reciprocals of those of s. The whole module is our modelling assumption: the paper
+names the steepness and prints neither method nor value.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ BoolArray = npt.NDArray[np.bool_]
 IntArray = npt.NDArray[np.int64]
 
 NOT_FALLING: Final = "unloading_not_falling"
-"""The mark that leaves a series out here, and nowhere else."""
+"""The quality flag that excludes a series here, and nowhere else."""
 _FITTED: Final = 2
 """e_0 and s."""
-_LEAST_SHARE: Final = 1e-9
+_ROUNDING: Final = 1e-9
 """Relative error of a depth that stands for none: rounding of double precision."""
 _ITERATIONS: Final = 50
 _SETTLED: Final = 1e-6
@@ -54,14 +54,14 @@ _SETTLED: Final = 1e-6
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Unloading(ShownFields):
-    """What the unloading of m series says; NaN where a series has none.
+    """Unloading of m series; NaN where a series has none.
 
     Attributes
     ----------
     n_readings
-        Readings on the way back, one number per series.
+        Readings of the unloading branch, one number per series.
     rebound_ratio, rebound_ratio_error, rebound_ratio_interval
-        s = H_V/k_u, 0 for snow that keeps its groove and 1 for elastic snow, its standard error and 95 % interval
+        s = H_V/k_u, 0 for rigid-plastic and 1 for elastic snow, its standard error and 95 % interval
         (m, 2); the last two need two readings.
     unloading_ratio, unloading_ratio_interval
         k_u/H_V and its 95 % interval (m, 2); the interval is NaN where that of s reaches 0.
@@ -80,7 +80,7 @@ class Unloading(ShownFields):
 
     @property
     def is_unresolved(self) -> BoolArray:
-        """Series whose rebound ratio could be 0, or whose readings are too few to tell."""
+        """Series whose rebound ratio could be 0, or whose readings are too few to resolve it."""
         return np.isfinite(self.rebound_ratio) & ~np.isfinite(self.unloading_ratio_interval).all(axis=1)
 
 
@@ -92,7 +92,7 @@ class SiteUnloading:
     ----------
     ratio, low, high
         k_u/H_V, the harmonic mean over the series, which keeps the mean rebound, and its 95 % interval, NaN where the
-        rebound could be 0 or one series does not tell; the ratio is NaN where nothing came back on average.
+        rebound could be 0 or one series leaves it open; the ratio is NaN where nothing came back on average.
     low_rebound, high_rebound
         95 % interval of the mean of H_V/k_u.
     stiffness, stiffness_low, stiffness_high
@@ -127,7 +127,7 @@ def unloading(
         The experiments.
     readings
         Their readings under rising loads; ``tests.unloading`` follows the one under the largest load, or begins with
-        another look under it.
+        another reading under it.
     hardness
         H_V of each series.
     uncertainty
@@ -139,10 +139,10 @@ def unloading(
     chosen = np.zeros(m, dtype=np.bool_) if back is None else (back.count > 0) & ~bad & np.isfinite(hardness.value)
     s, error, dof = np.full((3, m), np.nan)
     if back is not None and chosen.any():
-        s[chosen], error[chosen], dof[chosen] = _fit(_way_back(readings, back, chosen), uncertainty)
+        s[chosen], error[chosen], dof[chosen] = _fit(_unloading_branch(readings, back, chosen), uncertainty)
     half = expanded_factor(np.where(dof >= 1.0, dof, np.nan), CONFIDENCE) * error
     ends = np.stack((s - half, s + half), axis=-1)
-    ratio, ratio_ends = _turned_over(s, ends)
+    ratio, ratio_ends = _reciprocal(s, ends)
     return Unloading(
         n_readings=np.zeros(m, dtype=np.int64) if back is None else back.count,
         rebound_ratio=s,
@@ -155,8 +155,8 @@ def unloading(
     )
 
 
-def _way_back(readings: Readings, back: UnloadingReadings, chosen: BoolArray) -> Readings:
-    """The chosen series from their largest load on; a second look under it takes the place of the first."""
+def _unloading_branch(readings: Readings, back: UnloadingReadings, chosen: BoolArray) -> Readings:
+    """The chosen series from their largest load on; a second reading under it takes the place of the first."""
     again = back.load[back.first[:-1][chosen]] == readings.load[readings.largest[chosen]]
     taken = chosen[back.series_of_reading]
     count = back.count[chosen]
@@ -174,35 +174,35 @@ def _way_back(readings: Readings, back: UnloadingReadings, chosen: BoolArray) ->
     )
 
 
-def _fit(way: Readings, uncertainty: ReadingUncertainty) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _fit(branch: Readings, uncertainty: ReadingUncertainty) -> tuple[FloatArray, FloatArray, FloatArray]:
     """S of each series, its standard error, and the degrees of freedom."""
-    top = way.largest[way.series]
-    volume = way.displaced_volume[top] * way.load / way.load[top]
-    felt = way.depth_at_volume(volume)
-    g = way.penetration_depth[top] - felt
-    per_newton = np.divide(volume, way.area_at_depth(felt) * way.load)  # dê/dF = V/(A F)
-    s, _, _ = _line(way, g, np.ones(way.n))
+    top = branch.largest[branch.series]
+    volume = branch.displaced_volume[top] * branch.load / branch.load[top]
+    loading_depth = branch.depth_at_volume(volume)
+    g = branch.penetration_depth[top] - loading_depth
+    per_newton = np.divide(volume, branch.area_at_depth(loading_depth) * branch.load)  # dê/dF = V/(A F)
+    s, _, _ = _line(branch, g, np.ones(branch.n))
     s = np.clip(s, 0.0, 1.0)
-    known = uncertainty.depth**2 + (s[way.series] * per_newton * uncertainty.load) ** 2
-    floor = (_LEAST_SHARE * way.penetration_depth[top]) ** 2  # a series without any error keeps finite weights
-    dof = way.sums(np.ones(way.n)) - _FITTED
-    scatter2 = _scatter_variance(way, g, known + floor, (s[way.series] * g) ** 2, dof)
-    s, spread, _ = _line(way, g, 1.0 / (known + floor + scatter2[way.series] * (s[way.series] * g) ** 2))
+    known = uncertainty.depth**2 + (s[branch.series] * per_newton * uncertainty.load) ** 2
+    floor = (_ROUNDING * branch.penetration_depth[top]) ** 2  # a series without any error keeps finite weights
+    dof = branch.sums(np.ones(branch.n)) - _FITTED
+    scatter2 = _scatter_variance(branch, g, known + floor, (s[branch.series] * g) ** 2, dof)
+    s, spread, _ = _line(branch, g, 1.0 / (known + floor + scatter2[branch.series] * (s[branch.series] * g) ** 2))
     with np.errstate(invalid="ignore", divide="ignore"):
         return s, np.where(dof >= 1.0, np.sqrt(1.0 / spread), np.nan), dof
 
 
 def _scatter_variance(
-    way: Readings, g: FloatArray, known: FloatArray, per_scatter: FloatArray, dof: FloatArray
+    branch: Readings, g: FloatArray, known: FloatArray, per_scatter: FloatArray, dof: FloatArray
 ) -> FloatArray:
     """σ² ≥ 0 of the rebound of each series: Σ r²/(known + σ² d²) = n - 2 (Paule and Mandel 1982)."""
-    scatter2 = np.zeros(way.n_series)
+    scatter2 = np.zeros(branch.n_series)
     with np.errstate(invalid="ignore", divide="ignore"):
         for _ in range(_ITERATIONS):
-            weight = 1.0 / (known + scatter2[way.series] * per_scatter)
-            _, _, residual = _line(way, g, weight)
-            Q = way.sums(weight * residual**2)
-            fall = way.sums((weight * residual) ** 2 * per_scatter)
+            weight = 1.0 / (known + scatter2[branch.series] * per_scatter)
+            _, _, residual = _line(branch, g, weight)
+            Q = branch.sums(weight * residual**2)
+            fall = branch.sums((weight * residual) ** 2 * per_scatter)
             moved = np.where((fall > 0) & (dof >= 1.0), np.maximum(scatter2 + (Q / dof - 1.0) * Q / fall, 0.0), 0.0)
             settled = np.abs(moved - scatter2) <= _SETTLED * moved
             scatter2 = moved
@@ -211,18 +211,18 @@ def _scatter_variance(
     return scatter2
 
 
-def _line(way: Readings, g: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _line(branch: Readings, g: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Slope of e = e_0 - s g by weighted least squares, Σ w (g - ḡ)² of each series, and the residuals."""
-    total = way.sums(weight)
-    dg = g - (way.sums(weight * g) / total)[way.series]
-    de = way.penetration_depth - (way.sums(weight * way.penetration_depth) / total)[way.series]
-    spread = way.sums(weight * dg**2)
+    total = branch.sums(weight)
+    dg = g - (branch.sums(weight * g) / total)[branch.series]
+    de = branch.penetration_depth - (branch.sums(weight * branch.penetration_depth) / total)[branch.series]
+    spread = branch.sums(weight * dg**2)
     with np.errstate(invalid="ignore", divide="ignore"):
-        s = -way.sums(weight * dg * de) / spread
-    return s, spread, de + s[way.series] * dg
+        s = -branch.sums(weight * dg * de) / spread
+    return s, spread, de + s[branch.series] * dg
 
 
-def _turned_over(s: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _reciprocal(s: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
     """1/s where that is above 0, and its interval where both ends are."""
     ratio = np.divide(1.0, s, out=np.full(s.shape, np.nan), where=s > 0)
     known = (ends[..., 0] > 0)[..., None]
@@ -258,7 +258,7 @@ def _mean(found: Unloading, chosen: BoolArray, names: npt.NDArray[np.object_], s
         low, high = found.rebound_ratio_interval[known][0].tolist()
     else:
         s, low, high, _ = random_effects_mean(found.rebound_ratio[known], found.rebound_ratio_error[known])
-    ratio, ends = _turned_over(np.array([s]), np.array([[low, high]]))
+    ratio, ends = _reciprocal(np.array([s]), np.array([[low, high]]))
     back = chosen & np.isfinite(found.unloading_stiffness)
     own = own_mean(found.unloading_stiffness[back], names[back].tolist(), geometric=True)
     n = int(known.sum() or chosen.sum())

@@ -1,8 +1,9 @@
 """Field campaigns: records, files, screening, store, reference campaign."""
 
+from ..former_names import former_attributes
 from .density_records import DensityLayers, read_density_layers
-from .marks import MARKS, Mark
 from .problems import Problem
+from .quality_flags import QUALITY_FLAGS, QualityFlag
 from .reading import campaign_of_files, check_campaign, read_campaign
 from .records import (
     AppliedCorrection,
@@ -14,27 +15,27 @@ from .records import (
     ShearTests,
 )
 from .reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
-from .screening import mark_problems, screen_penetration, screen_shear
+from .screening import flag_problems, screen_penetration, screen_shear
 from .snow_micro_pen import SnowMicroPenProfile, read_snow_micro_pen
 
 __all__ = [
-    "MARKS",
+    "QUALITY_FLAGS",
     "AppliedCorrection",
     "Campaign",
     "DensityLayers",
     "DensitySamples",
     "DropConeTests",
-    "Mark",
     "PenetrationSeries",
     "PenetrationTests",
     "Problem",
+    "QualityFlag",
     "ReferenceCampaign",
     "ReferenceNoise",
     "ShearTests",
     "SnowMicroPenProfile",
     "campaign_of_files",
     "check_campaign",
-    "mark_problems",
+    "flag_problems",
     "read_campaign",
     "read_density_layers",
     "read_snow_micro_pen",
@@ -43,3 +44,7 @@ __all__ = [
     "screen_shear",
     "write_reference",
 ]
+
+__getattr__ = former_attributes(
+    __name__, {"MARKS": "QUALITY_FLAGS", "Mark": "QualityFlag", "mark_problems": "flag_problems"}
+)

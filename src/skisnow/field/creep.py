@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .marks import CREEP_SHARE, CREEP_STEPS
+from .quality_flags import CREEP_SHARE, CREEP_STEPS
 
 if TYPE_CHECKING:
     from .records import BoolArray, Campaign, PenetrationTests

@@ -21,7 +21,7 @@ from .reading.campaign_files import FilesOfFolder
 from .reading.raw_files import RawFiles
 from .reading.table_forms import TableForm
 from .reading.tables import read_table
-from .reading.text import UnreadableTextError, look_at_csv
+from .reading.text import UnreadableTextError, inspect_csv
 
 if TYPE_CHECKING:
     from .problems import Problem
@@ -44,7 +44,7 @@ class DensityLayers:
     snow_density
         ρ in kg/m³.
     note
-        Remark, ``""`` where there is none.
+        The column NOTES, ``""`` where there is none.
     kind
         Kind of snow as the file writes it, ``""`` where it does not say.
     row
@@ -109,9 +109,9 @@ def _read(name: str, files: RawFiles) -> Table | None:
             files.found.append(error("unreadable_file", name, allowed="a file of this name", action=action))
         return None
     try:
-        text = look_at_csv(data)
-    except UnreadableTextError as trouble:
-        files.report_unreadable(name, trouble)
+        text = inspect_csv(data)
+    except UnreadableTextError as failure:
+        files.report_unreadable(name, failure)
         return None
     files.report_encoding(name, text.foreign_encoding)
     return read_table(_form(name), text, corrections={}, files=files)

@@ -27,7 +27,7 @@ def reading_at_largest_load(tests: PenetrationTests) -> IntArray:
     return last
 
 
-def greatest_depths(campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> FloatArray:
+def maximum_depths(campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> FloatArray:
     """Depth (m) beyond which each experiment's tool, in this form, is no longer the body that its name says."""
     limit = np.full(len(tests), np.inf)
     names = np.array(tests.tool, dtype=object)

@@ -90,5 +90,5 @@ def warning(
     experiment: str | None = None,
     value: str | None = None,
 ) -> Problem:
-    """Make a problem that is said and leaves the campaign usable."""
+    """Make a problem that is reported and leaves the campaign usable."""
     return Problem("warning", code, file, row, column, experiment, value, allowed, action)

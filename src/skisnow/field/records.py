@@ -1,6 +1,6 @@
 """What a field campaign consists of, in SI, by columns.
 
-Columns and not objects, because a campaign may hold a million readings. A single experiment is looked at through
+Columns and not objects, because a campaign may hold a million readings. A single experiment is seen through
 ``PenetrationTests.series(i)``.
 """
 
@@ -51,8 +51,11 @@ class PenetrationSeries(Shown):
     penetration_depth: FloatArray
 
     def _facts(self) -> Facts:
-        told = f"{self.tool} at {amount(self.edge_angle / DEGREE, '°')}, {len(self.load)} loads {ends(self.load, 'N')}"
-        return Facts(f"{self.experiment} at {self.site}: {told}, {ends(self.penetration_depth, 'mm', factor=MM)} deep")
+        tool = f"{self.tool} at {amount(self.edge_angle / DEGREE, '°')}"
+        readings = (
+            f"{len(self.load)} loads {ends(self.load, 'N')}, {ends(self.penetration_depth, 'mm', factor=MM)} deep"
+        )
+        return Facts(f"{self.experiment} at {self.site}: {tool}, {readings}")
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -333,7 +336,7 @@ class Campaign(Shown):
     tools, plates
         Tools by name; plate lengths L (m) by name.
     excluding
-        Codes of the marks that keep an experiment out of the estimates.
+        Codes of the quality flags that keep an experiment out of the estimates.
     penetration, shear, density, drop_cone
         The tables; None where the campaign has no such file.
     problems
@@ -376,11 +379,11 @@ class Campaign(Shown):
 
     def _facts(self) -> Facts:
         tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}
-        told = [(name, "none" if table is None else table._facts().title) for name, table in tables.items()]
+        counts = [(name, "none" if table is None else table._facts().title) for name, table in tables.items()]
         gauge = "not stated" if self.gauge_resolution is None else amount(self.gauge_resolution / MM, "mm")
         rows = (
             ("place", self.place or "not stated"),
-            *told,
+            *counts,
             ("gauge step", gauge),
             ("warnings", str(len(self.problems))),
         )

@@ -1,6 +1,6 @@
-"""Screening of single experiments: what is suspicious about them. A mark never deletes; some exclude by default.
+"""Screening of single experiments: their quality flags, which never delete; some exclude by default.
 
-The marks of `NEED_HARDNESS` are set where hardness is estimated.
+The flags of `NEED_HARDNESS` are set where hardness is estimated.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .creep import creeping
-from .largest_load import greatest_depths, reading_at_largest_load
-from .mark_problems import mark_problems
-from .marks import FEWEST_LOADS, MARKS, NEED_HARDNESS, RESOLUTIONS, Mark
+from .flag_problems import flag_problems
+from .largest_load import maximum_depths, reading_at_largest_load
+from .quality_flags import FEWEST_LOADS, NEED_HARDNESS, QUALITY_FLAGS, RESOLUTIONS, QualityFlag
 from .wrong_unloading import wrong_unloading
 
 if TYPE_CHECKING:
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from .records import BoolArray, Campaign, FloatArray, PenetrationTests
 
 __all__ = [
-    "MARKS",
-    "Mark",
-    "greatest_depths",
-    "mark_problems",
+    "QUALITY_FLAGS",
+    "QualityFlag",
+    "flag_problems",
+    "maximum_depths",
     "reading_at_largest_load",
     "screen_penetration",
     "screen_shear",
@@ -33,7 +33,7 @@ _ROUNDING: Final = 1e-9  # relative; limits and readings come from decimal milli
 
 
 def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended") -> dict[str, BoolArray]:
-    """Mark the penetration series.
+    """Flag the penetration series.
 
     Parameters
     ----------
@@ -44,11 +44,11 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
 
     Returns
     -------
-    For each code but those of `NEED_HARDNESS`, in the order of `MARKS`, a mask over the experiments.
+    For each code but those of `NEED_HARDNESS`, in the order of `QUALITY_FLAGS`, a mask over the experiments.
     """
     tests = campaign.penetration
     if tests is None:
-        return {code: np.zeros(0, dtype=np.bool_) for code in MARKS if code not in NEED_HARDNESS}
+        return {code: np.zeros(0, dtype=np.bool_) for code in QUALITY_FLAGS if code not in NEED_HARDNESS}
     largest_depth = tests.penetration_depth[reading_at_largest_load(tests)]
     deepest = np.maximum.reduceat(tests.penetration_depth, tests.first[:-1]) if len(tests) else np.zeros(0)
     return {
@@ -57,10 +57,10 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
         "loads_not_rising": _any_step(tests, _step(tests.load) <= 0),
         "depth_shrinks": _any_step(tests, _step(tests.penetration_depth) < 0),
         "zero_depth": largest_depth == 0,
-        "beyond_tool": deepest > greatest_depths(campaign, tests, geometry) * (1 + _ROUNDING),
+        "beyond_tool": deepest > maximum_depths(campaign, tests, geometry) * (1 + _ROUNDING),
         "below_resolution": _is_below_resolution(largest_depth, campaign.gauge_resolution),
         "creeps": _any_reading(tests, creeping(campaign, tests)),
-        **{code: _marked_series(tests, bad) for code, bad in wrong_unloading(campaign, tests).items()},
+        **{code: _flagged_series(tests, bad) for code, bad in wrong_unloading(campaign, tests).items()},
     }
 
 
@@ -70,7 +70,7 @@ def _any_reading(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
     return found
 
 
-def _marked_series(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
+def _flagged_series(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
     found = np.zeros(len(tests), dtype=np.bool_)
     if tests.unloading is not None:
         found[tests.unloading.series_of_reading[bad]] = True
@@ -78,7 +78,7 @@ def _marked_series(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
 
 
 def screen_shear(campaign: Campaign) -> dict[str, BoolArray]:
-    """Mark the shear tests: masks over them for ``cancelled``, ``zero_depth`` and ``below_resolution``."""
+    """Flag the shear tests: masks over them for ``cancelled``, ``zero_depth`` and ``below_resolution``."""
     tests = campaign.shear
     depth = tests.penetration_depth if tests is not None else np.zeros(0)
     return {

@@ -68,11 +68,11 @@ class SnowMicroPenProfile:
         Name of the file; name of the recording and comment in its header.
     depth
         How far the tip had moved at each sample (m). Its zero is where the recording began, in the air above the snow:
-        the file does not tell where the surface is, nor why a recording ended.
+        the file does not say where the surface is, nor why a recording ended.
     force
         Force on the tip (N), counts times `force_per_count`; no offset is taken off.
     sample_distance
-        Way from sample to sample (m).
+        Distance from sample to sample (m).
     force_per_count
         N per count of the analogue-digital converter.
     force_offset
@@ -137,7 +137,7 @@ class SnowMicroPenProfile:
     def clock_is_one_rollover_behind(self) -> bool:
         """Whether the clock is exactly 1024 weeks behind the file name.
 
-        Satellites count weeks modulo 1024, last from 0 on 7 April 2019; a receiver that does not know tells a date 19.6
+        Satellites count weeks modulo 1024, last from 0 on 7 April 2019; a receiver that does not know gives a date 19.6
         years too early, at the right time of day.
         """
         if self.clock is None or self.date_in_file_name is None:
@@ -156,8 +156,8 @@ def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
     path = Path(path)
     try:
         data = path.read_bytes()
-    except OSError as trouble:
-        _refuse(path, trouble.strerror or str(trouble), "a readable file", "Check its name and permissions.")
+    except OSError as failure:
+        _refuse(path, failure.strerror or str(failure), "a readable file", "Check its name and permissions.")
     if not data:
         _refuse(path, "0 bytes", "a recording of a SnowMicroPen", "Copy it from the instrument again.", "empty_file")
     if len(data) < HEADER_BYTES:

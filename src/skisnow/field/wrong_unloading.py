@@ -17,7 +17,7 @@ _ROUNDING: Final = 1e-9  # relative; readings come from decimal millimetres
 def wrong_unloading(campaign: Campaign, tests: PenetrationTests) -> dict[str, BoolArray]:
     """For ``unloading_not_falling`` and ``unloading_sinks`` a mask over the readings of the unloading.
 
-    The first reading of a series may be one more look under its largest load; a step of the gauge is no sinking.
+    The first reading of a series may repeat the one under its largest load; a step of the gauge is no sinking.
     """
     if tests.unloading is None:
         return dict.fromkeys(("unloading_not_falling", "unloading_sinks"), np.zeros(0, dtype=np.bool_))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from .numerals import significant
+from .number_formatting import significant
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -16,7 +16,7 @@ from ..staging import staged
 from .figures.drawing import Drawing
 from .figures.identify_fits import residuals_along, tracks_above
 from .figures.identify_profiles import profiles_drawn
-from .numerals import counted
+from .number_formatting import counted
 from .pictures import picture_files, write_pictures
 from .sheet import Header, Section, sheet
 from .symbols import html, prose

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from .numerals import significant
+from .number_formatting import significant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

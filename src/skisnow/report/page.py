@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from .numerals import counted, significant, whole
+from .number_formatting import counted, significant, whole
 from .sentences.caveats import caveats
 from .sentences.key_results import key_results
 from .sentences.penetration import procedures_compared, readings_used, seating_found, unloading_found
@@ -28,8 +28,8 @@ SECTIONS: Final = {
     "caveats": "Warnings, and what was not stated",
     "law": "The law of the penetration force",
     "seating": "Seating: offsets of the depth zero",
-    "unloading": "Unloading: how much of the groove stays",
-    "displacement": "Shear displacement: how far until the snow holds",
+    "unloading": "Unloading: the permanent depth of a groove",
+    "displacement": "Shear displacement: how far until the full shear strength",
     "relations": "Relations between snow parameters",
     "sites": "Sites compared",
     "published": "Compared with published values",

@@ -14,7 +14,7 @@ from .figures.run_grip import run_grip
 from .figures.run_motion import run_motion
 from .figures.run_track import CUTOUT, run_track
 from .figures.style import journal_style
-from .numerals import significant
+from .number_formatting import significant
 from .symbols import prose
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from ..files import require_writable, write_file
 from ..json_number import json_number
 from ..simulate.run_summary import run_warnings
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
-from .numerals import counted, significant, whole
+from .number_formatting import counted, significant, whole
 from .pictures import write_pictures
 from .run_drawings import run_drawings
 from .run_file import write_run_file
@@ -133,9 +133,9 @@ def outcome_sentences(run: Run) -> list[Markup]:
     sentences.append(
         prose(
             "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m, "
-            "5 % of the time below {least} m.",
+            "5 % of the time below {lower} m.",
             first=_number(float(run.heading[0]) / DEGREE), last=_number(float(run.heading[-1]) / DEGREE),
-            radius=_number(run.turn_radius_quantile(0.5)), least=_number(run.turn_radius_quantile(0.05)),
+            radius=_number(run.turn_radius_quantile(0.5)), lower=_number(run.turn_radius_quantile(0.05)),
         )
     )  # fmt: skip
     deepest = float(np.nanmax(run.skis.edge_depth)) / MM

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..simulate.run import WARNED_SHARE
-from .numerals import significant
+from .number_formatting import significant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..units import MM
-from .numerals import significant
+from .number_formatting import significant
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ..estimate.comparisons import FEWEST_SITES
 from ..estimate.regressions import FEWEST_VALUES
-from .numerals import interval, p_equals, significant
+from .number_formatting import interval, p_equals, significant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -61,8 +61,8 @@ def _experiments(results: Json) -> Iterator[str]:
         if not rows:
             yield f"{kind} experiments: none"
             continue
-        used, marked = sum(row["used"] for row in rows), sum(bool(row["flags"]) for row in rows)
-        yield f"{kind} experiments: {len(rows)}, used {used}, flagged {marked}{_codes(rows)}"
+        used, flagged = sum(row["used"] for row in rows), sum(bool(row["flags"]) for row in rows)
+        yield f"{kind} experiments: {len(rows)}, used {used}, flagged {flagged}{_codes(rows)}"
 
 
 def _codes(rows: list[Json]) -> str:
@@ -143,7 +143,7 @@ def _ratio(pair: Json, symbol: str) -> str:
 def _not_stated(campaign: Json) -> Iterator[str]:
     if campaign["corrections"]:
         yield f"corrections applied: {len(campaign['corrections'])}"
-    yield from (f"remark: {remark}" for remark in campaign["remarks"])
+    yield from (f"note: {note}" for note in campaign["remarks"])
     if campaign["gauge_resolution_mm"] is None:
         yield "gauge_resolution_mm is not stated: no depth uncertainty in any interval"
     keys = ("load_uncertainty_N", "moment_uncertainty_Nm", "lever_arm_uncertainty_mm")

@@ -15,7 +15,7 @@ Kind: TypeAlias = Literal[
 
 text: what a user wrote; words: our own, with symbols; codes: a list of names; yes: a truth value; tick: the same, shown
 only where true; count: an integer; angle: degrees as they were set; number: a float or None; p: a p value; interval: a
-pair or None; range: the same, least and greatest; estimate: (value, pair), in HTML and LaTeX one cell.
+pair or None; range: the same, minimum and maximum; estimate: (value, pair), in HTML and LaTeX one cell.
 """
 
 ROWS_IN_HTML: Final = 300

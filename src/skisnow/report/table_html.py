@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
-from . import numerals
+from . import number_formatting
 from .symbols import html, prose
 
 if TYPE_CHECKING:
@@ -65,22 +65,22 @@ def _cell(column: Column, value: Any, index: int) -> Markup:
 
 def cell_html(column: Column, value: Any) -> Markup:
     """The content of a cell."""
-    return Markup(numerals.ABSENT["typeset"]) if value is None else _SET[column.kind](value, column.digits)
+    return Markup(number_formatting.ABSENT["typeset"]) if value is None else _SET[column.kind](value, column.digits)
 
 
 def _estimate(value: tuple[float | None, Any], digits: int) -> Markup:
     number, pair = value
     if pair is None:
-        return Markup(numerals.significant(number, digits))
+        return Markup(number_formatting.significant(number, digits))
     return Markup('{} <span class="i">{}</span>').format(
-        numerals.significant(number, digits), numerals.interval(pair, digits)
+        number_formatting.significant(number, digits), number_formatting.interval(pair, digits)
     )
 
 
 def _names(names: list[str]) -> Markup:
     listed = Markup(", ").join(names[:LISTED_NAMES])
     more = len(names) - LISTED_NAMES
-    return listed + f" and {numerals.whole(more)} more" if more > 0 else listed
+    return listed + f" and {number_formatting.whole(more)} more" if more > 0 else listed
 
 
 _SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
@@ -89,12 +89,12 @@ _SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
     "codes": lambda value, _: _names(value),
     "yes": lambda value, _: Markup("yes" if value else "no"),
     "tick": lambda value, _: Markup('<span role="img" aria-label="yes">✓</span>' if value else ""),
-    "count": lambda value, _: Markup(numerals.whole(value)),
+    "count": lambda value, _: Markup(number_formatting.whole(value)),
     "angle": lambda value, _: Markup(f"{value:.6g}"),
-    "number": lambda value, digits: Markup(numerals.significant(value, digits)),
-    "p": lambda value, _: Markup.escape(numerals.probability(value)),
-    "interval": lambda value, digits: Markup(numerals.interval(value, digits)),
-    "range": lambda value, digits: Markup(numerals.from_to(value, digits)),
+    "number": lambda value, digits: Markup(number_formatting.significant(value, digits)),
+    "p": lambda value, _: Markup.escape(number_formatting.probability(value)),
+    "interval": lambda value, digits: Markup(number_formatting.interval(value, digits)),
+    "range": lambda value, digits: Markup(number_formatting.from_to(value, digits)),
     "estimate": _estimate,
 }
 
@@ -106,8 +106,8 @@ def _below(table: Table) -> Markup:
         sentences.append(
             prose(
                 "The first {shown} of {all} rows; {file} holds them all.",
-                shown=numerals.whole(table.rows_in_html),
-                all=numerals.whole(len(table.rows)),
+                shown=number_formatting.whole(table.rows_in_html),
+                all=number_formatting.whole(len(table.rows)),
                 file=Markup("<code>tables/{}.csv</code>").format(table.file_stem),
             )
         )

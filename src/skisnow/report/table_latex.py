@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from . import numerals
+from . import number_formatting
 from .symbols import latex, latex_escaped
 from .table import ROWS_IN_LATEX
 
@@ -47,13 +47,13 @@ def _header(column: Column) -> str:
 
 
 def _cell(column: Column, value: Any) -> str:
-    return numerals.ABSENT["latex"] if value is None else _SET[column.kind](value, column.digits)
+    return number_formatting.ABSENT["latex"] if value is None else _SET[column.kind](value, column.digits)
 
 
 def _estimate(value: tuple[float | None, Any], digits: int) -> str:
     number, pair = value
-    ends = "" if pair is None else f" {numerals.interval(pair, digits, style='latex')}"
-    return numerals.significant(number, digits, style="latex") + ends
+    ends = "" if pair is None else f" {number_formatting.interval(pair, digits, style='latex')}"
+    return number_formatting.significant(number, digits, style="latex") + ends
 
 
 _SET: Final[dict[Kind, Callable[[Any, int], str]]] = {
@@ -64,9 +64,9 @@ _SET: Final[dict[Kind, Callable[[Any, int], str]]] = {
     "tick": lambda value, _: r"$\checkmark$" if value else "",
     "count": lambda value, _: str(value),
     "angle": lambda value, _: f"{value:.6g}",
-    "number": lambda value, digits: numerals.significant(value, digits, style="latex"),
-    "p": lambda value, _: numerals.probability(value, style="latex"),
-    "interval": lambda value, digits: f"{{{numerals.interval(value, digits, style='latex')}}}",
-    "range": lambda value, digits: numerals.from_to(value, digits, style="latex"),
+    "number": lambda value, digits: number_formatting.significant(value, digits, style="latex"),
+    "p": lambda value, _: number_formatting.probability(value, style="latex"),
+    "interval": lambda value, digits: f"{{{number_formatting.interval(value, digits, style='latex')}}}",
+    "range": lambda value, digits: number_formatting.from_to(value, digits, style="latex"),
     "estimate": _estimate,
 }

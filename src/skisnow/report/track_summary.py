@@ -5,7 +5,7 @@ from __future__ import annotations
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, Final
 
-from .numerals import counted, significant
+from .number_formatting import counted, significant
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -18,7 +18,7 @@ from .figures.run_along_ski import run_along_ski
 from .figures.run_grip import run_grip
 from .figures.runs_compared import runs_compared
 from .figures.track_band import FEWEST, track_band
-from .numerals import significant
+from .number_formatting import significant
 from .pictures import write_pictures
 from .sheet import Header, Section, sheet
 from .symbols import html, prose

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..units import N_PER_MM2, N_PER_MM3
-from .numerals import counted, interval, significant
+from .number_formatting import counted, interval, significant
 from .symbols import html, prose
 from .turn_numbers import (
     BandShares,
@@ -242,4 +242,4 @@ def _would_tell(chain: TurnChain) -> Markup:
         return html("")
     key = found.keys[int(np.argmax(found.aside.share))]
     test = _INPUTS[key][1] if key in _INPUTS else f"a better value of {key}"
-    return prose("Most would be told by {test}.", test=html(test))
+    return prose("The band would narrow most by {test}.", test=html(test))

@@ -250,7 +250,7 @@ class Run(Shown):
         return from_above("report.run_frames", "run_dataframe")(self)
 
     def to_xarray(self) -> Any:
-        """All that run.nc holds, over time and along the skis, SI; needs xarray (``skisnow[xarray]``).
+        """The content of run.nc, over time and along the skis, SI; needs xarray (``skisnow[xarray]``).
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""A run taken from output to output, and what is kept of it."""
+"""A run taken from output to output, and what is stored of it."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from .run_setup import Setup
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 GAINED_SHARE, GAINED = 0.05, 10.0
-"""Share of the energy exchanged, and energy (J), that may seem to be gained before numbers have run away (modelling
+"""Share of the energy exchanged, and energy (J), that may seem to be gained before numbers have diverged (modelling
 assumption)."""
 _MECHANICAL = 3  # kinetic, potential, elastic in the skis
-_TROUBLES: Final[dict[Ended, Outcome]] = {Ended.STEP_TOO_SMALL: "step_too_small", Ended.NOT_FINITE: "not_finite"}
+_OUTCOMES: Final[dict[Ended, Outcome]] = {Ended.STEP_TOO_SMALL: "step_too_small", Ended.NOT_FINITE: "not_finite"}
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """What is kept of one moment of output, SI.
+    """What is stored of one moment of output, SI.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Moment:
 
 @dataclass(slots=True)
 class Record:
-    """The moments kept so far."""
+    """The moments stored so far."""
 
     setup: Setup
     run_length: float = 0.0
@@ -61,7 +61,7 @@ class Record:
         self._moments.append(self._present())
 
     def advance(self, moment: float, *, replace: bool = False) -> Outcome | None:
-        """Let the run go on to a moment (s) and keep it, with `replace` in place of the last one kept.
+        """Let the run go on to a moment (s) and store it, with `replace` in place of the last one.
 
         The outcome if the steps cannot go on.
         """
@@ -72,14 +72,14 @@ class Record:
             self._moments[-1] = present
         else:
             self._moments.append(present)
-        return _TROUBLES.get(ended)
+        return _OUTCOMES.get(ended)
 
     def _present(self) -> Moment:
         dynamics = self.setup.dynamics
         rotation = dynamics.rotation
-        bend = at_nodes(dynamics.bend, dynamics.body.skis[0].unknown)
+        dofs = at_nodes(dynamics.beam_dofs, dynamics.body.skis[0].unknown)
         along = np.concatenate(
-            [np.stack([dynamics.along(k) for k in range(len(bend))], axis=1), bend[:, :, 0][None], bend[:, :, 2][None]]
+            [np.stack([dynamics.along(k) for k in range(len(dofs))], axis=1), dofs[:, :, 0][None], dofs[:, :, 2][None]]
         )
         return Moment(
             dynamics.time, dynamics.position, rotation, rotation @ dynamics.velocity[:3], self._energies(), along
@@ -89,19 +89,21 @@ class Record:
         """Where the energy is, and where it went.
 
         Penetration: what the normal force took, less what the snow gives back, and what its damping and its delayed
-        depth took. An edge that is pressed deeper holds
-        more: what its hold gains so is paid by what presses. And what sideways motion stressed and then lifts the skis
-        comes from the shear, which pays for sideways motion.
+        depth took. The elastic shear energy of an edge that is pressed deeper grows: the penetration pays for it. And
+        what sideways motion stressed and then lifts the skis comes from the shear, which pays for sideways motion.
         """
         dynamics = self.setup.dynamics
-        (springy, held), (springy_first, held_first) = dynamics.snow_energies, self._snow_first
+        (normal_elastic, shear_elastic), (normal_first, shear_first) = dynamics.snow_energies, self._snow_first
         by_shear, by_friction, normal, by_drag, by_damping, by_dashpot = dynamics.work
         by_rate = by_dashpot + dynamics.contact.delayed_energy
-        penetration, shear = -normal - (springy - springy_first) - by_rate, by_shear - (held - held_first)
+        penetration, shear = (
+            -normal - (normal_elastic - normal_first) - by_rate,
+            by_shear - (shear_elastic - shear_first),
+        )
         by_press = min(shear, 0.0)
         lifted = min(penetration + by_press, 0.0)
         lost = (penetration + by_press - lifted, shear - by_press + lifted, by_friction, by_drag, by_damping, by_rate)
-        return np.array([*dynamics.energies, springy + held, *lost])
+        return np.array([*dynamics.energies, normal_elastic + shear_elastic, *lost])
 
     @property
     def last_interval(self) -> float:
@@ -110,14 +112,14 @@ class Record:
 
     @property
     def gains_energy(self) -> bool:
-        """Whether motion, height and bend hold more energy than at the start: numbers have diverged."""
+        """Whether motion, height and deflection have more energy than at the start: numbers have diverged."""
         first, last = self._moments[0].energies, self._moments[-1].energies
         gained = float(last[:_MECHANICAL].sum() - first[:_MECHANICAL].sum())
-        turned_over = float(first[0] + max(0.0, first[1] - last[1]))
-        return not gained <= GAINED_SHARE * turned_over + GAINED
+        exchanged = float(first[0] + max(0.0, first[1] - last[1]))
+        return not gained <= GAINED_SHARE * exchanged + GAINED
 
     def drop(self) -> None:
-        """Forget the last moment."""
+        """Remove the last moment."""
         if len(self._moments) > 1:
             gone = self._moments.pop()
             self.run_length -= _arc(self._moments[-1], gone)
@@ -155,10 +157,10 @@ class Record:
         return out
 
 
-def at_nodes(bend: FloatArray, unknown: FloatArray) -> FloatArray:
+def at_nodes(dofs: FloatArray, unknown: FloatArray) -> FloatArray:
     """Unknowns of the free nodes (skis, n) at all nodes, zero where held: (skis, nodes, 3)."""
-    out = np.zeros((len(bend), len(unknown), 3))
-    out[:, unknown >= 0] = bend.reshape(len(bend), -1, 3)
+    out = np.zeros((len(dofs), len(unknown), 3))
+    out[:, unknown >= 0] = dofs.reshape(len(dofs), -1, 3)
     return out
 
 

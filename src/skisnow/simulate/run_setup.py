@@ -28,11 +28,11 @@ ELEMENTS: Final = 40
 LINE_SPACING: Final = 0.02
 """Largest spacing (m) of the snow's lines (modelling assumption)."""
 FAST: Final = 10.0
-"""Times the tolerance, to which the fast method holds a step's error (modelling assumption)."""
+"""Times the tolerance, to which the fast method controls a step's error (modelling assumption)."""
 FAST_LONGEST: Final = 10e-3
 """Longest step (s) of the fast method (modelling assumption: that of outputs)."""
 FAST_PART: Final = 0.02
-"""Way along a ski (m) over which its history is marched at once with the fast method (modelling assumption: the
+"""Path along a ski (m) over which its history is marched at once with the fast method (modelling assumption: the
 lines' spacing)."""
 FLOATING_DEPTH: Final = 0.1
 """Depth (m) by which a flat base must carry the sledge, or it has sunk from the start (modelling assumption)."""
@@ -51,7 +51,7 @@ class Setup:
     snow: SnowField
     node: FloatArray
     numbers: dict[str, float]
-    unrest: float
+    static_residual: float
     end: float
 
     @property
@@ -116,7 +116,7 @@ class Setup:
 def set_up(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | None = None) -> Setup:
     """Choose the solver's numbers, lay the snow out, or take this one, and set the sledge down on it."""
     setup = laid_out(scenario, snow, laws=laws)
-    setup.unrest = setup.dynamics.settle()
+    setup.static_residual = setup.dynamics.find_equilibrium()
     setup.dynamics.begin(np.array([scenario.start.speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
     return setup
 
@@ -173,14 +173,15 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
     with warnings.catch_warnings():  # a scenario has its own words for friction that is unlikely
         warnings.simplefilter("ignore", RangeWarning)
         friction = LinearFriction(friction_at_rest=contact.friction, friction_slope=contact.friction_by_speed)
-    holds = laws.penetration is not None and laws.penetration.along_base_normal
+    carries_side_force = laws.penetration is not None and laws.penetration.along_base_normal
     return SnowField(
         snow_hardness=contact.snow.snow_hardness,
-        failure_shear_stress=0.0 if holds else contact.snow.failure_shear_stress or 0.0,
+        failure_shear_stress=0.0 if carries_side_force else contact.snow.failure_shear_stress or 0.0,
         unloading_ratio=contact.unloading_ratio,
         friction=laws.friction or friction,
         friction_acts_on=contact.friction_acts_on,
-        shear=laws.shear or (None if holds else scenario.shear.of(contact.snow.failure_shear_stress or 0.0)),
+        shear=laws.shear
+        or (None if carries_side_force else scenario.shear.of(contact.snow.failure_shear_stress or 0.0)),
         residual_ratio=scenario.shear.residual_ratio,
         slip_weakening=scenario.shear.slip_weakening,
         penetration=laws.penetration,

@@ -1,4 +1,4 @@
-"""A scenario computed: the loop over output times, how a run ends, what is kept of it."""
+"""A scenario computed: the loop over output times, how a run ends, what is stored of it."""
 
 from __future__ import annotations
 
@@ -105,9 +105,9 @@ def simulate(
     """
     setup = set_up(scenario, laws=laws)
     record = Record(setup)
-    if setup.height < -SINKING_DEPTH or (not setup.unrest <= AT_REST and setup.sinks):
+    if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):
         return replace(computed_run(setup, record, "sunk", 0.0), laws=laws, strength_along=strength_along)
-    if not setup.unrest <= AT_REST:
+    if not setup.static_residual <= AT_REST:
         setup.dynamics.contact.require_finite_laws()
         raise SolverError(why_no_start(setup))
     begin = time.perf_counter()
@@ -141,15 +141,15 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
             moment = now + max(left / setup.speed, 1e-9)
         if strength_along is not None:
             setup.snow.compiled.strength_share = strength_along(record.run_length)
-        trouble = record.advance(moment, replace=was_near)
+        ended = record.advance(moment, replace=was_near)
         number = math.floor(setup.time / interval + 1e-9)
         if record.gains_energy:
             record.drop()
             return "not_finite"
         if progress is not None and number % OUTPUTS_AT_ONCE == 0:
             progress(setup.time, min(1.0, max(setup.time / duration, record.run_length / length)))
-        if trouble is not None:
-            return trouble
+        if ended is not None:
+            return ended
         flying = 0.0 if setup.touches else flying + record.last_interval
         ended = _ended(setup, flying)
         if ended is not None:
@@ -196,7 +196,7 @@ def _groove(setup: Setup) -> Groove:
     depth = np.maximum.reduceat(rows[:, 5], first)
     across = rows[last, 2:5] - rows[first, 2:5]
     width = np.linalg.norm(across, axis=1)
-    kept = width > 0.0
-    left = across[kept] / width[kept, None]
-    middle = 0.5 * (rows[first, 2:5] + rows[last, 2:5])[kept]
-    return Groove(middle, left, width[kept], depth[kept], setup.residual_depth(depth[kept]))
+    wide = width > 0.0
+    left = across[wide] / width[wide, None]
+    middle = 0.5 * (rows[first, 2:5] + rows[last, 2:5])[wide]
+    return Groove(middle, left, width[wide], depth[wide], setup.residual_depth(depth[wide]))

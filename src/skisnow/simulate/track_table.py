@@ -1,4 +1,4 @@
-"""track.csv: where the sledge and the loaded edges of its skis were, a row for each time that was kept."""
+"""track.csv: where the sledge and the loaded edges of its skis were, a row for each time that was stored."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Local cubic least squares: place, velocity and acceleration at each point from the points in a window of time.
 
-The filter of Savitzky and Golay (1964, doi 10.1021/ac60214a047) without its even spacing: every window is fitted by
+The Savitzky-Golay filter (1964, doi 10.1021/ac60214a047) without its even spacing: every window is fitted by
 weighted least squares at its own times, to places and, where they were recorded, to velocities.
 """
 

@@ -49,7 +49,7 @@ class Turn:
     length
         m, along the track.
     share_passed
-        Share of the curvature that the smoothing leaves of half a sine as long as the turn: the true least radius is
+        Share of the curvature that the smoothing leaves of half a sine as long as the turn: the true minimum radius is
         about ``share_passed`` times the given one.
     """
 

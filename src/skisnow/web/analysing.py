@@ -10,8 +10,8 @@ import numpy as np
 
 from ..errors import SkisnowError
 from ..estimate import analyse
-from ..field import MARKS, campaign_of_files
-from ..field.marks import ALWAYS_EXCLUDE
+from ..field import QUALITY_FLAGS, campaign_of_files
+from ..field.quality_flags import ALWAYS_EXCLUDE
 from ..report import write_report
 from ..report.figures import DRAWERS
 from ..report.figures.drawing import Drawing, svg_of
@@ -37,7 +37,7 @@ class Choice:
     Attributes
     ----------
     excluding
-        Codes of the marks that leave an experiment out; None: those of the campaign.
+        Codes of the quality flags that leave an experiment out; None: those of the campaign.
     left_out
         Experiments that are left out besides, by file and name.
     """
@@ -60,7 +60,7 @@ class Numbers:
 
     @property
     def excluding(self) -> frozenset[str]:
-        """Codes of the marks that leave an experiment out."""
+        """Codes of the quality flags that leave an experiment out."""
         return self.analysis.campaign.excluding
 
 
@@ -112,9 +112,9 @@ def write_whole_report(analysis: Analysis, out: str) -> None:
     write_report(analysis, Path(out))
 
 
-def choosable_marks() -> dict[str, str]:
-    """Codes of the marks that may be let in or left out, with their sentences."""
-    return {code: mark.sentence for code, mark in MARKS.items() if code not in ALWAYS_EXCLUDE}
+def choosable_flags() -> dict[str, str]:
+    """Codes of the quality flags that may be let in or left out, with their sentences."""
+    return {code: flag.sentence for code, flag in QUALITY_FLAGS.items() if code not in ALWAYS_EXCLUDE}
 
 
 def _chosen(campaign: Campaign, choice: Choice) -> Campaign:

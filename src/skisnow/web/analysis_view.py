@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from ..report.numerals import counted
-from .analysing import Choice, Numbers, Refusal, choosable_marks
+from ..report.number_formatting import counted
+from .analysing import Choice, Numbers, Refusal, choosable_flags
 from .error_pages import error_sentence
 from .layout import heading, sentence
 
@@ -144,7 +144,7 @@ class AnalysisView:
             _behind("Included experiments", lambda: self._list_experiments(found))
 
     def _list_marks(self, found: Numbers) -> None:
-        for code, words in choosable_marks().items():
+        for code, words in choosable_flags().items():
             ui.checkbox(words, value=code in found.excluding, on_change=self._mark_chooser(code, found.excluding))
 
     def _list_experiments(self, found: Numbers) -> None:

@@ -9,16 +9,16 @@ from ..field import campaign_of_files
 from ..field.reading import CAMPAIGN_FILES, FilesInMemory
 from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..field.reading.text import UnreadableTextError, decode
-from ..field.store import corrected_files, kept_tables
-from ..field.store.grown import ReplayedRow, ReplayedTest
+from ..field.store import corrected_files, stored_tables
 from ..field.store.journal_entry import JournalEntry
-from ..field.store.kept_tables import cell_key
-from .edit_session import AtOnce, EditSession, quick_results
+from ..field.store.replayed import ReplayedRow, ReplayedTest
+from ..field.store.stored_tables import cell_key
+from .edit_session import EditSession, QuickResults, quick_results
 
 if TYPE_CHECKING:
     from ..field.problems import Problem
     from ..field.reading.campaign_file import CampaignFile
-    from ..field.store import KeptTable, NewEntry
+    from ..field.store import NewEntry, StoredTable
     from .settings import Lab
 
 
@@ -28,7 +28,7 @@ class CorrectionSession(EditSession):
     def __init__(self, lab: Lab, id_: str) -> None:
         self.stored, self._files = lab.store.contents(id_, CAMPAIGN_FILES)
         self._entries: tuple[JournalEntry, ...] = ()
-        self.tables: dict[str, KeptTable] = kept_tables(FilesInMemory(self._files))
+        self.tables: dict[str, StoredTable] = stored_tables(FilesInMemory(self._files))
         super().__init__(lab, self.stored.id)
 
     @property
@@ -75,6 +75,6 @@ class CorrectionSession(EditSession):
         self.refresh()
         return written
 
-    def at_once(self, site: str) -> AtOnce:
+    def quick_results(self, site: str) -> QuickResults:
         """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
         return quick_results(campaign_of_files(corrected_files(self._files, self._entries)), site)

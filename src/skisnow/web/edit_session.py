@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..estimate import marks_of
-from ..estimate.at_once import experiments_at_once, hardness_at_once
+from ..estimate import quality_flags
+from ..estimate.quick_results import experiment_hardness, experiment_results
 from ..estimate.screening import screened_both
-from ..field import MARKS, campaign_of_files
+from ..field import QUALITY_FLAGS, campaign_of_files
 from ..field.reading.campaign_file import read_campaign_file
-from ..field.store import Journals, grown
+from ..field.store import Journals, replayed
 from ..report.curves import SeriesCurve, series_curves
-from .transfer import grown_in_memory
+from .transfer import replayed_in_memory
 
 if TYPE_CHECKING:
     from ..field import Campaign
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class AtOnce:
-    """What the tests of a site say: rows of results.json by experiment, curves, marks in words by experiment."""
+class QuickResults:
+    """Quick results of a site: by experiment the rows of results.json and the quality flags in words; the curves."""
 
     penetration: dict[str, dict[str, Any]]
     shear: dict[str, dict[str, Any]]
     curves: dict[str, SeriesCurve]
-    marks: dict[str, tuple[str, ...]]
+    flags: dict[str, tuple[str, ...]]
 
 
 class EditSession:
@@ -44,8 +44,8 @@ class EditSession:
 
     @property
     def campaign(self) -> ReplayedCampaign:
-        """The campaign as it was at the last look."""
-        assert self._campaign is not None  # looked at since the beginning
+        """The campaign as of the last `refresh`."""
+        assert self._campaign is not None  # `refresh` set it in the beginning
         return self._campaign
 
     @property
@@ -57,11 +57,11 @@ class EditSession:
         return described
 
     def refresh(self) -> None:
-        """Look at what was written since."""
+        """Replay what was written since."""
         new = self._written_since()
         if new or self._campaign is None:
             self._last = new[-1].sequence if new else self._last
-            self._campaign = grown(new, before=self._campaign)
+            self._campaign = replayed(new, before=self._campaign)
 
     def _written_since(self) -> tuple[JournalEntry, ...]:
         return self._journals.entries(self.id, after=self._last)
@@ -73,41 +73,41 @@ class EditSession:
         return written
 
     def test(self, file: str, name: str) -> ReplayedTest:
-        """A test as it was at the last look; an empty one where there is none yet."""
+        """A test as of the last `refresh`; an empty one where there is none yet."""
         return self.campaign.test(file, name)
 
     def tests_of_site(self, site: str) -> list[ReplayedTest]:
         """Every test made at a site, and the snow data of that site."""
         return [test for test in self.campaign.tests.values() if test.rows and test.rows[0].cells["site"] == site]
 
-    def at_once(self, site: str) -> AtOnce:
-        """What the tests of a site say, by the same way that an analysis of the exported folder would take."""
-        files = grown_in_memory(self.campaign, of=self.tests_of_site(site))
+    def quick_results(self, site: str) -> QuickResults:
+        """Quick results of a site, computed as an analysis of the exported folder would."""
+        files = replayed_in_memory(self.campaign, of=self.tests_of_site(site))
         return quick_results(campaign_of_files(files.contents), site)
 
 
-def quick_results(campaign: Campaign, site: str) -> AtOnce:
-    """What the tests of a site say, of a campaign that may have other sites too."""
+def quick_results(campaign: Campaign, site: str) -> QuickResults:
+    """Quick results of a site, of a campaign that may have other sites too."""
     screened = screened_both(campaign, geometry="extended")
-    found = experiments_at_once(campaign, screened=screened)
+    found = experiment_results(campaign, screened=screened)
     here = {
         kind: {row["experiment"]: row for row in found[kind]["experiments"] if row["site"] == site}
         for kind in ("penetration", "shear")
     }
-    curves = series_curves(campaign, hardness_at_once(campaign))
-    return AtOnce(
+    curves = series_curves(campaign, experiment_hardness(campaign))
+    return QuickResults(
         penetration=here["penetration"],
         shear=here["shear"],
         curves={curve.experiment: curve for curve in curves if curve.experiment in here["penetration"]},
-        marks=_in_words(marks_of(campaign, screened=screened)),
+        flags=_in_words(quality_flags(campaign, screened=screened)),
     )
 
 
 def _in_words(problems: list[Problem]) -> dict[str, tuple[str, ...]]:
-    """Marks by file and experiment, as sentences."""
+    """Quality flags by file and experiment, as sentences."""
     sentences: dict[str, tuple[str, ...]] = {}
     for problem in problems:
-        found = f" Found: {problem.value}; unmarked would be {problem.allowed}." if problem.value is not None else ""
+        found = f" Found: {problem.value}; not flagged would be {problem.allowed}." if problem.value is not None else ""
         key = f"{problem.file}/{problem.experiment}"
-        sentences[key] = (*sentences.get(key, ()), f"{MARKS[problem.code].sentence}{found} {problem.action}")
+        sentences[key] = (*sentences.get(key, ()), f"{QUALITY_FLAGS[problem.code].sentence}{found} {problem.action}")
     return sentences

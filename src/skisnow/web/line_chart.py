@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from nicegui.element import Element
 
-from ..report.numerals import significant
+from ..report.number_formatting import significant
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

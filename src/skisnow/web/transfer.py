@@ -16,7 +16,7 @@ from starlette.responses import RedirectResponse, Response
 
 from ..errors import ParameterError, SkisnowError, StoreError
 from ..field.reading import CAMPAIGN_FILES, FilesInMemory
-from ..field.store import Journals, campaign_files, corrected_files, export_corrected, grown, write_campaign
+from ..field.store import Journals, campaign_files, corrected_files, export_corrected, replayed, write_campaign
 from .confined import BOUNDS, confined
 from .error_pages import error_sentence, plain_page
 from .names import required_id
@@ -91,10 +91,10 @@ def _zip(write: Writing) -> bytes:
 
 def entry_files(lab: Lab, id_: str) -> FilesInMemory:
     """The files of a campaign that is being entered, as they are now."""
-    return grown_in_memory(grown(Journals(lab.store).entries(required_id(id_))))
+    return replayed_in_memory(replayed(Journals(lab.store).entries(required_id(id_))))
 
 
-def grown_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> FilesInMemory:
+def replayed_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> FilesInMemory:
     """What `write_campaign` would write into a folder."""
     return FilesInMemory({name: text.encode("utf-8") for name, text in campaign_files(campaign, of=of).items()})
 
@@ -114,7 +114,7 @@ def write_entry(lab: Lab, id_: str, folder: Path) -> None:
     """Write a campaign that is being entered into a new folder."""
     entries = Journals(lab.store).entries(required_id(id_))
     folder.mkdir()
-    write_campaign(grown(entries), folder)
+    write_campaign(replayed(entries), folder)
 
 
 def write_kept(lab: Lab, id_: str, folder: Path) -> None:

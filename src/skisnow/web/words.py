@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from ..report.numerals import interval, significant
+from ..report.number_formatting import interval, significant
 
 LABELS: Final = {
     "experiment": "Name of the test",

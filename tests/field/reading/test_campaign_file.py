@@ -10,8 +10,8 @@ from typing import Any
 import jsonschema
 import pytest
 
-from skisnow.field.marks import MARKS
 from skisnow.field.problems import Problem
+from skisnow.field.quality_flags import QUALITY_FLAGS
 from skisnow.field.reading.campaign_file import CampaignFile, read_campaign_file
 from skisnow.field.reading.tool_shapes import SHAPES
 
@@ -128,7 +128,7 @@ def test_all_keys_are_optional(schema: Any) -> None:
     assert found == []
     assert described is not None
     assert (described.name, described.place, described.observers, described.gauge_resolution) == (None, "", (), None)
-    assert described.excluding == {code for code, mark in MARKS.items() if mark.excludes_by_default}
+    assert described.excluding == {code for code, flag in QUALITY_FLAGS.items() if flag.excludes_by_default}
     jsonschema.validate({}, schema)
 
 
@@ -157,7 +157,7 @@ def test_the_schema_is_one_and_takes_the_small_campaign(small_campaign: dict[str
 
 
 def test_the_schema_names_every_mark_and_shape(schema: Any) -> None:
-    assert schema["$defs"]["mark"]["enum"] == list(MARKS)
+    assert schema["$defs"]["mark"]["enum"] == list(QUALITY_FLAGS)
     assert schema["$defs"]["tool"]["properties"]["shape"]["enum"] == list(SHAPES)
     forms = {form["properties"]["shape"]["const"]: form["required"] for form in schema["$defs"]["tool"]["oneOf"]}
     assert forms == {name: list(shape.argument_of_key) for name, shape in SHAPES.items()}

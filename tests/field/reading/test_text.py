@@ -6,11 +6,11 @@ import itertools
 
 import pytest
 
-from skisnow.field.reading.text import RECORDS_AT_ONCE, UnreadableTextError, decode, look_at_csv
+from skisnow.field.reading.text import RECORDS_AT_ONCE, UnreadableTextError, decode, inspect_csv
 
 
 def records(data: bytes) -> list[tuple[int, list[str]]]:
-    return [pair for lines, rows in look_at_csv(data).records() for pair in zip(lines, rows, strict=True)]
+    return [pair for lines, rows in inspect_csv(data).records() for pair in zip(lines, rows, strict=True)]
 
 
 @pytest.mark.parametrize(
@@ -68,12 +68,12 @@ def test_binary_is_refused(data: bytes) -> None:
     ],
 )
 def test_separator(data: bytes, separator: str) -> None:
-    assert look_at_csv(data).separator == separator
+    assert inspect_csv(data).separator == separator
 
 
 def test_separator_that_is_not_read() -> None:
     with pytest.raises(UnreadableTextError) as caught:
-        look_at_csv(b"sep=|\na|b\n")
+        inspect_csv(b"sep=|\na|b\n")
     assert (caught.value.row, caught.value.value) == (1, "sep=|")
 
 
@@ -101,7 +101,7 @@ def test_lines_below_a_line_that_names_the_separator() -> None:
 def test_open_quote_names_its_row(more: int) -> None:
     """At the end, one line on, and beyond the longest cell of the csv module; rows before it are still given."""
     data = b'a,b\n1,2\n3,"4' + b"\n5,6" * more
-    chunks = look_at_csv(data).records()
+    chunks = inspect_csv(data).records()
     assert next(chunks) == ([1, 2], [["a", "b"], ["1", "2"]])
     with pytest.raises(UnreadableTextError) as caught:
         next(chunks)
@@ -111,7 +111,7 @@ def test_open_quote_names_its_row(more: int) -> None:
 @pytest.mark.parametrize("cell", ["x" * 200_000, '"' + "x" * 200_000 + '"', '"' + "5,6\n" * 60_000])
 def test_a_cell_without_end_is_not_taken_for_an_open_quote_alone(cell: str) -> None:
     with pytest.raises(UnreadableTextError) as caught:
-        list(look_at_csv(f"a,b\n1,2\n3,{cell}".encode()).records())
+        list(inspect_csv(f"a,b\n1,2\n3,{cell}".encode()).records())
     assert caught.value.row == 3
     assert caught.value.value == "a cell of more than 131072 characters"
     assert caught.value.allowed == "quotes in pairs, and cells of at most 32767 characters"
@@ -122,20 +122,20 @@ def test_no_record_is_lost_between_portions(count: int) -> None:
     data = "\n".join(map(str, range(count))).encode()
     assert records(data) == [(index + 1, [str(index)]) for index in range(count)]
     with pytest.raises(UnreadableTextError) as caught:
-        list(look_at_csv(data + b'\n"').records())
+        list(inspect_csv(data + b'\n"').records())
     assert caught.value.row == count + 1
 
 
 def test_records_come_in_portions() -> None:
     data = b"1\n" * (3 * RECORDS_AT_ONCE)
-    sizes = [len(rows) for _, rows in look_at_csv(data).records()]
+    sizes = [len(rows) for _, rows in inspect_csv(data).records()]
     assert sum(sizes) == 3 * RECORDS_AT_ONCE
     assert all(size <= RECORDS_AT_ONCE for size in itertools.chain(sizes))
 
 
 @pytest.mark.parametrize("columns", [1_001, 100_000])
 def test_a_table_with_more_columns_than_a_person_fills_is_refused(columns: int) -> None:
-    text = look_at_csv(("x," * (columns - 1) + "x\n").encode())
+    text = inspect_csv(("x," * (columns - 1) + "x\n").encode())
     with pytest.raises(UnreadableTextError) as caught:
         list(text.records())
     assert (caught.value.row, caught.value.value) == (1, f"{columns} cells")
@@ -144,8 +144,8 @@ def test_a_table_with_more_columns_than_a_person_fills_is_refused(columns: int) 
 
 def test_a_cell_longer_than_a_spreadsheet_holds_is_refused() -> None:
     fits, too_long = "x" * 32_767, "x" * 32_768
-    assert next(look_at_csv(f"a,b\n1,{fits}\n".encode()).records())[1][1] == ["1", fits]
+    assert next(inspect_csv(f"a,b\n1,{fits}\n".encode()).records())[1][1] == ["1", fits]
     with pytest.raises(UnreadableTextError) as caught:
-        list(look_at_csv(f"a,b\n1,{too_long}\n".encode()).records())
+        list(inspect_csv(f"a,b\n1,{too_long}\n".encode()).records())
     assert caught.value.row == 2
     assert "32767" in caught.value.allowed

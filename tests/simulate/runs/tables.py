@@ -56,8 +56,8 @@ def _refined(snow: tuple[float, float]) -> list[str]:
 def convergence() -> str:
     """How far the end moves with each choice made twice as fine."""
     head = (
-        "H_V (N/mm³)", "S_f (N/mm²)", "outcome", "path (m)", "lost to shear (J)", "energy open (%)", "tolerance/2 (cm)",
-        "elements × 2 (cm)", "lines/2 (cm)", "groove tolerance/2 (cm)",
+        "H_V (N/mm³)", "S_f (N/mm²)", "outcome", "path (m)", "lost to shear (J)", "energy residual (%)",
+        "tolerance/2 (cm)", "elements × 2 (cm)", "lines/2 (cm)", "groove tolerance/2 (cm)",
     )  # fmt: skip
     with ProcessPoolExecutor(2) as pool:
         return table(head, pool.map(_refined, SNOWS), words=3)
@@ -71,7 +71,7 @@ def energies() -> str:
         lost = (f"{run.energies[name][-1]:.0f}" for name in ("penetration", "shear", "friction", "drag", "damping"))
         rows.append((f"{ratio:g}", f"{run.energy_exchanged:.0f}", *lost, per_cent(run.energy_balance_error)))
     names = (f"{name} (J)" for name in ("groove", "shear", "friction", "drag", "damping"))
-    return table(("k_u/H_V", "turned over (J)", *names, "open (%)"), rows, words=0)
+    return table(("k_u/H_V", "exchanged (J)", *names, "residual (%)"), rows, words=0)
 
 
 def exact() -> str:
@@ -89,7 +89,7 @@ def flying() -> Iterable[Row]:
         ("angular momentum", "energy"), tumbling_drift(1e-3), tumbling_drift(0.5e-3), strict=True
     ):
         found = f"{fine:.1e} of it lost after {DURATION:g} s in steps of 0.5 ms, {coarse:.1e} in 1 ms"
-        yield f"free flight, tumbling: {name}", "kept", found, "dynamics/test_free_flight"
+        yield f"free flight, tumbling: {name}", "conserved", found, "dynamics/test_free_flight"
 
 
 def resting() -> Iterable[Row]:
@@ -126,7 +126,7 @@ def across() -> Iterable[Row]:
     for share in (0.97, 1.03):
         run = test_cross_slope.across(strength=enough / share, duration=3.0)
         way = 1e3 * float(np.ptp(run.place[10:, 0]))
-        answer = "holds" if share < 1.0 else "slips"
+        answer = "grips" if share < 1.0 else "slips"
         asked = f"cross slope, m g sin α = {share:g} S_f ∫ e ds"
         yield asked, answer, f"moves {way:.2g} mm from 1 s to 3 s", "runs/test_cross_slope"
     minute = test_cross_slope.across(strength=0.5, duration=60.0)
@@ -149,7 +149,7 @@ def circling() -> Iterable[Row]:
     enough = test_steady_circle.sufficient_strength()
     for share in (0.8, 1.25, 2.0):
         found = test_steady_circle.radius(test_steady_circle.circle(strength=enough / share)) / arc
-        answer = "holds: 1" if share < 1.0 else f"slips: {share:g}"
+        answer = "grips: 1" if share < 1.0 else f"slips: {share:g}"
         yield f"steady circle, m v²/R = {share:g} S_f ∫ e ds: radius", answer, f"{found:.3f}", "runs/test_steady_circle"
 
 

@@ -36,10 +36,10 @@ def at_start(given: Scenario) -> Run:
 def out_of_balance(changes: Mapping[str, object]) -> float:
     """Force left over at the start (N, or N m), held directions aside: the largest on the sledge and on the skis."""
     setup = set_up(read_scenario("carved-46m", changes={"start.speed_m_per_s": 0.0, **changes}))
-    assert setup.unrest < 1e-6
+    assert setup.static_residual < 1e-6
     dynamics, R = setup.dynamics, setup.dynamics.rotation
     body, skis = dynamics.body, dynamics.body.skis
-    nodes = list(at_nodes(dynamics.bend, skis[0].unknown))
+    nodes = list(at_nodes(dynamics.beam_dofs, skis[0].unknown))
     where = np.array([dynamics.position + R @ ski.boot for ski in skis])
     turned = np.array([R @ ski.axes.T for ski in skis])
     still = [np.zeros_like(each) for each in nodes]
@@ -55,7 +55,7 @@ def out_of_balance(changes: Mapping[str, object]) -> float:
         for i in range(len(loads)):
             for j in range(min(i, 5) + 1):
                 stiffness[i, i - j] = stiffness[i - j, i] = ski.stiffness[i, j]
-        worst = max(worst, float(np.abs(loads + ski.coupling[:, :3] @ g - stiffness @ dynamics.bend[k]).max()))
+        worst = max(worst, float(np.abs(loads + ski.coupling[:, :3] @ g - stiffness @ dynamics.beam_dofs[k]).max()))
     return max(worst, float(np.abs(left[2:5]).max()))
 
 

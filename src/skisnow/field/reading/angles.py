@@ -72,8 +72,8 @@ def check_flat_tools(table: Table, blocks: Blocks, flat_tools: frozenset[str]) -
         )
 
 
-def _once_per_block(holds: BoolArray, blocks: Blocks) -> list[int]:
-    rows = np.flatnonzero(holds)
+def _once_per_block(chosen: BoolArray, blocks: Blocks) -> list[int]:
+    rows = np.flatnonzero(chosen)
     _, first = np.unique(blocks.of_row[rows], return_index=True)
     found: list[int] = rows[first].tolist()
     return found

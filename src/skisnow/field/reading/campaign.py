@@ -1,4 +1,4 @@
-"""Read a campaign's folder: every file once, every problem said, and records only where none is an error."""
+"""Read a campaign's folder: every file once, every problem reported, and records only where none is an error."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .corrections import corrections_by_file, refuse_without_file
 from .raw_files import RawFiles
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, TABLES
 from .tables import read_table
-from .text import UnreadableTextError, decode, look_at_csv
+from .text import UnreadableTextError, decode, inspect_csv
 from .together import check_together
 
 if TYPE_CHECKING:
@@ -202,8 +202,8 @@ def _described(files: RawFiles) -> CampaignFile | None:
         return None
     try:
         decoded = decode(data)
-    except UnreadableTextError as trouble:
-        files.report_unreadable(CAMPAIGN_FILE, trouble)
+    except UnreadableTextError as failure:
+        files.report_unreadable(CAMPAIGN_FILE, failure)
         return None
     if not decoded.text.strip():
         action = "Describe the tools and plates that the tables name."
@@ -231,9 +231,9 @@ def _table(
     if data is None:
         return None
     try:
-        text = look_at_csv(data)
-    except UnreadableTextError as trouble:
-        files.report_unreadable(form.file, trouble)
+        text = inspect_csv(data)
+    except UnreadableTextError as failure:
+        files.report_unreadable(form.file, failure)
         return None
     files.report_encoding(form.file, text.foreign_encoding)
     return read_table(form, text, corrections=corrections, files=files, progress=progress)

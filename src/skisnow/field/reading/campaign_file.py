@@ -1,4 +1,4 @@
-"""campaign.toml: who measured with what, how finely, and which marks exclude."""
+"""campaign.toml: who measured with what, how finely, and which quality flags exclude."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from ...geometry import Tool
 from ...geometry.tools import LIKELY_LENGTH_MM
 from ...given import GivenError, toml_values
 from ...inputs import Quantity, own_quantities
-from ..marks import ALWAYS_EXCLUDE, MARKS
 from ..problems import error, warning
+from ..quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
 from .toml_values import TomlValues
 from .tool_shapes import SHAPES
 
@@ -47,7 +47,7 @@ class CampaignFile:
         Quantity(
             "gauge_resolution_mm",
             "step of the depth gauge; a reading's standard uncertainty is step/√12. Left out: no depth uncertainty and "
-            "no `below_resolution` mark, which the report says",
+            "no `below_resolution` flag, which the report says",
             lowest=0.0,
             above=True,
             usual=(0.0005, 5.0),
@@ -137,8 +137,8 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
 def _parsed(text: str, found: list[Problem]) -> dict[str, Any] | None:
     try:
         return toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
-    except GivenError as trouble:
-        row, what = trouble.line, trouble.what
+    except GivenError as failure:
+        row, what = failure.line, failure.what
     action = "Correct the line: texts stand in quotes, numbers have a decimal point, lists stand in brackets."
     found.append(error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed="TOML (toml.io)", action=action))
     return None
@@ -176,7 +176,7 @@ def _plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
 
 
 def _new_name(entry: TomlValues, names: set[str]) -> str | None:
-    """Take a name in; None, and said, where it is missing or taken."""
+    """Take a name in; None, with an error, where it is missing or taken."""
     if "name" not in entry.values:
         entry.refuse("name", "a name", "Add the name that the tables use.")
     name = entry.text("name")
@@ -233,15 +233,17 @@ def _stiffness(top: TomlValues) -> float | None:
 
 
 def _excluding(top: TomlValues) -> frozenset[str]:
-    """Codes of the marks that exclude: the list of the file replaces the default, but for those that always do."""
+    """Codes of the quality flags that exclude: the file's list replaces the default, but for those that always do."""
     screening = top.table("screening")
     screening.refuse_misspelt(("exclude",))
     if "exclude" not in screening.values:
-        return frozenset(code for code, mark in MARKS.items() if mark.excludes_by_default)
+        return frozenset(code for code, flag in QUALITY_FLAGS.items() if flag.excludes_by_default)
     codes = screening.texts("exclude")
     for code in codes:
-        if code not in MARKS:
-            near = difflib.get_close_matches(code, MARKS, n=1)
+        if code not in QUALITY_FLAGS:
+            near = difflib.get_close_matches(code, QUALITY_FLAGS, n=1)
             hint = f"Is {near[0]} meant? " if near else ""
-            screening.refuse("exclude", f"codes among {', '.join(MARKS)}", f"{hint}Correct the code.", value=code)
-    return (frozenset(codes) & frozenset(MARKS)) | ALWAYS_EXCLUDE
+            screening.refuse(
+                "exclude", f"codes among {', '.join(QUALITY_FLAGS)}", f"{hint}Correct the code.", value=code
+            )
+    return (frozenset(codes) & frozenset(QUALITY_FLAGS)) | ALWAYS_EXCLUDE

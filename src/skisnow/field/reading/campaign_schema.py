@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from ...inputs.json_schema import DRAFT, Schema, table_schema
-from ..marks import MARKS
+from ..quality_flags import QUALITY_FLAGS
 from .campaign_file import CAMPAIGN_KEYS, PLATE_LENGTH
 from .tool_shapes import SHAPES, Shape
 
@@ -29,7 +29,7 @@ def campaign_schema() -> Schema:
             "plate": {"type": "array", "items": {"$ref": "#/$defs/plate"}},
             "screening": {"type": "object", "properties": {"exclude": _exclude()}},
         },
-        "$defs": {"mark": {"enum": list(MARKS)}, "tool": _tool(), "plate": _plate()},
+        "$defs": {"mark": {"enum": list(QUALITY_FLAGS)}, "tool": _tool(), "plate": _plate()},
     }
 
 
@@ -38,7 +38,7 @@ def _one_or_several(item: Schema) -> Schema:
 
 
 def _exclude() -> Schema:
-    words = "Codes of the marks that exclude an experiment; replaces the default."
+    words = "Codes of the quality flags that exclude an experiment; replaces the default."
     return {"description": words, **_one_or_several({"$ref": "#/$defs/mark"})}
 
 

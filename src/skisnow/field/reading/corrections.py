@@ -72,10 +72,10 @@ def corrections_by_file(table: Table, found: list[Problem]) -> dict[str, dict[in
     lines, rows = table.row.tolist(), table.numbers["row"].tolist()
     names = (table.names[name].cells() for name in ("file", "experiment", "column"))
     texts = (table.further[name] for name in ("old", "new", "who", "when", "why"))
-    for line, row, file, experiment, column, *said in zip(lines, rows, *names, *texts, strict=True):
+    for line, row, file, experiment, column, *rest in zip(lines, rows, *names, *texts, strict=True):
         if math.isnan(row) or not file:
-            continue  # already said to be no number or blank
-        correction = Correction(line, file, experiment, int(row), column, *said)
+            continue  # already reported: no number, or blank
+        correction = Correction(line, file, experiment, int(row), column, *rest)
         if file not in files:
             found.append(correction.mismatch("file", file, f"one of {', '.join(files)}"))
         elif row != int(row):
@@ -86,7 +86,7 @@ def corrections_by_file(table: Table, found: list[Problem]) -> dict[str, dict[in
 
 
 def refuse_without_file(corrections: RowCorrections, found: list[Problem]) -> None:
-    """Say of each correction that its file is not in the campaign, or cannot be read."""
+    """Report of each correction that its file is not in the campaign, or cannot be read."""
     for of_one_row in corrections.values():
         found.extend(each.mismatch("file", each.file, "a readable file of this campaign") for each in of_one_row)
 

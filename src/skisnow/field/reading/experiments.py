@@ -75,11 +75,11 @@ class Blocks:
 
 
 def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
-    """Find experiments of several rows that change their place, tool or angle, or are told in two places."""
+    """Find experiments of several rows that change their place, tool or angle, or have rows in two places."""
     key = table.names[table.form.key]
     if table.form.key in table.absent:
         return
-    yield from _told_again(table, blocks)
+    yield from _repeated_name(table, blocks)
     for name in (*table.form.names, "spot"):
         column = table.names[name]
         if name != table.form.key:
@@ -96,7 +96,7 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
 
 
 def check_one_site(table: Table) -> Iterator[Problem]:
-    """Find tests that stand at two sites."""
+    """Find tests that are given two sites."""
     key, site = table.names[table.form.key], table.names["site"]
     if table.absent & {table.form.key, "site"}:
         return
@@ -107,7 +107,7 @@ def check_one_site(table: Table) -> Iterator[Problem]:
             yield _mixed(table, row, reference, "site", site[row], site[reference])
 
 
-def _told_again(table: Table, blocks: Blocks) -> Iterator[Problem]:
+def _repeated_name(table: Table, blocks: Blocks) -> Iterator[Problem]:
     key = table.names[table.form.key]
     code = key.code[blocks.start]
     _, met_first = np.unique(code, return_index=True)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .table import Table
 
 FAR: Final = 500.0
-"""Factor from the median of its column beyond which a number is told: loads and moments of one campaign span less."""
+"""Factor from the median of its column beyond which a number is reported: loads of one campaign span less."""
 
 
 @dataclass(frozen=True, slots=True)

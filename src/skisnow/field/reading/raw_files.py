@@ -36,14 +36,14 @@ class RawFiles:
     absent: set[str] = field(default_factory=set)
 
     def read(self, name: str) -> bytes | None:
-        """Give a file's bytes; None where it is absent, or cannot be read, which is said."""
+        """Give a file's bytes; None where it is absent, or cannot be read, which is reported."""
         try:
             data = self.files.read(name)
         except FileNotFoundError:
             self.absent.add(name)
             return None
-        except OSError as trouble:
-            self._refuse(name, trouble.strerror or str(trouble))
+        except OSError as failure:
+            self._refuse(name, failure.strerror or str(failure))
             return None
         if data is None:
             self._refuse(name, "something that is no plain file")
@@ -56,16 +56,16 @@ class RawFiles:
         allowed = "a plain file that may be read"
         self.found.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
 
-    def report_unreadable(self, name: str, trouble: UnreadableTextError) -> None:
+    def report_unreadable(self, name: str, failure: UnreadableTextError) -> None:
         """Say that a file is not the text it should be."""
         self.found.append(
             error(
                 "unreadable_file",
                 name,
-                row=trouble.row,
-                value=trouble.value,
-                allowed=trouble.allowed,
-                action=trouble.action,
+                row=failure.row,
+                value=failure.value,
+                allowed=failure.allowed,
+                action=failure.action,
             )
         )
 

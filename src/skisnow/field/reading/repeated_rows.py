@@ -1,4 +1,4 @@
-"""Rows of snow tables that stand twice: pasted again, they count again."""
+"""Duplicate rows of snow tables: pasted again, they count again."""
 
 from __future__ import annotations
 

@@ -145,13 +145,13 @@ class CorrectionRow:
 
 
 BRANCH: Final = "branch"
-"""Column that tells whether a disc was laid on or taken off."""
+"""Column that says whether a disc was laid on or taken off."""
 LOADING: Final = "loading"
 UNLOADING: Final = "unloading"
 BRANCHES: Final = ("", LOADING, UNLOADING)
 """What may stand in it; a blank cell is loading."""
 
-_REMARKS: Final = ("time", "air_temperature_C", "snow_temperature_C", "snow_type", "remark")
+_NOTES: Final = ("time", "air_temperature_C", "snow_temperature_C", "snow_type", "remark")
 
 PENETRATION: Final = TableForm(
     file="penetration.csv",
@@ -159,7 +159,7 @@ PENETRATION: Final = TableForm(
     names=("experiment", "site", "tool"),
     numbers=own_quantities(PenetrationRow),
     optional=("spot", "status", BRANCH),
-    further=_REMARKS,
+    further=_NOTES,
 )
 SHEAR: Final = TableForm(
     file="shear.csv",
@@ -167,7 +167,7 @@ SHEAR: Final = TableForm(
     names=("experiment", "site", "plate"),
     numbers=own_quantities(ShearRow),
     optional=("spot", "status"),
-    further=_REMARKS,
+    further=_NOTES,
 )
 DENSITY: Final = TableForm(
     file="density.csv",
@@ -175,7 +175,7 @@ DENSITY: Final = TableForm(
     names=("sample", "site"),
     numbers=own_quantities(DensityRow),
     optional=("status",),
-    further=("spot", "drop_cone_depth_mm", *_REMARKS),
+    further=("spot", "drop_cone_depth_mm", *_NOTES),
 )
 DROP_CONE: Final = TableForm(
     file="drop_cone.csv",
@@ -183,7 +183,7 @@ DROP_CONE: Final = TableForm(
     names=("test", "site", "repeat"),
     numbers=own_quantities(DropConeRow),
     optional=("status",),
-    further=("spot", "snow_density_kg_per_m3", *_REMARKS),
+    further=("spot", "snow_density_kg_per_m3", *_NOTES),
 )
 CORRECTIONS: Final = TableForm(
     file="corrections.csv",

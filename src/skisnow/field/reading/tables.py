@@ -52,7 +52,7 @@ def read_table(
 
     Returns
     -------
-    The table, or None where no row could be looked at. With an error found its columns may have gaps.
+    The table, or None where no row could be read. With an error found its columns may have gaps.
     """
     reading: _TableReading | None = None
     readable = True
@@ -66,8 +66,8 @@ def read_table(
                 reading.take(lines, rows)
                 if progress is not None:
                     progress(f"{form.file}: {len(reading):,} rows")
-    except UnreadableTextError as trouble:
-        files.report_unreadable(form.file, trouble)
+    except UnreadableTextError as failure:
+        files.report_unreadable(form.file, failure)
         readable = False
     return _table_or_empty(form, reading, files.found, readable=readable)
 
@@ -138,16 +138,16 @@ class _TableReading:
         unnamed = self._file_header.unnamed
         if not unnamed and max(map(len, rows)) <= width:
             return lines, rows
-        kept: Records = ([], [])
+        good: Records = ([], [])
         for line, cells in zip(lines, rows, strict=True):
             surplus = chain(cells[width:], (cells[index] for index in unnamed if index < len(cells)))
             first = next(filter(None, map(str.strip, surplus)), None)
             if first is None:
-                kept[0].append(line)
-                kept[1].append(cells[:width])
+                good[0].append(line)
+                good[1].append(cells[:width])
             else:
                 self._found.append(self._surplus(line, first, width - len(unnamed)))
-        return kept
+        return good
 
     def _surplus(self, line: int, cell: str, width: int) -> Problem:
         return error(
@@ -160,7 +160,7 @@ class _TableReading:
         )
 
     def finish(self) -> None:
-        """Say what only the whole file can tell."""
+        """Report what only the whole file shows."""
         self._corrector.finish()
 
     def table(self) -> Table:
@@ -184,7 +184,7 @@ def _transposed(rows: list[list[str]], width: int) -> list[tuple[str, ...]]:
 
 
 def decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
-    """How a table writes decimals: a look ahead for the first numbers with a fraction."""
+    """The decimal mark of a table: that of its first numbers with a fraction, read ahead."""
     asked = {column.name for column in form.numbers}
     positions = [index for index, name in enumerate(header.columns) if name in asked]
 
@@ -195,7 +195,7 @@ def decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
     try:
         return decimal_mark(groups(), separator=text.separator)
     except UnreadableTextError:
-        return "."  # what is unreadable is said where the records are taken in
+        return "."  # what is unreadable is reported where the records are taken in
 
 
 def _not_plain(file: str, separator: str, mark: str) -> Iterator[Problem]:

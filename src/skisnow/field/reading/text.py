@@ -29,7 +29,7 @@ from ...spreadsheet_text import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["RECORDS_AT_ONCE", "SEPARATOR_NAMES", "CsvText", "Records", "UnreadableTextError", "decode", "look_at_csv"]
+__all__ = ["RECORDS_AT_ONCE", "SEPARATOR_NAMES", "CsvText", "Records", "UnreadableTextError", "decode", "inspect_csv"]
 
 Records: TypeAlias = tuple[list[int], list[list[str]]]
 """File lines at which records begin, and the records' cells."""
@@ -193,7 +193,7 @@ def _endless_cell(line: int) -> UnreadableTextError:
     )
 
 
-def look_at_csv(data: bytes) -> CsvText:
+def inspect_csv(data: bytes) -> CsvText:
     """Find out how a CSV file is written.
 
     The separator is the one found most often in the header, outside quotes, or the one that a first line like ``sep=;``

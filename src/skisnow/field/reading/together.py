@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def check_together(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
-    """Find what the rows of a table say against each other, or against campaign.toml where that could be read."""
+    """Find contradictions between the rows of a table, or with campaign.toml where that could be read."""
     yield from check_likely_units(table)
     if table.form in (DENSITY, DROP_CONE):
         yield from check_repeated_rows(table)

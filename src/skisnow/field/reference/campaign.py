@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ...errors import ParameterError
-from ..marks import MARKS
+from ..quality_flags import QUALITY_FLAGS
 from ..records import Campaign
 from . import design, draws
 from .noise import ReferenceNoise
@@ -86,7 +86,7 @@ class ReferenceCampaign:
             load_steps=design.LOADS,
             tools={design.TOOL: design.SKI_PIECE},
             plates={design.PLATE: design.PLATE_LENGTH},
-            excluding=frozenset(code for code, mark in MARKS.items() if mark.excludes_by_default),
+            excluding=frozenset(code for code, flag in QUALITY_FLAGS.items() if flag.excludes_by_default),
             penetration=self.penetration,
             shear=self.shear,
             density=self.density,
@@ -127,7 +127,7 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
     κ = 0 it is F = H_V V (Eqn 12). For the wedge F ~ e^(2 + κ): κ > 0 is snow that is harder below. The true load F is
     the nominal one plus an error; e solves the law for it. The gauge reads e (1 + scatter) + seating offset, rounded to
     its step; it does not read below its zero, so a negative reading is recorded as 0. The file states the nominal
-    loads. Readings are recorded as they come: where depths shrink, screening marks the series.
+    loads. Readings are recorded as they come: where depths shrink, screening flags the series.
 
     A series planned flat whose snow would let the flat tool no deeper than 0.2 mm at the largest load is done at one of
     the other angles instead (modelling assumption: nobody measures 0.0004 mm).

@@ -94,7 +94,7 @@ PLATE: Final = "plate 100 mm"
 PLATE_LENGTH: Final = 100.0 * MM
 LEVER_ARM: Final = 250.0 * MM
 PLATE_DEPTHS: Final = (2.0 * MM, 12.0 * MM)
-GREATEST_MOMENT: Final = 60.0
+MAXIMUM_MOMENT: Final = 60.0
 
 SHEAR_ANGLES_DEG: Final = (30.0, 45.0, 60.0, 75.0, 90.0)
 HARD_SITE: Final = "site I"

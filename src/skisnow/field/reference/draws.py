@@ -109,7 +109,7 @@ def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearT
     angle = _shear_angles(further.size)
     stress = _shear_stress(generator, angle, further, noise)  # last: redrawing takes a varying count of numbers
     low, high = design.PLATE_DEPTHS
-    reachable = design.GREATEST_MOMENT / (stress * design.PLATE_LENGTH * design.LEVER_ARM)
+    reachable = design.MAXIMUM_MOMENT / (stress * design.PLATE_LENGTH * design.LEVER_ARM)
     depth = low + place_in_range * (np.minimum(high, reachable) - low)
     moment = np.maximum(stress * depth * design.PLATE_LENGTH * lever_arm + moment_error, 0.0)
     own_density: FloatArray = np.concatenate([np.full(count - further.size, np.nan), further])

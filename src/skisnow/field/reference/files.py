@@ -76,11 +76,11 @@ def write_reference(folder: str | Path, *, seed: int) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         _move_into_place(folder, files)
-    except OSError as trouble:
+    except OSError as failure:
         raise OutputError(
-            f"{folder}: the reference campaign could not be written ({trouble.strerror or trouble}); nothing of it was "
+            f"{folder}: the reference campaign could not be written ({failure.strerror or failure}); nothing of it was "
             "left there. Choose a folder that you may write to, on a disk with room."
-        ) from trouble
+        ) from failure
 
 
 def _move_into_place(folder: Path, files: Mapping[str, str]) -> None:

@@ -1,12 +1,13 @@
-"""The embedded store: campaigns byte for byte, and journals of campaigns that are being entered."""
+"""The embedded store: campaigns byte for byte, and journals (event sourcing) of campaigns that are being entered."""
 
-from .grown import ReplayedCampaign, ReplayedRow, ReplayedTest, grown
-from .grown_files import campaign_files, write_campaign
+from ...former_names import former_attributes
+from .corrected_export import ExportedCampaign, add_corrections, corrected_files, export_corrected
 from .journal import JournalHead, Journals, OvertakenError
 from .journal_entry import JournalEntry, NewEntry
-from .kept import ExportedCampaign, add_corrections, corrected_files, export_corrected
-from .kept_tables import KeptTable, kept_tables
+from .replayed import ReplayedCampaign, ReplayedRow, ReplayedTest, replayed
+from .replayed_files import campaign_files, write_campaign
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
+from .stored_tables import StoredTable, stored_tables
 
 __all__ = [
     "AddedCampaign",
@@ -15,7 +16,6 @@ __all__ = [
     "JournalEntry",
     "JournalHead",
     "Journals",
-    "KeptTable",
     "NewEntry",
     "OvertakenError",
     "ReplayedCampaign",
@@ -24,12 +24,17 @@ __all__ = [
     "Store",
     "StoredCampaign",
     "StoredFile",
+    "StoredTable",
     "add_corrections",
     "campaign_files",
     "corrected_files",
     "default_path",
     "export_corrected",
-    "grown",
-    "kept_tables",
+    "replayed",
+    "stored_tables",
     "write_campaign",
 ]
+
+__getattr__ = former_attributes(
+    __name__, {"KeptTable": "StoredTable", "grown": "replayed", "kept_tables": "stored_tables"}
+)

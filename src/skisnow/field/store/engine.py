@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _NO_ROOM: Final = "there is no room left on the disk; free some space and try again"
 _READ_ONLY: Final = "it is read-only; allow writing to the file and its folder, or name another place"
-_SQLITE_TROUBLE: Final = {
+_SQLITE_REASONS: Final = {
     sqlite3.SQLITE_FULL: _NO_ROOM,
     sqlite3.SQLITE_READONLY: _READ_ONLY,
     sqlite3.SQLITE_PERM: _READ_ONLY,
@@ -37,7 +37,7 @@ _SQLITE_TROUBLE: Final = {
     sqlite3.SQLITE_IOERR: "the disk could not be read or written; check it and the space left on it",
 }
 _NO_TEXT: Final = "Could not decode to UTF-8"
-_SYSTEM_TROUBLE: Final = {
+_SYSTEM_REASONS: Final = {
     errno.ENOSPC: _NO_ROOM,
     errno.EDQUOT: _NO_ROOM,
     errno.EROFS: _READ_ONLY,
@@ -48,25 +48,25 @@ _SYSTEM_TROUBLE: Final = {
 
 @contextmanager
 def database_errors(store: Path, doing: str) -> Iterator[None]:
-    """Turn trouble of the database into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
+    """Turn a database error into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
     try:
         yield
     except (DBAPIError, sqlite3.Error) as error:
-        said = str(getattr(error, "orig", error))
-        code = sqlite3.SQLITE_CORRUPT if said.startswith(_NO_TEXT) else _primary_code(error)
-        why = _SQLITE_TROUBLE.get(code, said)
+        message = str(getattr(error, "orig", error))
+        code = sqlite3.SQLITE_CORRUPT if message.startswith(_NO_TEXT) else _primary_code(error)
+        why = _SQLITE_REASONS.get(code, message)
         raise StoreError(f"The store {store} {doing}: {why}.") from error
     except UnicodeDecodeError as error:  # what SQLite says names a part of the schema that is no text any more
-        raise StoreError(f"The store {store} {doing}: {_SQLITE_TROUBLE[sqlite3.SQLITE_CORRUPT]}.") from error
+        raise StoreError(f"The store {store} {doing}: {_SQLITE_REASONS[sqlite3.SQLITE_CORRUPT]}.") from error
 
 
 @contextmanager
 def file_errors(place: Path, doing: str) -> Iterator[None]:
-    """Turn trouble of the file system into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
+    """Turn a file system error into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
     try:
         yield
     except OSError as error:
-        why = _SYSTEM_TROUBLE.get(error.errno or 0, error.strerror or str(error))
+        why = _SYSTEM_REASONS.get(error.errno or 0, error.strerror or str(error))
         raise StoreError(f"{error.filename or place} {doing}: {why}.") from error
 
 

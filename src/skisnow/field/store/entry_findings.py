@@ -34,7 +34,7 @@ def findings_of_entries(connection: Connection) -> Iterator[Finding]:
         damage = list(_of_sums(row))
         if row["sha256"] is None or not damage:
             yield from _of_form(connection, row)
-        yield from (_finding(row, _place(about, column), said) for column, said in damage)
+        yield from (_finding(row, _place(about, column), what) for column, what in damage)
 
 
 def _of_form(connection: Connection, row: _Row) -> Iterator[Finding]:
@@ -81,20 +81,20 @@ def _of_cell(row: _Row, column: str) -> str:
 
 
 def _place(row: _Row, column: str | None) -> str:
-    """Test, row and column in words. The cells of a kept campaign say their line themselves."""
+    """Test, row and column in words. The cells of a stored campaign say their line themselves."""
     test, position, line = _text(row["test"]), row["position"], ""
     if position is not None:
         line = str(int(position) + 1) if position.isdigit() else ""
     elif column is not None and "/" in column:
         line, _, column = column.partition("/")
     named = (("test ", test), ("row ", line), ("column ", column))
-    return ", ".join(word + said for word, said in named if said)
+    return ", ".join(word + text for word, text in named if text)
 
 
-def _finding(row: _Row, place: str, said: str) -> Finding:
+def _finding(row: _Row, place: str, what: str) -> Finding:
     number = _text(row["sequence"])
     where = f"{place}: " if place else ""
-    return Finding(_text(row["journal_id"]), _text(row["file"]) or None, f"{where}{said} (entry {number}); {_BACKUP}")
+    return Finding(_text(row["journal_id"]), _text(row["file"]) or None, f"{where}{what} (entry {number}); {_BACKUP}")
 
 
 def _short(text: str) -> str:

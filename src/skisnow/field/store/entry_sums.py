@@ -1,4 +1,4 @@
-"""Checksums of an entry of a journal: one that tells whether it is what was written down, and one for each part of it.
+"""Checksums of an entry of a journal: one that shows whether it is what was written down, and one for each part of it.
 
 They are taken from the bytes that SQLite holds, so that an entry which is no text any more can be checked, too. What
 is written down here must stay as it is: stores hold it (migration 0004 has a copy).
@@ -47,7 +47,7 @@ def entry_sha256(row: Mapping[str, object]) -> str:
 
 
 def entry_sums(row: Mapping[str, object]) -> str:
-    """A CRC-32 of each part, as JSON: they tell where an entry is damaged that no longer has its SHA-256."""
+    """A CRC-32 of each part, as JSON: they show where an entry is damaged that no longer has its SHA-256."""
     return json.dumps({"entry": _of_particulars(row), "cells": _of_cells(row)}, ensure_ascii=False)
 
 

@@ -1,6 +1,6 @@
 """Folders that go into the store and come out of it: listing, hashing, safe paths, writing.
 
-What is kept of a folder is the path and the bytes of each regular file; empty folders, times and permissions are not.
+What is stored of a folder is the path and the bytes of each regular file; empty folders, times and permissions are not.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Journals: campaigns that are being entered. Each entry is on the disk before it is said to be stored.
+"""Journals: campaigns that are being entered, by event sourcing. Each entry is on the disk before it counts as stored.
 
 A journal is a list of entries that only grows (event sourcing). A reading is an entry; so is its correction, a
-cancelling, an undoing: nothing is overwritten, and what the campaign holds now follows from all of them (`grown`).
+cancelling, an undoing: nothing is overwritten, and the campaign as it is now is replayed from all of them (`replayed`).
 
-What is corrected in a campaign that is kept byte for byte stands in a journal too, which has that campaign's id. Its
+What is corrected in a campaign that is stored byte for byte stands in a journal too, which has that campaign's id. Its
 first entry about a test says what the file says.
 """
 
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from .store import Store
 
 _IN_ENTRY: Final = journal.c.id.not_in(select(campaign.c.id))
-"""Of a journal; that of a kept campaign says what is corrected in it."""
+"""Of a journal; that of a stored campaign says what is corrected in it."""
 
 
 class OvertakenError(StoreError):
-    """Somebody else wrote about the same test since it was last looked at; nothing was stored."""
+    """Somebody else wrote about the same test since it was last read; nothing was stored."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,14 +97,14 @@ class Journals:
         return self._read(id, after, _require)
 
     def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
-        """Give the entries about a campaign that is kept byte for byte, oldest first, from behind a sequence on.
+        """Give the entries about a campaign that is stored byte for byte, oldest first, from behind a sequence on.
 
         Raises
         ------
         StoreError
             There is no such campaign.
         """
-        return self._read(id, after, _require_kept)
+        return self._read(id, after, _require_stored)
 
     def _read(self, id_: str, after: int, require: Callable[[Connection, str], None]) -> tuple[JournalEntry, ...]:
         with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
@@ -141,7 +141,7 @@ class Journals:
             return _write(connection, id, entry)
 
     def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:  # noqa: A002
-        """Write down what is to be different in a campaign that is kept byte for byte.
+        """Write down what is to be different in a campaign that is stored byte for byte.
 
         Parameters
         ----------
@@ -162,7 +162,7 @@ class Journals:
             There is no such campaign, or no such entry to undo.
         """
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
-            _require_kept(connection, id)
+            _require_stored(connection, id)
             if (known := _written_before(connection, id, entry)) is not None:
                 return known
             _refuse_overtaken(connection, id, entry, seen)
@@ -191,7 +191,7 @@ def _require(connection: Connection, id_: str) -> None:
         raise StoreError(f"The store has no campaign in entry with the id {id_!r}; the list of campaigns names all.")
 
 
-def _require_kept(connection: Connection, id_: str) -> None:
+def _require_stored(connection: Connection, id_: str) -> None:
     if connection.execute(select(campaign.c.id).where(campaign.c.id == id_)).first() is None:
         raise StoreError(f"The store keeps no campaign with the id {id_!r}; the list of campaigns names all.")
 
@@ -202,8 +202,8 @@ def _base(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[s
     row = connection.execute(found).first()
     if row is not None:
         return int(row[0])
-    said = NewEntry(action="add", file=entry.file, test=entry.test, cells=standing, why="as the file has it")
-    return _write(connection, id_, said).sequence
+    original = NewEntry(action="add", file=entry.file, test=entry.test, cells=standing, why="as the file has it")
+    return _write(connection, id_, original).sequence
 
 
 def _of_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:

@@ -64,7 +64,7 @@ class JournalEntry(NewEntry):
 
     @property
     def is_from_file(self) -> bool:
-        """Whether it says what a kept file says, and nobody entered it."""
+        """Whether it says what a stored file says, and nobody entered it."""
         return self.action == "add" and self.position is None
 
 

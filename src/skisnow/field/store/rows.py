@@ -184,8 +184,8 @@ def is_sound(connection: Connection, sha256: str, size: int) -> bool:
     return found.hexdigest() == sha256 and n_bytes == size
 
 
-def keep_content(connection: Connection, folder: Path, file: StoredFile) -> bool:
-    """Keep the bytes of a file unless they are there already; tell whether damaged ones were made whole.
+def store_content(connection: Connection, folder: Path, file: StoredFile) -> bool:
+    """Store the bytes of a file unless they are there already; True where damaged ones were made whole.
 
     Raises
     ------
@@ -218,10 +218,10 @@ def refuse_changed(paths: Sequence[str]) -> None:
         )
 
 
-def keep_campaign(
+def store_campaign(
     connection: Connection, files: Iterable[StoredFile], sha256: str, name: str, counts: tuple[int | None, int | None]
 ) -> bool:
-    """Enter a campaign whose contents are kept already; False where it was there before. Counts: errors, warnings."""
+    """Enter a campaign whose contents are stored already; False where it was there before. Counts: errors, warnings."""
     id_ = sha256[:ID_DIGITS]
     present = connection.execute(select(campaign.c.sha256).where(campaign.c.id == id_)).scalar_one_or_none()
     if present == sha256:

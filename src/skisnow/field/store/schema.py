@@ -25,7 +25,7 @@ from sqlalchemy import (
 )
 
 REVISION: Final = "0004"
-"""Newest migration; tests hold it against the migrations themselves."""
+"""Newest migration; tests compare it with the migrations themselves."""
 
 APPLICATION_ID: Final = 0x536B6953
 """Number in the file's header ("SkiS") that tells a store from other people's SQLite files."""
@@ -89,7 +89,7 @@ journal = Table(
     Column("id", String(12), primary_key=True),
     Column("begun_at", String(20), nullable=False),
 )
-"""A campaign that is still being entered. What it holds follows from its entries alone."""
+"""A campaign that is still being entered. Its state is replayed from its entries alone (event sourcing)."""
 
 journal_entry = Table(
     "journal_entry",

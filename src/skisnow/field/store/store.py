@@ -1,4 +1,4 @@
-"""The store of campaigns: raw files kept byte for byte in one SQLite file.
+"""The store of campaigns: raw files stored byte for byte in one SQLite file.
 
 An import is one transaction: after it, or after the process was killed in its midst, the store holds the whole campaign
 or nothing of it. A campaign's id comes from its content, so the same files get the same id wherever they are added.
@@ -33,11 +33,11 @@ from .rows import (
     ID_DIGITS,
     StoredCampaign,
     all_campaigns,
-    keep_campaign,
-    keep_content,
     one_campaign,
     refuse_changed,
     require_whole,
+    store_campaign,
+    store_content,
     stored_chunks,
 )
 from .schema import CHUNK_BYTES
@@ -54,7 +54,7 @@ __all__ = ["AddedCampaign", "Finding", "Store", "StoredCampaign", "StoredFile", 
 
 @dataclass(frozen=True, slots=True)
 class AddedCampaign:
-    """What `Store.add` kept.
+    """What `Store.add` stored.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class AddedCampaign:
 
 @dataclass(frozen=True, slots=True)
 class _Check:
-    """Outcome of checking a campaign before it is kept."""
+    """Outcome of checking a campaign before it is stored."""
 
     n_errors: int | None
     n_warnings: int | None
@@ -154,7 +154,7 @@ class Store(Shown):
     def add(self, folder: Path, *, progress: Progress = no_progress) -> AddedCampaign:
         """Keep all files below a folder, as they are, whether or not they make a sound campaign.
 
-        Files are read twice: once to know the campaign's id, once to keep them; a file that changes in between refuses
+        Files are read twice: once to know the campaign's id, once to store them; a file that changes in between refuses
         the campaign. Only the second reading holds other writers up.
 
         Raises
@@ -172,10 +172,10 @@ class Store(Shown):
             with database_errors(self.path, "could not take the campaign in"), writing(self.engine) as connection:
                 n_repaired, done = 0, n_bytes
                 for file in files:
-                    n_repaired += keep_content(connection, folder, file)
+                    n_repaired += store_content(connection, folder, file)
                     done += file.size
                     progress(done, 2 * n_bytes)
-                is_new = keep_campaign(connection, files, sha256, name, (check.n_errors, check.n_warnings))
+                is_new = store_campaign(connection, files, sha256, name, (check.n_errors, check.n_warnings))
                 refuse_changed(changed_files(before, listed_files(folder)))
         return AddedCampaign(
             id=sha256[:ID_DIGITS],

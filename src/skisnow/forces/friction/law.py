@@ -71,8 +71,8 @@ class FrictionLaw(abc.ABC):
 
         Notes
         -----
-        At rest the force is 0: its direction is not determined, and up to μ(0) F_n it is what holds the ski. A
-        simulation that stops or starts must treat rest itself, for example by a smooth step over a small speed.
+        At rest the force is 0: its direction is not determined, and up to μ(0) F_n it is static friction. A simulation
+        that stops or starts must treat rest itself, for example by a smooth step over a small speed.
         """
         velocity = np.asarray(sliding_velocity, float)
         speed = np.hypot.reduce(velocity, axis=-1)  # also where squares underflow

@@ -27,7 +27,7 @@ class LinearFriction(FrictionLaw):
     Notes
     -----
     Range: μ from 0.023 to 0.139 on skis (Wolfsperger and others 2021); no range of μ_1 is known to us. Source: the form
-    in which a friction that depends on the speed has been identified from runs (Mössner and others 2013 tell of such an
+    in which a friction that depends on the speed has been identified from runs (Mössner and others 2013 report such an
     identification and print no numbers).
 
     References

@@ -28,8 +28,8 @@ class QuadraticFriction(FrictionLaw):
     Notes
     -----
     Range: μ from 0.023 to 0.139 on skis (Wolfsperger and others 2021); none is known to us of μ_1 and μ_2. Source: the
-    next term of a Taylor series (assumption). Under a constant normal force μ_2 v² cannot be told from air drag:
-    μ_2 F_n = ½ ρ C_dA.
+    next term of a Taylor series (assumption). Under a constant normal force μ_2 v² cannot be distinguished from air
+    drag: μ_2 F_n = ½ ρ C_dA.
 
     References
     ----------

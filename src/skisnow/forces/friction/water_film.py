@@ -69,7 +69,7 @@ class WaterFilmFriction(FrictionLaw):
 
     @property
     def speed_of_least_friction(self) -> float:
-        """Speed (m/s) at which μ is least: 0 where μ only grows, infinite where it only falls."""
+        """Speed (m/s) of the minimum of μ: 0 where μ only grows, infinite where it only falls."""
         if self.dry_friction <= self.viscous_slope * self.film_speed:
             return 0.0
         if self.viscous_slope == 0:

@@ -33,7 +33,7 @@ class ElementCountLaw(PenetrationLaw):
     Notes
     -----
     With n f = H_V this is the volume law: so Mössner and others (2013) argue in their discussion that the count of
-    elements supports a force proportional to the volume. Only the product n f can be told from a penetration test.
+    elements supports a force proportional to the volume. Only the product n f is identifiable from a penetration test.
     Range: that of `VolumeLaw` for n f. Source: Johnson and Schneebeli (1999), as quoted in the paper of 2013. Their own
     count is of the elements in contact with the tip of a penetrometer at one time.
 

@@ -27,7 +27,7 @@ class MeanPressurePoint(PointLaw):
 
     The force on a wedge of depth e is the sum of q over its width: the mean pressure times area, (A e + B) e L/tan ϑ
     along the snow normal, is the integral of 2 A ε + B. Its part along the surface, tan ϑ times as much, is the most
-    that an edge holds across: there is no shear strength beside it (S_f = 0).
+    that acts across an edge: there is no shear strength beside it (S_f = 0).
 
     Attributes
     ----------

@@ -13,7 +13,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class PointLaw(abc.ABC):
-    """Stress along the snow normal at one place on the snow, from its depth now and its greatest depth so far.
+    """Stress along the snow normal at one place on the snow, from its depth now and its maximum depth so far.
 
     The place keeps one number, the deepest depth ε_max (m, ≥ 0; 0 for untouched snow). It belongs to the snow and not
     to the ski: what comes behind meets the groove that came before. Along any path the work done on the place is

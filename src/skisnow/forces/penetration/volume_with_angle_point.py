@@ -33,7 +33,7 @@ class VolumeWithAnglePoint(PointLaw):
     -----
     Range, source: as `VolumeWithAngleLaw`; the unloading is ours, as `HypoplasticPoint`'s. Only ``stress_and_energy``
     knows an angle: the other methods are those of a flat base, with a factor of 0.99. Energy of grooves that were cut
-    at 60° is 15 % above what `lost_energy` tells.
+    at 60° is 15 % above `lost_energy`.
 
     References
     ----------

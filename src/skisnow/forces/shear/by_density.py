@@ -48,11 +48,11 @@ class DensityShear(ShearLaw):
 
     def __post_init__(self) -> None:
         intercept, slope = STRESS_BY_DENSITY
-        least = -intercept / slope
-        if not least < self.snow_density <= ICE_DENSITY:
+        minimum = -intercept / slope
+        if not minimum < self.snow_density <= ICE_DENSITY:
             raise ParameterError(
                 f"DensityShear: snow_density is {self.snow_density!r} kg/m³; Eqn 14 gives no strength at or below "
-                f"{least:.1f} kg/m³, and no snow is denser than {ICE_DENSITY:g} kg/m³; it was measured for "
+                f"{minimum:.1f} kg/m³, and no snow is denser than {ICE_DENSITY:g} kg/m³; it was measured for "
                 f"{GROOMED_SNOW_DENSITY.lowest:g} to {GROOMED_SNOW_DENSITY.highest:g} kg/m³"
             )
         GROOMED_SNOW_DENSITY.warn_outside(self.snow_density, "DensityShear", stacklevel=3)

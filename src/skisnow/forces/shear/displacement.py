@@ -1,4 +1,4 @@
-"""How far an edge goes across before the snow holds it with all its strength."""
+"""Shear displacement: how far an edge moves across until the snow resists with its full strength."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class ShearLaw(abc.ABC):
-    """Force along the snow surface, across the edge, at which snow gives way.
+    """Force along the snow surface, across the edge, at which snow fails.
 
     A rival law is one frozen dataclass in a file of its own, entered in ``LAWS``; it gives ``_stress`` and, where it
     fails one of the shared checks of physics, says so in ``exceptions``. The force acts against the side on which the

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from ...units import MM
 from ..carve_summary import answers_of, ski_titles
-from ..numerals import significant
+from ..number_formatting import significant
 from ..symbols import figure_text
 from .style import BLACK, COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
 

@@ -9,7 +9,7 @@ import numpy as np
 from ...geometry import in_form
 from ...units import MM
 from ..curves import law_of_series
-from ..numerals import whole
+from ..number_formatting import whole
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
 from .style import (

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..numerals import p_equals
+from ..number_formatting import p_equals
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
 from .style import error_bars, legend_below, logarithmic, mark_synthetic, new_figure, scatter, spans_a_decade

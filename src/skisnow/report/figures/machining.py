@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from ...forces.cutting import cutting_stress
 from ...units import DEGREE
-from ..numerals import significant
+from ..number_formatting import significant
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
 from .stress_angle import shear_angles_deg, varied_sites

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..numerals import significant, whole
+from ..number_formatting import significant, whole
 from ..symbols import html, prose
 from ..tables.models import law
 from .drawing import Drawing, LeftOut

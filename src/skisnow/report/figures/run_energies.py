@@ -9,7 +9,7 @@ import numpy.typing as npt
 from matplotlib.lines import Line2D
 
 from ...simulate.run import LOST, STORED
-from ..numerals import significant
+from ..number_formatting import significant
 from .style import (
     BLACK,
     BLUE,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..numerals import whole
+from ..number_formatting import whole
 from ..report_data import numbers, pairs, texts
 from ..symbols import prose
 from ..tables.seating import offsets_that_show

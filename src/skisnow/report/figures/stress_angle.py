@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ...units import DEGREE
-from ..numerals import p_equals
+from ..number_formatting import p_equals
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
 from .regression_line import draw_line, regression_line

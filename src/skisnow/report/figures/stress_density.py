@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..numerals import interval, p_equals, significant
+from ..number_formatting import interval, p_equals, significant
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
 from .regression_line import draw_line, regression_line

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ...estimate.observations import HARDNESS_KEY, STRESS_KEY
-from ..numerals import counted, p_equals
+from ..number_formatting import counted, p_equals
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
 from .style import legend_below, logarithmic, mark_synthetic, new_figure, scatter, spans_a_decade

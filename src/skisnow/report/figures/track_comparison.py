@@ -9,7 +9,7 @@ import numpy.typing as npt
 from matplotlib.lines import Line2D
 
 from ..compare_summary import TITLES
-from ..numerals import significant
+from ..number_formatting import significant
 from ..symbols import figure_text
 from .run_track import plan_axes, plan_height_mm, track_limits
 from .style import BLACK, BLUE, DOUBLE_MM, GREEN, PALE, PURPLE, VERMILLION, legend_below, new_figure, plain_number

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from ..numerals import counted
+from ..number_formatting import counted
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, VERMILLION, legend_below, new_figure
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from ..numerals import whole
+from ..number_formatting import whole
 from ..report_data import numbers, pairs, texts
 from ..symbols import prose
 from .drawing import Drawing, LeftOut
@@ -42,7 +42,7 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
     legend_below(figure, handles)
     caption = prose(
         "Unloading ratio k_u / H_V of {n} used series with its 95 % interval, against the hardness: 1 is elastic snow, "
-        "which springs back; the larger, the more of the groove stays.",
+        "which springs back; the larger the ratio, the larger the permanent depth of the groove.",
         n=whole(len(rows)),
     )
     alt = "Unloading ratio with intervals against snow hardness, by site."

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 def caveats(data: ReportData) -> list[Markup]:
     """Sentences, most weighty first."""
-    remarks = data.results["campaign"]["remarks"]
+    notes = data.results["campaign"]["remarks"]
     fits = data.results["penetration"]["warnings"]
-    return [html(sentence) for sentence in (*fits, *_not_stated(data), *remarks, *_not_there(data))]
+    return [html(sentence) for sentence in (*fits, *_not_stated(data), *notes, *_not_there(data))]
 
 
 def _not_stated(data: ReportData) -> list[str]:

@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from ...estimate.comparisons import FEWEST_SITES
 from ...estimate.regressions import FEWEST_VALUES
-from ..numerals import counted, interval, p_equals, significant, whole
+from ..number_formatting import counted, interval, p_equals, significant, whole
 from ..symbols import html, prose
 from ..tables.models import law, row_name
 from ..tables.regressions import QUANTITY
@@ -46,8 +46,12 @@ def _unloading(data: ReportData) -> Markup | None:
         return None
     row = found[-1]
     if row["unloading_ratio_interval"] is None:
-        least = row["rebound_ratio_interval"] and row["rebound_ratio_interval"][1]
-        known = prose("above {least}", least=significant(1.0 / least)) if least and least > 0 else html("not resolved")
+        upper_rebound = row["rebound_ratio_interval"] and row["rebound_ratio_interval"][1]
+        known = (
+            prose("above {lower}", lower=significant(1.0 / upper_rebound))
+            if upper_rebound and upper_rebound > 0
+            else html("not resolved")
+        )
         return prose("Unloading ratio k_u / H_V: {known}, from {n} series.", known=known, n=whole(row["n"]))
     return prose(
         "Unloading ratio k_u / H_V {value} (95 % interval {ends}), from {n} series that were unloaded step by step.",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from markupsafe import Markup
 
-from ..numerals import counted, significant, whole
+from ..number_formatting import counted, significant, whole
 from ..report_data import numbers, pairs
 from ..symbols import html, prose
 from ..tables.seating import offsets_that_show
@@ -70,14 +70,14 @@ def seating_found(data: ReportData) -> list[Markup]:
 
 
 def unloading_found(data: ReportData) -> list[Markup]:
-    """How many series tell k_u / H_V, and what they say together."""
+    """How many series determine k_u / H_V, and their mean."""
     used = [row for row in data.unloaded if row["used"]]
-    told = [row for row in used if row["unloading_ratio_interval"] is not None]
+    resolved = [row for row in used if row["unloading_ratio_interval"] is not None]
     found = [
         prose(
-            "{told} of {all} tell both ends of k_u / H_V; of the others only the lower end is known, the "
+            "{resolved} of {all} give both ends of k_u / H_V; of the others only the lower end is known, the "
             "inverse of the upper end of H_V / k_u. Every series stands in {file}.",
-            told=whole(len(told)),
+            resolved=whole(len(resolved)),
             all=counted(len(used), "used series with unloading", "used series with unloading"),
             file=_file("unloading", data),
         )

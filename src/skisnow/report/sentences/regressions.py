@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from ..numerals import interval, p_equals, significant
+from ..number_formatting import interval, p_equals, significant
 from ..symbols import html, prose
 from ..tables.regressions import QUANTITY
 from .key_results import SIGNIFICANT
@@ -105,7 +105,7 @@ def _by_site(row: Json) -> Markup:
     zero = ends[0] <= 0.0 <= ends[1]
     sentence = prose(" With sites as clusters the interval is {ends}", ends=_changes(row, ends))
     if zero and row["p"] < SIGNIFICANT:
-        return sentence + html(": it holds zero, so what looks significant may be a difference between a few sites.")
+        return sentence + html(": it contains zero, so what looks significant may be a difference between a few sites.")
     if not zero and row["p"] >= SIGNIFICANT:
         return sentence + html(": it leaves out zero.")
     return sentence + html(".")

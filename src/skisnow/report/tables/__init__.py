@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from .comparisons import published_table, site_comparison_table
 from .experiments import penetration_table, shear_table
 from .growing_hardness import hardness_growth_sites_table, hardness_growth_table
-from .marks import marks_table
 from .models import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
 from .provenance import corrections_table, files_table, warnings_table
+from .quality_flags import quality_flags_table
 from .regressions import regressions_table
 from .seating import seating_largest_table, seating_quantiles_table, seating_table
 from .shear_displacement import displacement_sites_table, displacement_table
@@ -41,7 +41,7 @@ BUILDERS = (
     regressions_table,
     site_comparison_table,
     published_table,
-    marks_table,
+    quality_flags_table,
     penetration_table,
     shear_table,
     files_table,

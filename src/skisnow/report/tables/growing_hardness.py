@@ -31,7 +31,7 @@ def hardness_growth_sites_table(data: ReportData) -> Table:
         (Column("site", "Site", "text"), Column("n", "series", "count"), _GROWTH),
         rows,
         note="The mean is that of ln(1 + γ) over the used series; its interval comes from their scatter, over all "
-        "sites from the scatter between sites. An interval that holds 0 goes with even snow.",
+        "sites from the scatter between sites. An interval that contains 0 agrees with even snow.",
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from ...scenario.keys import SCENARIO_KEYS
 from ...simulate.run import WARNED_SHARE
-from ..numerals import significant
+from ..number_formatting import significant
 from ..table import Column, Table
 
 Json = Mapping[str, Any]

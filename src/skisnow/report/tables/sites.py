@@ -89,5 +89,5 @@ def _summary(values_by_site: tuple[FloatArray, TextArray] | None, *, geometric: 
     own: OwnValue = own_mean(values, site.tolist(), geometric=geometric)
     known = bool(np.isfinite(own.low) and np.isfinite(own.high))
     value = own.value if np.isfinite(own.value) else None
-    spread = (own.least, own.greatest) if np.isfinite(own.least) else None
+    spread = (own.minimum, own.maximum) if np.isfinite(own.minimum) else None
     return len(values), (value, (own.low, own.high) if known else None), spread

@@ -1,6 +1,6 @@
 """Frames of a sledge: x forward, y left, z up; its origin lies between the boots, at the level of the bases.
 
-Each ski is turned about x by minus the edge angle ϑ, so that its left edge goes down for ϑ > 0:
+Each ski is rotated about x by minus the edge angle ϑ, so that its left edge goes down for ϑ > 0:
 l = cos ϑ y - sin ϑ z points across the base to the left, n = sin ϑ y + cos ϑ z away from the snow.
 """
 

@@ -3,9 +3,8 @@
 Kinetic energy ½∫|v + ω × ρ + n ẇ|² dm over sledge and skis, and ½∫ρI (ω_x - φ̇)² ds for the skis' sections, with ρ
 the unbent place in the sledge's frame: in the matrix the deflection counts as velocity, not as change of place
 (modelling assumption: w is far below the distances of the sledge), so that the matrix is constant. The equations of
-motion keep what
-of the bend's own place does not vanish with w: v × ω acts on the skis. Energy and momenta then drift by no more than
-mass × w × v × ω.
+motion keep what of the deflection's own position does not vanish with w: v × ω acts on the skis. Energy and momenta
+then drift by no more than mass × w × v × ω.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from ...report.curves import SeriesCurve
-    from ..edit_session import AtOnce
+    from ..edit_session import QuickResults
     from .table_view import TableView
 
     _Values: TypeAlias = list[float | None]
@@ -50,7 +50,7 @@ class Beside:
             while self._wanted is not None:
                 (name, site), self._wanted = self._wanted, None
                 try:
-                    found = await run.io_bound(self._view.session.at_once, site)
+                    found = await run.io_bound(self._view.session.quick_results, site)
                 except (FieldDataError, StoreError) as error:
                     self._value.set_text(error_sentence(error))
                     continue
@@ -60,14 +60,14 @@ class Beside:
         finally:
             self._working = False
 
-    def _show(self, name: str, found: AtOnce) -> None:
+    def _show(self, name: str, found: QuickResults) -> None:
         pressed = self._view.file == "penetration.csv"
         row = (found.penetration if pressed else found.shear).get(name)
         self._name.set_text(f"Test {name}" if row else "")
         self._value.set_text(_value(row, pressed=pressed))
         self._marks.clear()
         with self._marks:
-            for sentence in found.marks.get(f"{self._view.file}/{name}", ()):
+            for sentence in found.flags.get(f"{self._view.file}/{name}", ()):
                 with ui.element("li"):
                     ui.label(sentence)
         if self._chart is not None:

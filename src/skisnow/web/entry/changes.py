@@ -9,7 +9,7 @@ from nicegui import ui
 
 from ...field.reading.branches import is_unloading_cell
 from ...field.reading.table_forms import BRANCH
-from ...field.store.kept_tables import cell_of
+from ...field.store.stored_tables import cell_of
 from ..answering import asking_button, form
 from ..fields import button, field
 from ..layout import sentence

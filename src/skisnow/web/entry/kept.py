@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
-from ...field.store.kept_tables import cell_key
+from ...field.store.stored_tables import cell_key
 from ..answering import asking_button, form
 from ..fields import choice, field, link
 from ..layout import heading, sentence

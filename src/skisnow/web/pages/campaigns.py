@@ -8,7 +8,7 @@ from nicegui import ui
 
 from ...errors import StoreError
 from ...field.store import Journals
-from ...report.numerals import counted
+from ...report.number_formatting import counted
 from ..edit_session import EditSession
 from ..fields import link
 from ..layout import framed, heading, sentence

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import background_tasks, run, ui
 
 from ...errors import SkisnowError
-from ...report.numerals import significant
+from ...report.number_formatting import significant
 from ..fields import choice
 from ..lab_skis import LabSkis
 from ..layout import framed

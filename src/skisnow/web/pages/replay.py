@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import app, ui
 
 from ...given import read_json
-from ...report.numerals import counted
+from ...report.number_formatting import counted
 from ..fields import link
 from ..layout import framed, heading, sentence
 from ..replay.addresses import LIST, SHOW, RunFolders, add_addresses, show_address

@@ -55,7 +55,7 @@ def interval(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "t
 
 
 def from_to(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "typeset") -> str:
-    """Least and greatest of a range.
+    """Minimum and maximum of a range.
 
     >>> from_to([0.04, 90.0])
     '0.0400 to 90.0'

@@ -1,4 +1,4 @@
-"""Marks told like problems: each with its experiment, file, row, value, what would not be marked, and what follows."""
+"""Quality flags as problems: each with its experiment, file, row, value, what would not be flagged, what follows."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import numpy as np
 
 from ..units import MM
 from .creep import creeping
-from .largest_load import greatest_depths, reading_at_largest_load
-from .marks import CREEP_SHARE, CREEP_STEPS, FEWEST_LOADS, MARKS, RESOLUTIONS
+from .largest_load import maximum_depths, reading_at_largest_load
 from .problems import Problem
+from .quality_flags import CREEP_SHARE, CREEP_STEPS, FEWEST_LOADS, QUALITY_FLAGS, RESOLUTIONS
 from .reading.table_forms import PENETRATION, SHEAR
 from .wrong_unloading import wrong_unloading
 
@@ -20,47 +20,47 @@ if TYPE_CHECKING:
     from ..geometry import GeometryForm
     from .records import BoolArray, Campaign, PenetrationTests, UnloadingReadings
 
-_UNMARKED_STATUS = "a blank status"
-_UNMARKED_ZERO = "a depth above 0 mm"
-_UNMARKED_LAYERED = "depths that grow with the load as F = H_V V has it"
-_UNMARKED_REBOUND = "a rebound that is large beside the step of the gauge and the scatter of the readings"
-_UNMARKED_OUTLIER = "a logarithm of the hardness nearer to its site's median"
+_UNFLAGGED_STATUS = "a blank status"
+_UNFLAGGED_ZERO = "a depth above 0 mm"
+_UNFLAGGED_LAYERED = "depths that grow with the load as F = H_V V has it"
+_UNFLAGGED_REBOUND = "a rebound that is large beside the step of the gauge and the scatter of the readings"
+_UNFLAGGED_OUTLIER = "a logarithm of the hardness nearer to its site's median"
 _OF_UNLOADING = ("unloading_not_falling", "unloading_sinks", "rebound_unresolved")
 
 
-def mark_problems(
+def flag_problems(
     campaign: Campaign,
     masks_penetration: Mapping[str, BoolArray],
     masks_shear: Mapping[str, BoolArray],
     *,
     geometry: GeometryForm = "extended",
 ) -> list[Problem]:
-    """List every mark as a problem of severity ``mark``.
+    """List every quality flag as a problem of severity ``mark``.
 
     Parameters
     ----------
     campaign
         The campaign that was screened.
     masks_penetration, masks_shear
-        Masks by code over the experiments, from screening; further codes of `MARKS` may have been added.
+        Masks by code over the experiments, from screening; further codes of `QUALITY_FLAGS` may have been added.
     geometry
         The form of the ski piece that was screened with.
 
     Returns
     -------
-    Penetration before shear, within them in the order of the file, then of `MARKS`.
+    Penetration before shear, within them in the order of the file, then of `QUALITY_FLAGS`.
     """
     problems: list[Problem] = []
     if campaign.penetration is not None:
-        places = _PenetrationPlaces(campaign, campaign.penetration, geometry)
-        problems += [places.problem(index, code) for index, code in _marked(masks_penetration)]
+        flagged = _FlaggedReadings(campaign, campaign.penetration, geometry)
+        problems += [flagged.problem(index, code) for index, code in _flagged(masks_penetration)]
     if campaign.shear is not None:
-        problems += [_shear_problem(campaign, index, code) for index, code in _marked(masks_shear)]
+        problems += [_shear_problem(campaign, index, code) for index, code in _flagged(masks_shear)]
     return problems
 
 
-def _marked(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, str]]:
-    codes = [code for code in MARKS if code in masks]
+def _flagged(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, str]]:
+    codes = [code for code in QUALITY_FLAGS if code in masks]
     if codes:
         for index, which in np.argwhere(np.stack([masks[code] for code in codes], axis=1)).tolist():
             yield index, codes[which]
@@ -82,25 +82,25 @@ def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
     assert tests is not None
     depth = f"{tests.penetration_depth[index] / MM:.10g}"
     column, value, allowed = {
-        "cancelled": ("status", tests.cancelled[index], _UNMARKED_STATUS),
-        "zero_depth": ("depth_mm", depth, _UNMARKED_ZERO),
+        "cancelled": ("status", tests.cancelled[index], _UNFLAGGED_STATUS),
+        "zero_depth": ("depth_mm", depth, _UNFLAGGED_ZERO),
         "below_resolution": ("depth_mm", depth, _resolution_limit(campaign)),
     }[code]
     row, experiment = int(tests.row[index]), tests.experiment[index]
     return Problem("mark", code, SHEAR.file, row, column, experiment, value, allowed, _follows(campaign, code))
 
 
-class _PenetrationPlaces:
-    """Finds the reading that a mark is about."""
+class _FlaggedReadings:
+    """Finds the reading that a flag is about."""
 
     def __init__(self, campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> None:
         self._campaign = campaign
         self._tests = tests
         self._largest = reading_at_largest_load(tests)
-        self._limit = greatest_depths(campaign, tests, geometry)
+        self._limit = maximum_depths(campaign, tests, geometry)
 
     def problem(self, index: int, code: str) -> Problem:
-        """Tell one mark."""
+        """One flag as a problem."""
         reading, column, value, allowed = getattr(self, f"_{code}")(index)
         unloading = self._tests.unloading
         rows = self._tests.row if unloading is None or code not in _OF_UNLOADING else unloading.row
@@ -113,7 +113,7 @@ class _PenetrationPlaces:
         return f"{self._tests.penetration_depth[reading] / MM:.10g}"
 
     def _cancelled(self, index: int) -> tuple[int, str, str, str]:
-        return int(self._tests.first[index]), "status", self._tests.cancelled[index], _UNMARKED_STATUS
+        return int(self._tests.first[index]), "status", self._tests.cancelled[index], _UNFLAGGED_STATUS
 
     def _too_few_loads(self, index: int) -> tuple[int, str, str, str]:
         first, end = self._tests.first[index : index + 2].tolist()
@@ -133,7 +133,7 @@ class _PenetrationPlaces:
 
     def _zero_depth(self, index: int) -> tuple[int, str, str, str]:
         reading = int(self._largest[index])
-        return reading, "depth_mm", self._depth(reading), _UNMARKED_ZERO
+        return reading, "depth_mm", self._depth(reading), _UNFLAGGED_ZERO
 
     def _beyond_tool(self, index: int) -> tuple[int, str, str, str]:
         series = self._tests.series(index)
@@ -146,7 +146,7 @@ class _PenetrationPlaces:
         return reading, "depth_mm", self._depth(reading), _resolution_limit(self._campaign)
 
     def _layered(self, index: int) -> tuple[int, str, None, str]:
-        return int(self._largest[index]), "depth_mm", None, _UNMARKED_LAYERED
+        return int(self._largest[index]), "depth_mm", None, _UNFLAGGED_LAYERED
 
     def _creeps(self, index: int) -> tuple[int, str, str, str]:
         first, end = self._tests.first[index : index + 2].tolist()
@@ -166,7 +166,7 @@ class _PenetrationPlaces:
         return reading, "depth_mm", depth, "at most the depth of the reading before and one step of the gauge"
 
     def _rebound_unresolved(self, index: int) -> tuple[int, str, None, str]:
-        return int(self._unloading.first[index + 1]) - 1, "depth_mm", None, _UNMARKED_REBOUND
+        return int(self._unloading.first[index + 1]) - 1, "depth_mm", None, _UNFLAGGED_REBOUND
 
     @property
     def _unloading(self) -> UnloadingReadings:
@@ -178,4 +178,4 @@ class _PenetrationPlaces:
         return int(np.flatnonzero(wrong_unloading(self._campaign, self._tests)[code] & own)[0])
 
     def _hardness_outlier(self, index: int) -> tuple[int, None, None, str]:
-        return int(self._largest[index]), None, None, _UNMARKED_OUTLIER
+        return int(self._largest[index]), None, None, _UNFLAGGED_OUTLIER

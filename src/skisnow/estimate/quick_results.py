@@ -1,4 +1,4 @@
-"""What single experiments say by themselves, at once: the rows of results.json without the fits over all of them."""
+"""Quick results: each experiment's row of results.json, without the fits over all of them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 
 
-def experiments_at_once(
+def experiment_results(
     campaign: Campaign, *, geometry: GeometryForm = "extended", screened: tuple[Screened, Screened] | None = None
 ) -> Json:
     """The experiments of a campaign as results.json has them, without its model table and regressions.
@@ -48,7 +48,7 @@ def experiments_at_once(
         readings = readings_of(tests, campaign.tools, geometry=geometry)
         uncertainty = ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
         found = {symbol: hardness(readings, definition, uncertainty) for symbol, definition in DEFINITIONS.items()}
-        back = unloading(tests, readings, found["H_V"], uncertainty, pressed.marks[NOT_FALLING])
+        back = unloading(tests, readings, found["H_V"], uncertainty, pressed.flags[NOT_FALLING])
         penetration = penetration_experiments(tests, pressed, found, back)
     if (sheared := campaign.shear) is not None:
         shear = shear_experiments(sheared, cut, shear_stress(campaign, sheared), shear_displacement(campaign, sheared))
@@ -56,7 +56,7 @@ def experiments_at_once(
     return answer
 
 
-def hardness_at_once(campaign: Campaign, *, geometry: GeometryForm = "extended") -> FloatArray:
+def experiment_hardness(campaign: Campaign, *, geometry: GeometryForm = "extended") -> FloatArray:
     """H_V of each penetration experiment (N/m³), NaN where there is none; (m,)."""
     if campaign.penetration is None:
         return np.zeros(0)

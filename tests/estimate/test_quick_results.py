@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from skisnow.estimate import analyse, results_dict
-from skisnow.estimate.at_once import experiments_at_once
+from skisnow.estimate.quick_results import experiment_results
 from skisnow.field import read_campaign, write_reference
 
 
@@ -11,6 +11,6 @@ def test_the_numbers_are_those_of_the_analysis(tmp_path: Path) -> None:
     write_reference(tmp_path / "campaign", seed=2)
     campaign = read_campaign(tmp_path / "campaign")
     results = results_dict(analyse(campaign, n_resamples=100))
-    found = experiments_at_once(campaign)
+    found = experiment_results(campaign)
     assert found["penetration"]["experiments"] == results["penetration"]["experiments"]
     assert found["shear"]["experiments"] == results["shear"]["experiments"]

@@ -1,4 +1,4 @@
-"""The tables of a kept campaign cell by cell, as its files say it: what is there to be corrected."""
+"""The tables of a stored campaign cell by cell, as its files say it: what is there to be corrected."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..reading.header import Header
 from ..reading.raw_files import RawFiles
 from ..reading.table_forms import CORRECTIONS, TABLES
 from ..reading.tables import decimal_mark_of, read_table
-from ..reading.text import UnreadableTextError, look_at_csv
+from ..reading.text import UnreadableTextError, inspect_csv
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class KeptTable:
-    """A table of a kept campaign.
+class StoredTable:
+    """A table of a stored campaign.
 
     Attributes
     ----------
@@ -42,16 +42,16 @@ class KeptTable:
     tests: Mapping[str, Mapping[int, Mapping[str, str]]]
 
 
-def kept_tables(campaign: CampaignFiles | Path) -> dict[str, KeptTable]:
+def stored_tables(campaign: CampaignFiles | Path) -> dict[str, StoredTable]:
     """Every table of a campaign that can be read, by its file; the campaign is a folder, or files that are at hand."""
     files = RawFiles(FilesOfFolder(campaign) if isinstance(campaign, Path) else campaign)
     corrections = _corrections(files)
-    found = {form.file: _kept_table(files, form, corrections.get(form.file, {})) for form in TABLES}
+    found = {form.file: _stored_table(files, form, corrections.get(form.file, {})) for form in TABLES}
     return {file: table for file, table in found.items() if table is not None}
 
 
 def cell_key(line: int, column: str) -> str:
-    """How an entry about a kept test names a cell.
+    """How an entry about a stored test names a cell.
 
     >>> cell_key(12, "depth_mm")
     '12/depth_mm'
@@ -69,23 +69,23 @@ def cell_of(key: str) -> tuple[int, str]:
     return int(line), column
 
 
-def _looked_at(files: RawFiles, form: TableForm) -> CsvText | None:
+def _csv_text(files: RawFiles, form: TableForm) -> CsvText | None:
     data = files.read(form.file)
     try:
-        return look_at_csv(data) if data is not None else None
-    except UnreadableTextError as trouble:
-        files.report_unreadable(form.file, trouble)
+        return inspect_csv(data) if data is not None else None
+    except UnreadableTextError as failure:
+        files.report_unreadable(form.file, failure)
         return None
 
 
 def _corrections(files: RawFiles) -> Mapping[str, RowCorrections]:
-    text = _looked_at(files, CORRECTIONS)
+    text = _csv_text(files, CORRECTIONS)
     table = read_table(CORRECTIONS, text, corrections={}, files=files) if text is not None else None
     return corrections_by_file(table, files.found) if table is not None and not table.absent else {}
 
 
-def _kept_table(files: RawFiles, form: TableForm, corrections: RowCorrections) -> KeptTable | None:
-    text = _looked_at(files, form)
+def _stored_table(files: RawFiles, form: TableForm, corrections: RowCorrections) -> StoredTable | None:
+    text = _csv_text(files, form)
     if text is None:
         return None
     header: Header | None = None
@@ -103,9 +103,9 @@ def _kept_table(files: RawFiles, form: TableForm, corrections: RowCorrections) -
             for line, row in zip(lines, rows, strict=True):
                 cells = {name: row[at].strip() if at < len(row) else "" for name, at in header.position.items()}
                 tests.setdefault(cells[form.key], {})[line] = cells
-    except UnreadableTextError as trouble:
-        files.report_unreadable(form.file, trouble)
+    except UnreadableTextError as failure:
+        files.report_unreadable(form.file, failure)
     if header is None:
         return None
     columns = tuple(dict.fromkeys((*header.position, "status")))
-    return KeptTable(form, columns, tests)
+    return StoredTable(form, columns, tests)

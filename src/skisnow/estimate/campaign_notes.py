@@ -1,4 +1,4 @@
-"""What a careful colleague would ask about a campaign, though each file by itself is right."""
+"""Notes on a campaign whose files are valid one by one: sites that nearly agree, sites without tests, unread files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from ..field.records import Campaign
 
 
-def remarks(campaign: Campaign) -> tuple[str, ...]:
+def campaign_notes(campaign: Campaign) -> tuple[str, ...]:
     """Sentences about site names that nearly agree, snow data of sites without tests, and files that were not read."""
     return (*_alike(campaign), *_without_tests(campaign), *_unread(campaign))
 
@@ -40,7 +40,7 @@ def _without_tests(campaign: Campaign) -> Iterator[str]:
         lost = sorted(sites - tested)
         if lost:
             listed = ", ".join(repr(site) for site in lost)
-            yield f"{name} describes {listed}, where no test was made: these rows take no part. Is a site misspelt?"
+            yield f"{name} describes {listed}, where no test was made: these rows are not included. Is a site misspelt?"
 
 
 def _unread(campaign: Campaign) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""What was corrected in a campaign that is kept byte for byte, as rows of its corrections.csv."""
+"""What was corrected in a stored campaign, whose files stay byte for byte, as rows of its corrections.csv."""
 
 from __future__ import annotations
 
@@ -9,33 +9,33 @@ from ...errors import StoreError
 from ...files import write_file
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
-from ..reading.text import UnreadableTextError, look_at_csv
+from ..reading.text import UnreadableTextError, inspect_csv
 from .correction_rows import COLUMNS, correction_row, csv_text
 from .folder import no_progress
-from .grown import grown
 from .journal import Journals
-from .kept_tables import cell_of
+from .replayed import replayed
+from .stored_tables import cell_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
     from .folder import Progress
-    from .grown import ReplayedTest
     from .journal_entry import JournalEntry
+    from .replayed import ReplayedTest
     from .store import Store, StoredCampaign
 
 
 @dataclass(frozen=True, slots=True)
 class ExportedCampaign:
-    """A campaign that was given back, and how many cells were corrected since it was kept."""
+    """A campaign that was given back, and how many cells were corrected since it was stored."""
 
     stored: StoredCampaign
     n_corrections: int
 
 
 def export_corrected(store: Store, id_: str, folder: Path, *, progress: Progress = no_progress) -> ExportedCampaign:
-    """Give a kept campaign back in a new folder: its files byte for byte, and what was corrected since.
+    """Give a stored campaign back in a new folder: its files byte for byte, and what was corrected since.
 
     Corrections stand in corrections.csv behind those that came with the campaign; where there are none, every file is
     as it came in.
@@ -109,7 +109,7 @@ def _together(before: bytes, rows: list[dict[str, str]]) -> str:
 
 def _records(data: bytes) -> list[list[str]]:
     try:
-        return [cells for _, some in look_at_csv(data).records() for cells in some]
+        return [cells for _, some in inspect_csv(data).records() for cells in some]
     except UnreadableTextError as error:
         raise StoreError(
             f"The {CORRECTIONS.file} that came with the campaign cannot be read, so that no rows can follow: "
@@ -118,7 +118,7 @@ def _records(data: bytes) -> list[list[str]]:
 
 
 def _rows(entries: Iterable[JournalEntry]) -> Iterator[dict[str, str]]:
-    for test in grown(entries).tests.values():
+    for test in replayed(entries).tests.values():
         if test.rows:
             yield from _rows_of(test)
 

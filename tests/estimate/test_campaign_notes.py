@@ -1,7 +1,7 @@
 """What a careful colleague would ask."""
 
 import skisnow
-from skisnow.estimate import remarks
+from skisnow.estimate import campaign_notes
 
 from .conftest import MakeCampaign
 
@@ -17,7 +17,7 @@ def test_sites_named_nearly_alike_and_densities_of_no_site(make_campaign: MakeCa
         shear=[shear("s1", "oben"), shear("s2", "Oben"), shear("s3", "unten")],
         further={"density.csv": DENSITY, "Tests.xlsx": "not a table"},
     )
-    alike, lost, unread = remarks(campaign)
+    alike, lost, unread = campaign_notes(campaign)
     assert alike.startswith("The sites 'Oben', 'oben' differ")
     assert "density.csv describes 'untem'" in lost
     assert unread.endswith("Tests.xlsx.")
@@ -28,7 +28,7 @@ def test_a_campaign_in_order_has_none(make_campaign: MakeCampaign) -> None:
     campaign = make_campaign(
         shear=[shear("s1", "oben"), shear("s2", "unten")], further={"density.csv": DENSITY.replace("untem", "unten")}
     )
-    assert remarks(campaign) == ()
+    assert campaign_notes(campaign) == ()
 
 
 def test_corrections_leave_their_trace_in_the_results(make_campaign: MakeCampaign) -> None:

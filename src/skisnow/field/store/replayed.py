@@ -1,4 +1,4 @@
-"""What a journal comes to: the tests of a campaign as they stand now, each with its history."""
+"""The state that a journal's entries give when they are replayed (event sourcing): the tests, each with its history."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class ReplayedTest:
 
     @property
     def last(self) -> int:
-        """Sequence of the last entry about it: what `Journals.append` is to be told as seen."""
+        """Sequence of the last entry about it: what `Journals.append` takes as seen."""
         return self.history[-1].sequence if self.history else 0
 
     @property
@@ -54,7 +54,7 @@ class ReplayedTest:
 
     @property
     def undoable(self) -> JournalEntry | None:
-        """The last entry that still counts, which is the one that can be undone; not what a file said."""
+        """The last entry that still counts, which is the one that can be undone; not what a file says."""
         counting = (each for each in reversed(self.history) if each.action != "undo" and not each.is_from_file)
         return next((each for each in counting if each.sequence not in self.undone), None)
 
@@ -94,15 +94,15 @@ class ReplayedCampaign:
         return self.tests.get((file, name)) or ReplayedTest(file, name)
 
 
-def grown(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None = None) -> ReplayedCampaign:
-    """Put a journal's entries, oldest first, together. What was undone is left out, but stays in the history.
+def replayed(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None = None) -> ReplayedCampaign:
+    """Replay a journal's entries, oldest first. What was undone is left out, but stays in the history.
 
     Parameters
     ----------
     entries
         All entries, or those behind ``before``.
     before
-        What the entries up to there came to; it is not changed. Only tests that are spoken of are put together anew.
+        What the entries up to there came to; it is not changed. Only tests with new entries are replayed again.
     """
     campaign = replace(before, tests=dict(before.tests)) if before is not None else ReplayedCampaign()
     added: dict[tuple[str, str], list[JournalEntry]] = {}

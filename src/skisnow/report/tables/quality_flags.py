@@ -1,30 +1,30 @@
-"""Marks of the screening: what each says, how often it was set, on which experiments."""
+"""Quality flags of the screening: what each says, how often it was set, on which experiments."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...field import MARKS
+from ...field import QUALITY_FLAGS
 from ..table import Column, Table
 
 if TYPE_CHECKING:
     from ..report_data import Json, ReportData
 
 
-def marks_table(data: ReportData) -> Table:
-    """A row for each mark, those never set too."""
+def quality_flags_table(data: ReportData) -> Table:
+    """A row for each flag, those never set too."""
     pressed, sheared = _by_code(data.penetration), _by_code(data.shear)
     excluding = data.results["campaign"]["excluding"]
     rows = [
         (
             code,
-            mark.sentence,
+            flag.sentence,
             code in excluding,
             len(pressed.get(code, ())),
             len(sheared.get(code, ())),
             pressed.get(code, []) + sheared.get(code, []),
         )
-        for code, mark in MARKS.items()
+        for code, flag in QUALITY_FLAGS.items()
     ]
     return Table(
         "marks",

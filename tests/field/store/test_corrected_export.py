@@ -8,7 +8,7 @@ import pytest
 
 from skisnow.errors import StoreError
 from skisnow.field import read_campaign
-from skisnow.field.store import Journals, NewEntry, OvertakenError, Store, export_corrected, grown, kept_tables
+from skisnow.field.store import Journals, NewEntry, OvertakenError, Store, export_corrected, replayed, stored_tables
 
 TOML = """name = "Kept"
 [[tool]]
@@ -49,7 +49,7 @@ def kept(store: Store, place: Path, penetration: bytes, corrections: str = "") -
 
 
 def standing(place: Path, name: str) -> dict[str, str]:
-    rows = kept_tables(place)["penetration.csv"].tests[name]
+    rows = stored_tables(place)["penetration.csv"].tests[name]
     return {f"{line}/{column}": text for line, cells in rows.items() for column, text in cells.items()}
 
 
@@ -107,11 +107,11 @@ def test_what_was_undone_is_not_exported(store: Store, tmp_path: Path) -> None:
     id_ = kept(store, place, PLAIN.encode(), EARLIER.replace("14", "1.4"))
     journals = Journals(store)
     written = journals.correct(id_, correction("1", {"3/depth_mm": "9"}), seen=0, standing=standing(place, "1"))
-    test = grown(journals.corrections(id_)).test("penetration.csv", "1")
+    test = replayed(journals.corrections(id_)).test("penetration.csv", "1")
     assert test.undoable == written
     undo = NewEntry(action="undo", file="penetration.csv", test="1", about=written.sequence)
     journals.correct(id_, undo, seen=written.sequence, standing={})
-    test = grown(journals.corrections(id_)).test("penetration.csv", "1")
+    test = replayed(journals.corrections(id_)).test("penetration.csv", "1")
     assert test.undoable is None  # what the file says cannot be undone
     assert [entry.action for entry in test.history] == ["add", "correct", "undo"]
     export_corrected(store, id_, tmp_path / "out")

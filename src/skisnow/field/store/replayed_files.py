@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..reading.table_forms import TableForm
-    from .grown import ReplayedCampaign, ReplayedRow, ReplayedTest
+    from .replayed import ReplayedCampaign, ReplayedRow, ReplayedTest
 
 _TIME = "time"
 
