@@ -154,7 +154,7 @@ def test_an_edge_that_slips_aside_meets_the_snow_of_where_it_is(angle_deg: float
 
 
 def test_a_ski_that_drags_its_tail_goes_on_over_its_lines() -> None:
-    """Tail down and rolled the lines lie as evenly as level: they are not laid anew each step, a strip of tracks each."""
+    """Tail down and rolled the lines lie as evenly as level: not laid anew, a strip of tracks each step."""
     contact = SnowContact(SnowField(H, S, 10.0), [straight()])
     rotation = edged(math.radians(55), lean=math.radians(40))[None]
     height = -min(float((rotation[0] @ [-0.8, side, 0.0])[2]) for side in (0.03, -0.03)) - 0.03
