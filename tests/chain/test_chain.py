@@ -143,6 +143,22 @@ def test_what_the_campaign_measured_is_drawn_from_its_interval(analysis: Analysi
     assert [[each[key] for key in others] for each in drawn] == [[each[key] for key in others] for each in before]
 
 
+@pytest.mark.usefixtures("asked")
+def test_turning_angles_of_a_campaign_tell_the_spread_of_u_y(tmp_path: Path, capsys: Printed) -> None:
+    """From the files to turn.json; the site's discs were not taken off."""
+    assert main(["reference", str(tmp_path / "campaign"), "--seed", "1", "--turning-angles", "--creep"]) == 0
+    capsys.readouterr()
+    words = ["turn", str(tmp_path / "campaign"), "--site", "C", "--runs", "3", "--workers", "1", "--json"]
+    assert main(words) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (spreads(told)[RATIO], spreads(told)[WAY]) == ("prior", "measured")
+    low, high = told["snow"]["shear_displacement_interval_mm"]
+    assert low < told["snow"]["shear_displacement_mm"] < high
+    assert low < 0.25 < high
+    (way,) = (each for each in told["ensemble"]["inputs"] if each["key"] == WAY)
+    assert (way["value"], way["low"], way["high"]) == (told["snow"]["shear_displacement_mm"], low, high)
+
+
 def test_what_is_drawn_stays_inside_what_the_key_allows(analysis: Analysis) -> None:
     """k_u/H_V below 1 would give energy away, above 1000 is none; u_y from 0.01 to 10 mm."""
     wide: dict[str, Any] = {"unloading_ratio_interval": (1.0, 900.0), "shear_displacement_interval": (1e-5, 9e-3)}
