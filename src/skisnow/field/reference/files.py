@@ -140,7 +140,10 @@ def _penetration_csv(drawn: ReferenceCampaign) -> str:
 
 def _shear_csv(drawn: ReferenceCampaign) -> str:
     tests = drawn.shear
-    header = ("experiment", "site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm", "moment_Nm")
+    header: tuple[str, ...] = (
+        "experiment", "site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm", "moment_Nm",
+        "snow_density_kg_per_m3",
+    )  # fmt: skip
     numbers = [
         _written(tests.edge_angle, DEGREE, 0),
         _written(tests.penetration_depth, MM, 2),
@@ -149,7 +152,6 @@ def _shear_csv(drawn: ReferenceCampaign) -> str:
         _written(tests.snow_density, 1.0, 0),
     ]
     columns = [tests.experiment, tests.site, tests.spot, tests.plate, *numbers]
-    header = (*header, "snow_density_kg_per_m3")
     turning = tests.turning
     if turning is None:
         return _csv(header, columns)
