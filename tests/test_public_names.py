@@ -157,7 +157,7 @@ def test_only_these_places_reach_up() -> None:
         "report.run_frames.run_dataframe": "simulate/run.py",
         "report.run_frames.run_dataset": "simulate/run.py",
         "report.turn_report.write_turn_report": "report/turn_chain.py",
-        "report.turn_sentences.contrast": "report/turn_chain.py",
+        "report.turn_sentences.plain_sentences": "report/turn_chain.py",
         "scenario.changed.changed_scenario": "scenario/scenario.py",
     }
     assert imports == {"__init__.py", "callable_packages.py", "from_above.py", "report/run_frames.py"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 import math
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,13 +18,14 @@ from referencing import Registry, Resource
 import skisnow
 from skisnow import Analysis, Run, Scenario
 from skisnow.chain import chaining, ensemble
-from skisnow.chain.priors import MEASURED, PRIORS
+from skisnow.chain.priors import MEASURED, PRIORS, inputs_with
 from skisnow.cli import main
 from skisnow.errors import ParameterError
 from skisnow.field.reference import reference_campaign
 from skisnow.inputs import values_of
 from skisnow.report.turn_dict import turn_dict
 from skisnow.scenario.prior import prior_of
+from skisnow.snow import SnowProperties
 
 from ..report.runs import circle_run
 
@@ -103,6 +105,122 @@ def test_all_that_is_not_known_is_drawn_over_its_prior(analysis: Analysis) -> No
     assert np.max(np.abs(np.corrcoef(logs.T) - np.eye(6))) < 0.15  # 3 / √400
 
 
+def with_measured(analysis: Analysis, **known: Any) -> Analysis:
+    """The analysis as if these had been measured at every site."""
+    found = copy(analysis)
+
+    def snow(site: str | None = None, *, unloading_ratio: float | None = None) -> SnowProperties:
+        measured = replace(analysis.snow(site), **known)
+        if unloading_ratio is None:
+            return measured
+        return replace(measured, unloading_ratio=unloading_ratio, unloading_ratio_interval=None)
+
+    object.__setattr__(found, "snow", snow)
+    return found
+
+
+MEASURED_HERE: dict[str, Any] = {
+    "unloading_ratio": 9.0,
+    "unloading_ratio_interval": (6.0, 16.0),
+    "shear_displacement": 2.5e-4,
+    "shear_displacement_interval": (2.0e-4, 3.125e-4),
+}
+"""k_u/H_V with an interval that is uneven about it, and u_y (m)."""
+RATIO, WAY = "snow.unloading_ratio", "snow.shear_displacement_mm"
+
+
+def test_what_the_campaign_measured_is_drawn_from_its_interval(analysis: Analysis) -> None:
+    """Quantiles of a Latin hypercube: one of 400 slices each; all else is drawn as it was before, number by number."""
+    plain = analysis.snow("C", unloading_ratio=9.0)
+    snow = replace(plain, **MEASURED_HERE)
+    turn = skisnow.scenario("carved-46m").with_(snow=plain)
+    before = [values_of(each) for each in ensemble.drawn_scenarios(turn, inputs_with((), plain), 400, 1)]
+    drawn = [values_of(each) for each in ensemble.drawn_scenarios(turn.with_(snow=snow), inputs_with((), snow), 400, 1)]
+    for key, expected in ((RATIO, [6.0, 9.0, 16.0]), (WAY, [0.2, 0.25, 0.3125])):
+        assert np.quantile([each[key] for each in drawn], [0.025, 0.5, 0.975]) == pytest.approx(expected, rel=0.01)
+        assert [each[key] for each in before] != [each[key] for each in drawn]
+    others = (*MEASURED, *(prior.key for prior in PRIORS[2:]))
+    assert [[each[key] for key in others] for each in drawn] == [[each[key] for key in others] for each in before]
+
+
+@pytest.mark.usefixtures("asked")
+def test_turning_angles_of_a_campaign_tell_the_spread_of_u_y(tmp_path: Path, capsys: Printed) -> None:
+    """From the files to turn.json; the site's discs were not taken off."""
+    assert main(["reference", str(tmp_path / "campaign"), "--seed", "1", "--turning-angles", "--creep"]) == 0
+    capsys.readouterr()
+    words = ["turn", str(tmp_path / "campaign"), "--site", "C", "--runs", "3", "--workers", "1", "--json"]
+    assert main(words) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (spreads(told)[RATIO], spreads(told)[WAY]) == ("prior", "measured")
+    low, high = told["snow"]["shear_displacement_interval_mm"]
+    assert low < told["snow"]["shear_displacement_mm"] < high
+    assert low < 0.25 < high
+    (way,) = (each for each in told["ensemble"]["inputs"] if each["key"] == WAY)
+    assert (way["value"], way["low"], way["high"]) == (told["snow"]["shear_displacement_mm"], low, high)
+
+
+def test_what_is_drawn_stays_inside_what_the_key_allows(analysis: Analysis) -> None:
+    """k_u/H_V below 1 would give energy away, above 1000 is none; u_y from 0.01 to 10 mm."""
+    wide: dict[str, Any] = {"unloading_ratio_interval": (1.0, 900.0), "shear_displacement_interval": (1e-5, 9e-3)}
+    snow = replace(analysis.snow("C"), **{**MEASURED_HERE, **wide})
+    turn = skisnow.scenario("carved-46m").with_(snow=snow)
+    drawn = [values_of(each) for each in ensemble.drawn_scenarios(turn, inputs_with((), snow), 400, 1)]
+    for key, low, high in ((RATIO, 1.0, 1000.0), (WAY, 0.01, 10.0)):
+        assert [min(each[key] for each in drawn), max(each[key] for each in drawn)] == [low, high]
+
+
+def spreads(told: dict[str, Any]) -> dict[str, str]:
+    return {each["key"]: each["spread"] for each in told["ensemble"]["inputs"]}
+
+
+@pytest.mark.usefixtures("asked")
+@pytest.mark.parametrize(
+    ("named", "ratio", "way", "expected"),
+    [
+        ({}, 9.0, 0.25, ("measured", "measured")),
+        ({"unloading_ratio": 4.0}, 4.0, 0.25, ("prior", "measured")),
+        ({"shear_displacement": 4e-4}, 9.0, 0.4, ("measured", "prior")),
+        ({"priors": [prior_of("unloading_ratio=7:7")]}, 9.0, 0.25, ("prior", "measured")),
+        ({"priors": [prior_of("shear_displacement_mm=0.1:0.2")]}, 9.0, 0.25, ("measured", "prior")),
+    ],
+)
+def test_what_is_given_comes_before_what_was_measured(
+    analysis: Analysis, named: dict[str, Any], ratio: float, way: float, expected: tuple[str, str]
+) -> None:
+    found = skisnow.chain(with_measured(analysis, **MEASURED_HERE), "C", runs=3, workers=1, **named)
+    contact = found.nominal.scenario.contact
+    assert [contact.unloading_ratio, contact.shear_displacement] == pytest.approx([ratio, way * 1e-3], rel=1e-12)
+    told = turn_dict(found)
+    assert (spreads(told)[RATIO], spreads(told)[WAY]) == expected
+    assert [spreads(told)[key] for key in MEASURED] == ["measured", "measured"]
+    assert [key for key, of in spreads(told).items() if of == "prior"] == [x["key"] for x in told["ensemble"]["priors"]]
+    assert told["snow"]["shear_displacement_mm"] == pytest.approx(way)
+    of_measured = {each["key"]: each for each in told["ensemble"]["inputs"] if each["spread"] == "measured"}
+    assert all(each["distribution"] == "log-normal" for each in of_measured.values())
+    if expected[0] == "measured":
+        assert [of_measured[RATIO][name] for name in ("value", "low", "high")] == [9.0, 6.0, 16.0]
+    sentence = found.sentences[-1]
+    assert sentence.startswith("The band draws the snow hardness H_V, the failure shear stress S_f")
+    measured, assumed = sentence.split(" from the intervals that the campaign measured, ")
+    assert ("k_u" in measured, "u_y" in measured) == tuple(each == "measured" for each in expected)
+    assert ("k_u" in assumed, "u_y" in assumed) == tuple(each == "prior" for each in expected)
+
+
+@pytest.mark.usefixtures("asked")
+def test_the_command_s_own_values_come_before_what_was_measured(
+    analysis: Analysis, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: Printed
+) -> None:
+    measured = with_measured(analysis, **MEASURED_HERE)
+    monkeypatch.setattr(chaining, "analyse", lambda *_, **__: measured)
+    words = ["turn", str(tmp_path), "--site", "C", "--runs", "3", "--workers", "1", "--json"]
+    sets = ["--set", "shear_displacement_mm=0.4", "--set", "unloading_ratio=5"]
+    for more, ratio, way in (([], 9.0, 0.25), (sets, 5.0, 0.4), ([*sets, "--unloading-ratio", "4"], 4.0, 0.4)):
+        assert main([*words, *more]) == 0
+        told = json.loads(capsys.readouterr().out)
+        assert (told["snow"]["unloading_ratio"], told["snow"]["shear_displacement_mm"]) == pytest.approx((ratio, way))
+        assert spreads(told)[RATIO] == ("prior" if more else "measured")
+
+
 @pytest.mark.usefixtures("asked")
 def test_a_prior_that_is_given_takes_the_place_of_the_usual_one(analysis: Analysis) -> None:
     given = (prior_of("unloading_ratio=7:7"), prior_of("drag_area=0.2:0.4"))
@@ -152,6 +270,7 @@ def test_the_report_is_that_of_the_chain(analysis: Analysis, tmp_path: Path) -> 
         ({"site": "Z"}, "no used penetration experiment of site 'Z'"),
         ({"priors": [prior_of("H_V=0.1:0.2")]}, "its interval comes from the campaign"),
         ({"unloading_ratio": 1.0}, "k_u/H_V must be above 1 here"),
+        ({"shear_displacement": 0.0}, "u_y must be above 0"),
         ({"runs": 2}, "a band needs 3 or more"),
         ({"workers": 0}, "workers is 0"),
         ({"scenario": "carved-46"}, "carved-46m"),
@@ -214,6 +333,7 @@ def test_the_json_keeps_to_its_schema(analysis: Analysis, asked: list[Scenario])
     found = turn_dict(skisnow.chain(analysis, "C", runs=3, workers=1))
     checked = Draft202012Validator(schemas["turn"], registry=known)
     checked.validate(found)
+    checked.validate(turn_dict(skisnow.chain(with_measured(analysis, **MEASURED_HERE), "C", runs=3, workers=1)))
     found["runs"][0]["summary"]["outcome"] = "well"
     assert not checked.is_valid(found)
     assert set(schemas["turn"]["properties"]) == set(found)

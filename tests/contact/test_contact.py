@@ -141,8 +141,9 @@ def test_an_edge_that_slips_aside_meets_the_snow_of_where_it_is(angle_deg: float
     def ridge(place: FloatArray | float) -> FloatArray:
         return np.asarray(1.0 + 0.3 * np.sin(2.0 * math.pi * place / 0.2))
 
-    varied = [Grid(np.array([-2.0, 2.0]), y, np.tile(size * ridge(y), (2, 1))) for size in (H, S)]
-    contacts = [SnowContact(SnowField(*sizes, 10.0), [straight()]) for sizes in (varied, (H, S))]
+    hardness, strength = (Grid(np.array([-2.0, 2.0]), y, np.tile(size * ridge(y), (2, 1))) for size in (H, S))
+    fields = SnowField(hardness, strength, 10.0), SnowField(H, S, 10.0)
+    contacts = [SnowContact(each, [straight()]) for each in fields]
     for n in range(300):  # towards the base, which presses all that the edge then cuts
         position = np.array([[0.0, -side * 5e-4 * n, 0.03 * math.sin(abs(angle)) - 2e-3]])
         for contact in contacts:

@@ -25,6 +25,7 @@ from skisnow.report.turn_numbers import (
 )
 from skisnow.report.turn_report import FIGURES, write_turn_report
 from skisnow.report.turn_sentences import contrast, ensemble_sentence, key_sentences, meaning
+from skisnow.scenario.measured import measured_of
 from skisnow.scenario.prior import Prior
 from skisnow.simulate.run import Run
 from skisnow.snow import SnowProperties
@@ -100,6 +101,30 @@ def test_parameters_are_in_the_units_of_the_field() -> None:
     assert hardness[3] == pytest.approx((0.18, 0.23))
     assert stress[2] == pytest.approx(0.5)
     assert stress[3] == pytest.approx((0.4, 0.6))
+
+
+def test_what_was_measured_beside_them_stands_in_the_table_and_is_told_more_of_by_further_readings(
+    chain: TurnChain,
+) -> None:
+    snow = replace(
+        SNOW,
+        unloading_ratio=9.0,
+        unloading_ratio_interval=(6.0, 16.0),
+        shear_displacement=2.5e-4,
+        shear_displacement_interval=(2.0e-4, 3.0e-4),
+    )
+    table = parameters_table(snow)
+    assert [(row[0], row[1]) for row in table.rows[2:]] == [("k_u / H_V", ""), ("shear displacement u_y", "mm")]
+    assert [(row[2], *row[3]) for row in table.rows[2:]] == [pytest.approx((9, 6, 16)), pytest.approx((0.25, 0.2, 0.3))]
+    drawn = np.exp(np.random.default_rng(4).uniform(-1.0, 1.0, (50, 1)))
+    runs = drawn_over(("snow.shear_displacement_mm",), np.log(drawn[:, 0]), drawn)
+    known = replace(chain, snow=snow, ensemble=runs, measured=measured_of(snow))
+    said = " ".join(str(each.striptags()) for each in (*key_sentences(known), *meaning(known)))
+    assert "ku / HV 9.00 [6.00, 16.0], uy 0.250 mm [0.200, 0.300]" in said
+    assert "told by further shear tests with turning angles" in said
+    assert "told by the turning angle" in " ".join(
+        str(each.striptags()) for each in meaning(replace(chain, ensemble=runs))
+    )
 
 
 def test_contacts_stand_with_their_own_numbers(chain: TurnChain) -> None:
@@ -218,11 +243,15 @@ def test_shares_of_the_band_are_those_of_what_was_drawn(chain: TurnChain) -> Non
     assert found.aside.share == pytest.approx([0.2, 0.8], abs=0.05)
     assert found.ahead.share == pytest.approx([0.0, 0.0])
     prior = Prior(key=keys[2], low=0.02, high=0.5, origin="not measured")
-    table = shares_table(replace(chain, ensemble=runs, priors=(prior,)))
+    measured = measured_of(SNOW)
+    table = shares_table(replace(chain, ensemble=runs, measured=measured, priors=(prior,)))
     assert [row[0] for row in table.rows] == [*keys, "left over"]
     assert table.rows[0][3] == (None, None)
     assert table.rows[2][1] == (0.02, 0.5)
     assert table.rows[2][3][0] == pytest.approx(80.0, abs=5.0)
+    assert [row[2].split(":")[0] for row in table.rows] == ["measured", "measured", "prior", ""]
+    assert all("log-normal" in row[2] and row[2].endswith("of site C") for row in table.rows[:2])
+    assert table.rows[2][2] == "prior: even in its logarithm; not measured"
     said = " ".join(str(each.striptags()) for each in key_sentences(replace(chain, ensemble=runs, warnings=("near",))))
     assert "across the track comes from the shear displacement uy: 8" in said
     assert "next is the failure shear stress Sf" in said

@@ -3,15 +3,21 @@
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from skisnow import scenario_names
+import skisnow
+from skisnow import Analysis, scenario_names
 from skisnow.errors import ParameterError
+from skisnow.estimate.results_text import results_json
+from skisnow.estimate.shear_displacement import SiteDisplacement
+from skisnow.field.reference import reference_campaign
 from skisnow.scenario import Plane, Profile, read_scenario, scenario_file, scenario_text, scenario_values
 from skisnow.scenario.given import change_of, given_scenario
 from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.scenario.reading import resolved
 
 PROFILE = "x,y\n" + "".join(f"{x},{-0.2 * x}\n" for x in range(0, 60, 3))
 
@@ -170,6 +176,86 @@ def test_snow_and_ski_of_files(tmp_path: Path) -> None:
     assert set(found.files) == {path, tmp_path / "results.json", tmp_path / "ski.toml"}
     with pytest.raises(ParameterError, match="has its own S_f"):
         read_scenario(path, changes={"S_f_N_per_mm2": 0.3})
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory: pytest.TempPathFactory) -> tuple[Analysis, Path]:
+    """The reference campaign's analysis as if k_u/H_V and u_y had been measured at site C, and the folder of its
+    results.json.
+
+    Its site E has neither.
+    """
+    analysis = skisnow.analyse(reference_campaign(1).campaign(), n_resamples=100)
+    pressed, sheared = analysis.penetration, analysis.shear
+    assert pressed is not None
+    assert sheared is not None
+    unloading = (replace(pressed.site_unloading[0], site="site C"), *pressed.site_unloading[1:])
+    ways = (SiteDisplacement("site C", 3, 2.5e-4, 2.0e-4, 3.2e-4), SiteDisplacement(None, 3, 2.5e-4, 2.0e-4, 3.2e-4))
+    analysis = replace(
+        analysis,
+        penetration=replace(pressed, site_unloading=unloading),
+        shear=replace(sheared, site_displacement=ways),
+    )
+    folder = tmp_path_factory.mktemp("measured")
+    (folder / "results.json").write_bytes(results_json(skisnow.results_dict(analysis)))
+    return analysis, folder
+
+
+def with_results(folder: Path, site: str, **replaced: str) -> Path:
+    """carved-46m on the snow of a site, with neither k_u/H_V nor u_y unless they stand among the replaced lines."""
+    lines = {"unloading_ratio": "", "shear_displacement_mm": "", **replaced}
+    return written(folder, replaced={"H_V": 'results = "results.json"', "S_f": f'site = "{site}"', **lines})
+
+
+@pytest.mark.parametrize("site", ["C", "E"])
+def test_results_give_what_the_site_measured_by_every_way(measured: tuple[Analysis, Path], site: str) -> None:
+    """A file without numbers of its own, a change of a scenario that has some, and the objects: one and the same."""
+    analysis, folder = measured
+    snow = analysis.snow(site)
+    assert (snow.unloading_ratio is None, snow.shear_displacement is None) == (site == "E", site == "E")
+    by_object = read_scenario("carved-46m").with_(snow=snow).contact
+    changes = {"snow.results": str(folder / "results.json"), "snow.site": site}
+    changed = scenario_file("carved-46m", changes=changes)
+    found = [changed.scenario.contact]
+    if site == "C":
+        found.append(read_scenario(with_results(folder, site)).contact)
+        assert changed.values["snow.unloading_ratio"] == snow.unloading_ratio
+        assert changed.values["snow.shear_displacement_mm"] == pytest.approx(0.25, rel=1e-12)
+    for contact in found:
+        assert replace(contact, snow=replace(contact.snow, source=snow.source)) == by_object
+
+
+def test_numbers_beside_or_after_the_results_come_before_what_was_measured(measured: tuple[Analysis, Path]) -> None:
+    analysis, folder = measured
+    numbers = {"unloading_ratio": "unloading_ratio = 4", "shear_displacement_mm": "shear_displacement_mm = 0.1"}
+    beside = with_results(folder, "C", **numbers)
+    results: dict[str, object] = {"snow.results": str(folder / "results.json"), "snow.site": "C"}
+    after: dict[str, object] = {"unloading_ratio": 4.0, "shear_displacement_mm": 0.1}
+    given = given_scenario("carved-46m").changed(results).changed(after)
+    by_object = read_scenario("carved-46m").with_(snow=analysis.snow("C")).with_(**after)
+    ways = [read_scenario(beside), read_scenario("carved-46m", changes=results | after), resolved(given).scenario]
+    for scenario in (*ways, by_object):
+        contact = scenario.contact
+        assert [contact.unloading_ratio, contact.shear_displacement] == pytest.approx([4.0, 1e-4], rel=1e-12)
+        # summary.json and what a scenario shows do not give an interval to a number that it is not of
+        assert (contact.snow.unloading_ratio_interval, contact.snow.shear_displacement) == (None, None)
+        assert "k_u/H_V 4:" in repr(scenario)
+
+
+def test_elastic_snow_stays_elastic_on_measured_snow(measured: tuple[Analysis, Path]) -> None:
+    path = with_results(measured[1], "C", penetration='penetration = "elastic"')
+    assert read_scenario(path).contact.unloading_ratio == 1.0
+
+
+def test_a_site_without_unloading_needs_a_ratio(measured: tuple[Analysis, Path]) -> None:
+    with pytest.raises(ParameterError, match=r"unloading_ratio is missing.*site E: .* has none that was measured"):
+        read_scenario(with_results(measured[1], "E"))
+
+
+def test_numbers_of_the_snow_bring_the_scenario_s_own_ratio_back(measured: tuple[Analysis, Path]) -> None:
+    given = given_scenario("carved-46m").changed({"snow.results": str(measured[1] / "results.json")})
+    contact = resolved(given.changed({"H_V_N_per_mm3": 0.3, "S_f_N_per_mm2": 0.4})).scenario.contact
+    assert [contact.unloading_ratio, contact.shear_displacement] == pytest.approx([10.0, 2e-5], rel=1e-12)
 
 
 def test_values_are_those_given_and_defaults() -> None:

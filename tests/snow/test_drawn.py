@@ -9,7 +9,7 @@ import pytest
 
 from skisnow.errors import ParameterError
 from skisnow.snow import SnowProperties
-from skisnow.snow.drawn import drawn_snows
+from skisnow.snow.drawn import drawn_snows, log_normal
 
 SNOW = SnowProperties(
     2.0e8, 1.4e5, source="site X", snow_hardness_interval=(1.0e8, 4.0e8), failure_shear_stress_interval=(1.0e5, 1.8e5)
@@ -40,3 +40,17 @@ def test_snow_without_interval_is_refused() -> None:
         drawn_snows(replace(SNOW, failure_shear_stress_interval=None), np.full((3, 2), 0.5))
     with pytest.raises(ParameterError, match="no snow above 0"):
         drawn_snows(replace(SNOW, failure_shear_stress_interval=(0.0, 2.0)), np.full((3, 2), 0.5))
+
+
+def test_a_value_with_an_uneven_interval_keeps_both() -> None:
+    """1.5 standard deviations to either side: a half of 95 % is 1.96 of them, so the ends to the power 1.5/1.96."""
+    shares = np.array([0.025, 0.5, 0.975, 0.0668072013, 0.9331927987])
+    expected = [6.0, 9.0, 27.0, 9.0 * (6.0 / 9.0) ** (1.5 / 1.959964), 9.0 * 3.0 ** (1.5 / 1.959964)]
+    assert log_normal(9.0, (6.0, 27.0), shares) == pytest.approx(expected, rel=1e-6)
+
+
+def test_an_even_interval_is_drawn_from_as_that_of_s_f() -> None:
+    shares = np.random.default_rng(2).random((50, 2))
+    stress = [snow.failure_shear_stress for snow in drawn_snows(SNOW, shares)]
+    middle = float(np.sqrt(1.0e5 * 1.8e5))
+    assert log_normal(middle, (1.0e5, 1.8e5), shares[:, 1]) == pytest.approx(stress, rel=1e-12)

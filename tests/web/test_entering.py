@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+import pytest
+
+from skisnow import read_campaign
 from skisnow.field.store import Journals, Store, replayed
-from skisnow.field.store.replayed_files import campaign_files
+from skisnow.field.store.replayed_files import campaign_files, write_campaign
 
 from .conftest import Served, fill, has_text, ready
 from .test_day import correct_the_typing_error, create, enter_series, next_series
@@ -79,6 +85,60 @@ def test_discs_that_are_taken_off_have_fields_of_their_own(page: Page, served: S
         ("20", "2.8", "unloading"),
     ]
     assert [row[branch] for row in rows[1:-3]] == [""] * 4
+
+
+def test_a_depth_that_is_read_once_more_after_waiting_stands_beside_the_first_one(page: Page, served: Served) -> None:
+    """At the width of a phone: with its reading in the file's column, flagged where the snow creeps, corrected with a
+    reason; the first depths, and with them H_V, stay.
+
+    The gauge steps by 0.01 mm: 0.1 mm more than 2.6 mm is creep.
+    """
+    page.set_viewport_size({"width": 390, "height": 844})
+    create(page, served)
+    enter_series(page, "1")
+    correct_the_typing_error(page)
+    page.wait_for_function("document.querySelector('.beside .value').innerText.includes('H_V = ')")
+    before = page.locator(".beside .value").inner_text()
+    ready(page)
+    page.locator("summary", has_text="Depths read once more after waiting").press("Enter")
+    fits(page)
+    fields = page.locator("input:visible, button:visible").all()
+    assert [each for each in fields if not each.evaluate(NAME_OF)] == []
+    page.get_by_label("Depth after waiting under 40 N (mm)").fill("2.1.6")
+    page.keyboard.press("Enter")
+    page.get_by_text("Not stored: depth_after_mm is a number of 0 or more").wait_for()
+    press(page, "button", "Next series")
+    page.get_by_text("Not stored yet: 40 N after waiting.").wait_for()
+    ready(page)
+    page.get_by_label("Depth after waiting under 40 N (mm)").fill("2,16")
+    page.get_by_label("Depth after waiting under 60 N (mm)").fill("2.8")
+    page.keyboard.press("Enter")
+    page.get_by_text("Stored after waiting: 2.16 mm under 40 N, 2.8 mm under 60 N.").wait_for()
+    page.locator(".beside .marks", has_text="Under one load the depth grew").wait_for()
+    ready(page)
+    page.get_by_label("Depth after waiting under 60 N (mm)").fill("2.7")
+    page.keyboard.press("Enter")
+    page.get_by_text("after waiting under 60 N: 2.8 mm becomes 2.7 mm.").wait_for()
+    ready(page)
+    page.get_by_role("button", name="Correct it").press("Enter")
+    page.get_by_text("Corrected; the first reading is kept.").wait_for()
+    page.reload()
+    has_text(page.get_by_label("Depth after waiting under 60 N (mm)"), "2.7")
+    has_text(page.get_by_label("Depth under 60 N (mm)"), "2.6")
+    fits(page)
+    assert page.locator(".beside .value").inner_text() == before
+    assert page.get_by_text("corrected from").all_inner_texts() == ["corrected from 22.5"]
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        campaign = replayed(Journals(store).entries(head.id))
+    rows = campaign.test("penetration.csv", "1").rows
+    assert [row.cells.get("depth_after_mm", "") for row in rows] == ["", "2.16", "2.7", ""]
+    folder = Path(tempfile.mkdtemp(dir=served.store.parent))
+    write_campaign(campaign, folder)
+    tests = read_campaign(folder).penetration
+    assert tests is not None
+    assert tests.depth_after is not None
+    assert tests.depth_after * 1e3 == pytest.approx([np.nan, 2.16, 2.7, np.nan], nan_ok=True)
 
 
 def test_a_moment_for_each_turning_angle(page: Page, served: Served) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+import skisnow
 from skisnow.errors import ParameterError, StoreError
 from skisnow.estimate import analyse
 from skisnow.field import read_campaign
@@ -133,6 +134,18 @@ def test_the_snow_of_a_campaign_is_that_of_its_results(lab: Lab, tmp_path: Path)
     )
     with pytest.raises(ParameterError, match="of site 'Z'; it has some of 'A'"):
         snow_of_campaign(lab, f"kept-{id_}", "carved-46m", {"snow.site": "Z"})
+
+
+def test_a_campaign_that_measured_the_unloading_gives_its_ratio_to_the_run_unless_one_is_typed(
+    lab: Lab, tmp_path: Path
+) -> None:
+    skisnow.write_reference(tmp_path / "reference", seed=1)
+    key = f"kept-{lab.store.add(tmp_path / 'reference').id}"
+    _, words = snow_of_campaign(lab, key, "carved-46m", {})
+    snow = analyse(read_campaign(tmp_path / "reference")).snow()
+    assert snow.unloading_ratio is not None
+    assert f"; k_u/H_V = {significant(snow.unloading_ratio)}, [" in words
+    assert "k_u" not in snow_of_campaign(lab, key, "carved-46m", {"snow.unloading_ratio": "10"})[1]
 
 
 def test_what_is_downloaded_is_the_campaign_that_was_analysed(lab: Lab, tmp_path: Path) -> None:

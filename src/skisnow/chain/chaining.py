@@ -17,6 +17,7 @@ from ..report.report_data import is_synthetic
 from ..report.turn_chain import TurnChain
 from ..scenario import Scenario, read_scenario
 from ..scenario.contact import ELASTIC
+from ..scenario.measured import measured_of
 from ..scenario.prior import Prior
 from ..simulate import Run
 from ..simulate.simulated_run import simulate
@@ -24,7 +25,7 @@ from ..ski import Ski
 from ..snow.drawn import measured_intervals
 from ..snow.mean_snow import site_in_words
 from .ensemble import drawn_scenarios, ensemble_of
-from .priors import priors_with
+from .priors import MEASURED, inputs_with
 
 UNLOADING_RATIO: Final = 10.0
 """k_u/H_V of hypoplastic snow whose unloading was not measured (modelling assumption: none is published)."""
@@ -39,6 +40,7 @@ def chain(
     *,
     ski: Ski | str | Path | None = None,
     unloading_ratio: float | None = None,
+    shear_displacement: float | None = None,
     priors: Sequence[Prior] = (),
     runs: int = RUNS,
     seed: int = 1,
@@ -60,11 +62,14 @@ def chain(
     unloading_ratio
         k_u/H_V > 1 of the hypoplastic contact; left out: the measured one of the site, or 10 where none is. The other
         contact is elastic.
+    shear_displacement
+        u_y (m) > 0; left out: the measured one of the site, or the scenario's own where none is.
     priors
-        In place of those of `skisnow.chain.priors.PRIORS` with the same key, or beside them: what the band counts
-        beside H_V and S_f.
+        In place of what the band counts beside H_V and S_f with the same key, or beside it. Without one, k_u/H_V and
+        u_y are drawn from their measured intervals where the site has them and neither is given above; all else, and
+        they where they were not measured, from `skisnow.chain.priors.PRIORS`.
     runs
-        Of the ensemble, 3 or more: H_V and S_f are drawn from their intervals, all else from its prior.
+        Of the ensemble, 3 or more.
     seed
         Of those draws.
     workers
@@ -102,15 +107,17 @@ def chain(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * The page docs/how-to/in-python.md.
     """
-    _require(unloading_ratio, runs)
+    _require(unloading_ratio, shear_displacement, runs)
     workers = workers_in_force(workers)
     say = progress or _silent
     found = campaign if isinstance(campaign, Analysis) else analyse(campaign, progress=progress)
     snow = found.snow(site, unloading_ratio=unloading_ratio)
     if snow.unloading_ratio is None:
         snow = replace(snow, unloading_ratio=UNLOADING_RATIO)
+    if shear_displacement is not None:
+        snow = replace(snow, shear_displacement=shear_displacement, shear_displacement_interval=None)
     measured_intervals(snow)
-    every = priors_with(priors)
+    every = inputs_with(priors, snow)
     turn = (scenario if isinstance(scenario, Scenario) else read_scenario(scenario)).with_(snow=snow)
     turn = turn if ski is None else turn.with_(ski=ski)
     drawn = drawn_scenarios(turn, every, runs, seed)
@@ -130,7 +137,8 @@ def chain(
         ensemble=ensemble,
         seed=seed,
         ensemble_error=moved,
-        priors=every,
+        measured=tuple(each for each in measured_of(snow) if each in every or each.key in MEASURED),
+        priors=tuple(each for each in every if isinstance(each, Prior)),
         warnings=warnings,
         analysis=found,
     )
@@ -144,11 +152,13 @@ def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
     return run
 
 
-def _require(unloading_ratio: float | None, runs: int) -> None:
+def _require(unloading_ratio: float | None, shear_displacement: float | None, runs: int) -> None:
     if unloading_ratio is not None and not unloading_ratio > ELASTIC:
         raise ParameterError(
             f"unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
         )
+    if shear_displacement is not None and not shear_displacement > 0.0:
+        raise ParameterError(f"shear_displacement is {shear_displacement} m; u_y must be above 0")
     if runs < FEWEST:
         raise ParameterError(f"runs is {runs}; a band needs {FEWEST} or more")
 

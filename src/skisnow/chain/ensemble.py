@@ -21,6 +21,7 @@ from .priors import MEASURED
 if TYPE_CHECKING:
     from ..parallel.kept_rows import Row
     from ..scenario import Scenario
+    from ..scenario.measured import Measured
     from ..scenario.prior import Prior
     from ..simulate.run import Run
 
@@ -35,12 +36,12 @@ def quickly(scenario: Scenario) -> dict[str, Any]:
     return {"outcome": run.outcome, "track": [time, x, y], "slips": used_grip(run)[1]}
 
 
-def drawn_scenarios(nominal: Scenario, priors: Sequence[Prior], count: int, seed: int) -> list[Scenario]:
-    """Scenarios drawn from the intervals of the snow and from priors: a Latin hypercube over all of them."""
-    shares = latin_hypercube(count, 2 + len(priors), np.random.default_rng(seed))
+def drawn_scenarios(nominal: Scenario, inputs: Sequence[Measured | Prior], count: int, seed: int) -> list[Scenario]:
+    """Scenarios drawn from the intervals of H_V and S_f and from further inputs: a Latin hypercube over all of them."""
+    shares = latin_hypercube(count, 2 + len(inputs), np.random.default_rng(seed))
     snows = drawn_snows(nominal.contact.snow, shares[:, :2])
     own = values_of(nominal)
-    columns = {each.key: each.at(shares[:, 2 + j], own[each.key]) for j, each in enumerate(priors)}
+    columns = {each.key: each.at(shares[:, 2 + j], own[each.key]) for j, each in enumerate(inputs)}
     return [
         nominal.with_(snow=snow, **{key: float(values[i]) for key, values in columns.items()})
         for i, snow in enumerate(snows)
@@ -54,7 +55,7 @@ def latin_hypercube(count: int, inputs: int, generator: np.random.Generator) -> 
 
 
 def ensemble_of(
-    nominal: Run, scenarios: Sequence[Scenario], priors: Sequence[Prior], *, workers: int | None,
+    nominal: Run, scenarios: Sequence[Scenario], inputs: Sequence[Measured | Prior], *, workers: int | None,
     progress: Callable[[str], None],
 ) -> tuple[list[EnsembleRun], float, tuple[str, ...]]:  # fmt: skip
     """The runs of an ensemble; how far (m) computing them quickly moves the nominal run's end; warnings of that run."""
@@ -66,19 +67,19 @@ def ensemble_of(
 
     first, *rows = run_batch(points, quickly, workers=workers, progress=tell)
     moved = _apart(first, [[column[-1]] for column in nominal.place[:, :2].T])
-    found = [_ensemble_run(scenario, row, priors) for scenario, row in zip(scenarios, rows, strict=False)]
+    found = [_ensemble_run(scenario, row, inputs) for scenario, row in zip(scenarios, rows, strict=False)]
     beside = iter(rows[len(scenarios) :])
     moves = {key: max(_apart(next(beside), first["track"][1:]) for _ in each) for key, each in nudged.items()}
     return found, moved, limit_sentences(moves, nominal.run_length)
 
 
-def _ensemble_run(scenario: Scenario, row: Row, priors: Sequence[Prior]) -> EnsembleRun:
+def _ensemble_run(scenario: Scenario, row: Row, inputs: Sequence[Measured | Prior]) -> EnsembleRun:
     values = values_of(scenario)
     return EnsembleRun(
         snow=scenario.contact.snow,
         outcome=row["outcome"],
         track=TimedTrack(*map(np.array, row["track"])),
-        values={key: float(values[key]) for key in (*MEASURED, *(each.key for each in priors))},
+        values={key: float(values[key]) for key in (*MEASURED, *(each.key for each in inputs))},
         slips=row["slips"],
     )
 

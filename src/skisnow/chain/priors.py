@@ -1,4 +1,4 @@
-"""What a band over a turn counts beside the measured snow: priors of what no campaign measures, with their origins."""
+"""What a band over a turn counts beside H_V and S_f: what else the campaign measured, and priors of all it did not."""
 
 from __future__ import annotations
 
@@ -6,20 +6,22 @@ from collections.abc import Iterable
 from typing import Final
 
 from ..errors import ParameterError
+from ..scenario.measured import Measured, measured_of
 from ..scenario.prior import Prior
+from ..snow import SnowProperties
 
 PRIORS: Final = (
     Prior(
         key="snow.unloading_ratio",
         low=2.0,
         high=50.0,
-        origin="not published; from 2 on the snow keeps half of a groove, at 50 all but all of it",
+        origin="not measured here, not published; from 2 on the snow keeps half of a groove, at 50 all but all of it",
     ),
     Prior(
         key="snow.shear_displacement_mm",
         low=0.02,
         high=0.5,
-        origin="not measured; from the default, near the limit 0 of the paper's law, to half a millimetre",
+        origin="not measured here; from the default, near the limit 0 of the paper's law, to half a millimetre",
     ),
     Prior(
         key="friction.mu_0",
@@ -38,18 +40,21 @@ PRIORS: Final = (
 )
 """By default."""
 MEASURED: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
-"""Keys whose uncertainty the campaign tells."""
+"""Keys whose uncertainty the campaign tells in any case."""
 
 
-def priors_with(given: Iterable[Prior]) -> tuple[Prior, ...]:
-    """The usual priors, with those that are given in their place or behind them.
+def inputs_with(given: Iterable[Prior], snow: SnowProperties) -> tuple[Measured | Prior, ...]:
+    """What the band is drawn from beside H_V and S_f, in the order of its columns.
+
+    A prior that is given comes first, then what the snow has measured with an interval, then the usual prior.
 
     Raises
     ------
     ParameterError
         One is of what the campaign measures.
     """
-    found = {each.key: each for each in PRIORS}
+    measured = {each.key: each for each in measured_of(snow)}
+    found = {each.key: measured.get(each.key, each) for each in PRIORS}
     for each in given:
         if each.key in MEASURED:
             raise ParameterError(f"{each.key} has no prior here: its interval comes from the campaign")

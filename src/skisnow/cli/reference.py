@@ -15,6 +15,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--seed", type=seed_number, required=True, help="seed of the random numbers, a whole number from 0 on"
     )
+    parser.add_argument(
+        "--turning-angles", action="store_true", help="with turning angles of the shear device, which tell u_y"
+    )
+    parser.add_argument(
+        "--creep", action="store_true", help="with depths that were read once more after waiting, at one site"
+    )
     parser.set_defaults(run=run)
 
 
@@ -22,6 +28,6 @@ def run(options: argparse.Namespace) -> int:
     """Write the campaign."""
     from ..field import write_reference
 
-    write_reference(options.folder, seed=options.seed)
+    write_reference(options.folder, seed=options.seed, turning_angles=options.turning_angles, creep=options.creep)
     print(f"Synthetic reference campaign, seed {options.seed}: {options.folder}")
     return 0

@@ -6,11 +6,17 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from .announced import announced
 from .out_folder import ready
 from .progress import Progress
 from .words import MOST_WORKERS, number, seed_number, whole_number
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ..scenario.contact import Contact
 
 MOST_RUNS = 10_000
 
@@ -37,7 +43,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         default=[],
         dest="changes",
         metavar="section.key=value",
-        help="another value for one key of the scenario, several times for several; the section may be left out",
+        help="another value for one key of the scenario, several times for several; the section may be left out; what "
+        "the campaign says of H_V and S_f stands, a given unloading_ratio or shear_displacement_mm comes before it",
     )
     parser.add_argument(
         "--unloading-ratio",
@@ -77,13 +84,15 @@ def run(options: argparse.Namespace) -> int:
         from ..scenario.prior import prior_of
 
         priors = [prior_of(word) for word in options.priors]
-        asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
+        changes = dict(change_of(word) for word in options.changes)
+        asked = scenario_file(options.scenario, changes=changes)
     for text in asked.warnings:
         print(f"warning: {text}", file=sys.stderr)
     if options.out is not None:
         ready(options.out)
     names = ("unloading_ratio", "runs", "seed", "workers")
-    chosen = {name: getattr(options, name) for name in names if getattr(options, name) is not None}
+    given = _given(changes, asked.scenario.contact)
+    chosen = given | {name: getattr(options, name) for name in names if getattr(options, name) is not None}
     with Progress() as progress:
         found = chain(options.campaign, options.site, asked.scenario, priors=priors, progress=progress, **chosen)
         page = None if options.out is None else found.report(options.out)
@@ -98,3 +107,12 @@ def run(options: argparse.Namespace) -> int:
     if page is not None:
         print(f"The whole chain: {page}", file=sys.stderr)
     return 0
+
+
+def _given(changes: Mapping[str, object], contact: Contact) -> dict[str, Any]:
+    """k_u/H_V and u_y that stand among the changes: they come before what the campaign says of them."""
+    values = {
+        "snow.unloading_ratio": ("unloading_ratio", contact.unloading_ratio),
+        "snow.shear_displacement_mm": ("shear_displacement", contact.shear_displacement),
+    }
+    return {name: value for key, (name, value) in values.items() if key in changes}

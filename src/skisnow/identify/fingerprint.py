@@ -32,7 +32,8 @@ def fingerprint(given: GivenScenario, tracks: Sequence[Measured]) -> str:
     Places do not count: a simulation does not know what it is held against.
     """
     values = json.dumps(sorted((name, value) for name, value in given.values.items()), default=str)
-    digest = hashlib.sha256(f"{version('skisnow')} {values}".encode())
+    before = " ".join(sorted(given.before_results))
+    digest = hashlib.sha256(f"{version('skisnow')} {values} {before}".strip().encode())
     if given.base is not None:
         for piece in _pieces(given.base):
             digest.update(piece)

@@ -12,6 +12,7 @@ from ..shown import Facts, Shown, amount
 
 if TYPE_CHECKING:
     from ..estimate import Analysis
+    from ..scenario.measured import Measured
     from ..scenario.prior import Prior
     from ..simulate.run import Run
     from ..snow import SnowProperties
@@ -67,8 +68,10 @@ class TurnChain(Shown):
     ensemble_error
         Distance between the ends of the nominal run and of the same run computed like the ensemble (m); None where
         both are computed alike.
+    measured
+        What the ensemble was drawn from that the campaign measured: H_V, S_f, and as far as known k_u/H_V and u_y.
     priors
-        What the ensemble was drawn from beside the snow's intervals.
+        What else it was drawn from.
     warnings
         Of the nominal run, where it is near the limit of grip.
     analysis
@@ -87,6 +90,7 @@ class TurnChain(Shown):
     ensemble: Sequence[EnsembleRun]
     seed: int
     ensemble_error: float | None = None
+    measured: Sequence[Measured] = ()
     priors: Sequence[Prior] = ()
     warnings: tuple[str, ...] = ()
     analysis: Analysis | None = None
@@ -98,9 +102,9 @@ class TurnChain(Shown):
 
     @property
     def sentences(self) -> list[str]:
-        """What the contacts do otherwise, in plain text."""
-        contrast = from_above("report.turn_sentences", "contrast")
-        return [sentence.replace("<sub>", "_").striptags() for sentence in contrast(self)]
+        """What the contacts do otherwise, and where the spread of each input of the band comes from, in plain text."""
+        found = from_above("report.turn_sentences", "plain_sentences")
+        return [sentence.replace("<sub>", "_").striptags() for sentence in found(self)]
 
     def report(self, folder: str | Path) -> Path:
         """Write report.html, turn.json and figures/ of the whole chain; see `report.turn_report.write_turn_report`."""

@@ -8,7 +8,8 @@ from ..json_number import json_number
 from ..scenario.plausibility import implausible_values
 from ..simulate.run_summary import summary_dict
 from ..snow.snow_dict import snow_dict
-from ..units import N_PER_MM2, N_PER_MM3
+from ..units import MM, N_PER_MM2, N_PER_MM3
+from .turn_inputs import band_inputs
 from .turn_numbers import afterbody_depth_ratio, band_width, maximum_distance, middle_track, used_grip
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def turn_dict(chain: TurnChain) -> dict[str, Any]:
         "snow": {
             **_numbers_dict(chain.snow),
             "unloading_ratio": json_number(chain.snow.unloading_ratio),
+            "shear_displacement_mm": json_number(chain.nominal.scenario.contact.shear_displacement / MM),
             **snow_dict(chain.snow),
         },
         "runs": [_run_dict(name, run, chain.nominal) for name, run in chain.runs.items()],
@@ -38,6 +40,18 @@ def turn_dict(chain: TurnChain) -> dict[str, Any]:
             "band_across_m": json_number(across),
             "band_along_m": json_number(along),
             "nominal_end_moves_m": json_number(chain.ensemble_error),
+            "inputs": [
+                {
+                    "key": each.key,
+                    "spread": each.spread,
+                    "distribution": each.distribution,
+                    "value": each.value,
+                    "low": each.low,
+                    "high": each.high,
+                    "origin": each.origin,
+                }
+                for each in band_inputs(chain)
+            ],
             "priors": [
                 {"key": each.key, "low": each.low, "high": each.high, "times_own": each.about, "origin": each.origin}
                 for each in chain.priors

@@ -132,11 +132,11 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
         "The hypoplastic contact depends on the history of loading: the forebody leaves a permanent groove, and the "
         "afterbody runs in it. The elastic contact has no history: the groove closes under the afterbody as the load "
         "passes. What that changes in this turn stands under the key results: most where the turn needs a little more "
-        "side force than elastic snow can give. k_u / H_V is not published; it is a parameter."
+        "side force than elastic snow can give. " + _ratio_in_words(chain)
     )
     drawn = prose(
         "{count} runs with all that the table below names drawn at random (Latin hypercube, seed {seed}). The "
-        "intervals of H_V and S_f are those of the site's means: the snow's change from place to place would widen the "
+        "measured intervals are those of the site's means: the snow's change from place to place would widen the "
         "band. What the table does not name is taken as known.",
         count=len(chain.ensemble),
         seed=chain.seed,
@@ -171,8 +171,15 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
 def _snow() -> Markup:
     return html(
         "H_V is the geometric mean over the used penetration experiments of the site, S_f the mean over its used shear "
-        "experiments, each with its 95 % interval by Student's t."
+        "experiments, each with its 95 % interval by Student's t. Where they were measured, k_u / H_V is the harmonic "
+        "mean over the series with unloading, u_y the geometric mean over the shear tests with turning angles."
     )
+
+
+def _ratio_in_words(chain: TurnChain) -> str:
+    if chain.snow.unloading_ratio_interval is not None:
+        return "k_u / H_V is that of the site's unloading."
+    return "k_u / H_V was not measured here, nor is it published; it is a parameter."
 
 
 def _provenance(chain: TurnChain) -> Markup:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..units import N_PER_MM2, N_PER_MM3
+from ..units import MM, N_PER_MM2, N_PER_MM3
 from .number_formatting import counted, interval, significant
 from .symbols import html, prose
+from .turn_inputs import band_inputs
 from .turn_numbers import (
     BandShares,
     afterbody_depth_ratio,
@@ -21,6 +22,8 @@ from .turn_numbers import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from markupsafe import Markup
 
     from ..simulate.run import Run
@@ -33,7 +36,7 @@ HELD: Final = 0.05
 _INPUTS: Final = {
     "snow.H_V_N_per_mm3": ("the snow hardness H_V", "further penetration tests at this site"),
     "snow.S_f_N_per_mm2": ("the failure shear stress S_f", "further shear tests at this site"),
-    "snow.unloading_ratio": ("k_u/H_V", "a test that presses, lifts and presses again, for k_u"),
+    "snow.unloading_ratio": ("k_u/H_V", "depths read while the discs are taken off one by one, for k_u"),
     "snow.shear_displacement_mm": (
         "the shear displacement u_y",
         "the turning angle read beside the moment of the shear device, for u_y",
@@ -42,12 +45,43 @@ _INPUTS: Final = {
     "ski.stiffness_factor": ("the stiffness of the ski", "the bending and torsion of the ski, measured"),
 }
 """Inputs of the band in words, and what would tell more of them."""
+_FURTHER: Final = {
+    "snow.unloading_ratio": "further series with discs taken off one by one at this site, for k_u",
+    "snow.shear_displacement_mm": "further shear tests with turning angles at this site, for u_y",
+}
+"""What would tell more of what was measured already."""
 
 
 def key_sentences(chain: TurnChain) -> list[Markup]:
     """Snow, contacts, band, and a warning near the limit of grip."""
     contacts = [_contact(name, run) for name, run in chain.runs.items()]
-    return [_snow(chain), *contacts, *contrast(chain), _band(chain), *_largest_share(chain), *_warned(chain)]
+    spreads = [_band(chain), *_spreads(chain), *_largest_share(chain)]
+    return [_snow(chain), *contacts, *contrast(chain), *spreads, *_warned(chain)]
+
+
+def plain_sentences(chain: TurnChain) -> list[Markup]:
+    """What the contacts do otherwise, and what the band is drawn from."""
+    return [*contrast(chain), *_spreads(chain)]
+
+
+def _spreads(chain: TurnChain) -> list[Markup]:
+    """Which inputs of the band have a measured spread, and which a prior."""
+    found = list(band_inputs(chain))
+    if not found:
+        return []
+    measured, assumed = (_listed([each.key for each in found if each.measured is of]) for of in (True, False))
+    return [
+        prose(
+            "The band draws {measured} from the intervals that the campaign measured, {assumed} from priors.",
+            measured=measured,
+            assumed=assumed,
+        )
+    ]
+
+
+def _listed(keys: Sequence[str]) -> Markup:
+    *before, last = [_in_words(key) for key in keys] or [html("nothing")]
+    return html(", ").join(before) + html(" and ") + last if before else last
 
 
 def _warned(chain: TurnChain) -> list[Markup]:
@@ -85,13 +119,28 @@ def _snow(chain: TurnChain) -> Markup:
     snow = chain.snow
     of_hardness, of_stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     return prose(
-        "Snow of {site}: H_V {hardness} N/mm³ {of_hardness}, S_f {stress} N/mm² {of_stress}.",
+        "Snow of {site}: H_V {hardness} N/mm³ {of_hardness}, S_f {stress} N/mm² {of_stress}{ratio}{way}.",
         site=chain.site,
+        ratio=_ratio(snow.unloading_ratio, snow.unloading_ratio_interval),
+        way=_way(snow.shear_displacement, snow.shear_displacement_interval),
         hardness=significant(snow.snow_hardness / N_PER_MM3),
         of_hardness=interval(of_hardness and [end / N_PER_MM3 for end in of_hardness]),
         stress=significant(None if snow.failure_shear_stress is None else snow.failure_shear_stress / N_PER_MM2),
         of_stress=interval(of_stress and [end / N_PER_MM2 for end in of_stress]),
     )
+
+
+def _ratio(value: float | None, ends: tuple[float, float] | None) -> Markup:
+    """k_u/H_V, where it was measured."""
+    known = value is not None and ends is not None
+    return prose(", k_u / H_V {value} {ends}", value=significant(value), ends=interval(ends)) if known else html("")
+
+
+def _way(value: float | None, ends: tuple[float, float] | None) -> Markup:
+    """u_y, where it was measured with an interval."""
+    if value is None or ends is None:
+        return html("")
+    return prose(", u_y {value} mm {ends}", value=significant(value / MM), ends=interval([end / MM for end in ends]))
 
 
 def _contact(name: str, run: Run) -> Markup:
@@ -241,5 +290,6 @@ def _would_tell(chain: TurnChain) -> Markup:
     if found is None:
         return html("")
     key = found.keys[int(np.argmax(found.aside.share))]
-    test = _INPUTS[key][1] if key in _INPUTS else f"a better value of {key}"
+    known = _FURTHER if key in {each.key for each in chain.measured} else {}
+    test = known.get(key) or (_INPUTS[key][1] if key in _INPUTS else f"a better value of {key}")
     return prose("The band would narrow most by {test}.", test=html(test))

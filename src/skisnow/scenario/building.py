@@ -10,6 +10,7 @@ from ..inputs import made, meant
 from ..ski import Ski, ski_names
 from ..snow import SnowProperties
 from ..snow.given_stress import require_stress, with_stress
+from ..snow.mean_snow import without_measured
 from ..sources import Sources
 from .contact import ELASTIC, Contact
 from .given import GivenScenario
@@ -32,11 +33,22 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
         if key.needed and name not in values:
             raise ParameterError(_missing(name))
     ski, warned = _ski(given, sources)
-    slope, contact = _slope(given, values), _contact(values, _snow(given, sources))
+    slope, snow = _slope(given, values), _snow(given, sources)
+    for name in outdone(given, snow):
+        del values[name]
+    contact = _contact(values, snow)
     if "run.duration_s" not in values and "run.length_m" not in values:
         raise ParameterError("the run has no end: give run.duration_s or run.length_m")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
     return made(Scenario, values, slope=slope, contact=contact, ski=ski), warned
+
+
+def outdone(given: GivenScenario, snow: SnowProperties) -> frozenset[str]:
+    """Names of given values that the snow, which was given after them, has measured itself."""
+    if "snow.results" not in given.values:
+        return frozenset()
+    known = {"snow.unloading_ratio": snow.unloading_ratio, "snow.shear_displacement_mm": snow.shear_displacement}
+    return frozenset(name for name in given.before_results if known[name] is not None)
 
 
 def _missing(name: str) -> str:
@@ -101,9 +113,16 @@ def _contact(values: Mapping[str, Any], snow: SnowProperties) -> Contact:
                 f'snow.unloading_ratio is {ratio:g} beside snow.penetration = "elastic", which is 1. Leave one out'
             )
         ratio = ELASTIC
+    way = values.get("snow.shear_displacement_mm")
+    snow = without_measured(snow, unloading=ratio is not None, displacement=way is not None)
+    ratio = snow.unloading_ratio if ratio is None else ratio
     if ratio is None:
-        raise ParameterError(_missing("snow.unloading_ratio"))
-    return made(Contact, values, snow=snow, unloading_ratio=ratio)
+        unknown = f"; the snow ({snow.source}) has none that was measured" if "snow.results" in values else ""
+        raise ParameterError(_missing("snow.unloading_ratio") + unknown)
+    measured: dict[str, Any] = {}
+    if snow.shear_displacement is not None:
+        measured["shear_displacement"] = snow.shear_displacement
+    return made(Contact, values, snow=snow, unloading_ratio=ratio, **measured)
 
 
 def _ski(given: GivenScenario, sources: Sources) -> tuple[Ski, tuple[str, ...]]:

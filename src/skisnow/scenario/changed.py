@@ -11,6 +11,7 @@ from ..errors import ParameterError
 from ..inputs import Word, changed, values_of
 from ..ski import read_ski
 from ..snow import SnowProperties, published_snow
+from ..snow.mean_snow import without_measured
 from .contact import Contact
 from .given import full_name
 from .keys import SCENARIO_KEYS
@@ -34,8 +35,15 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
 
 
 def _with_numbers(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
-    """Where H_V or S_f become numbers, their source says so, and their interval is gone."""
-    snow = scenario.contact.snow
+    """Where H_V or S_f become numbers, their source says so, and their interval is gone.
+
+    What was measured of k_u/H_V and u_y goes as well where they do.
+    """
+    snow = without_measured(
+        scenario.contact.snow,
+        unloading="snow.unloading_ratio" in values,
+        displacement="snow.shear_displacement_mm" in values,
+    )
     if "snow.H_V_N_per_mm3" in values:
         snow = replace(snow, source=f"{snow.source}; H_V given as a number", snow_hardness_interval=None)
     if "snow.S_f_N_per_mm2" in values:

@@ -51,7 +51,8 @@ class Contact:
         float,
         Quantity(
             "snow.unloading_ratio",
-            'k_u/H_V: 1 is elastic snow, 1000 all but rigid-plastic; left out or 1 with penetration = "elastic"',
+            'k_u/H_V: 1 is elastic snow, 1000 all but rigid-plastic; left out or 1 with penetration = "elastic", left '
+            "out where the results measured it",
             lowest=1.0,
             highest=1000.0,
             origin="not published: a parameter",
@@ -78,7 +79,7 @@ class Contact:
         float,
         Quantity(
             "snow.shear_displacement_mm",
-            "u_y, the way of an edge across until the snow holds it with all of S_f",
+            "u_y, the way of an edge across until the snow holds it with all of S_f; left out where results have it",
             lowest=0.01,  # below, a step's corrections are as large
             highest=10.0,
             origin="not measured: a choice near the law of the paper, which is its limit 0",

@@ -21,6 +21,9 @@ from .solver import present_method
 PATH_KEYS: Final = tuple(name for name, key in SCENARIO_KEYS.items() if isinstance(key, Word) and key.names_file)
 """Keys that name a file."""
 
+MEASURED_TOO: Final = ("snow.unloading_ratio", "snow.shear_displacement_mm")
+"""Keys that a campaign may have measured beside H_V and S_f: then snow.results gives them."""
+
 IDENTIFY: Final = "identify"
 """The section that says what is looked for."""
 
@@ -45,6 +48,9 @@ class GivenScenario(ShownFields):
         The section ``[identify]`` as it stands in the file: what may be looked for, which a run does not heed.
     base
         A scenario that was given as an object; `values` are then the changes to it. None: `values` are all.
+    before_results
+        Those of `MEASURED_TOO` that stood there before a change gave snow.results: what the campaign measured of them
+        comes before them.
     """
 
     title: str
@@ -53,6 +59,7 @@ class GivenScenario(ShownFields):
     folders: Mapping[str, Path]
     identify: Mapping[str, Any] = field(default_factory=dict)
     base: Scenario | None = None
+    before_results: frozenset[str] = frozenset()
 
     def path(self, name: str) -> Path:
         """The place of the file that a key names."""
@@ -65,7 +72,8 @@ class GivenScenario(ShownFields):
         ----------
         changes
             By full names, or by names without their section. What the scenario says in another way gives room: a
-            named snow replaces H_V and S_f, a ski's file its name, elastic snow the unloading ratio.
+            named snow replaces H_V and S_f, a ski's file its name, elastic snow the unloading ratio, and results of a
+            campaign the unloading ratio and the shear displacement as far as it measured them.
         folder
             Where relative paths among the changes start; None: the current folder.
 
@@ -79,7 +87,9 @@ class GivenScenario(ShownFields):
         values = {name: value for name, value in self.values.items() if name not in gone} | new
         folders = dict(self.folders)
         folders.update((name, folder or Path()) for name in PATH_KEYS if name in new)
-        return replace(self, values=values, folders=folders)
+        before = MEASURED_TOO if "snow.results" in new else self.before_results
+        kept = frozenset(name for name in before if name in values and name not in new)
+        return replace(self, values=values, folders=folders, before_results=kept)
 
 
 def given_scenario(name_or_path: str | Path | Scenario) -> GivenScenario:

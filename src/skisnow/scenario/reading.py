@@ -13,7 +13,7 @@ from typing import Any, Final
 from ..errors import ParameterError, RangeWarning
 from ..shown import ShownFields
 from ..sources import Sources
-from .building import built
+from .building import built, outdone
 from .changed import changed_scenario
 from .given import GivenScenario, given_scenario
 from .plausibility import implausible_values
@@ -144,7 +144,9 @@ def _built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str,
 
 def _in_force(given: GivenScenario, scenario: Scenario) -> dict[str, Any]:
     """As given where it was: there and back over the unit could change a last digit."""
-    words = {name: list(value) if isinstance(value, tuple) else value for name, value in given.values.items()}
+    gone = outdone(given, scenario.contact.snow)
+    left = {name: value for name, value in given.values.items() if name not in gone}
+    words = {name: list(value) if isinstance(value, tuple) else value for name, value in left.items()}
     if given.base is not None:
         return {**scenario_values(scenario), **words}
     of_ski = {"ski.name": words.get("ski.name"), "ski.file": words.get("ski.file")}

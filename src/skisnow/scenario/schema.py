@@ -30,7 +30,7 @@ _TOGETHER: Final[dict[str, Schema]] = {
     "snow": {
         "oneOf": [{"required": ["H_V_N_per_mm3", "S_f_N_per_mm2"]}, *_one_of("results", "published")],
         "dependentRequired": {"site": ["results"]},
-        "anyOf": [*_one_of("unloading_ratio"), _ELASTIC],
+        "anyOf": [*_one_of("unloading_ratio", "results"), _ELASTIC],
     },
     "ski": {"oneOf": _one_of("name", "file")},
     "run": {"anyOf": _one_of("duration_s", "length_m")},

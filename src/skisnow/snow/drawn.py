@@ -59,6 +59,21 @@ def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
     return hardness, stress
 
 
+def log_normal(value: float, interval: Interval, shares: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Quantiles at shares (n,) of a value that is known with a 95 % interval above 0: the median is the value.
+
+    On logarithms each side of the value is half of a normal distribution of its own: the interval of a ratio that was
+    turned over, or cut, does not lie evenly about it. Where it does, this is the log-normal distribution.
+
+    >>> log_normal(9.0, (6.0, 16.0), np.array([0.025, 0.5, 0.975])).round(9).tolist()
+    [6.0, 9.0, 16.0]
+    """
+    low, high = (math.log(end / value) for end in interval)
+    place = ndtri(shares) / float(ndtri(0.5 + CONFIDENCE / 2.0))
+    drawn: npt.NDArray[np.float64] = value * np.exp(place * np.where(place < 0.0, -low, high))
+    return drawn
+
+
 def _drawn(interval: Interval, shares: npt.NDArray[np.float64]) -> list[float]:
     """Quantiles of the log-normal distribution with this 95 % interval."""
     low, high = map(math.log, interval)

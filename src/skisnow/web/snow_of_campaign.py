@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING
 from ..errors import ParameterError
 from ..estimate.results_text import results_json
 from ..report.write import RESULTS
+from ..units import MM
 from .analysing import Choice, Refusal, numbers_of
 from .transfer import entry_files, kept_files
-from .words import hardness_words, stress_words
+from .words import estimate_words, hardness_words, stress_words
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from ..scenario.reading import ScenarioFile
+    from ..snow import SnowProperties
     from ..sources import Sources
     from .settings import Lab
 
@@ -42,7 +44,7 @@ def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources
 
 
 def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
-    """Results of a campaign, for the key snow.results, and hardness and stress with their intervals in words.
+    """Results of a campaign, for the key snow.results, and what it says of the snow with intervals in words.
 
     Parameters
     ----------
@@ -73,4 +75,15 @@ def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, st
     hardness = {"H_V_N_per_mm3": values["snow.H_V_N_per_mm3"], **snow}
     stress = {"S_f_N_per_mm2": values["snow.S_f_N_per_mm2"], **snow}
     words = f"H_V = {hardness_words(hardness)}; S_f = {stress_words(stress)}"
-    return results_json(found.results), words
+    return results_json(found.results), "; ".join((words, *_measured_too(asked.contact.snow)))
+
+
+def _measured_too(snow: SnowProperties) -> Iterator[str]:
+    """k_u/H_V and u_y in words, where the run takes the measured ones."""
+    known = (
+        ("k_u/H_V", snow.unloading_ratio, snow.unloading_ratio_interval, 1.0, ""),
+        ("u_y", snow.shear_displacement, snow.shear_displacement_interval, MM, "mm"),
+    )
+    for name, value, ends, unit, word in known:
+        if value is not None:
+            yield f"{name} = {estimate_words(value / unit, ends and [end / unit for end in ends], word)}"

@@ -46,30 +46,31 @@ def label(column: str) -> str:
 
 def hardness_words(row: dict[str, Any]) -> str:
     """H_V with its interval, from a row of ``penetration.experiments``."""
-    return _estimate(row["H_V_N_per_mm3"], row["H_V_interval_N_per_mm3"], "N/mm³")
+    return estimate_words(row["H_V_N_per_mm3"], row["H_V_interval_N_per_mm3"], "N/mm³")
 
 
 def unloading_words(row: dict[str, Any]) -> str:
     """k_u/H_V with its interval, from a row of ``penetration.experiments``; nothing where none was measured."""
     if not row["n_unloading"]:
         return ""
-    return f"k_u/H_V = {_estimate(row['unloading_ratio'], row['unloading_ratio_interval'], '').replace(' ,', ',')}"
+    return f"k_u/H_V = {estimate_words(row['unloading_ratio'], row['unloading_ratio_interval'])}"
 
 
 def stress_words(row: dict[str, Any]) -> str:
     """S_f with its interval, from a row of ``shear.experiments``."""
-    return _estimate(row["S_f_N_per_mm2"], row["S_f_interval_N_per_mm2"], "N/mm²")
+    return estimate_words(row["S_f_N_per_mm2"], row["S_f_interval_N_per_mm2"], "N/mm²")
 
 
 def displacement_words(row: dict[str, Any]) -> str:
     """u_y with its interval, from a row of ``shear.experiments``; nothing where none was measured."""
     if row["shear_displacement_mm"] is None:
         return ""
-    return f"u_y = {_estimate(row['shear_displacement_mm'], row['shear_displacement_interval_mm'], 'mm')}"
+    return f"u_y = {estimate_words(row['shear_displacement_mm'], row['shear_displacement_interval_mm'], 'mm')}"
 
 
-def _estimate(value: float | None, pair: list[float] | None, unit: str) -> str:
+def estimate_words(value: float | None, pair: list[float] | None, unit: str = "") -> str:
+    """A value with its interval."""
     if value is None:
         return "not defined"
     known = interval(pair) if pair is not None else "interval not known"
-    return f"{significant(value)} {unit}, {known}"
+    return f"{significant(value)} {unit}".strip() + f", {known}"

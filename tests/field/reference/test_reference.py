@@ -13,10 +13,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import skisnow
 from skisnow.errors import OutputError, ParameterError
 from skisnow.field.reading import read_campaign
 from skisnow.field.reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
 from skisnow.field.reference.design import PENETRATION_SITES
+from skisnow.field.screening import screen_penetration
 
 QUIET = ReferenceNoise(
     gauge_resolution=0.0,
@@ -351,3 +353,66 @@ def test_the_reader_gives_back_what_was_drawn(tmp_path: Path) -> None:
                 np.testing.assert_allclose(x, y, rtol=1e-15, atol=0)  # a last bit, where a unit is applied otherwise
             elif entry.name != "further":
                 assert x == y, (table, entry.name)
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def test_what_is_asked_for_beside_the_usual_tables_changes_nothing_of_them(tmp_path: Path) -> None:
+    """The cells of the usual columns stay; of several rows of a shear test, that of the largest moment."""
+    write_reference(tmp_path / "usual", seed=3)
+    write_reference(tmp_path / "more", seed=3, turning_angles=True, creep=True)
+    usual, more = ({file: rows_of(tmp_path / name / file) for file in FILES} for name in ("usual", "more"))
+    assert more["density.csv"] == usual["density.csv"]
+    assert more["drop_cone.csv"] == usual["drop_cone.csv"]
+    after = [row.pop("depth_after_mm") for row in more["penetration.csv"]]
+    assert more["penetration.csv"] == usual["penetration.csv"]
+    waited = {(row["site"], row["branch"]) for row, text in zip(usual["penetration.csv"], after, strict=True) if text}
+    assert waited == {("site B", "loading")}
+    angles = [float(row.pop("turning_angle_deg")) for row in more["shear.csv"]]
+    assert more["shear.csv"][4::5] == usual["shear.csv"]
+    assert len(angles) == 5 * len(usual["shear.csv"])
+    for name in ("usual", "more"):
+        assert [problem for problem in read_campaign(tmp_path / name).problems if problem.severity == "error"] == []
+
+
+FILES = ("penetration.csv", "shear.csv", "density.csv", "drop_cone.csv")
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_what_is_written_of_turning_and_waiting_is_read_back(seed: int, tmp_path: Path) -> None:
+    drawn = reference_campaign(seed, turning_angles=True, creep=True)
+    write_reference(tmp_path, seed=seed, turning_angles=True, creep=True)
+    read = read_campaign(tmp_path)
+    assert read.shear is not None
+    assert read.penetration is not None
+    assert read.shear.turning is not None
+    assert drawn.shear.turning is not None
+    assert read.shear.turning.turning_angle == pytest.approx(drawn.shear.turning.turning_angle, abs=1e-12)
+    assert np.array_equal(read.shear.turning.moment, drawn.shear.turning.moment)
+    assert np.array_equal(read.shear.row, drawn.shear.row)
+    assert read.penetration.depth_after == pytest.approx(drawn.penetration.depth_after, nan_ok=True)
+
+
+def test_u_y_is_found_where_nothing_errs() -> None:
+    """Without errors, to the rounding of moments and of angles, 0.0001° at 250 mm: 0.4 µm of 250."""
+    noise = dataclasses.replace(QUIET, turning_sd=0.0)
+    drawn = reference_campaign(1, noise=noise, turning_angles=True)
+    found = skisnow.analyse(drawn.campaign(), n_resamples=100).shear
+    assert found is not None
+    assert found.displacement.value == pytest.approx(drawn.shear_displacement, rel=0.01)
+    assert np.median(drawn.shear_displacement) == pytest.approx(0.25e-3, rel=0.1)
+
+
+def test_the_interval_of_u_y_holds_its_median_and_creep_is_flagged() -> None:
+    analysis = skisnow.analyse(reference_campaign(1, turning_angles=True, creep=True).campaign(), n_resamples=100)
+    snow = analysis.snow()
+    assert snow.shear_displacement_interval is not None
+    low, high = snow.shear_displacement_interval
+    assert low < 0.25e-3 < high
+    assert analysis.campaign.penetration is not None
+    flagged = screen_penetration(analysis.campaign)["creeps"].tolist()
+    sites = [site for site, flag in zip(analysis.campaign.penetration.site, flagged, strict=True) if flag]
+    assert set(sites) == {"site B"}
+    assert len(sites) > 20  # of 30 series with seven depths, each of which grows by more than 1 % in e^(-1/3) = 72 %

@@ -47,6 +47,8 @@ class ReferenceCampaign:
         True k_u/H_V of each series whose discs were taken off again, NaN of the others.
     failure_shear_stress
         True S_f (N/m²), one per shear test.
+    shear_displacement
+        True u_y (m), one per shear test; NaN where no turning angle was asked for.
     """
 
     seed: int
@@ -61,6 +63,7 @@ class ReferenceCampaign:
     penetration_depth: FloatArray = field(repr=False)
     unloading_ratio: FloatArray = field(repr=False)
     failure_shear_stress: FloatArray = field(repr=False)
+    shear_displacement: FloatArray = field(repr=False)
 
     @property
     def name(self) -> str:
@@ -96,7 +99,9 @@ class ReferenceCampaign:
         )
 
 
-def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> ReferenceCampaign:
+def reference_campaign(
+    seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE, turning_angles: bool = False, creep: bool = False
+) -> ReferenceCampaign:
     """Draw a synthetic campaign of the paper's design: 236 penetration series of seven loads, 108 shear tests.
 
     Parameters
@@ -105,6 +110,10 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
         For `numpy.random.default_rng`, the only source of randomness; an integer of at least 0.
     noise
         The errors; the default is the reference campaign, others are for studies.
+    turning_angles
+        Whether the shear tests have turning angles; all else stays as it is.
+    creep
+        Whether depths were read once more after waiting, at a site whose snow creeps; all else stays as it is.
 
     Returns
     -------
@@ -141,6 +150,10 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
     drawn evenly from 2 mm to 12 mm, or to the depth at which the moment S_f e L r is 60 N m where that is less. The
     moment is S_f e L times the true lever arm plus an error, 0 where negative, written to 0.01 N m.
 
+    Turning angles, where asked for, are read at 20, 40, 60, 80 and 100 % of the moment: φ = (u_y/r) M/M_f plus an
+    error, with u_y log-normal about 0.25 mm, written to 0.0001°. Depths after waiting, where asked for, are those of
+    site B times 1 and an exponential growth of 3 % in the mean.
+
     Densities and drop-cone depths vary about their site's and know nothing of H_V. Lengths in the files are written to
     0.01 mm (drop cone 0.1 mm), densities to 1 kg/m³.
 
@@ -154,16 +167,19 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:  # type: ignore[redundant-expr]
         raise ParameterError(f"reference_campaign: the seed is {seed!r}; it must be an integer of at least 0")
     # One stream per kind of draw, so that none depends on how many numbers another took.
-    spots, spread, readings, shear, beside, back = np.random.default_rng(seed).spawn(6)
+    spots, spread, readings, shear, beside, back, turn, wait = np.random.default_rng(seed).spawn(8)
     snow_hardness = draws.snow_hardness(spread, noise)
     edge_angle = draws.edge_angle(spots, snow_hardness)
     pressed = draws.penetration(readings, snow_hardness, edge_angle, noise)
     penetration = draws.unloaded(back, pressed, noise)
     shear_tests, stress = draws.shear(shear, noise)
+    way = np.full(len(shear_tests), np.nan)
+    if turning_angles:
+        shear_tests, way = draws.turned(turn, shear_tests, noise)
     return ReferenceCampaign(
         seed=seed,
         noise=noise,
-        penetration=penetration.tests,
+        penetration=draws.waited(wait, penetration.tests, noise) if creep else penetration.tests,
         shear=shear_tests,
         density=draws.density(beside),
         drop_cone=draws.drop_cone(beside),
@@ -173,4 +189,5 @@ def reference_campaign(seed: int, *, noise: ReferenceNoise = DEFAULT_NOISE) -> R
         penetration_depth=penetration.true_depth,
         unloading_ratio=penetration.unloading_ratio,
         failure_shear_stress=stress,
+        shear_displacement=way,
     )

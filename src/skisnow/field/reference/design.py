@@ -90,6 +90,13 @@ UNLOADED_SITES: Final = ("site B", "site D", "site F")
 UNLOADING_RATIO: Final = 10.0
 """Median k_u/H_V everywhere: of the order that the published runs of a sledge are simulated with."""
 
+SHEAR_DISPLACEMENT: Final = 0.25 * MM
+"""Median u_y, where turning angles are asked for: between the default of a scenario and half a millimetre."""
+TURNING_SHARES: Final = (0.2, 0.4, 0.6, 0.8, 1.0)
+"""Of the largest moment, at which the turning angle is read: four readings of the rising part, and the largest."""
+CREEPING_SITE: Final = "site B"
+"""Whose snow goes on giving way under a constant load, where depths after waiting are asked for."""
+
 PLATE: Final = "plate 100 mm"
 PLATE_LENGTH: Final = 100.0 * MM
 LEVER_ARM: Final = 250.0 * MM

@@ -12,12 +12,23 @@ import numpy as np
 
 from ...snow.published.moessner_2013 import failure_shear_stress_from_angle, failure_shear_stress_from_density
 from ...units import DEGREE, MM
-from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, UnloadingReadings
+from ..records import (
+    DensitySamples,
+    DropConeTests,
+    PenetrationTests,
+    ShearTests,
+    TurningReadings,
+    UnloadingReadings,
+)
 from . import design
 
 if TYPE_CHECKING:
     from ..records import BoolArray, FloatArray
     from .noise import ReferenceNoise
+
+
+_ANGLE_DECIMALS = 4
+"""Of a turning angle in degrees: finer than 0.001 mm at the plate."""
 
 
 class DrawnPenetration(NamedTuple):
@@ -114,6 +125,29 @@ def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearT
     moment = np.maximum(stress * depth * design.PLATE_LENGTH * lever_arm + moment_error, 0.0)
     own_density: FloatArray = np.concatenate([np.full(count - further.size, np.nan), further])
     return _shear_tests(angle, _on_gauge(depth, noise), np.round(moment, 2).astype(np.float64), own_density), stress
+
+
+def waited(generator: np.random.Generator, tests: PenetrationTests, noise: ReferenceNoise) -> PenetrationTests:
+    """Add depths that are read once more under the same load, at the site whose snow creeps."""
+    growth = noise.creep_mean * generator.standard_exponential(len(tests.load))
+    there = np.array(tests.site, dtype=object)[tests.series_of_reading] == design.CREEPING_SITE
+    after = _on_gauge(tests.penetration_depth * (1.0 + growth), noise)
+    return replace(tests, depth_after=np.where(there, after, np.nan))
+
+
+def turned(generator: np.random.Generator, tests: ShearTests, noise: ReferenceNoise) -> tuple[ShearTests, FloatArray]:
+    """Add turning angles up to the largest moment, φ = (u_y/r) M/M_f, and give the true u_y (m) of each test."""
+    shape, shares = (len(tests), len(design.TURNING_SHARES)), np.array(design.TURNING_SHARES)
+    way = design.SHEAR_DISPLACEMENT * np.exp(noise.displacement_log_sd * generator.standard_normal(shape[0]))
+    angle = (way / tests.lever_arm)[:, np.newaxis] * shares + noise.turning_sd * generator.standard_normal(shape)
+    moment = np.round(tests.moment[:, np.newaxis] * shares, 2)
+    readings = TurningReadings(
+        first=np.arange(0, angle.size + 1, shape[1], dtype=np.int64),
+        turning_angle=np.round(angle.ravel() / DEGREE, _ANGLE_DECIMALS) * DEGREE,
+        moment=moment.ravel(),
+    )
+    row = 2 + shape[1] * np.arange(shape[0], dtype=np.int64) + np.argmax(moment, axis=1)
+    return replace(tests, turning=readings, row=row), way
 
 
 def density(generator: np.random.Generator) -> DensitySamples:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _CAMPAIGN_FILES = ("penetration.csv", "shear.csv", "density.csv", "drop_cone.csv", "corrections.csv", "campaign.toml")
 
 
-def write_reference(folder: str | Path, *, seed: int) -> None:
+def write_reference(folder: str | Path, *, seed: int, turning_angles: bool = False, creep: bool = False) -> None:
     """Write the reference campaign of a seed: campaign.toml, penetration, shear, density and drop_cone CSV.
 
     Parameters
@@ -35,6 +35,8 @@ def write_reference(folder: str | Path, *, seed: int) -> None:
         Made where it does not exist; other files in it are left alone.
     seed
         As for `skisnow.field.reference_campaign`. The same seed writes the same bytes.
+    turning_angles, creep
+        Whether shear.csv has turning angles, and penetration.csv depths after waiting; all other cells stay the same.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def write_reference(folder: str | Path, *, seed: int) -> None:
       snow for simulation of skiing", J. Glaciol.
     * The page docs/reference-campaign.md.
     """
-    drawn = reference_campaign(seed)
+    drawn = reference_campaign(seed, turning_angles=turning_angles, creep=creep)
     folder = Path(folder)
     there = [name for name in _CAMPAIGN_FILES if (folder / name).exists()]
     if there:
@@ -129,12 +131,19 @@ def _penetration_csv(drawn: ReferenceCampaign) -> str:
     names = [[column[index] for index in of_row] for column in (tests.experiment, tests.site, tests.spot, tests.tool)]
     angle = _written(tests.edge_angle[of_row], DEGREE, 0)
     numbers = (_written(load[order], 1.0, 0), _written(depth[order], MM, 2))
-    return _csv(header, [*names, angle, *numbers, [branch[index] for index in order.tolist()]])
+    columns = [*names, angle, *numbers, [branch[index] for index in order.tolist()]]
+    if tests.depth_after is None:
+        return _csv(header, columns)
+    after = np.concatenate([tests.depth_after, np.full(len(row) - len(tests.load), np.nan)])
+    return _csv((*header, "depth_after_mm"), [*columns, _written(after[order], MM, 2)])
 
 
 def _shear_csv(drawn: ReferenceCampaign) -> str:
     tests = drawn.shear
-    header = ("experiment", "site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm", "moment_Nm")
+    header: tuple[str, ...] = (
+        "experiment", "site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm", "moment_Nm",
+        "snow_density_kg_per_m3",
+    )  # fmt: skip
     numbers = [
         _written(tests.edge_angle, DEGREE, 0),
         _written(tests.penetration_depth, MM, 2),
@@ -143,7 +152,13 @@ def _shear_csv(drawn: ReferenceCampaign) -> str:
         _written(tests.snow_density, 1.0, 0),
     ]
     columns = [tests.experiment, tests.site, tests.spot, tests.plate, *numbers]
-    return _csv((*header, "snow_density_kg_per_m3"), columns)
+    turning = tests.turning
+    if turning is None:
+        return _csv(header, columns)
+    of_row = turning.test_of_reading.tolist()
+    several = [[column[index] for index in of_row] for column in columns]
+    several[header.index("moment_Nm")] = _written(turning.moment, 1.0, 2)
+    return _csv((*header, "turning_angle_deg"), [*several, _written(turning.turning_angle, DEGREE, 4)])
 
 
 def _density_csv(drawn: ReferenceCampaign) -> str:
@@ -164,6 +179,7 @@ def _campaign_toml(drawn: ReferenceCampaign) -> str:
     hard, soft, about_density = (
         scatter / N_PER_MM2 for scatter in (design.HARD_SCATTER, design.SOFT_SCATTER, design.DENSITY_SCATTER)
     )
+    further = _further_noise(drawn)
     return f"""\
 # SYNTHETIC DATA: no snow was measured. Drawn by skisnow's reference campaign with seed {drawn.seed}.
 # Design, ranges and group sizes after Mössner and others (2013), J. Glaciol.; what that paper does not print is chosen.
@@ -179,7 +195,7 @@ def _campaign_toml(drawn: ReferenceCampaign) -> str:
 #   shear: S_f scatters by {hard:g} N/mm2 (hard), {soft:g} (soft, about Eqn 13), {about_density:g} (about Eqn 14),
 #     hard and Eqn 14 redrawn outside 0.04-0.40;
 #     moment {noise.moment_sd:g} N m; the true lever arm is the stated one plus {noise.lever_arm_sd / MM:g} mm
-name = "{drawn.name}"
+{further}name = "{drawn.name}"
 place = "{drawn.place}"
 observers = ["skisnow"]
 gauge_resolution_mm = {noise.gauge_resolution / MM:g}
@@ -198,3 +214,19 @@ width_mm = {tool.width / MM:g}
 name = "{design.PLATE}"
 length_mm = {design.PLATE_LENGTH / MM:g}
 """
+
+
+def _further_noise(drawn: ReferenceCampaign) -> str:
+    """Of what was asked for beside the usual tables."""
+    noise, said = drawn.noise, ""
+    if drawn.shear.turning is not None:
+        said += (
+            f"#   turning angles: u_y is {design.SHEAR_DISPLACEMENT / MM:g} mm, its logarithm varies by "
+            f"{noise.displacement_log_sd:g} from test to test; each angle by {noise.turning_sd / DEGREE:g} degrees\n"
+        )
+    if drawn.penetration.depth_after is not None:
+        said += (
+            f"#   creep at {design.CREEPING_SITE}: after waiting each depth is larger by an exponential share of mean "
+            f"{noise.creep_mean:g}\n"
+        )
+    return said

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ...errors import ParameterError
-from ...units import MM
+from ...units import DEGREE, MM
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +41,12 @@ class ReferenceNoise:
         Spread of ln(k_u/H_V) between the spots of one site.
     rebound_scatter
         Relative scatter of the rebound from reading to reading, while discs are taken off.
+    displacement_log_sd
+        Spread of ln u_y from shear test to shear test, where turning angles are asked for.
+    turning_sd
+        Error of a turning angle (rad), each reading by itself: of 0.01 mm on a dial gauge at the plate.
+    creep_mean
+        Mean of the exponential distribution of the relative growth of a depth under a constant load where snow creeps.
     """
 
     gauge_resolution: float = 0.01 * MM
@@ -55,6 +61,9 @@ class ReferenceNoise:
     lever_arm_sd: float = 1.0 * MM
     unloading_log_sd: float = 0.15
     rebound_scatter: float = 0.02
+    displacement_log_sd: float = 0.2
+    turning_sd: float = 0.002 * DEGREE
+    creep_mean: float = 0.03
 
     def __post_init__(self) -> None:
         for name in (entry.name for entry in fields(self)):

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...inputs import values_of
 from ...units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..table import Column, Table
+from ..turn_inputs import band_inputs
 from ..turn_numbers import BandShares, afterbody_depth_ratio, band_shares, median_radius, middle_track, used_grip
 
 if TYPE_CHECKING:
@@ -20,13 +20,18 @@ if TYPE_CHECKING:
 
 
 def parameters_table(snow: SnowProperties) -> Table:
-    """H_V and S_f with their intervals."""
+    """H_V and S_f with their intervals, and k_u/H_V and u_y where they were measured with one."""
     rows = [
         ("snow hardness H_V", "N/mm³", _scaled(snow.snow_hardness, N_PER_MM3),
          _both(snow.snow_hardness_interval, N_PER_MM3)),
         ("failure shear stress S_f", "N/mm²", _scaled(snow.failure_shear_stress, N_PER_MM2),
          _both(snow.failure_shear_stress_interval, N_PER_MM2)),
     ]  # fmt: skip
+    if snow.unloading_ratio_interval is not None:
+        rows.append(("k_u / H_V", "", snow.unloading_ratio, snow.unloading_ratio_interval))
+    if snow.shear_displacement_interval is not None:
+        way = _scaled(snow.shear_displacement, MM), _both(snow.shear_displacement_interval, MM)
+        rows.append(("shear displacement u_y", "mm", *way))
     return Table(
         "parameters",
         "The snow of the site, with 95 % intervals of the means.",
@@ -118,7 +123,7 @@ def shares_table(chain: TurnChain) -> Table:
         (
             Column("key", "Input", "text"),
             Column("range", "Range", "range"),
-            Column("origin", "Distribution and origin", "words"),
+            Column("origin", "Measured or prior, distribution and origin", "words"),
             Column("aside_percent", "Share of the offset across", "estimate", unit="%", digits=2),
             Column("ahead_percent", "Share of the offset along", "estimate", unit="%", digits=2),
         ),
@@ -130,16 +135,8 @@ def shares_table(chain: TurnChain) -> Table:
 
 
 def _inputs(chain: TurnChain, found: BandShares | None) -> Iterator[tuple[Any, ...]]:
-    snow, own = chain.snow, values_of(chain.nominal.scenario)
-    measured = (
-        ("snow.H_V_N_per_mm3", _both(snow.snow_hardness_interval, N_PER_MM3), "log-normal"),
-        ("snow.S_f_N_per_mm2", _both(snow.failure_shear_stress_interval, N_PER_MM2), "normal, above 0"),
-    )
-    for key, ends, shape in measured:
-        yield key, ends, f"{shape}; the 95 % interval above", *_shares_of(key, found)
-    for prior in chain.priors:
-        value = own[prior.key]
-        yield prior.key, prior.ends(value), f"even in its logarithm; {prior.origin}", *_shares_of(prior.key, found)
+    for each in band_inputs(chain):
+        yield each.key, (each.low, each.high), each.in_words, *_shares_of(each.key, found)
 
 
 def _shares_of(key: str, found: BandShares | None) -> tuple[Any, Any]:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from .table_view import TableView
 
 USUAL_REASON: Final = "typing error"
+WAITED: Final = "read once more after waiting"
+"""Why the row of a reading gets a second depth later than the first one."""
 _SAME: Final = ("experiment", "sample", "test", "site", "spot", "tool", "plate")
 _DONE: Final = {"add": "entered", "correct": "corrected", "cancel": "cancelled", "undo": "undid the entry before"}
 
@@ -156,6 +158,8 @@ def _done(entry: JournalEntry) -> str:
         return entry.why
     if entry.action == "correct" and all("/" in key for key in cells):
         what = ", ".join(_cell_words(key, text) for key, text in cells.items())
+    elif entry.action == "correct" and entry.why == WAITED:
+        return f"{WAITED}: {', '.join(cells.values())} mm"
     elif entry.action == "add" and "load_N" in cells:
         back = " on the way back" if is_unloading_cell(cells.get(BRANCH, "")) else ""
         what = f"{cells['depth_mm']} mm under {cells['load_N']} N{back}"

@@ -17,6 +17,7 @@ from ..words import label
 from .changes import USUAL_REASON, Places, ask_reason, changes, focus_button
 from .checking import Field, checked_fields, faults, refuse
 from .resent import HEAD
+from .waiting import AfterWaiting
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -66,6 +67,7 @@ class SeriesForm:
         self._readings: dict[_Step, _Reading] = {}
         self._asking: tuple[_Step, str] | None = None
         self._refused: dict[_Step, str] = {}
+        self._waiting: AfterWaiting | None = None
         self._shown = ""
 
     # The head of a series
@@ -137,6 +139,7 @@ class SeriesForm:
     def _draw(self, test: ReplayedTest) -> None:
         """Draw the series; what is typed and not stored stays."""
         unstored = self._unstored() if self._shown == test.name else {}
+        waiting = self._waiting.unstored if self._waiting is not None and self._shown == test.name else {}
         self._shown = test.name
         self._readings, self._asking, self._refused = {}, None, {}
         self._places.clear()
@@ -150,6 +153,8 @@ class SeriesForm:
             self._ask = ui.element("div")
             self._then = asking_button("Next series", self._next, "main then")
             self._way_back(test, [_Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
+            self._waiting = AfterWaiting(self._view, test.name, lambda: self.show(test.name, self._head))
+            self._waiting.draw(loads, waiting, self._ask)
         with self._places.below:
             self._changes = ui.element("div")
             self._further(test)
@@ -184,6 +189,11 @@ class SeriesForm:
             self._view.say(f"Not stored yet: {loads}. Put it right or empty the field, then go on.", "bad")
             self._readings[next(iter(missing))].depth.run_method("focus")
             return False
+        if self._waiting is not None and self._waiting.unstored:
+            loads = ", ".join(f"{load} N after waiting" for load in self._waiting.unstored)
+            self._view.say(f"Not stored yet: {loads}. Store it or empty the field, then go on.", "bad")
+            self._waiting.focus()
+            return False
         self.begin()
         return True
 
@@ -217,7 +227,7 @@ class SeriesForm:
             stored = ui.label("stored" if row else "").classes("stored")
             if row is not None:
                 made.props["data-stored"] = row.cells["depth_mm"]
-            if row is not None and row.corrections:
+            if row is not None and row.cells["depth_mm"] != row.entered.cells["depth_mm"]:
                 stored.set_text(f"corrected from {row.entered.cells['depth_mm']}")
         depth.on("keydown.enter", answering(lambda: self._entered(step)), js_handler=TOLD)
         depth.on("blur", answering(lambda: self._entered(step, left=True)), js_handler=LEFT)

@@ -63,7 +63,15 @@ class TableView:
         sent = (entry for test in self.tests() for entry in test.history if once is not None and entry.once == once)
         return next((entry.test for entry in sent), None)
 
-    def correct(self, test: ReplayedTest, row: int, cells: Mapping[str, str], why: str) -> bool:
+    def correct(
+        self,
+        test: ReplayedTest,
+        row: int,
+        cells: Mapping[str, str],
+        why: str,
+        *,
+        said: str = "Corrected; the first reading is kept.",
+    ) -> bool:
         """Store a correction of the row that was entered under this sequence."""
         if not why.strip():
             self.say("A correction needs a reason.", "bad")
@@ -77,7 +85,7 @@ class TableView:
             who=self._who.value or "",
             why=why.strip(),
         )
-        return self._write(entry, test.last, "Corrected; the first reading is kept.")
+        return self._write(entry, test.last, said)
 
     def cancel(self, test: ReplayedTest, why: str) -> bool:
         """Store that a test does not count, and why."""
