@@ -103,7 +103,7 @@ def test_parameters_are_in_the_units_of_the_field() -> None:
     assert stress[3] == pytest.approx((0.4, 0.6))
 
 
-def test_what_was_measured_beside_them_stands_in_the_table_and_is_told_more_of_by_further_readings(
+def test_what_was_measured_beside_them_stands_in_the_table_and_is_narrowed_by_further_readings(
     chain: TurnChain,
 ) -> None:
     snow = replace(
@@ -121,8 +121,8 @@ def test_what_was_measured_beside_them_stands_in_the_table_and_is_told_more_of_b
     known = replace(chain, snow=snow, ensemble=runs, measured=measured_of(snow))
     said = " ".join(str(each.striptags()) for each in (*key_sentences(known), *meaning(known)))
     assert "ku / HV 9.00 [6.00, 16.0], uy 0.250 mm [0.200, 0.300]" in said
-    assert "told by further shear tests with turning angles" in said
-    assert "told by the turning angle" in " ".join(
+    assert "narrow most by further shear tests with turning angles" in said
+    assert "narrow most by the turning angle" in " ".join(
         str(each.striptags()) for each in meaning(replace(chain, ensemble=runs))
     )
 
