@@ -16,7 +16,7 @@ from skisnow.field.store import Journals, NewEntry, Store
 from skisnow.web.analyses import MOST_CAMPAIGNS
 from skisnow.web.analysing import choosable_flags
 
-from .conftest import DRAWING_MS, Served, downloaded_results
+from .conftest import DRAWING_MS, Served, downloaded_results, ready
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, WebSocketRoute
@@ -134,9 +134,12 @@ def test_the_report_is_of_what_was_chosen_just_before(page: Page, served: Served
     page.route_web_socket("**/*", pass_on)
     page.goto(f"{served.address}analysis/kept/{id_}")
     page.locator(".status", has_text="used.").wait_for()
+    ready(page)
     page.locator("summary", has_text="Included experiments").press("Enter")
+    first = page.get_by_role("checkbox", name=re.compile("^Penetration P001,"))
+    first.wait_for()
     is_slow = True
-    page.get_by_role("checkbox", name=re.compile("^Penetration P001,")).press("Space")
+    first.press("Space")
     with page.expect_popup() as opened:
         page.get_by_role("link", name="Open the report").press("Enter")
         is_slow = False
