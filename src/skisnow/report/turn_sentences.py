@@ -36,7 +36,7 @@ HELD: Final = 0.05
 _INPUTS: Final = {
     "snow.H_V_N_per_mm3": ("the snow hardness H_V", "further penetration tests at this site"),
     "snow.S_f_N_per_mm2": ("the failure shear stress S_f", "further shear tests at this site"),
-    "snow.unloading_ratio": ("k_u/H_V", "depths read while the discs are taken off one by one, for k_u"),
+    "snow.unloading_ratio": ("k_u / H_V", "depths read while the discs are taken off one by one, for k_u"),
     "snow.shear_displacement_mm": (
         "the shear displacement u_y",
         "the turning angle read beside the moment of the shear device, for u_y",
