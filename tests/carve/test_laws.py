@@ -215,4 +215,5 @@ def test_a_flat_ski_asks_for_no_strength() -> None:
     )
     known = carve(read_ski("slalom"), snow(0.2), edge_angle=0.0, load=800.0, unloading_ratio=1.0)
     assert found.edge_depth is not None
+    assert known.edge_depth is not None
     assert np.array_equal(found.edge_depth, known.edge_depth)
