@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "carve_law.hpp"
 #include "columns.hpp"
 
 namespace skisnow {
@@ -44,7 +45,10 @@ struct CarveConditions {
   bool side_force_bending, twists;
   double bevel, bevel_width;              // of the base along its edge (rad, m)
   double pitch_of_force, pitch_of_shear;  // shares of snow force and side force in the balance of moments
-  bool by_reaction = false;  // the side force goes along the edge as the force on the base, not as its depth
+  bool by_reaction = false;         // the side force goes along the edge as the force on the base, not as its depth
+  const CarveLaws* laws = nullptr;  // from outside; hardness and excess are then where the search begins
+  double law_share = 1.0;           // of the pressure that is theirs
+  double law_memory = 1.0;          // share of the groove's lead over the base that they are told of
 };
 
 struct CarveState {

@@ -20,13 +20,19 @@ struct Load {
   double pulled_normal, pulled_moment, pulled_pitch;
 };
 
+// Strength of the edge by a law from outside, over the one that all have in common, and how it grows.
+struct Strength {
+  double share = 1.0, by_depth = 0.0, by_angle = 0.0;
+};
+
 class Pass {
  public:
-  Pass(const CarvedSki& ski, const CarveConditions& conditions, CarveLinks& links, const CarveState& at,
+  Pass(const CarvedSki& ski, const CarveConditions& conditions, CarveGroove& groove, const CarveState& at,
        CarveEquations& out)
       : ski_(ski),
         conditions_(conditions),
-        links_(links),
+        links_(groove.links),
+        pressure_(groove.pressure),
         at_(at),
         out_(out),
         sine_(std::sin(conditions.edge_angle)),
@@ -39,14 +45,19 @@ class Pass {
   const CarvedSki& ski_;
   const CarveConditions& conditions_;
   CarveLinks& links_;
+  CarvePressure& pressure_;
   const CarveState& at_;
   CarveEquations& out_;
-  double sine_, cosine_;  // of the boot's edge angle
+  double sine_, cosine_;            // of the boot's edge angle
+  std::vector<Strength> strength_;  // of each station, where a law gives it
 
   void begin();
   double twist(const CarveStation& station) const;
   CarveSection section(const CarveStation& station) const;
-  Load load(const CarveSection& section, const StripSums& sums) const;
+  template <class Groove>
+  void ask_pressure(Groove& groove);
+  void ask_strength();
+  Load load(const CarveSection& section, const StripSums& sums, const Strength& strength) const;
   void add_to_border(const CarveStation& station, const Load& load);
   void add_to_beam(const CarveStation& station, const Load& load);
   void add_to_matrix(const CarveStation& station, const Load& load);
@@ -96,16 +107,19 @@ CarveSection Pass::section(const CarveStation& s) const {
 
 // [load] The snow's force along its normal turns the section about its middle, with the lever W/2 cos at the edge and
 // less inwards; the shear τ e acts at the edge.
-Load Pass::load(const CarveSection& section, const StripSums& sums) const {
+Load Pass::load(const CarveSection& section, const StripSums& sums, const Strength& strength) const {
   const double stress = at_.border[2], lever = section.half * section.cosine;
   const double square = 1.0 + section.tangent * section.tangent;
-  const double by_depth = sums.by_depth[0], by_twist = lever * sums.by_depth[0] - square * sums.by_depth[1];
+  const double by_depth = sums.by_depth[0];
+  const double by_twist = lever * sums.by_depth[0] - square * sums.by_depth[1] + sums.by_angle[0];
   const double moment = sums.moment - lever * sums.force, moment_by_depth = sums.by_depth[1] - lever * by_depth;
-  const double moment_by_twist = lever * sums.by_depth[1] - square * sums.by_depth[2] - lever * by_twist +
-                                 section.half * section.sine * sums.force;
+  const double moment_by_twist = lever * sums.by_depth[1] - square * sums.by_depth[2] + sums.by_angle[1] -
+                                 lever * by_twist + section.half * section.sine * sums.force;
   const bool reacts = conditions_.by_reaction;
-  const double held = section.depth > 0.0 ? 1.0 : 0.0, bite = reacts ? sums.force : held * section.depth;
-  const double bite_by_depth = reacts ? by_depth : held, bite_by_twist = reacts ? by_twist : held * lever;
+  const double held = section.depth > 0.0 ? section.depth : 0.0, bite = reacts ? sums.force : strength.share * held;
+  const double growth = section.depth > 0.0 ? strength.share + strength.by_depth * held : 0.0;
+  const double bite_by_depth = reacts ? by_depth : growth;
+  const double bite_by_twist = reacts ? by_twist : growth * lever + strength.by_angle * held;
   const double shears = conditions_.side_force_bending ? 1.0 : 0.0;
   const double up = shears * sine_, turn = -shears * section.half * section.sine, turn_by_twist = -shears * lever;
   return {.normal = cosine_ * sums.force + up * stress * bite,
@@ -231,21 +245,55 @@ void Pass::bind_links() {
   }
 }
 
+// The stretches of all sections, for a law that is asked once for all of them.
+template <class Groove>
+void Pass::ask_pressure(Groove& groove) {
+  groove.clear();
+  for (std::size_t i = 0; i < ski_.stations.size(); i++) {
+    const CarveSection found = section(ski_.stations[i]);
+    StripSums nothing;
+    groove.across(found, int(i), pressure_, nothing, links_);
+    groove.pass(found, int(i));
+  }
+  pressure_.ask();
+}
+
+// [strength] At all stations, with depth and angle as they are and each a little more.
+void Pass::ask_strength() {
+  if (conditions_.laws == nullptr || !conditions_.laws->strength || conditions_.by_reaction) return;
+  constexpr double STEP = 1e-8, ANGLE_STEP = 1e-6;  // (m), (rad)
+  const std::size_t n = ski_.stations.size();
+  CarveLaws::Values depth, angle;
+  for (int change = 0; change < 3; change++)
+    for (const CarveStation& station : ski_.stations) {
+      const CarveSection found = section(station);
+      depth.push_back(std::max(found.depth, 0.0) + (change == 1 ? STEP : 0.0));
+      angle.push_back(std::asin(std::min(std::fabs(found.sine), 1.0)) + (change == 2 ? ANGLE_STEP : 0.0));
+    }
+  const auto found = conditions_.laws->strength(depth, angle);
+  for (std::size_t i = 0; i < n; i++)
+    strength_.push_back({found[i], (found[n + i] - found[i]) / STEP, (found[2 * n + i] - found[i]) / ANGLE_STEP});
+}
+
 template <class Groove>
 void Pass::from_tip_to_tail(Groove& groove) {
   begin();
+  pressure_.begin(conditions_.laws, conditions_.law_share, conditions_.law_memory, conditions_.hardness,
+                  conditions_.excess);
+  if (pressure_.gathers()) ask_pressure(groove);
+  ask_strength();
   groove.clear();
   for (std::size_t i = 0; i < ski_.stations.size(); i++) {
     const CarveStation& station = ski_.stations[i];
     const CarveSection found = section(station);
     StripSums sums;
     links_.next_section();
-    groove.across(found, int(i), conditions_, sums, links_);
+    groove.across(found, int(i), pressure_, sums, links_);
     groove.pass(found, int(i));
     out_.depth[i] = found.depth;
     out_.force[i] = sums.force;
     if (sums.by_depth[0] == 0.0 && !(found.depth > 0.0)) continue;
-    const Load felt = load(found, sums);
+    const Load felt = load(found, sums, strength_.empty() ? Strength{} : strength_[i]);
     const double lever = found.half * found.cosine;
     add_to_border(station, felt);
     add_to_beam(station, felt);
@@ -272,7 +320,7 @@ CarveEquations::CarveEquations(const CarvedSki& ski)
 
 void assemble(const CarvedSki& ski, const CarveConditions& conditions, CarveGroove& groove, const CarveState& at,
               CarveEquations& out) {
-  Pass pass(ski, conditions, groove.links, at, out);
+  Pass pass(ski, conditions, groove, at, out);
   if (groove.along_path) {
     groove.path.tangent = std::tan(conditions.edge_angle);
     pass.from_tip_to_tail(groove.path);

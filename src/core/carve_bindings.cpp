@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 
 #include "arrays.hpp"
 #include "banded.hpp"
@@ -58,8 +59,34 @@ std::function<void()> answering_signals() {
   };
 }
 
-nb::tuple find(const CarvedSki& ski, const CarveConditions& conditions, const std::optional<Array>& offset,
-               const std::optional<nb::tuple>& near) {
+// One number back for each point.
+template <class... Points>
+CarveLaws::Values asked(const nb::object& law, const Points&... points) {
+  nb::gil_scoped_acquire held;
+  const std::size_t wanted = std::max({points.size()...});
+  const auto found = nb::cast<Array>(law(array(points, {points.size()})...));
+  if (found.size() != wanted) throw std::invalid_argument("a law must give one value for each point");
+  return CarveLaws::Values(found.data(), found.data() + wanted);
+}
+
+// Laws in Python, or none: `pressure` and `residual` of arrays, `strength` over one that all have in common.
+void set_laws(CarveLaws& out, const nb::object& pressure, const nb::object& residual, const Array& bends,
+              const nb::object& strength) {
+  using Values = CarveLaws::Values;
+  if (!pressure.is_none()) {
+    out.pressure = [pressure](const Values& depth, const Values& deepest, const Values& angle) {
+      return asked(pressure, depth, deepest, angle);
+    };
+    out.residual = [residual](const Values& deepest) { return asked(residual, deepest); };
+  }
+  out.bends.assign(bends.data(), bends.data() + bends.size());
+  if (strength.is_none()) return;
+  out.strength = [strength](const Values& depth, const Values& angle) { return asked(strength, depth, angle); };
+}
+
+nb::tuple find(const CarvedSki& ski, CarveConditions conditions, const std::optional<Array>& offset,
+               const std::optional<nb::tuple>& near, const CarveLaws* laws) {
+  conditions.laws = laws;
   CarveSolution found, from;
   if (near) {
     from.state.u = ski.spread(nb::cast<Array>((*near)[0]).data());
@@ -128,7 +155,14 @@ void bind_carve(nb::module_& m) {
                                  side_force,     side_force_bending, twists,     bevel, bevel_width,
                                  pitch_of_force, pitch_of_shear,     by_reaction};
       });
-  m.def("find_carve", &find, nb::arg("ski"), nb::arg("conditions"), nb::arg("offset").none(), nb::arg("near").none());
+  nb::class_<CarveLaws>(m, "CarveLaws")
+      .def(
+          "__init__",
+          [](CarveLaws* at, const nb::object& pressure, const nb::object& residual, const Array& bends,
+             const nb::object& strength) { set_laws(*new (at) CarveLaws, pressure, residual, bends, strength); },
+          nb::arg("pressure").none(), nb::arg("residual").none(), nb::arg("bends"), nb::arg("strength").none());
+  m.def("find_carve", &find, nb::arg("ski"), nb::arg("conditions"), nb::arg("offset").none(), nb::arg("near").none(),
+        nb::arg("laws").none());
   m.def("banded_factors", &banded_factors);
   m.def("banded_solution", &banded_solution);
   m.def("strip_sums", &strip_sums);

@@ -48,6 +48,7 @@ struct CarveGroove {
   GrooveAlongEdge edge;
   GrooveAlongPath path;
   CarveLinks links;
+  CarvePressure pressure;
 };
 
 // Put together at a state.

@@ -34,7 +34,7 @@ void GrooveAlongEdge::clear() {
 }
 
 // [across]
-void GrooveAlongEdge::across(const CarveSection& section, int, const CarveConditions& conditions, StripSums& sums,
+void GrooveAlongEdge::across(const CarveSection& section, int, CarvePressure& pressure, StripSums& sums,
                              CarveLinks& links) const {
   const double square = 1.0 + section.tangent * section.tangent;
   for (std::size_t k = 0; k + 1 < place.size(); k++) {
@@ -45,7 +45,7 @@ void GrooveAlongEdge::across(const CarveSection& section, int, const CarveCondit
     if (depth0 <= 0.0 && depth1 <= 0.0) continue;
     const double groove0 = depth_[k], groove1 = groove0 + length / spacing * (depth_[k + 1] - groove0);
     std::fill_n(sums.by_groove, 3, 0.0);
-    sums.add_interval(start, length, depth0, depth1, groove0, groove1, conditions.hardness, conditions.excess);
+    pressure.add({start, length, depth0, depth1, groove0, groove1, section.sine}, sums);
     const double* by = sums.by_groove;
     if (by[0] == 0.0) continue;
     // the groove is a straight line between two places: each has its share
@@ -65,8 +65,8 @@ void GrooveAlongEdge::pass(const CarveSection& section, int station) {
   }
 }
 
-void GrooveAlongPath::across(const CarveSection& section, int station, const CarveConditions& conditions,
-                             StripSums& sums, CarveLinks& links) const {
+void GrooveAlongPath::across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,
+                             CarveLinks& links) const {
   const double aside = offset[std::size_t(station)], level = section.corner - aside * tangent;
   const double bevel_end = section.strip * section.cosine;
   double low = 0.0;
@@ -78,8 +78,7 @@ void GrooveAlongPath::across(const CarveSection& section, int station, const Car
     const auto add = [&](double start, double end) {
       if (!(end > start)) return;
       const double depth0 = section.base_depth(start), depth1 = section.base_depth(end);
-      sums.add_interval(start, end - start, depth0, depth1, depth0 + deeper, depth1 + deeper, conditions.hardness,
-                        conditions.excess);
+      pressure.add({start, end - start, depth0, depth1, depth0 + deeper, depth1 + deeper, section.sine}, sums);
     };
     add(low, std::min(high, bevel_end));
     add(std::max(low, bevel_end), high);

@@ -52,7 +52,7 @@ struct GrooveAlongEdge {
   std::vector<double> place;  // rising from 0
 
   void clear();
-  void across(const CarveSection& section, int station, const CarveConditions& conditions, StripSums& sums,
+  void across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,
               CarveLinks& links) const;
   void pass(const CarveSection& section, int station);
 
@@ -69,7 +69,7 @@ struct GrooveAlongPath {
   double tangent = 0.0;        // of the boot's edge angle
 
   void clear() { steps_.clear(); }
-  void across(const CarveSection& section, int station, const CarveConditions& conditions, StripSums& sums,
+  void across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,
               CarveLinks& links) const;
   void pass(const CarveSection& section, int station);
 

@@ -68,15 +68,37 @@ class Search {
     return found;
   }
 
-  // Elastic snow, then memory: the logarithm of the unloading ratio grows from 0.
+  // Elastic snow, then memory; a law from outside as if all places were virgin, then with their memory.
   bool loaded(const CarveConditions& conditions) {
+    return has_law(conditions) ? presses(conditions) : remembers(conditions);
+  }
+
+  // The same on softer snow, which is then hardened; the law from outside comes last.
+  bool hardened(double softening) {
+    const auto softer = [&](double share) {
+      const double factor = std::pow(softening, share - 1.0);
+      CarveConditions out = conditions_;
+      out.law_share = 0.0;
+      out.hardness *= factor;
+      out.excess *= factor;
+      return out;
+    };
+    newton.state = first_guess(ski_, softer(0.0));
+    return remembers(softer(0.0)) && follows(softer) && takes_law(conditions_);
+  }
+
+ private:
+  const CarvedSki& ski_;
+  CarveConditions conditions_;
+  CarveGroove groove_;
+
+  // Elastic snow, then memory: the logarithm of the unloading ratio grows from 0.
+  bool remembers(const CarveConditions& conditions) {
     CarveConditions elastic = conditions;
     elastic.excess = 0.0;
     if (!reaches(elastic)) return false;
     if (conditions.excess == 0.0) return true;
-    // keep the groove where the present state has its waterline
-    const auto& depth = newton.at.depth;
-    groove_.edge.place = places_across(ski_, conditions_, *std::max_element(depth.begin(), depth.end()));
+    keep_groove_at_waterline();
     const double goal = std::log1p(conditions.excess / conditions.hardness);
     return follows([&](double share) {
       CarveConditions out = conditions;
@@ -85,23 +107,40 @@ class Search {
     });
   }
 
-  // The same on softer snow, which is then hardened.
-  bool hardened(double softening) {
-    const auto softer = [&](double share) {
-      const double factor = std::pow(softening, share - 1.0);
-      CarveConditions out = conditions_;
-      out.hardness *= factor;
-      out.excess *= factor;
-      return out;
-    };
-    newton.state = first_guess(ski_, softer(0.0));
-    return loaded(softer(0.0)) && follows(softer);
+  static bool has_law(const CarveConditions& conditions) {
+    return conditions.laws != nullptr && conditions.laws->pressure;
   }
 
- private:
-  const CarvedSki& ski_;
-  CarveConditions conditions_;
-  CarveGroove groove_;
+  // A law from outside: its share of the pressure grows on elastic snow, then that of the groove that it is told of.
+  bool presses(const CarveConditions& conditions) {
+    CarveConditions elastic = conditions, virgin = conditions;
+    elastic.excess = elastic.law_share = 0.0;
+    virgin.excess = virgin.law_memory = 0.0;
+    if (!reaches(elastic)) return false;
+    keep_groove_at_waterline();
+    if (!takes_law(virgin)) return false;
+    const double ratio = conditions.excess / conditions.hardness, goal = std::log1p(ratio);
+    return follows([&](double share) {
+      CarveConditions out = conditions;
+      if (share < 1.0 && ratio > 0.0) out.law_memory = std::expm1(share * goal) / ratio;
+      return out;
+    });
+  }
+
+  // From the core's law to one from outside, where there is one: its share of the pressure grows from 0.
+  bool takes_law(const CarveConditions& conditions) {
+    return !has_law(conditions) || follows([&](double share) {
+      CarveConditions out = conditions;
+      out.law_share = share;
+      return out;
+    });
+  }
+
+  // Of the present state.
+  void keep_groove_at_waterline() {
+    const auto& depth = newton.at.depth;
+    groove_.edge.place = places_across(ski_, conditions_, *std::max_element(depth.begin(), depth.end()));
+  }
 
   // To the equilibrium under these conditions; stays where it was if that fails.
   bool reaches(const CarveConditions& conditions) {

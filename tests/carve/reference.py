@@ -15,6 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from skisnow.forces.penetration import PointLaw
+from skisnow.forces.shear import ShearLaw
 from skisnow.ski import Ski
 
 FloatArray = npt.NDArray[np.float64]
@@ -39,6 +41,9 @@ class Case:
     twist: bool = True
     by_reaction: bool = False  # the side force goes along the edge as the snow's force, not as the depth
     boot_is_free: bool = False  # the moment is all that the boot takes about the ski's cross axis
+    penetration: PointLaw | None = None  # in place of hardness and unloading ratio, from which the search comes to it
+    law_share: float = 0.0  # of the pressure, on the way
+    shear: ShearLaw | None = None  # of whose strength the edge draws the same share everywhere
     knots: int = 30  # of each end
     along: int = 8  # intervals between knots
     across: int = 160
@@ -164,6 +169,11 @@ class _Equations:
         stiffening = (case.unloading_ratio - 1.0) * np.maximum(groove - depth, 0.0)
         stiffening[~np.isfinite(stiffening)] = 0.0
         pressure = case.hardness * np.maximum(depth - stiffening, 0.0)
+        if case.penetration is not None and case.law_share > 0.0:
+            deepest = np.maximum(np.maximum(groove, depth), 0.0).ravel()
+            angles = np.repeat(angle, depth.shape[1])
+            by_law = case.penetration.stress_and_energy(depth.ravel(), deepest, angles)[0].reshape(depth.shape)
+            pressure = (1.0 - case.law_share) * pressure + case.law_share * by_law
         pressure *= np.clip(
             (self.width * np.cos(angle))[:, None] / (self.place[1] - self.place[0])
             - np.arange(len(self.place))[None, :]
@@ -178,11 +188,18 @@ class _Equations:
         lever = (self.width / 2.0 * np.cos(angle))[:, None] - self.place[None, :]
         return edge, force, -(pressure * lever) @ share, angle
 
+    def strength(self, edge: FloatArray, angle: FloatArray) -> FloatArray:
+        """Of the edge, over that of 1 mm at the boot's edge angle."""
+        law = self.case.shear
+        if law is None:
+            return np.ones_like(edge)
+        return law.failure_stress(edge, angle) / law.failure_stress(1e-3, self.case.edge_angle)
+
     def residual(self, z: FloatArray) -> FloatArray:
         case = self.case
         curvature, rate, border = self.split(z)
         edge, force, moment, angle = self.snow(z)
-        shear = border[2] * (force if case.by_reaction else np.maximum(edge, 0.0))
+        shear = border[2] * (force if case.by_reaction else np.maximum(edge, 0.0) * self.strength(edge, angle))
         bends = float(case.side_force_bending)
         normal = math.cos(case.edge_angle) * force + bends * math.sin(case.edge_angle) * shear
         turning = moment - bends * self.width / 2.0 * np.sin(angle) * shear
@@ -258,6 +275,11 @@ def solved(case: Case) -> Answer:
         equations = _Equations(replace(case, unloading_ratio=float(ratio)), deepest)
         z, converged = _newton(equations, z, scale)
         assert converged, f"reference failed at the unloading ratio {ratio}"
+        deepest = float(equations.snow(z)[0].max())
+    for law_share in (0.5, 1.0) if case.penetration is not None else ():
+        equations = _Equations(replace(case, law_share=law_share), deepest)
+        z, converged = _newton(equations, z, scale)
+        assert converged, f"reference failed at {law_share} of the law"
         deepest = float(equations.snow(z)[0].max())
     return _answer(equations, z)
 

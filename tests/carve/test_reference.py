@@ -12,9 +12,12 @@ import numpy as np
 import pytest
 
 from skisnow.carve.equilibrium import carve
+from skisnow.forces.penetration import MeanPressurePoint, VolumeWithAnglePoint
+from skisnow.forces.shear import AngleShear
 from skisnow.ski import Ski, read_ski
 
 from . import reference
+from .laws import Deepening, Power
 from .reference import Case
 from .synthetic import boot_pose, circular_sidecut, plain_ski, shovel, snow
 
@@ -30,7 +33,9 @@ def compare(case: Case) -> None:
         edge_angle=case.edge_angle,
         load=case.load,
         moment=case.moment,
-        unloading_ratio=case.unloading_ratio,
+        unloading_ratio=case.unloading_ratio if case.penetration is None else None,
+        shear=case.shear,
+        penetration=case.penetration,
         clamp_length=case.clamp_length,
         side_force_bending=case.side_force_bending,
         side_force_spread="base-reaction" if case.by_reaction else "depth",
@@ -111,3 +116,27 @@ def test_a_boot_that_takes_no_moment_of_the_side_force(moment: float) -> None:
 @pytest.mark.parametrize("boot_is_free", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_a_side_force_that_goes_as_the_force_on_the_base(boot_is_free: bool) -> None:
     compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, by_reaction=True, boot_is_free=boot_is_free))
+
+
+def test_federolfs_law() -> None:
+    """p = 2 A ε + B beyond the ramp, which bends where the groove does, too."""
+    law = MeanPressurePoint(pressure_slope=0.034e9, pressure_offset=0.35e6, unloading_ratio=10.0)
+    compare(replace(base(), hardness=0.15e9, unloading_ratio=5.0, penetration=law, clamp_length=0.3))
+
+
+@pytest.mark.parametrize("exponent", [pytest.param(0.6, marks=pytest.mark.slow), 1.7])
+def test_another_exponent(exponent: float) -> None:
+    law = Power(1e6 / 5e-3**exponent, exponent, unloading_ratio=8.0)
+    compare(replace(base(), unloading_ratio=5.0, penetration=law, clamp_length=0.3))
+
+
+@pytest.mark.slow
+def test_a_hardness_that_grows_with_the_edge_angle() -> None:
+    law = VolumeWithAnglePoint(snow_hardness=0.2e9, unloading_ratio=10.0)
+    compare(replace(base(), unloading_ratio=10.0, penetration=law, clamp_length=0.3))
+
+
+@pytest.mark.parametrize("law", [AngleShear(0.35e6, 0.6), Deepening(0.1e6, 1e-3)], ids=["angle", "depth"])
+def test_a_strength_that_is_not_the_same_along_the_edge(law: AngleShear | Deepening) -> None:
+    """Where the ski twists, and where it is deeper, it draws as much more or less of the side force."""
+    compare(replace(base(), unloading_ratio=10.0, shear=law, clamp_length=0.3))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from ..forces.measured_ranges import FAILURE_SHEAR_STRESS, PENETRATION_EDGE_ANGLE, SNOW_HARDNESS
 from ..ski import Ski
@@ -71,7 +72,7 @@ def asked_snow(question: CarveQuestion, sources: Sources) -> SnowProperties:
 def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_angle: float) -> Equilibrium:
     stiffness = question.footprint_stiffness_N_per_mm2
     footprint = None if stiffness is None else stiffness * CARVE_KEYS["footprint_stiffness_N_per_mm2"].factor
-    shared = {"edge_angle": edge_angle, "load": question.load_N, "moment": question.moment_Nm}
+    shared: dict[str, Any] = {"edge_angle": edge_angle, "load": question.load_N, "moment": question.moment_Nm}
     if question.at_rest or question.unloading_ratio is None:
         return rest(
             ski,

@@ -60,10 +60,11 @@ def require_choices(groove: str, moment_balance: str, side_force_spread: str) ->
 
 
 def require_strength(snow: SnowProperties) -> None:
-    """Refuse snow without S_f."""
+    """Refuse snow without S_f, where no law says what holds the edge."""
     if snow.failure_shear_stress is None:
         raise ParameterError(
-            f"the snow ({snow.source}) has no failure shear stress S_f; a carved turn needs it: give one"
+            f"the snow ({snow.source}) has no failure shear stress S_f; a carved turn needs it: give one, or a shear "
+            "law"
         )
 
 

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from ..errors import ParameterError
 from ..ski.beam.clamped import CLAMP_LENGTH, ClampedSki, clamped
 from ..ski.ski import Ski
 from ..snow.properties import SnowProperties
@@ -26,8 +27,13 @@ from .checks import (
     unloading_ratio_of,
 )
 from .edge_line import EdgeLine
+from .laws import SnowLaws, equivalent_snow, snow_laws
 from .result import Equilibrium, equilibrium_of, radius_at_boot
 from .solve import RIGID_PLASTIC, Conditions, Solution, solved
+
+if TYPE_CHECKING:
+    from ..forces.penetration import PointLaw
+    from ..forces.shear import ShearLaw
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 GrooveForm: TypeAlias = Literal["edge", "path"]
@@ -51,6 +57,8 @@ def carve(
     edge_angle: float,
     load: float,
     unloading_ratio: float | None = None,
+    shear: ShearLaw | None = None,
+    penetration: PointLaw | None = None,
     moment: float = 0.0,
     clamp_length: float = CLAMP_LENGTH,
     footprint_stiffness: float | None = None,
@@ -74,6 +82,11 @@ def carve(
     unloading_ratio
         k_u/H_V ≥ 1: 1 is elastic snow, `math.inf` rigid-plastic snow (computed as 1000). Where such steep unloading
         does not converge, 500, 300 or 200 is taken and a warning says so. Left out: that of the snow.
+    shear
+        A law of `skisnow.forces.shear`, or one of yours, in place of S_f; one with a thrust is refused.
+    penetration
+        A `PointLaw` of `skisnow.forces.penetration`, or one of yours, in place of H_V and k_u. One that acts along the
+        base's normal holds the edge by its pressure's part across: neither S_f nor a shear law stands beside it.
     moment
         At the boot, positive where it presses the tip down (N m); about which axis, `moment_balance` says.
     clamp_length, footprint_stiffness
@@ -104,7 +117,8 @@ def carve(
     Raises
     ------
     ParameterError
-        An argument is outside its range, or the snow has no S_f; neither argument nor snow say k_u/H_V.
+        An argument is outside its range, or the snow has no S_f; neither argument nor snow say k_u/H_V; what was given
+        as a law is none, or gives no finite answer.
 
     See Also
     --------
@@ -124,17 +138,19 @@ def carve(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * Federolf, Roos, Lüthi and Dual (2010), "Finite element simulation of the ski-snow interaction of an alpine ski in
       a carved turn", Sports Eng. 12, 123-133, doi 10.1007/s12283-010-0038-z.
-    * The page docs/methods/carved-turn.md.
+    * The pages docs/methods/carved-turn.md and docs/methods/carve-laws.md.
     """
     require_kinds(ski, snow)
-    ratio = unloading_ratio_of(snow, unloading_ratio)
+    ratio = _unloading_ratio(snow, unloading_ratio, penetration)
     require_ranges(edge_angle, load, ratio, moment)
     require_within(ski, load, moment)
-    require_strength(snow)
     require_choices(groove, moment_balance, side_force_spread)
+    laws = snow_laws(shear, penetration, edge_angle)
+    if laws is None or not (laws.shear is not None or laws.along_base_normal):
+        require_strength(snow)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), side_force_bending, twist)
-    conditions = conditions._replace(by_reaction=side_force_spread == "base-reaction")
+    conditions = _under(laws, ski, conditions)._replace(by_reaction=side_force_spread == "base-reaction")
     if moment_balance == "free":
         conditions = conditions._replace(pitch_of_force=math.cos(edge_angle), pitch_of_shear=math.sin(edge_angle))
     find = solved if groove == "edge" else _following_path
@@ -146,6 +162,8 @@ def carve(
         conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
         solution = find(model, conditions)
         note = (f"computed with k_u/H_V = {gentler:g}: the steeper unloading that was asked did not converge",)
+    if laws is not None and not solution.converged:
+        laws.require_finite()
     found = equilibrium_of(model, conditions, snow, solution, note)
     if found.turn_radius_boot is None:
         return found
@@ -193,6 +211,24 @@ def rest(
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
     conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twist)._replace(side_force=0.0)
     return equilibrium_of(model, conditions, snow, solved(model, conditions))
+
+
+def _unloading_ratio(snow: SnowProperties, given: float | None, penetration: object) -> float:
+    if penetration is None:
+        return unloading_ratio_of(snow, given)
+    if given is not None:
+        raise ParameterError(
+            f"unloading_ratio is {given} beside a penetration law, which says itself how the snow unloads: leave it out"
+        )
+    return 1.0
+
+
+def _under(laws: SnowLaws | None, ski: Ski, conditions: Conditions) -> Conditions:
+    """The conditions with laws, and the linear snow where a penetration law's search begins."""
+    if laws is None or laws.penetration is None:
+        return conditions._replace(laws=laws)
+    hardness, ratio = equivalent_snow(laws.penetration, ski, conditions.edge_angle, conditions.load)
+    return conditions._replace(laws=laws, hardness=hardness, excess=hardness * (ratio - 1.0))
 
 
 def _conditions(

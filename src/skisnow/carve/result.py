@@ -21,6 +21,8 @@ Outcome: TypeAlias = Literal["equilibrium", "slips", "sinks", "bridges", "not_co
 
 SINKING_DEPTH: Final = 0.30
 """Edge depth (m) beyond which a ski counts as swallowed: no balance above it (modelling assumption)."""
+NOTHING_TO_SPARE: Final = 1e-7
+"""Share of the side force that Newton's method leaves open where pressure along the base's normal just balances it."""
 LARGE_SLOPE: Final = 0.35
 """Slope of the bent ski, and twist (rad), beyond which beams of small deflection fail (modelling assumption: 6 % in
 the cosine)."""
@@ -50,7 +52,9 @@ class Equilibrium(Shown):
     remedy
         What to do about it, in words.
     side_force, side_force_limit
-        Load × tan ϑ, and S_f ∫ e ds over the edge that is below the surface (N).
+        Load × tan ϑ, and S_f ∫ e ds over the edge that is below the surface (N). With a shear law S_f is its failure
+        stress there; with a penetration law along the base's normal the limit is the pressure's part across,
+        ∫ f tan(ϑ + φ) ds.
     holds
         Whether the limit is not exceeded.
     turn_radius_boot
@@ -156,12 +160,8 @@ def equilibrium_of(
     line = EdgeLine(model, conditions.edge_angle, solution)
     weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
     below = depth > 0.0
-    limit = (
-        None
-        if snow.failure_shear_stress is None
-        else snow.failure_shear_stress * float(weight @ np.maximum(depth, 0.0))
-    )
-    holds = True if conditions.side_force == 0.0 else limit is not None and conditions.side_force <= limit
+    limit = _side_force_limit(conditions, snow, solution, weight, conditions.edge_angle + line.twist)
+    holds = _holds(conditions, limit)
     outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
     ends = line.contact_ends(depth)
     of_force = float(weight @ (force * station))
@@ -192,6 +192,24 @@ def equilibrium_of(
         warnings=(*note, *_warnings(line)),
         iterations=solution.iterations,
     )
+
+
+def _side_force_limit(
+    conditions: Conditions, snow: SnowProperties, solution: Solution, weight: FloatArray, edge_angle: FloatArray
+) -> float | None:
+    """What the edge holds (N): by a law where one was given, else S_f ∫ e ds."""
+    depth, stress = solution.edge_depth, snow.failure_shear_stress
+    if conditions.laws is not None and (conditions.laws.shear is not None or conditions.laws.along_base_normal):
+        return conditions.laws.side_force_limit(depth, solution.force_per_length, edge_angle, weight)
+    return None if stress is None else stress * float(weight @ np.maximum(depth, 0.0))
+
+
+def _holds(conditions: Conditions, limit: float | None) -> bool:
+    if conditions.side_force == 0.0 or limit is None:
+        return conditions.side_force == 0.0
+    # a pressure along the base's normal holds a ski that does not twist with nothing to spare
+    rounding = NOTHING_TO_SPARE if conditions.laws is not None and conditions.laws.along_base_normal else 0.0
+    return conditions.side_force <= limit * (1.0 + rounding)
 
 
 def radius_at_boot(model: ClampedSki, conditions: Conditions, solution: Solution) -> float | None:

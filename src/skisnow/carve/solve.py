@@ -12,10 +12,11 @@ import numpy.typing as npt
 from ..compiled import core
 from ..ski.beam.clamped import ClampedSki
 from ..ski.ski import Ski
+from .laws import STEEPEST_RATIO, SnowLaws
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-RIGID_PLASTIC: Final = 1000.0
+RIGID_PLASTIC: Final = STEEPEST_RATIO
 """Unloading ratio that stands for rigid-plastic snow: the groove springs back by a thousandth of its depth."""
 _CONFORMING_SHARE: Final = 0.9  # of the running length that the first guess bends onto the snow
 _NEAR: Final = 1e-4  # m, over which the first guess takes the slope of the base
@@ -37,6 +38,7 @@ class Conditions(NamedTuple):
     pitch_of_force: float  # share with which the snow's force takes part in the balance of moments about the boot
     pitch_of_shear: float  # share of the side force
     by_reaction: bool  # the side force goes along the edge as the snow's force, not as the depth
+    laws: SnowLaws | None = None  # given in place of the snow's numbers; with a penetration law the search begins there
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +91,9 @@ def solved(
     if near is not None:
         border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
         from_there = (near.u, border, near.edge_depth)
-    found = core.find_carve(_core_ski(model), core.CarveConditions(*conditions), offset, from_there)
+    laws = None if conditions.laws is None else conditions.laws.compiled
+    numbers = core.CarveConditions(*conditions[:-1])
+    found = core.find_carve(_core_ski(model), numbers, offset, from_there, laws)
     converged, iterations, u, (depth, slope, stress), edge_depth, force = found
     return Solution(converged, iterations, u, depth, slope, stress, edge_depth, force)
 

@@ -164,6 +164,15 @@ class CarveConditions:
         /,
     ) -> None: ...
 
+class CarveLaws:
+    def __init__(
+        self,
+        pressure: Callable[[FloatArray, FloatArray, FloatArray], FloatArray] | None,
+        residual: Callable[[FloatArray], FloatArray] | None,
+        bends: FloatArray,
+        strength: Callable[[FloatArray, FloatArray], FloatArray] | None,
+    ) -> None: ...
+
 def carved_ski(
     stations: FloatArray,
     front: int,
@@ -179,6 +188,7 @@ def find_carve(
     conditions: CarveConditions,
     offset: FloatArray | None,
     near: tuple[FloatArray, FloatArray, FloatArray] | None,
+    laws: CarveLaws | None,
 ) -> tuple[bool, int, FloatArray, tuple[float, float, float], FloatArray, FloatArray]: ...
 def banded_factors(matrix: FloatArray, /) -> FloatArray: ...
 def banded_solution(factors: FloatArray, right: FloatArray, from_row: int, /) -> FloatArray: ...
