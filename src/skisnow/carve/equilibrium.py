@@ -138,7 +138,8 @@ def carve(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * Federolf, Roos, Lüthi and Dual (2010), "Finite element simulation of the ski-snow interaction of an alpine ski in
       a carved turn", Sports Eng. 12, 123-133, doi 10.1007/s12283-010-0038-z.
-    * The pages docs/methods/carved-turn.md and docs/methods/carve-laws.md.
+    * The page docs/methods/carved-turn.md.
+    * The page docs/methods/carve-laws.md.
     """
     require_kinds(ski, snow)
     ratio = _unloading_ratio(snow, unloading_ratio, penetration)
