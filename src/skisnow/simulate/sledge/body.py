@@ -40,7 +40,7 @@ def sledge_body(
     skis = tuple(
         FlexibleSki(
             boot=np.array([0.0, y, 0.0]), axes=axes, unknown=_first_unknowns(ski), mass=mass, stiffness=stiffness,
-            coupling=inertia.coupling[k], damping=damping,
+            coupling=inertia.coupling[k], damping=damping, inertia=inertia.ski,
         )
         for k, y in enumerate((side, -side))
     )  # fmt: skip

@@ -37,12 +37,15 @@ class SledgeInertia:
         Of sledge and skis (kg).
     first_moment
         (3,) mass times the place of the common centre of mass (kg m).
+    ski
+        (6, 6) of one undeformed ski about its boot, in its own axes.
     """
 
     rigid: FloatArray
     coupling: FloatArray
     mass: float
     first_moment: FloatArray
+    ski: FloatArray
 
 
 def sledge_inertia(sledge: RigidSledge, ski: ClampedSki) -> SledgeInertia:
@@ -56,7 +59,7 @@ def sledge_inertia(sledge: RigidSledge, ski: ClampedSki) -> SledgeInertia:
         of_ski, coupling[k] = _of_ski(ski, middle, sledge.edge_angle)
         rigid += of_ski
     first = np.array([rigid[5, 1], rigid[3, 2], rigid[4, 0]])
-    return SledgeInertia(rigid, coupling, float(rigid[0, 0]), first)
+    return SledgeInertia(rigid, coupling, float(rigid[0, 0]), first, _of_ski(ski, np.zeros(3), 0.0)[0])
 
 
 def _of_points(mass: FloatArray, place: FloatArray) -> FloatArray:
