@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..geometry.boot_axes import axes_of
-from ..shown import ShownFields
+from ..geometry.boot_axes import angles_of, axes_of
+from ..shown import Facts, Shown, ShownFields, amount
+from ..units import DEGREE
 from .body import shaped
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -21,7 +22,7 @@ FARTHEST_TURN: Final = 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class BootPose(ShownFields):
+class BootPose(Shown):
     """Where a boot is and how it moves, in the frame of the body that carries it.
 
     Attributes
@@ -32,6 +33,11 @@ class BootPose(ShownFields):
         Of the ski, ahead, left across the base, off the base as rows, (3, 3).
     velocity, turning
         (m/s) and (rad/s), (3,) each.
+
+    See Also
+    --------
+    skisnow.simulate
+    skisnow.BootMoment
     """
 
     place: FloatArray
@@ -45,6 +51,17 @@ class BootPose(ShownFields):
         off = np.abs(self.axes @ self.axes.T - np.eye(3)).max()
         if off > 1e-9 or np.linalg.det(self.axes) < 0.0:
             raise ParameterError(f"BootPose: axes are off by {off:.1e} from right-handed orthonormal ones")
+
+    def _facts(self) -> Facts:
+        edge, pitch, heading = (amount(angle / DEGREE, "°") for angle in angles_of(self.axes))
+        place = ", ".join(f"{each:.4g}" for each in self.place)
+        speed, turning = (float(np.linalg.norm(each)) for each in (self.velocity, self.turning))
+        rows = (
+            ("place", f"({place}) m"),
+            ("angles", f"edge {edge}, pitch {pitch}, heading {heading}"),
+            ("motion", f"{amount(speed, 'm/s')}, {amount(turning, 'rad/s')}"),
+        )
+        return Facts("of a boot", rows)
 
     @classmethod
     def of(cls, place: npt.ArrayLike, edge_angle: float, pitch: float = 0.0, heading: float = 0.0) -> BootPose:
@@ -94,7 +111,7 @@ class BootMotion(ShownFields):
         """What the core takes: start, place (4, 3), rotation vector (3, 3), axes (3, 3), in a row of 31."""
         span, first, last = self.end - self.start, self.first, self.last
         turn = self._turn
-        rate_last = np.linalg.solve(_jacobian(turn), last.axes @ last.turning)
+        rate_last = np.asarray(np.linalg.solve(_jacobian(turn), last.axes @ last.turning), float)
         place = _cubic(span, first.place, last.place, first.velocity, last.velocity)
         angle = _cubic(span, np.zeros(3), turn, first.axes @ first.turning, rate_last)
         return np.concatenate([[self.start], place.ravel(), angle[1:].ravel(), first.axes.ravel()])

@@ -65,9 +65,19 @@ def replay_of_run(run: Run, *, title: str = "A simulated run", track: ReplayTrac
     Raises
     ------
     ParameterError
-        The run has not even a first moment.
+        The run has not even a first moment, or its boots move.
     """
+    require_still(run.boots_by)
     return assembled(_arrays(run), _setting(run), title=title, track=track)
+
+
+def require_still(boots_by: str | None) -> None:
+    """Refuse a run whose boots move: the replay draws skis where the sledge has them."""
+    if boots_by is not None:
+        raise ParameterError(
+            f"the boots of this run are {boots_by}, and a replay shows skis that stay where the sledge has them. Take "
+            "the figures of the report, or the boots' poses in run.nc"
+        )
 
 
 def _arrays(run: Run) -> dict[str, FloatArray]:

@@ -108,7 +108,7 @@ class Boots(Shown):
         return Facts(f"{len(self.at)} poses of each, {ends(self.at, unit)}, in the {self.frame}'s frame; {self.source}")
 
     def poses(self, at: float) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Places (2, 3), axes (2, 3, 3), velocities and angular velocities (2, 3), in the frame, by s or m of ``at``."""
+        """Places (2, 3), axes (2, 3, 3), velocities and angular velocities (2, 3), in the frame, per unit of ``at``."""
         within = float(np.clip(at, self.at[0], self.at[-1]))
         rest = 0.0 if at != within else 1.0
         axes = np.array([np.swapaxes(each(within).as_matrix(), -1, -2) for each in self._axes])

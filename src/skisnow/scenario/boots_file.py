@@ -122,9 +122,7 @@ def _column(path: Path, rows: list[list[str]], head: list[str], place: int, firs
 
 def _axes(table: Mapping[str, Any], missing: Mapping[str, float]) -> npt.NDArray[np.float64]:
     n = len(next(iter(table.values())))
-    angles = [
-        [table.get(f"{side}_{name}", np.full(n, missing[name])) * DEGREE for name in ANGLES] for side in SIDES
-    ]
+    angles = [[table.get(f"{side}_{name}", np.full(n, missing[name])) * DEGREE for name in ANGLES] for side in SIDES]
     return np.array([[axes_of(*(float(each[i]) for each in of_ski)) for of_ski in angles] for i in range(n)])
 
 

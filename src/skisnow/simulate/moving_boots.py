@@ -12,6 +12,7 @@ import numpy.typing as npt
 from ..dynamics import BootMotion, BootPose, Dynamics
 from ..errors import ParameterError
 from ..scenario.boots import Boots
+from ..shown import name_with_values
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -56,6 +57,13 @@ class BootDrive:
     control: BootControl
     held: bool = False
     _last: Sequence[BootPose] = ()
+
+    @property
+    def described(self) -> str:
+        """What moves the boots, in words."""
+        if isinstance(self.control, TableControl):
+            return f"moved by {self.control.table.source}"
+        return f"moved by {name_with_values(self.control)}"
 
     def begin(self, dynamics: Dynamics, interval: float) -> None:
         """Put the boots where they are at the start."""

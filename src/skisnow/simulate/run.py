@@ -148,6 +148,8 @@ class Run(Shown):
         What the solver chose: elements, line_spacing_m.
     boots
         Where the boots were, and force and moment on each; None where nothing is known of them.
+    boots_by
+        What moved them, in words; None where they stay where the sledge has them.
     laws, strength_along
         What acted in place of the scenario's laws, as `skisnow.simulate` was given it.
 
@@ -175,6 +177,7 @@ class Run(Shown):
     wall_s: float
     numbers: dict[str, float]
     boots: BootHistory | None = None
+    boots_by: str | None = None
     laws: Laws | None = None
     strength_along: Strength | None = None
 

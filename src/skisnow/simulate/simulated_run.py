@@ -185,6 +185,7 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
         rejected_steps=rejected,
         wall_s=wall,
         numbers=setup.numbers,
+        boots_by=None if setup.drive is None else setup.drive.described,
     )
     if outcome in _COMPUTED_WRONG or not run.has_residual_above(OPEN_SHARE):
         return run
