@@ -38,6 +38,7 @@ glide = skisnow.scenario("carved-46m").with_(
 )
 run = skisnow.simulate(glide, boots=legs)
 lean = np.degrees(np.arcsin(run.attitude[:, 1, 2]))
+assert run.boots is not None
 bears = run.boots.force[:, :, 2]
 found = float(bears[run.time > 1.5, 0].mean())
 

@@ -12,13 +12,13 @@ import numpy.typing as npt
 from ..dynamics import BootMotion, BootPose, Dynamics
 from ..errors import ParameterError
 from ..scenario.boots import Boots
-from ..shown import name_with_values
+from ..shown import Facts, Shown, amount, name_with_values
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class BootMoment:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class BootMoment(Shown):
     """What whoever moves the boots knows when poses are asked for.
 
     Attributes
@@ -34,6 +34,11 @@ class BootMoment:
         (2, 6, 3).
     wrench
         What each ski does to its boot, in its axes: force (N), moment (N m), (2, 6). Zero at the start.
+
+    See Also
+    --------
+    skisnow.simulate
+    skisnow.BootPose
     """
 
     time: float
@@ -44,6 +49,14 @@ class BootMoment:
     velocity: FloatArray
     boots: FloatArray
     wrench: FloatArray
+
+    def _facts(self) -> Facts:
+        speed, bears = float(np.linalg.norm(self.velocity[:3])), np.linalg.norm(self.wrench[:, :3], axis=1)
+        rows = (
+            ("run", f"{amount(self.distance, 'm')}, now at {amount(speed, 'm/s')}"),
+            ("forces", ", ".join(amount(float(each), "N") for each in bears)),
+        )
+        return Facts(f"at {amount(self.time, 's')}, for {amount(self.until, 's')}", rows)
 
 
 BootControl: TypeAlias = Callable[[BootMoment], Sequence[BootPose]]
