@@ -30,7 +30,7 @@ VIEWS = (
     "replay.show('forces', true); replay.look('edge')",
     "replay.show('forces', false); replay.look('boot')",
     "replay.look('above'); replay.nearer(1.7)",
-    "replay.show('ghost', true); replay.turn(0.4, 0.3); replay.nearer(1.3)",
+    "replay.show('ghost', true); replay.seek(4.6); replay.look('chase'); replay.turn(0.5, 0.1)",
 )
 
 

@@ -73,6 +73,7 @@ export function fallLine(run) {
   const material = new THREE.MeshBasicMaterial({ color: 0x0b4f8a, side: THREE.DoubleSide, depthTest: false, depthWrite: false });
   const arrow = flat(new THREE.Mesh(new THREE.ShapeGeometry(shape), material), 4.5);
   const label = sprite("fall line", 0.038);
+  label.center.set(0.5, -0.6); // over the arrow's tail, from wherever one looks
   const group = new THREE.Group();
   group.add(arrow, label);
   return {
@@ -83,7 +84,6 @@ export function fallLine(run) {
       const here = surfaceHeight(run, x);
       group.position.set(x, y, here);
       arrow.rotation.y = -Math.atan2(surfaceHeight(run, x + 0.5) - here, 0.5);
-      label.position.set(0.3, 0, 0.2);
     },
   };
 }
