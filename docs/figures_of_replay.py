@@ -78,7 +78,9 @@ def main() -> None:
     run, ghost = replays()
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         address = write_replay(run, Path(folder) / "replay.html", ghost=ghost).as_uri()
-        place = os.environ.get("SKISNOW_CHROMIUM") or shutil.which("chromium-headless-shell") or shutil.which("chromium")
+        place = (
+            os.environ.get("SKISNOW_CHROMIUM") or shutil.which("chromium-headless-shell") or shutil.which("chromium")
+        )
         browser = playwright.chromium.launch(executable_path=place, args=SOFTWARE)
         page = browser.new_page(viewport={"width": 1200, "height": 860}, device_scale_factor=1.5)
         page.goto(address)
