@@ -42,7 +42,12 @@ def read(data: bytes) -> dict[str, workbook.Rows | None]:
 
 
 def test_cells_are_texts_and_rows_keep_their_numbers() -> None:
-    rows = [[], ["Tag", "Last\n[N]", "", ""], [datetime(2026, 11, 23), 12.0, 0.1, True], [datetime(2026, 11, 23, 9, 5)]]
+    rows: list[list[Any]] = [
+        [],
+        ["Tag", "Last\n[N]", "", ""],
+        [datetime(2026, 11, 23), 12.0, 0.1, True],
+        [datetime(2026, 11, 23, 9, 5)],
+    ]
     found = read(packed(A=rows, B=[["x", None, date(2026, 1, 2)]], C=[[]]))
     assert found == {
         "A": [[], ["Tag", "Last [N]"], ["2026-11-23", "12", "0.1", "TRUE"], ["2026-11-23T09:05:00"]],

@@ -61,9 +61,9 @@ def test_a_workbook_says_what_the_files_say(
 def test_sheets_beside_files_and_problems_by_sheet_and_row(
     write_campaign: WriteCampaign, small_campaign: dict[str, str]
 ) -> None:
-    rows = [["Versuch", "Ort", "Stempel", "Winkel [°]", "Last [N]", "Tiefe [mm]", "Datum"], []]
-    rows.append(["P1", "Süd", "piece", 30.0, 70.5, 1.25, datetime(2026, 11, 23, 9, 10)])  # type: ignore[list-item]
-    rows.append(["P1", "Süd", "piece", 30.0, 140.5, "zwei", None])  # type: ignore[list-item]
+    rows: list[list[Any]] = [["Versuch", "Ort", "Stempel", "Winkel [°]", "Last [N]", "Tiefe [mm]", "Datum"], []]
+    rows.append(["P1", "Süd", "piece", 30.0, 70.5, 1.25, datetime(2026, 11, 23, 9, 10)])
+    rows.append(["P1", "Süd", "piece", 30.0, 140.5, "zwei", None])
     headings = ("experiment", "site", "tool", "edge_angle_deg", "load_N", "depth_mm", "time")
     line = "".join(
         f'columns.penetration."{written}" = "{name}"\n' for written, name in zip(rows[0], headings, strict=True)
@@ -73,7 +73,7 @@ def test_sheets_beside_files_and_problems_by_sheet_and_row(
     files["Hang.xlsx"] = packed(Penetration=rows, Diagramm=[["x"]])
     (problem,) = check_campaign(write_campaign(files))
     assert (problem.code, problem.file, problem.row) == ("not_a_number", "Hang.xlsx, sheet Penetration", 4)
-    rows[3][5] = 2.5  # type: ignore[call-overload]
+    rows[3][5] = 2.5
     files["Hang.xlsx"] = packed(Penetration=rows, Diagramm=[["x"]])
     campaign = read_campaign(write_campaign(files))
     assert campaign.penetration is not None
@@ -92,7 +92,7 @@ def test_a_sheet_that_looks_like_a_table_is_named(
     write_campaign: WriteCampaign, small_campaign: dict[str, str]
 ) -> None:
     rows = cells("Versuch,Ort,Platte,Winkel,Tiefe,Hebelarm,Moment\nS1,Süd,blade,90,5,300,12\n")
-    files = {**small_campaign, "Hang.xlsx": packed(Scherung=rows)}
+    files: dict[str, str | bytes] = {**small_campaign, "Hang.xlsx": packed(Scherung=rows)}
     del files["shear.csv"]
     (problem,) = check_campaign(write_campaign(files))
     assert (problem.severity, problem.code, problem.value) == ("warning", "unread_sheet", "Scherung")
