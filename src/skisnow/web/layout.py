@@ -63,7 +63,7 @@ def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = Fal
                 _link(name, here)
         _other_language()
     with (
-        ui.element("main").props('id="content"'),
+        ui.element("div").props('id="content"'),  # inside the framework's main
         ui.element("fieldset").classes("lab").props("disabled role=none"),
     ):
         heading(title, 1)

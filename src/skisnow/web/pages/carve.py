@@ -268,7 +268,7 @@ def _table(names: list[str]) -> dict[str, list[ui.label]]:
     cells: dict[str, list[ui.label]] = {}
     with ui.element("table"):
         with ui.element("thead"), ui.element("tr"):
-            ui.element("th").props("scope=col")
+            ui.element("td")
             for number, text in enumerate(names):
                 with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
                     Words(text)

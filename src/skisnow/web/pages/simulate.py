@@ -36,8 +36,8 @@ EVERY_S: Final = 1.0
 OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name", "ski.file")
 """Keys that the menus of snow and ski give."""
-OF_FILES: Final = ("slope.kind", "slope.profile", "slope.profile_gap")
-"""Keys that name files of the machine that the lab runs on: those are for the command line."""
+WITH_FILES: Final = ("slope.kind", "slope.profile_gap")
+"""Keys that go with files of the machine that the lab runs on: those are for the command line."""
 BASIC: Final = (
     *OF_SNOW,
     "snow.unloading_ratio",
@@ -213,9 +213,10 @@ class _Form:
 
 
 def _expert() -> list[str]:
+    from ...scenario.given import PATH_KEYS
     from ...scenario.keys import SCENARIO_KEYS
 
-    return [name for name in SCENARIO_KEYS if name not in (*BASIC, *CHOSEN_ABOVE, *OF_FILES)]
+    return [name for name in SCENARIO_KEYS if name not in (*BASIC, *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS)]
 
 
 def _duration(seconds: float) -> str:

@@ -192,7 +192,7 @@ def _lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
 def _table(drawn: list[SkiDrawing]) -> None:
     with ui.element("table"):
         with ui.element("thead"), ui.element("tr"):
-            ui.element("th").props("scope=col")
+            ui.element("td")
             for number, each in enumerate(drawn):
                 with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
                     Words(each.name)
