@@ -120,7 +120,7 @@ def glide(figure: Any, case: dict[str, Any]) -> None:
     axes.text(-0.1, 0.6, "10 m down a slope of 12°", fontsize=9)
     axes.set(ylim=(-0.5, 0.8))
     _arrow(axes, (0.2, 0.25), (-0.35, 0.25), "")
-    axes.text(0.25, 0.25, "friction, compaction, drag", fontsize=9, va="center")
+    axes.text(-0.4, 0.25, "friction, compaction, drag", fontsize=9, va="center", ha="right")
     axes.text(-1.55, -0.25, "groove: residual depth", fontsize=9)
     _clean(axes, "from the side, heights 8 times too large")
 
@@ -184,7 +184,8 @@ def turn(figure: Any, case: dict[str, Any]) -> None:
         right.plot(*ends.T, color="#c9a66b", linewidth=3)
     right.plot([-0.2, -0.2, 0.2, 0.2], [0.04, 0.18, 0.18, 0.04], color=INK, linewidth=1.0)
     right.plot(0.0, 0.18, "o", color=INK)
-    _arrow(right, (0.0, 0.18), (0.0, -0.05), " m g")
+    _arrow(right, (0.0, 0.18), (0.0, -0.05))
+    right.text(0.02, 0.08, "m g", fontsize=9)
     right.set(xlim=(-0.5, 0.5), ylim=(-0.16, 0.3))
     _clean(right, "from behind, mirrored: both\nleft edges down")
 

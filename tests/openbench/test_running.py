@@ -21,6 +21,8 @@ from openbench import CASES, __main__, checking, sand, scoring, table
 from .test_files import schema
 
 PLATE = ("01-plate",)
+AGAIN = ("02-edge", "04-glide", "07-turn")
+"""Of which the scores of a second run are compared."""
 DATA = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "plates-in-sand"
 
 
@@ -186,9 +188,14 @@ def test_each_entry_runs_and_is_as_near_as_it_should_be(name: str, tmp_path: Pat
     if missing:
         pytest.skip(missing)
     data = DATA if DATA.exists() else None
-    run(name, command_of(name, tmp_path), tmp_path / "runs", Asked(tuple(case_names()), data), quiet)
+    how = Asked(tuple(case_names()), data, limit_s=7200.0)
+    run(name, command_of(name, tmp_path), tmp_path / "runs", how, quiet)
     found = {each.case: each for each in score(tmp_path / "runs", data=data)}
     assert not [each.problems for each in found.values() if each.problems]
+    run(name, command_of(name, tmp_path), tmp_path / "again", Asked(AGAIN, limit_s=7200.0), quiet)
+    again = {each.case: each.quantities for each in score(tmp_path / "again") if each.error is not None}
+    for case, quantities in again.items():
+        assert quantities == pytest.approx(found[case].quantities, rel=0.01)
     errors = {case: each.error for case, each in found.items() if each.error is not None and case != "05-sand"}
     if name in {"skisnow", "skisnow-fast", "numpy-reference", "mujoco"}:
         assert max(errors.values()) < 0.02, errors
@@ -206,7 +213,7 @@ def test_twins_agree_within_the_uncertainty_that_is_told(tmp_path: Path) -> None
     from openbench.making.__main__ import FINEST, TWIN_CASES
 
     for name, command in FINEST.items():
-        run(name, command, tmp_path, Asked(TWIN_CASES), quiet)
+        run(name, command, tmp_path, Asked(TWIN_CASES, limit_s=7200.0), quiet)
         for case in TWIN_CASES:
             answer = read_answer(case)
             values = json.loads((tmp_path / name / case / "result.json").read_text(encoding="utf-8"))["values"]
