@@ -106,7 +106,7 @@ def test_the_page_has_its_sections_and_the_table_every_measured_number(found: Id
     page = write_identify_report(found, identification_dict(found), tmp_path, progress=said.append)
     assert page == tmp_path / "report.html"
     text = page.read_text(encoding="utf-8")
-    assert "<strong>0.0423</strong>, 95\u00a0% interval [0.0399, 0.0447].</p>" in text
+    assert "<strong>0.0423</strong>, 95 % interval [0.0399, 0.0447].</p>" in text
     for heading in (
         "Outcome",
         "Warnings",

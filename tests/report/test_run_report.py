@@ -105,8 +105,9 @@ def test_the_headline_is_one_number_and_how_far_it_goes(html: str) -> None:
 
 @pytest.mark.usefixtures("undrawn")
 def test_the_headline_of_a_straight_run_is_its_speed(run: Run, tmp_path: Path) -> None:
-    speed = np.linspace(4.0, 8.0, len(run.time))
-    straight = replace(run, turn_radius=np.full(len(run.time), np.inf), speed=speed)
+    ahead = np.array([1.0, 0.0, 0.0])
+    velocity = np.linspace(4.0, 8.0, len(run.time))[:, None] * ahead
+    straight = replace(run, velocity=velocity, turn_radius=np.full(len(run.time), np.inf))
     page = write_run_report(straight, summary_of(run), tmp_path).read_text(encoding="utf-8")
     (headline,) = re.findall(r'<p class="headline">(.*?)</p>', page)
     assert headline == "Speed <strong>6.00 m/s</strong> (median; nine tenths of the time from 4.20 to 7.80 m/s)."
