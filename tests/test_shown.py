@@ -31,8 +31,8 @@ def identified() -> skisnow.Identification:
 def equilibrium() -> skisnow.Equilibrium:
     along = np.linspace(0.9, -0.9, 161)
     return skisnow.Equilibrium(
-        "equilibrium", "", True, 800.0, 900.0, 12.5, 12.6, 12.7, 1.5, 1.4, 0.9, 0.0, along, 0.002 * along, along, along,
-        along, along, 1e-9, 1e-9, (), 8,
+        "equilibrium", "", True, 800.0, 900.0, 12.5, 12.6, 12.7, 1.5, 1.4, 0.9, 420.0, 380.0, 0.0, along,
+        0.002 * along, along, along, along, along, 1e-9, 1e-9, (), 8,
     )  # fmt: skip
 
 
@@ -61,6 +61,9 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
         skisnow.read_study(folder / "study.toml"), field, runner, contact,
         skisnow.StudyTable(("mu_0", "outcome"), [{"mu_0": 0.01, "outcome": "finished"}], ("mu_0",)),
         contact.force(np.zeros((1, 3)), np.eye(3)[None], np.zeros((1, 6)), 1e-3), identified(), equilibrium(),
+        skisnow.BootPose.of(np.zeros(3), 0.5), skisnow.BootMoment(0.0, 0.01, 0.0, np.zeros(3), np.eye(3), np.zeros(6),
+                                                                  np.zeros((2, 6, 3)), np.zeros((2, 6))),
+        skisnow.Boots(np.arange(4.0), np.zeros((4, 2, 3)), np.tile(np.eye(3), (4, 2, 1, 1))),
         skisnow.Store(folder / "store", None),  # type: ignore[arg-type]
     )  # fmt: skip
     return {type(each).__name__: each for each in made}

@@ -73,10 +73,20 @@ def replay_of_run(
     Raises
     ------
     ParameterError
-        The run has not even a first moment, or the gates are no pairs of finite numbers.
+        The run has not even a first moment, its boots move, or the gates are no pairs of finite numbers.
     """
+    require_still(run.boots_by)
     found = assembled(_arrays(run), _setting(run), title=title, track=track)
     return found if gates is None else replace(found, gates=_gates(gates, run.scenario.slope))
+
+
+def require_still(boots_by: str | None) -> None:
+    """Refuse a run whose boots move: the replay draws skis where the sledge has them."""
+    if boots_by is not None:
+        raise ParameterError(
+            f"the boots of this run are {boots_by}, and a replay shows skis that stay where the sledge has them. Take "
+            "the figures of the report, or the boots' poses in run.nc"
+        )
 
 
 def _arrays(run: Run) -> dict[str, FloatArray]:
