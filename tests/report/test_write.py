@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import pytest
@@ -78,7 +79,7 @@ def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
         write_file(path, content)
 
     monkeypatch.setattr("skisnow.report.write.write_file", noting)
-    others = {"font.size": 31.0, "svg.fonttype": "path", "axes.grid": True}
+    others: Any = {"font.size": 31.0, "svg.fonttype": "path", "axes.grid": True}
     with matplotlib.rc_context(others), only_drawn("png", "svg"):
         write_report(reference.analysis, tmp_path, progress=said.append)
         assert matplotlib.rcParams["font.size"] == 31.0
