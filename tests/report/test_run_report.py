@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +45,10 @@ def first_rows(run: Run, count: int) -> Run:
         **{name: getattr(run.skis, name)[:count] for name in SkiHistory.__slots__ if name != "station"},
     )
     energies = {name: values[:count] for name, values in run.energies.items()}
-    return replace(run, **cut, turn_radius=run.turn_radius[:count], skis=skis, energies=energies)
+    boots = run.boots
+    if boots is not None:
+        boots = replace(boots, **{each.name: getattr(boots, each.name)[:count] for each in fields(boots)})
+    return replace(run, **cut, turn_radius=run.turn_radius[:count], skis=skis, energies=energies, boots=boots)
 
 
 @pytest.fixture(scope="module")
