@@ -6,6 +6,7 @@ import csv
 import io
 import math
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Final
 
@@ -13,10 +14,12 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..given import plain_text
+from ..spreadsheet_text import decimal_mark, most_frequent_separator, number
 from .slope import Gap, Profile
 
 COLUMNS: Final = ("x", "y")
 _MOST_BYTES: Final = 1 << 26
+_HEAD: Final = 1 << 16
 _ACTION: Final = "write horizontal distance and height in m, with a decimal point, under a first line x,y"
 
 
@@ -26,8 +29,8 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
     Parameters
     ----------
     path
-        A CSV file, comma-separated, with a first line ``x,y``: horizontal distance, rising, and height, both in m.
-        Other columns are not read.
+        A CSV file with a first line ``x,y``: horizontal distance, rising, and height, both in m. Commas, semicolons or
+        tabs between cells; decimal points, or commas where cells are parted otherwise. Other columns are not read.
     gap
         What to do where neighbouring points are more than 5 m apart: "error", or "interpolate" over it.
 
@@ -39,7 +42,11 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
     """
     path = Path(path)
     try:
-        points = list(_points(path, csv.reader(io.StringIO(plain_text(path, most_bytes=_MOST_BYTES)))))
+        text = plain_text(path, most_bytes=_MOST_BYTES)
+        separator = most_frequent_separator(text[:_HEAD])
+        lines = list(csv.reader(io.StringIO(text), delimiter=separator))
+        mark = decimal_mark([chain.from_iterable(lines[1:])], separator=separator) if separator != "," else "."
+        points = list(_points(path, lines, mark))
     except csv.Error as error:
         raise ParameterError(f"{path} is no CSV text ({error}); {_ACTION}") from error
     try:
@@ -49,13 +56,13 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
         raise ParameterError(f"{path}: {error}") from error
 
 
-def _points(path: Path, lines: Iterator[list[str]]) -> Iterator[tuple[float, float]]:
-    head = [cell.strip() for cell in next(lines, [])]
+def _points(path: Path, lines: list[list[str]], mark: str) -> Iterator[tuple[float, float]]:
+    head = [cell.strip() for cell in (lines[0] if lines else [])]
     missing = [name for name in COLUMNS if name not in head]
     if missing:
         raise ParameterError(f"{path}, row 1: there is no column {missing[0]} among {', '.join(head)}; {_ACTION}")
     places = [head.index(name) for name in COLUMNS]
-    for row, cells in enumerate(lines, start=2):
+    for row, cells in enumerate(lines[1:], start=2):
         if any(cell.strip() for cell in cells[len(head) :]):
             raise ParameterError(
                 f"{path}, row {row}: {len(cells)} cells stand under {len(head)} names of columns, as a decimal comma "
@@ -63,17 +70,14 @@ def _points(path: Path, lines: Iterator[list[str]]) -> Iterator[tuple[float, flo
             )
         if any(cell.strip() for cell in cells):
             x, y = (
-                _number(path, row, name, cells[place] if place < len(cells) else "")
+                _number(path, row, name, cells[place] if place < len(cells) else "", mark)
                 for name, place in zip(COLUMNS, places, strict=True)
             )
             yield x, y
 
 
-def _number(path: Path, row: int, column: str, cell: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
+def _number(path: Path, row: int, column: str, cell: str, mark: str) -> float:
+    value = number(cell, mark)
     if not math.isfinite(value):
         raise ParameterError(f"{path}, row {row}, column {column}: {cell.strip()!r} is no finite number; {_ACTION}")
     return value
