@@ -79,7 +79,15 @@ def _bars(_app: Sphinx, _what: str, _name: str, _object: Any, _options: Any, lin
     lines[:] = [line if "``" in line or ">>>" in line else line.replace("|", r"\|") for line in lines]
 
 
+def _levels(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:  # noqa: ARG001
+    """Say of the captions of lists of pages which level of heading they are: screen readers ask for it."""
+    for part in ("body", "furo_navigation_tree"):
+        if isinstance(context.get(part), str):
+            context[part] = context[part].replace('role="heading"', 'role="heading" aria-level="2"')
+
+
 def setup(app: Sphinx) -> None:
-    """Register the renderer of equations and the reader of bars."""
+    """Register the renderer of equations, the reader of bars, and the levels of captions."""
     app.connect("autodoc-process-docstring", _bars)
+    app.connect("html-page-context", _levels, priority=900)  # behind the theme's own
     app.add_html_math_renderer("mathml", (_visit_inline, None), (_visit_block, None))

@@ -37,8 +37,8 @@ def lab_addresses(host: str, port: int, *, secure: bool, own: Iterable[str] | No
 
     Examples
     --------
-    >>> lab_addresses("0.0.0.0", 8765, secure=False, own=["127.0.0.1", "203.0.113.9", "192.168.1.7"])
-    ['http://192.168.1.7:8765/', 'http://203.0.113.9:8765/']
+    >>> lab_addresses("0.0.0.0", 8765, secure=False, own=["127.0.0.1", "93.184.216.34", "192.168.1.7"])
+    ['http://192.168.1.7:8765/', 'http://93.184.216.34:8765/']
     >>> lab_addresses("127.0.0.1", 80, secure=True)
     ['https://127.0.0.1:80/']
     """

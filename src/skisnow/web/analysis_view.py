@@ -13,8 +13,9 @@ from nicegui import ui
 from ..report.number_formatting import counted
 from .analysing import Choice, Numbers, Refusal, choosable_flags
 from .error_pages import error_sentence
+from .language import said
 from .layout import heading, sentence
-from .worded import Words, named
+from .worded import Words, html_words, named
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -138,7 +139,7 @@ class AnalysisView:
             with ui.element("ul").classes("results"):
                 for words in found.key_results:
                     with ui.element("li"):
-                        ui.html(words, sanitize=False)  # the report's own, in which all that users wrote is escaped
+                        html_words(words)
             for warning in found.results["penetration"]["warnings"]:
                 sentence(warning, "quiet")
             if FIRST_TABLE in found.tables:
@@ -163,7 +164,7 @@ class AnalysisView:
 
     def _list_marks(self, found: Numbers) -> None:
         for code, words in choosable_flags().items():
-            ui.checkbox(words, value=code in found.excluding, on_change=self._mark_chooser(code, found.excluding))
+            ui.checkbox(said(words), value=code in found.excluding, on_change=self._mark_chooser(code, found.excluding))
 
     def _list_experiments(self, found: Numbers) -> None:
         for file, kind in (("penetration.csv", "penetration"), ("shear.csv", "shear")):
@@ -177,7 +178,8 @@ class AnalysisView:
         cancelled = "cancelled" in row["flags"]
         words = f"{kind.capitalize()} {row['experiment']}, {row['site']}, {row['edge_angle_deg']:g}°"
         words += " (cancelled)" if cancelled else ""
-        box = ui.checkbox(words, value=not cancelled, on_change=self._test_chooser((file, str(row["experiment"]))))
+        chosen = self._test_chooser((file, str(row["experiment"])))
+        box = ui.checkbox(said(words), value=not cancelled, on_change=chosen)
         if cancelled:
             box.disable()
 
@@ -216,7 +218,7 @@ def _behind(words: str, fill: Callable[[], None]) -> None:
 
 
 def _table(html: str) -> None:
-    ui.html(html, sanitize=False)  # the report's own table, in which all that users wrote is escaped
+    html_words(html)
 
 
 def _counts(found: Numbers) -> str:
@@ -235,4 +237,4 @@ def _figure(shown: Shown) -> None:
         image.props["src"] = f"data:image/svg+xml;base64,{data}"
         image.props["alt"] = shown.alt
         with ui.element("figcaption"):
-            ui.html(shown.caption, sanitize=False)  # the report's own words, in which all that users wrote is escaped
+            html_words(shown.caption)

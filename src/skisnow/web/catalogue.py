@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
 _LINE: Final = re.compile(r'(?:(msgid|msgstr) )?(".*")')
 _PLACE: Final = re.compile(r"\{\d*\}")
-_LETTERS: Final = 3
+_BETWEEN: Final = (" · ", "; ")
+"""What stands between parts that are said one after the other."""
+LEAST_LETTERS: Final = 3
 """A text with fewer letters around its places would be recognized in anything."""
 _KNOWN: Final = 4096
 
@@ -57,17 +59,21 @@ class Catalogue:
         self.translated = lru_cache(_KNOWN)(self._translated)
 
     def _translated(self, text: str) -> str:
-        if text in self._whole:
-            return self._whole[text]
+        plain = text.replace("\N{NO-BREAK SPACE}", " ")
+        if plain in self._whole:
+            return self._whole[plain]
         for pattern in self._patterns:
-            if found := pattern.text.fullmatch(text):
+            if found := pattern.text.fullmatch(plain):
                 return pattern.translation.format(*map(self._translated, found.groups()))
+        for between in _BETWEEN:
+            if between in text:
+                return between.join(map(self._translated, text.split(between)))
         return text
 
 
 def _recognized(english: str) -> re.Pattern[str]:
     around = _PLACE.split(english)
-    if sum(map(str.isalpha, "".join(around))) < _LETTERS:
+    if sum(map(str.isalpha, "".join(around))) < LEAST_LETTERS:
         raise ParameterError(f"the text {english!r} has too few letters to be recognized")
     return re.compile("(.*?)".join(map(re.escape, around)), re.DOTALL)
 

@@ -13,6 +13,7 @@ from starlette.responses import HTMLResponse, Response
 
 from ..errors import FieldDataError, ParameterError, SkisnowError, StoreError
 from .guard import STATUS
+from .language import ENGLISH, catalogue, language_of_request, said
 from .layout import framed, sentence
 
 if TYPE_CHECKING:
@@ -24,9 +25,9 @@ if TYPE_CHECKING:
 LOG: Final = logging.getLogger("skisnow.web")
 LOG_BYTES: Final = 2_000_000
 
-_PLAIN: Final = """<!doctype html><html lang="en"><meta charset="utf-8"><title>{title} · skisnow</title>
+_PLAIN: Final = """<!doctype html><html lang="{language}"><meta charset="utf-8"><title>{title} · skisnow</title>
 <meta name="viewport" content="width=device-width, initial-scale=1"><link rel="stylesheet" href="/lab.css">
-<body><main class="lab"><h1>{title}</h1><p>{said}</p><p><a href="/">To the campaigns</a></p></main></body></html>"""
+<body><main class="lab"><h1>{title}</h1><p>{said}</p><p><a href="/">{back}</a></p></main></body></html>"""
 
 
 def log_to(path: Path) -> None:
@@ -66,11 +67,11 @@ def add_error_pages(outer: FastAPI) -> None:
 
 
 def _notified(error: Exception) -> None:
-    said = error_sentence(error)
+    told = error_sentence(error)
     try:
-        ui.notify(said, type="negative", multi_line=True, timeout=0, close_button="Close")
+        ui.notify(said(told), type="negative", multi_line=True, timeout=0, close_button=said("Close"))
     except RuntimeError:  # no page belongs to what failed
-        LOG.info("not shown on a page: %s", said)
+        LOG.info("not shown on a page: %s", told)
 
 
 def _page(error: Exception) -> None:
@@ -80,16 +81,19 @@ def _page(error: Exception) -> None:
         sentence(error_sentence(error), "bad")
 
 
-def plain_page(title: str, said: str, status: int) -> Response:
-    """A page without any script: a title, a sentence, the way back."""
-    return HTMLResponse(_PLAIN.format(title=escape(title), said=escape(said)), status)
+def plain_page(title: str, sentence: str, status: int, request: Request | None = None) -> Response:
+    """A page without any script, in the language of the request: a title, a sentence, the way back."""
+    language = ENGLISH if request is None else language_of_request(request)
+    shown = {"title": title, "said": sentence, "back": "To the campaigns"}
+    words = {name: escape(catalogue(language).translated(text)) for name, text in shown.items()}
+    return HTMLResponse(_PLAIN.format(language=language, **words), status)
 
 
-async def _not_found(_: Request, __: Exception) -> Response:
-    return plain_page("No such page", "The lab has no page at this address.", 404)
+async def _not_found(request: Request, _: Exception) -> Response:
+    return plain_page("No such page", "The lab has no page at this address.", 404, request)
 
 
-async def _failed(_: Request, error: Exception) -> Response:
+async def _failed(request: Request, error: Exception) -> Response:
     if isinstance(error, SkisnowError):  # the page itself says it
-        return plain_page("This cannot be shown", error_sentence(error), 500)
-    return plain_page("This cannot be shown", f"Something went wrong. Reference: {reported(error)}.", 500)
+        return plain_page("This cannot be shown", error_sentence(error), 500, request)
+    return plain_page("This cannot be shown", f"Something went wrong. Reference: {reported(error)}.", 500, request)

@@ -175,9 +175,9 @@ class Guard:
         if scope["method"] == "POST" and scope["path"] == TOKEN_PATH:
             wait_s = self.tries.wait_s((scope.get("client") or ("",))[0])
             if wait_s > 0:
-                return too_many_tries(wait_s)
+                return too_many_tries(scope, wait_s)
             return await answer_to_token(scope, receive, self.access.is_token, (COOKIE, self.access.cookie))
-        return token_page(401)
+        return token_page(scope, 401)
 
 
 def _with_headers(send: Send, scope: Scope) -> Send:

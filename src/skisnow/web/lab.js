@@ -33,6 +33,7 @@
     isLost = false;
     fieldsets().forEach((each) => (each.disabled = false));
     document.documentElement.classList.remove("not-connected");
+    document.documentElement.lang = language; // the framework has set its own meanwhile
     if (left?.isConnected) left.focus();
     left = null;
     if (!watched) begun();
@@ -317,6 +318,13 @@
     telling.get(once)();
   }
 
+  // The other language shows what is shown now, whatever the page was opened with.
+  function comesBack(event) {
+    const link = event.target.closest?.("a.language");
+    if (link) link.search = `back=${encodeURIComponent(location.pathname + location.search)}`;
+  }
+
+  window.addEventListener("click", comesBack, true);
   window.addEventListener("keydown", keyPressed, true);
   window.addEventListener("beforeinput", textComes, true);
   window.addEventListener("input", () => setTimeout(save), true);

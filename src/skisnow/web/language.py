@@ -14,6 +14,8 @@ from .catalogue import Catalogue, read_catalogue
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from starlette.requests import Request
+
 FOLDER: Final = Path(__file__).parent / "languages"
 ENGLISH: Final = "en"
 COOKIE: Final = "skisnow-language"
@@ -63,9 +65,13 @@ def language_of(client: Client | None = None) -> str:
         except RuntimeError:  # nobody's page
             return ENGLISH
     if client not in _OF_PAGES:
-        request = client.request
-        _OF_PAGES[client] = language_asked(request.cookies.get(COOKIE), request.headers.get("accept-language", ""))
+        _OF_PAGES[client] = language_of_request(client.request)
     return _OF_PAGES[client]
+
+
+def language_of_request(request: Request) -> str:
+    """The code of the language that a request asks for."""
+    return language_asked(request.cookies.get(COOKIE), request.headers.get("accept-language", ""))
 
 
 def said(text: str, client: Client | None = None) -> str:

@@ -8,6 +8,7 @@ from nicegui import ui
 
 from ..errors import ParameterError
 from .fields import button, field
+from .language import said
 from .layout import heading, sentence
 from .ski_asked import CELLS, FACTORS, SkiAsked
 from .worded import Words, named
@@ -58,11 +59,11 @@ class SkiEditor:
                 "start again from it.",
                 "quiet",
             )
-            written = ui.textarea("File of the edited ski", value=text).props("outlined autogrow").classes("code")
+            written = ui.textarea(said("File of the edited ski"), value=text).props("outlined autogrow").classes("code")
             with ui.element("details"):
                 with ui.element("summary"):
                     Words("Its table, where it has one")
-                rows = ui.textarea("Table of the edited ski", value=table).props("outlined").classes("code")
+                rows = ui.textarea(said("Table of the edited ski"), value=table).props("outlined").classes("code")
             button("Draw the file", self._take_file, "main")
         return written, rows
 

@@ -13,6 +13,8 @@ from urllib.parse import parse_qs
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
+from .language import catalogue, language_of_request
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -27,16 +29,16 @@ WITHIN_S: Final = 60.0
 """An address may try so many tokens in so many seconds (modelling assumption)."""
 _MOST_ADDRESSES: Final = 10_000
 
-_PAGE: Final = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Token · skisnow</title>
+_PAGE: Final = """<!doctype html><html lang="{language}"><meta charset="utf-8"><title>{token} · skisnow</title>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <style>body{{font:20px/1.5 system-ui,sans-serif;color:#111;background:#fff;max-width:28rem;margin:3rem auto;
 padding:0 1rem}}
 input,button{{font:inherit;width:100%;box-sizing:border-box;min-height:56px;margin:.4rem 0;padding:.4rem .8rem;
 border:2px solid #333;border-radius:6px}}button{{background:#0b4f8a;color:#fff;border-color:#0b4f8a}}
 </style><main><h1>skisnow</h1><p role="status">{said}</p><form method="post" action="{path}">
-<label for="token">Token</label>
+<label for="token">{token}</label>
 <input id="token" name="token" type="password" autocomplete="current-password" autofocus>
-<button>Open the lab</button></form></main></html>"""
+<button>{open}</button></form></main></html>"""
 
 
 class Tries:
@@ -69,15 +71,21 @@ def _network(address: str) -> str:
     return address if known.version == 4 else str(ipaddress.ip_network((int(known) >> 64 << 64, 64)))
 
 
-def token_page(status: int, said: str = "The lab asks for the token that it was started with.") -> Response:
-    """The form, with a sentence above it."""
-    return HTMLResponse(_PAGE.format(said=said, path=TOKEN_PATH), status, headers={"cache-control": "no-store"})
+def token_page(
+    scope: Scope, status: int, sentence: str = "The lab asks for the token that it was started with."
+) -> Response:
+    """The form, with a sentence above it, in the language of the request."""
+    language = language_of_request(Request(scope))
+    shown = {"said": sentence, "token": "Token", "open": "Open the lab"}
+    words = {name: catalogue(language).translated(text) for name, text in shown.items()}
+    page = _PAGE.format(language=language, path=TOKEN_PATH, **words)
+    return HTMLResponse(page, status, headers={"cache-control": "no-store"})
 
 
-def too_many_tries(wait_s: float) -> Response:
+def too_many_tries(scope: Scope, wait_s: float) -> Response:
     """The form, with how long to wait."""
     seconds = math.ceil(wait_s)
-    answer = token_page(429, f"That were {TRIES} tries in a minute. Wait {seconds} seconds, then try again.")
+    answer = token_page(scope, 429, f"That were {TRIES} tries in a minute. Wait {seconds} seconds, then try again.")
     answer.headers["retry-after"] = str(seconds)
     return answer
 
@@ -91,13 +99,13 @@ async def answer_to_token(
         async for piece in Request(scope, receive).stream():
             body += piece
             if len(body) > _LONGEST:
-                return token_page(413, "This is too long for a token.")
+                return token_page(scope, 413, "This is too long for a token.")
     except ClientDisconnect:
         return Response(status_code=400)
     said = parse_qs(body.decode("utf-8", "replace")).get("token", [""])[0]
     if not is_token(said):
         await asyncio.sleep(_WAIT_S)
-        return token_page(403, "This is not the token.")
+        return token_page(scope, 403, "This is not the token.")
     answer = RedirectResponse("/", 303)
     answer.set_cookie(*cookie, httponly=True, samesite="strict", path="/", secure=scope.get("scheme") == "https")
     return answer

@@ -43,17 +43,17 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
                 uploads = [item for item in form.getlist("files") if isinstance(item, UploadFile) and item.filename]
                 added = await run_in_threadpool(_added, lab, uploads)
         except (SkisnowError, OSError) as error:
-            return plain_page("This was not taken in", f"Nothing was stored: {error_sentence(error)}", 400)
+            return plain_page("This was not taken in", f"Nothing was stored: {error_sentence(error)}", 400, request)
         except HTTPException:
             text = f"Nothing was stored: at most {lab.limits.files} files at once are taken in."
-            return plain_page("This was not taken in", text, 400)
+            return plain_page("This was not taken in", text, 400, request)
         return RedirectResponse(f"/?added={added}", 303)
 
-    async def entry(id_: str) -> Response:
-        return await _packed(lambda folder: write_entry(lab, id_, folder), id_)
+    async def entry(request: Request, id_: str) -> Response:
+        return await _packed(lambda folder: write_entry(lab, id_, folder), id_, request)
 
-    async def kept(id_: str) -> Response:
-        return await _packed(lambda folder: write_kept(lab, id_, folder), id_)
+    async def kept(request: Request, id_: str) -> Response:
+        return await _packed(lambda folder: write_kept(lab, id_, folder), id_, request)
 
     app.add_api_route(IMPORT, take_in, methods=["POST"], response_model=None)
     app.add_api_route("/export/entry/{id_}.zip", entry, response_model=None)
@@ -71,11 +71,11 @@ def _added(lab: Lab, uploads: Sequence[UploadFile]) -> str:
         return confined(BOUNDS, add_uploaded, lab.store.path, name, names, lab.limits)
 
 
-async def _packed(write: Writing, id_: str) -> Response:
+async def _packed(write: Writing, id_: str, request: Request) -> Response:
     try:
         content = await run_in_threadpool(_zip, write)
     except StoreError as error:
-        return plain_page("This cannot be exported", error_sentence(error), 404)
+        return plain_page("This cannot be exported", error_sentence(error), 404, request)
     headers = {"content-disposition": f'attachment; filename="campaign-{required_id(id_)}.zip"'}
     return Response(content, media_type="application/zip", headers=headers)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from nicegui import ui
 
 from ..fields import choice, field
+from ..language import said
 from ..worded import Words, named
 from ..words import TABLES
 from .beside import Beside
@@ -24,11 +25,11 @@ def table_links(tables: Mapping[str, str], here: str, further: Mapping[str, str]
     """Links to the tables, addresses by file, and behind them what else there is of the campaign, by name."""
     with named(ui.element("nav").classes("tables"), "Kind of test"):
         for file, address in tables.items():
-            made = ui.link(TABLES[file], address)
+            made = ui.link(said(TABLES[file]), address)
             if file == here:
                 made.props('aria-current="page"')
         for name, address in further.items():
-            ui.link(name, address)
+            ui.link(said(name), address)
 
 
 @contextmanager

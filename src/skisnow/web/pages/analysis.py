@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import app, background_tasks, ui
 from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from ..analyses import Analyses
@@ -56,17 +57,17 @@ def add_page(lab: Lab) -> None:
         background_tasks.create(view.compute(), name="analysis")
 
     @app.get("/report/{key}/report.html")
-    async def report(key: str) -> Response:
+    async def report(request: Request, key: str) -> Response:
         page = open_pages.get(key)
         if (folder := await _report(page, worker)) is None:
-            return _no_report(page)
+            return _no_report(page, request)
         return FileResponse(folder / "report.html", headers={"content-security-policy": REPORT_POLICY})
 
     @app.get("/report/{key}/analysis.zip")
-    async def everything(key: str) -> Response:
+    async def everything(request: Request, key: str) -> Response:
         page = open_pages.get(key)
         if page is None or (folder := await _report(page, worker)) is None or page.subject is None:
-            return _no_report(page)
+            return _no_report(page, request)
         headers = {"content-disposition": 'attachment; filename="analysis.zip"'}
         content = await run_in_threadpool(_packed, page.subject, folder)
         return Response(content, media_type="application/zip", headers=headers)
@@ -82,10 +83,10 @@ def _packed(subject: CampaignSource, report: Path) -> bytes:
     return packed.getvalue()
 
 
-def _no_report(page: OpenAnalysis | None) -> Response:
+def _no_report(page: OpenAnalysis | None, request: Request) -> Response:
     if page is not None and page.refused:
-        return plain_page("No report yet", page.refused, 404)
-    return plain_page("No such report", "Open the analysis of the campaign again.", 404)
+        return plain_page("No report yet", page.refused, 404, request)
+    return plain_page("No such report", "Open the analysis of the campaign again.", 404, request)
 
 
 async def _report(page: OpenAnalysis | None, worker: Worker) -> Path | None:

@@ -14,6 +14,7 @@ from ...report.number_formatting import significant
 from ...report.write import RESULTS
 from ..fields import choice
 from ..lab_skis import LabSkis
+from ..language import said
 from ..layout import framed
 from ..line_chart import STYLES, ChartLine, LineChart
 from ..snow_choice import SnowChoice
@@ -155,11 +156,12 @@ class _Carve:
         with ui.element("div").classes("slider") as place:
             if key in OF_SNOW:
                 self._of_snow[key] = place
-            shown = Words(f"{words}: {start}")
+            called = said(words)
+            shown = Words(f"{called}: {start}")
 
             def moved(event: GenericEventArguments) -> None:
                 self._values[key] = stops[min(max(int(event.args), 0), len(stops) - 1)]
-                shown.set_text(f"{words}: {self._values[key]}")
+                shown.set_text(f"{called}: {self._values[key]}")
                 self.ask()
 
             # the browser's own slider: arrow keys, touch and screen readers know it

@@ -15,6 +15,7 @@ from ...given import toml_values
 from ..answering import asked, asking_button, form, go_on, row_button
 from ..edit_session import EditSession
 from ..fields import choice, field
+from ..language import said
 from ..layout import framed, heading, sentence
 from ..names import entering, required_id
 from ..typed import typed_number
@@ -36,12 +37,6 @@ NUMBERS: Final = {
 LENGTHS: Final = {"length_mm": "Length (mm)", "width_mm": "Width (mm)", "diameter_mm": "Diameter (mm)"}
 LENGTHS_OF_SHAPES: Final = LENGTHS | {"radius_mm": "Radius (mm)"}
 _SHAPE: Final = "Shape of tool {}"
-USUAL: Final[dict[str, Any]] = {
-    "load_steps_N": (12, 92, 172, 252, 332, 412, 492),
-    "tool": ({"name": "ski piece", "shape": "ski", "length_mm": 200, "width_mm": 62},),
-    "plate": ({"name": "plate", "length_mm": 100},),
-}
-"""What stands in the form of a new campaign: discs and tool of the published method."""
 MOST_ROWS: Final = 200
 """That come back when a page is loaded anew."""
 SHAPE_WORDS: Final = {"ski": "piece of ski", "disc": "disc", "cylinder": "cylinder on its side"}
@@ -112,7 +107,7 @@ class DescriptionForm:
     """The fields of campaign.toml; a key that the form does not know, such as the screening's, is kept."""
 
     def __init__(self, described: dict[str, Any] | None) -> None:
-        given = USUAL if described is None else described
+        given = _usual() if described is None else described
         self._given = given
         with ui.element("div").classes("fields"):
             self._name = field("Name of the campaign", given.get("name", ""), wide=True)
@@ -167,9 +162,9 @@ class _Entries:
         """Have at least so many rows, and the shapes that are chosen by the names of their fields."""
         while isinstance(count, int) and len(self._rows) < min(count, MOST_ROWS):
             self._add({})
-        shapes = {words: shape for shape, words in SHAPE_WORDS.items()}
+        shapes = {said(words): shape for shape, words in SHAPE_WORDS.items()}
         for number, (_, shape, _) in enumerate(self._rows, start=1):
-            word = choices.get(_SHAPE.format(number))
+            word = choices.get(said(_SHAPE.format(number)))
             if shape is not None and isinstance(word, str) and word in shapes:
                 shape.set_value(shapes[word])
 
@@ -218,6 +213,15 @@ class _Entries:
 def _show_lengths(shape: ui.select, lengths: dict[str, TypedField]) -> None:
     for key, each in lengths.items():
         each.set_visibility(key in SHAPES[shape.value].argument_of_key)
+
+
+def _usual() -> dict[str, Any]:
+    """What stands in the form of a new campaign: discs and tool of the published method."""
+    return {
+        "load_steps_N": (12, 92, 172, 252, 332, 412, 492),
+        "tool": ({"name": said("ski piece"), "shape": "ski", "length_mm": 200, "width_mm": 62},),
+        "plate": ({"name": said("plate"), "length_mm": 100},),
+    }
 
 
 def _shown(value: float | None) -> str:

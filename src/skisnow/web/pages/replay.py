@@ -9,6 +9,7 @@ from nicegui import app, ui
 from ...given import read_json
 from ...report.number_formatting import counted
 from ..fields import link
+from ..language import said
 from ..layout import framed, heading, sentence
 from ..replay.addresses import LIST, SHOW, RunFolders, add_addresses, show_address
 from ..replay.tracks import LARGEST_BYTES, MOST_POINTS, TrackFolders
@@ -86,8 +87,9 @@ def _select(key: str, text: str, names: list[str], chosen: str) -> None:
         Words(text)
     with ui.element("select").props(f"id=replay-{key} name={key}").classes("act"):
         for name in names:
-            said = f'value="{_quoted("" if name == NONE else name)}" label="{_quoted(name)}"'
-            ui.element("option").props(said + (" selected" if name == chosen else ""))
+            shown = _quoted(said(NONE) if name == NONE else name)
+            told = f'value="{_quoted("" if name == NONE else name)}" label="{shown}"'
+            ui.element("option").props(told + (" selected" if name == chosen else ""))
 
 
 def _upload() -> None:

@@ -11,6 +11,7 @@ from ...replay.of_file import RUN_FILE
 from ..error_pages import error_sentence
 from ..fields import button, choice, link
 from ..lab_skis import LabSkis
+from ..language import said
 from ..layout import framed, heading, sentence
 from ..replay.addresses import show_address
 from ..run_estimate import estimated_s
@@ -169,9 +170,9 @@ class _Form:
 
     def _refuse(self, error: SkisnowError) -> None:
         """Say what is wrong at the button and at the field that has it, and put the focus there."""
-        said = error_sentence(error)
-        faulty = next((each for name, each in self._fields.items() if name in said), None)
-        told = in_labels(said, *(each.key for each in self._fields.values()))
+        wrong = error_sentence(error)
+        faulty = next((each for name, each in self._fields.items() if name in wrong), None)
+        told = in_labels(wrong, *(each.key for each in self._fields.values()))
         if faulty is not None:
             faulty.refuse(told)
             faulty.focus()
@@ -260,7 +261,7 @@ class _History:
         try:
             self._runs.cancel(name)
         except ParameterError as error:
-            ui.notify(error_sentence(error))
+            ui.notify(said(error_sentence(error)))
         self.show()
 
 

@@ -10,7 +10,7 @@ from ...errors import SkisnowError
 from ...report.ski_drawing import SkiDrawing, ski_drawing
 from ..confined import OF_A_SKI, confined
 from ..error_pages import error_sentence
-from ..fields import button, choice, field
+from ..fields import button, choice, field, said_options
 from ..lab_skis import FILE, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..layout import framed, heading, sentence
 from ..line_chart import STYLES, ChartLine, LineChart
@@ -68,7 +68,8 @@ class _Skis:
         with ui.element("div").classes("two"):
             with named(ui.element("section").classes("drawing"), "Drawing"):
                 self._charts = {
-                    key: LineChart(ALONG, title, f"{title} along the ski", height=190) for key, title in PANELS.items()
+                    key: LineChart(ALONG, title, f"{title} along the ski", height=190, ends=("tail", "tip"))
+                    for key, title in PANELS.items()
                 }
             with named(ui.element("section"), "Editor"):
                 self._editor = SkiEditor(skis, names[0], self._follow)
@@ -146,7 +147,7 @@ class _Skis:
             return
         names = self._skis.names()
         self._first.set_options(names)
-        self._second.set_options([NOTHING, EDITED, *names])
+        self._second.set_options(said_options([NOTHING, EDITED, *names]))
         self._second.set_value(name)  # which draws it
         _show(self._saved, f"Saved: {name}. Carve and Simulate have it too.", bad=False)
 
@@ -184,7 +185,7 @@ def _files(asked: SkiAsked) -> dict[str, str]:
 def _lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
     for number, each in enumerate(drawn):
         values = getattr(each, key)
-        yield ChartLine(each.station_m, values, number)
+        yield ChartLine(each.station_m, values, number, name=each.name)
         if key == "half_width_mm":
             yield ChartLine(each.station_m, [-value for value in values], number)
 

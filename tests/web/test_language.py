@@ -1,0 +1,141 @@
+"""German and English: no text of the lab without its German one, and a page that is driven in German."""
+
+from __future__ import annotations
+
+import http.client
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
+
+import pytest
+
+from .conftest import MISSING, PATIENCE_MS, Served, Watched, fill, ready
+
+if "nicegui" in MISSING:
+    pytest.skip("the web lab is not installed", allow_module_level=True)
+
+from skisnow.carve.result import REMEDIES
+from skisnow.errors import ParameterError
+from skisnow.field import QUALITY_FLAGS
+from skisnow.field.store import Journals, Store
+from skisnow.field.store.description import Description, description_text
+from skisnow.report.ski_drawing import ski_drawing
+from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.ski import read_ski
+from skisnow.web.catalogue import Catalogue, read_catalogue
+from skisnow.web.language import FOLDER, catalogue, languages
+from skisnow.web.pages.simulate import BASIC, _expert
+from skisnow.web.scenario_fields import called, range_words
+
+from .shown_texts import MADE_OF_KINDS, shown_texts
+from .test_day import PLATE, TOOL, VALUES
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+GERMAN = Catalogue(read_catalogue(FOLDER / "de.po"))
+
+
+def untranslated(texts: list[str]) -> list[str]:
+    """Those that the catalogue leaves as they are, as lines of a PO file; a few are the same in both languages."""
+    same = {"EI", "GJ", "EI ×", "GJ ×", "EI (N m²)", "GJ (N m²)", "{} · skisnow", "Start", "Ski", "1 (elastic)"}
+    left = [text for text in texts if text not in same and GERMAN.translated(text) == text]
+    return [text for text in left if text not in read_catalogue(FOLDER / "de.po")]
+
+
+def test_every_text_of_the_lab_has_its_german_one() -> None:
+    known, shown = read_catalogue(FOLDER / "de.po"), shown_texts()
+    assert len(shown) > 300
+    assert [f"{file}: {text}" for text, file in shown.items() if text not in known and text not in MADE_OF_KINDS] == []
+
+
+def test_what_the_library_says_on_a_page_has_its_german_text() -> None:
+    keys = [SCENARIO_KEYS[name] for name in (*BASIC, *_expert())]
+    assert [key.name for key in keys if not key.label] == []
+    texts = [called(key) for key in keys] + [range_words(key) for key in keys]
+    texts += [word for key in keys for word in key.choices]
+    texts += [flag.sentence for flag in QUALITY_FLAGS.values()]
+    texts += [f"carver: {outcome.replace('_', ' ')}, {remedy}." for outcome, remedy in REMEDIES.items() if remedy]
+    texts += list(ski_drawing(read_ski("carver")).facts)
+    texts += [f"{first} of {kind} 2" for kind, first in (("tool", "Name"), ("plate", "Name"), ("tool", "Shape"))]
+    texts += ["Another tool", "Another plate", "Import folder", "Import files or zip"]
+    texts += ["3 penetration experiments, 2 used; 1 shear experiment, 1 used."]
+    assert untranslated(texts) == []
+
+
+def test_messages_are_translated_with_the_messages_in_them() -> None:
+    said = "Not stored: Depth (mm) is a number of 0 or more; 'two' stands there."
+    assert GERMAN.translated(said) == "Nicht gespeichert: Tiefe (mm) ist eine Zahl ab 0; 'two' steht da."
+    said = (
+        "The series has fewer than 3 load steps. Found: 2; not flagged would be at least 3 load steps. The experiment"
+    )
+    said += " is kept and counted, but not included in the estimates."
+    assert GERMAN.translated(said) == (
+        "Die Reihe hat weniger als 3 Laststufen. Gefunden: 2; ohne Markierung wäre mindestens 3 Laststufen. Der Versuch"
+        " bleibt und wird gezählt, geht aber nicht in die Schätzungen ein."
+    )
+
+
+def test_a_further_language_is_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "it.po").write_text('msgid "English"\nmsgstr "Italiano"\n', encoding="utf-8")
+    monkeypatch.setattr("skisnow.web.language.FOLDER", tmp_path)
+    for each in (languages, catalogue):
+        each.cache_clear()
+    assert languages() == {"en": "English", "it": "Italiano"}
+    languages.cache_clear()
+    catalogue.cache_clear()
+    (tmp_path / "no.po").write_text('msgid "{} of {}"\nmsgstr "{0}"\n', encoding="utf-8")
+    with pytest.raises(ParameterError, match="other places"):
+        read_catalogue(tmp_path / "no.po")
+
+
+def asked(served: Served, path: str, **headers: str) -> tuple[int, dict[str, str], str]:
+    parts = urlsplit(served.address)
+    assert parts.hostname is not None
+    connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=30)
+    connection.request("GET", path, headers={name.replace("_", "-"): value for name, value in headers.items()})
+    answer = connection.getresponse()
+    found = answer.status, {name.lower(): value for name, value in answer.getheaders()}, answer.read().decode()
+    connection.close()
+    return found
+
+
+def test_the_language_is_that_of_the_browser_until_another_is_chosen(served: Served) -> None:
+    assert "Keine solche Seite" in asked(served, "/nowhere", Accept_Language="de-AT,en;q=0.5")[2]
+    assert "No such page" in asked(served, "/nowhere", Accept_Language="fr")[2]
+    status, headers, _ = asked(served, "/language/de?back=%2Fskis")
+    assert status == 303 and headers["location"] == "/skis"
+    cookie = headers["set-cookie"].split(";")[0]
+    assert "Keine solche Seite" in asked(served, "/nowhere", Accept_Language="en", Cookie=cookie)[2]
+    assert asked(served, "/language/de?back=%2F%2Fevil.example")[1]["location"] == "/"
+    assert "set-cookie" not in asked(served, "/language/xx")[1]
+
+
+def test_a_series_is_entered_in_german(chromium: Browser, served: Served, watched: Watched) -> None:
+    with Store.open(served.store) as store:
+        id_ = Journals(store).begin(description_text(Description(VALUES | {"name": "Tag"}, [TOOL], [PLATE])))
+    context = chromium.new_context(locale="de-DE", viewport={"width": 390, "height": 844})
+    context.set_default_timeout(PATIENCE_MS)
+    page = context.new_page()
+    watched.of(page)
+    page.goto(f"{served.address}enter/{id_}")
+    page.get_by_role("heading", name="Neue Reihe").wait_for()
+    assert page.locator("html").get_attribute("lang") == "de"
+    fill(page, {"Messort": "A", "Kantwinkel (°)": "95"})
+    page.keyboard.press("Enter")
+    page.get_by_text("Nicht begonnen: Kantwinkel (°) ist eine Zahl von 0 bis unter 90; '95' steht da.").wait_for()
+    ready(page)
+    fill(page, {"Kantwinkel (°)": "30"})
+    page.keyboard.press("Enter")
+    page.get_by_label("Tiefe unter 20 N (mm)").and_(page.locator(":focus")).wait_for()
+    page.keyboard.type("1,5\n2,o\n")
+    page.locator(".reading.refused").get_by_text("Tiefe (mm) ist eine Zahl ab 0; '2,o' steht da").wait_for()
+    page.get_by_text("gespeichert", exact=True).wait_for()
+    page.get_by_role("button", name="Rückgängig: eingegeben: 1.5 mm unter 20 N").wait_for()
+    english = {text for text in read_catalogue(FOLDER / "de.po") if GERMAN.translated(text) != text}
+    assert english.intersection(map(str.strip, page.locator("body").inner_text().splitlines())) == set()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.get_by_role("link", name="English").click()
+    page.get_by_label("Depth under 20 N (mm)").wait_for()  # the same series, and what was typed is there
+    context.close()
+    assert watched.errors == []
