@@ -125,14 +125,14 @@ def enter_shear(page: Page) -> None:
 def carve(page: Page, served: Served) -> None:
     """The radius beside the sliders is the library's."""
     page.goto(f"{served.address}carve")
-    page.get_by_role("row", name="Turn radius at the boot").get_by_role("cell").wait_for(timeout=ANSWERED_MS)
+    headline = page.get_by_role("region", name="Carved radius")
+    headline.get_by_text("carved radius").wait_for(timeout=ANSWERED_MS)
     slider = page.get_by_role("slider", name="Edge angle (°)")
     slider.focus()
     page.keyboard.press("ArrowRight")
     asked = {"ski": "carver", "edge_angle_deg": 46.0, "load_N": 800.0, "H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
     answer = answer_dict(answered(carve_question({**asked, "unloading_ratio": 10.0})))
-    row = page.get_by_role("row", name="Turn radius at the boot")
-    row.get_by_role("cell", name=f"{significant(answer['turn_radius_boot_m'])} m", exact=True).wait_for()
+    headline.get_by_text(f"carver: carved radius {significant(answer['turn_radius_boot_m'])} m", exact=True).wait_for()
 
 
 def simulate(page: Page, served: Served) -> dict[str, Any]:
@@ -141,8 +141,7 @@ def simulate(page: Page, served: Served) -> dict[str, Any]:
     ready(page)
     page.get_by_label("Snow", exact=True).press("Space")
     page.get_by_role("option", name='The day <b>"of" & tests</b>').click()
-    page.get_by_text("Run", exact=True).click()
-    page.get_by_label("run.duration_s", exact=True).fill("0.1")
+    page.get_by_label("Ends after (s)", exact=True).fill("0.1")
     page.get_by_role("button", name="Simulate").press("Enter")
     page.get_by_role("link", name="Watch").wait_for(timeout=ANSWERED_MS)
     (place,) = (served.store.parent / "lab").glob("*/summary.json")
