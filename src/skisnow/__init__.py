@@ -19,8 +19,9 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     A ski in snow under a load, carving steadily or at rest.
 ``scenario``, ``scenario_names``, ``Scenario``
     What a run is: a built-in scenario by its name or any other from its file; `Scenario.with_` makes another of it.
-``Plane``, ``Profile``, ``Contact``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
-    The parts of a scenario: slope, how snow and skis meet, drag, sledge, where it begins and ends, how it is computed.
+``Plane``, ``Profile``, ``Terrain``, ``Contact``, ``SnowMap``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
+    The parts of a scenario: slope, how snow and skis meet, snow over the place, drag, sledge, where it begins and ends,
+    how it is computed.
 ``simulate``, ``Run``, ``verify``, ``Refinement``
     A sledge on two flexible skis: the run that comes out of a scenario, and how exact it is.
 ``chain``, ``TurnChain``
@@ -57,7 +58,20 @@ if TYPE_CHECKING:
     from .identify.identifying import identify
     from .parallel.batch import run_batch
     from .report import TurnChain, write_report
-    from .scenario import Air, Contact, Plane, Profile, RigidSledge, Scenario, Solver, Start, Stop, scenario_names
+    from .scenario import (
+        Air,
+        Contact,
+        Plane,
+        Profile,
+        RigidSledge,
+        Scenario,
+        SnowMap,
+        Solver,
+        Start,
+        Stop,
+        Terrain,
+        scenario_names,
+    )
     from .scenario import read_scenario as scenario
     from .simulate import Run
     from .simulate.simulated_run import simulate
@@ -94,6 +108,7 @@ __all__ = [
     "Ski",
     "SnowContact",
     "SnowField",
+    "SnowMap",
     "SnowProperties",
     "Solver",
     "Start",
@@ -101,6 +116,7 @@ __all__ = [
     "Store",
     "Study",
     "StudyTable",
+    "Terrain",
     "Track",
     "TrackSummary",
     "TurnChain",
@@ -149,9 +165,11 @@ _PACKAGES = {
         "Profile",
         "RigidSledge",
         "Scenario",
+        "SnowMap",
         "Solver",
         "Start",
         "Stop",
+        "Terrain",
         "scenario_names",
     ),
     "simulate": ("Run",),

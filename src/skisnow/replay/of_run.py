@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..scenario import Plane
+from ..scenario import Plane, Terrain
 from ..units import DEGREE, N_PER_MM2, N_PER_MM3
 from .groove_times import groove_times
 from .quaternions import quaternions
@@ -65,7 +65,7 @@ def replay_of_run(run: Run, *, title: str = "A simulated run", track: ReplayTrac
     Raises
     ------
     ParameterError
-        The run has not even a first moment.
+        The run has not even a first moment, or went over a grid, whose surface a replay cannot show.
     """
     return assembled(_arrays(run), _setting(run), title=title, track=track)
 
@@ -84,6 +84,8 @@ def _arrays(run: Run) -> dict[str, FloatArray]:
 
 def _setting(run: Run) -> Setting:
     scenario = run.scenario
+    if isinstance(scenario.slope, Terrain):
+        raise no_replay_on_grid()
     contact, sledge = scenario.contact, scenario.sledge
     stress = contact.snow.failure_shear_stress
     facts = facts_of(
@@ -102,6 +104,14 @@ def _setting(run: Run) -> Setting:
         centre_of_mass_height=sledge.centre_of_mass[1],
         line_spacing=run.numbers["line_spacing_m"],
         facts=facts,
+    )
+
+
+def no_replay_on_grid() -> ParameterError:
+    """Why a run over a grid has no replay."""
+    return ParameterError(
+        'a replay shows planes and profiles; this run went over a grid (slope.kind = "grid"). Its track from above, '
+        "depths and forces stand in the run's report"
     )
 
 
