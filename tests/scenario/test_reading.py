@@ -117,6 +117,12 @@ def test_change_on_a_command_line(word: str, change: tuple[str, object]) -> None
     assert change_of(word) == change
 
 
+@pytest.mark.parametrize("word", ["mass_kg=90,5", "sledge.mass_kg = 90,5", "mu_0=0,04"])
+def test_a_decimal_comma_is_told_how_to_write(word: str) -> None:
+    with pytest.raises(ParameterError, match=f"Write {word.replace(',', '.')}$"):
+        change_of(word)
+
+
 @pytest.mark.parametrize(
     "word", ["mass_kg=80\nspeed_m_per_s=3", "mass_kg=80\n[x]", "mass_kg=" + "[" * 3000, "mass_kg=1" + "0" * 400]
 )

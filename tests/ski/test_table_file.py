@@ -81,6 +81,22 @@ def test_other_separators_remarks_and_byte_order_mark(with_table: Written, separ
     assert read_ski(with_table(text)).waist_width == pytest.approx(0.068)
 
 
+@pytest.mark.parametrize("first", ["", "sep=;\n"])
+def test_decimal_commas_as_a_spreadsheet_program_writes_them(with_table: Written, first: str) -> None:
+    path = with_table()
+    text = first + ROWS.replace(",", ";").replace(".", ",").replace(";68;", ";68,25;")
+    (path.parent / "rows.csv").write_bytes(text.encode("utf-8-sig"))
+    ski = read_ski(path)
+    assert ski.waist_width == pytest.approx(0.06825)
+    assert ski.length == pytest.approx(1.6)
+
+
+def test_a_point_among_decimal_commas_could_be_a_thousand(with_table: Written) -> None:
+    text = ROWS.replace(",", ";").replace(".", ",").replace(";440;", ";1.440;")
+    with pytest.raises(ParameterError, match=r"line 4, EI_N_m2 is '1\.440'; it must be a number"):
+        read_ski(with_table(text))
+
+
 @pytest.mark.parametrize(
     ("changes", "named"),
     [

@@ -21,7 +21,7 @@ def build_parser() -> argparse.ArgumentParser:
     """Put the commands together; nothing heavy is imported before a command runs."""
     from importlib.metadata import version
 
-    from . import analyse, carve, check, compare, identify, reference, serve, simulate, store, study, track, turn
+    from . import analyse, carve, check, compare, identify, new, reference, serve, simulate, store, study, track, turn
     from .words import Parser
 
     parser = argparse.ArgumentParser(
@@ -30,7 +30,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=Parser)
-    every = (check, analyse, store, reference, carve, simulate, turn, study, track, compare, identify, serve)
+    every = (new, check, analyse, store, reference, carve, simulate, turn, study, track, compare, identify, serve)
     for command in every:
         command.add_parser(commands)
     return parser
@@ -74,8 +74,12 @@ def _ended(error: Exception | KeyboardInterrupt) -> int:
 
 def _print_error(error: SkisnowError | MemoryError) -> None:
     if isinstance(error, FieldDataError):
-        for problem in error.problems:
-            print(_short(str(problem)), file=sys.stderr)
+        from ..field.problems import Problem, lines_of
+
+        of_campaign = [problem for problem in error.problems if isinstance(problem, Problem)]
+        others = [str(problem) for problem in error.problems if not isinstance(problem, Problem)]
+        for line in (*lines_of(of_campaign), *others):
+            print(_short(line), file=sys.stderr)
         print("Nothing was written: fix the errors above first.", file=sys.stderr)
     elif isinstance(error, SkisnowError):
         print(f"skisnow: {_short(str(error))}", file=sys.stderr)

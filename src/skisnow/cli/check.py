@@ -27,10 +27,13 @@ def run(options: argparse.Namespace) -> int:
         entries = [problem.as_dict() for problem in problems]
         print(json.dumps({"errors": errors, "warnings": warnings, "problems": entries}, ensure_ascii=False))
     else:
-        for problem in problems:
-            print(problem)
+        from ..field.problems import lines_of
+
+        for line in lines_of(problems):
+            print(line)
         for note in notes:
             print(f"note: {note}")
+        warnings = _count([problem for problem in problems if problem.needs_action], "warning")
         print(f"errors: {errors}, warnings: {warnings}, flags: {flags}")
     return 1 if errors else 0
 

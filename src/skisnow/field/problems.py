@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import Literal, TypeAlias
 
@@ -18,6 +19,7 @@ ERROR_CODES = (
     "unreadable_file",
     "bad_toml",
     "correction_mismatch",
+    "other_unit",
 )
 WARNING_CODES = (
     "angles_look_like_radians",
@@ -25,6 +27,8 @@ WARNING_CODES = (
     "unlikely_unit",
     "repeated_row",
     "unknown_column",
+    "unreadable_date",
+    "unread_sheet",
     "encoding",
     "separator",
 )
@@ -34,7 +38,10 @@ _SHOWN = {"mark": "flag"}
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One problem. ``row`` is the line of the file (header: 1); what does not apply is None."""
+    """One problem. ``row`` is the line of the file (header: 1); what does not apply is None.
+
+    ``needs_action`` is false where the program says how it read a file, and nobody need do anything.
+    """
 
     severity: Severity
     code: str
@@ -45,6 +52,7 @@ class Problem:
     value: str | None
     allowed: str
     action: str
+    needs_action: bool = True
 
     def __str__(self) -> str:
         """Say it in one line."""
@@ -61,7 +69,9 @@ class Problem:
 
     def as_dict(self) -> dict[str, str | int | None]:
         """Give the problem as the object of ``skisnow check --json``."""
-        return asdict(self)
+        entry = asdict(self)
+        del entry["needs_action"]
+        return entry
 
 
 def error(
@@ -89,6 +99,26 @@ def warning(
     column: str | None = None,
     experiment: str | None = None,
     value: str | None = None,
+    needs_action: bool = True,
 ) -> Problem:
     """Make a problem that is reported and leaves the campaign usable."""
-    return Problem("warning", code, file, row, column, experiment, value, allowed, action)
+    return Problem("warning", code, file, row, column, experiment, value, allowed, action, needs_action)
+
+
+def lines_of(problems: Iterable[Problem]) -> list[str]:
+    """A line for each problem, and one for all together that need no action.
+
+    >>> told = [warning("separator", f"{name}.csv", value="semicolon", allowed="", action="", needs_action=False)
+    ...         for name in ("shear", "density")]
+    >>> lines_of(told)
+    ['note: nothing need be done: semicolon in shear.csv, density.csv.']
+    """
+    every = list(problems)
+    files: dict[str, list[str]] = {}
+    for problem in every:
+        if not problem.needs_action:
+            kept = f"column {problem.value!r} kept as text" if problem.code == "unknown_column" else problem.value
+            files.setdefault(kept or problem.code, []).append(problem.file)
+    notes = "; ".join(f"{what} in {', '.join(dict.fromkeys(where))}" for what, where in files.items())
+    lines = [str(problem) for problem in every if problem.needs_action]
+    return [*lines, f"note: nothing need be done: {notes}."] if notes else lines

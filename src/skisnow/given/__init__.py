@@ -1,20 +1,18 @@
-"""What users give in files: plain bytes, tables as CSV, TOML and JSON, each within limits, every refusal in words.
+"""What users give in files: plain bytes, TOML, JSON and workbooks, each within limits, every refusal in words.
 
 All TOML and JSON of users is read here and nowhere else: campaigns, scenarios, skis, studies, results, design files.
 """
 
-from .csv_text import CsvRow, csv_rows
 from .errors import GivenError
 from .json_text import MOST_JSON_BYTES, json_value, read_json
 from .plain_file import is_file, plain_bytes, plain_text
 from .toml_text import MOST_TOML_BYTES, read_toml, toml_values
+from .workbook import workbook_sheets
 
 __all__ = [
     "MOST_JSON_BYTES",
     "MOST_TOML_BYTES",
-    "CsvRow",
     "GivenError",
-    "csv_rows",
     "is_file",
     "json_value",
     "plain_bytes",
@@ -22,4 +20,5 @@ __all__ = [
     "read_json",
     "read_toml",
     "toml_values",
+    "workbook_sheets",
 ]

@@ -11,6 +11,7 @@ from ..errors import ParameterError
 from ..given import MOST_TOML_BYTES, GivenError, is_file, plain_text, toml_values
 from ..inputs import InputValue, Word, meant, nearest
 from ..shown import ShownFields
+from ..spreadsheet_text import is_number
 from .built_in import scenario_names, scenario_text
 from .identify_section import require_known
 from .keys import SCENARIO_KEYS, SECTIONS
@@ -210,7 +211,17 @@ def change_of(word: str) -> tuple[str, object]:
     try:
         values = toml_values(f"value = {text}")
     except GivenError:
+        _refuse_comma(word, name, text)
         return name, text
     value = values["value"] if values.keys() == {"value"} else text  # a second line would say more than one value
     is_text = SCENARIO_KEYS[name].kind == "text"
+    if not is_text and isinstance(value, str):
+        _refuse_comma(word, name, text)
     return name, text if is_text and not isinstance(value, str) else value
+
+
+def _refuse_comma(word: str, name: str, text: str) -> None:
+    """Say how to write a number that has a decimal comma."""
+    if SCENARIO_KEYS[name].kind != "text" and "," in text and is_number(text, ","):
+        written = word.replace(text, text.replace(",", "."))
+        raise ParameterError(f"{word!r}: numbers are written with a decimal point here. Write {written}")

@@ -10,8 +10,8 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..csv_rows import CsvRow, csv_rows
 from ..errors import ParameterError
-from ..given import CsvRow, csv_rows
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 

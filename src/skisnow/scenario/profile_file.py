@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from ..csv_rows import csv_rows
 from ..errors import ParameterError
-from ..given import csv_rows
 from .slope import Gap, Profile
 
 COLUMNS: Final = ("x", "y")
@@ -21,8 +21,8 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
     Parameters
     ----------
     path
-        A CSV file, comma-separated, with a first line ``x,y``: horizontal distance, rising, and height, both in m.
-        Other columns are not read.
+        A CSV file with a first line ``x,y``: horizontal distance, rising, and height, both in m. Commas, semicolons or
+        tabs between cells; decimal points, or commas where cells are parted otherwise. Other columns are not read.
     gap
         What to do where neighbouring points are more than 5 m apart: "error", or "interpolate" over it.
 

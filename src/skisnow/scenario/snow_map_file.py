@@ -10,9 +10,9 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..csv_rows import CsvRow, csv_rows
 from ..errors import ParameterError
 from ..geometry.surfaces import Grid
-from ..given import CsvRow, csv_rows
 from ..units import N_PER_MM2, N_PER_MM3
 from .grid_table import read_grid_table
 from .snow_map import SnowMap

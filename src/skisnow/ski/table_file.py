@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..inputs import nearest
+from ..spreadsheet_text import SEPARATOR_NAMES, NoTextError, decimal_mark, decoded, is_number, named_separator
 from .file_keys import COLUMNS
 from .file_values import checked, refuse, warn_of_unusual
 from .station_table import StationTable
@@ -26,8 +26,8 @@ def read_table(path: Path) -> dict[str, StationTable]:
     """Read the columns of a table, in SI, by their names; ``station_m`` is the station of each.
 
     The first line names the columns: ``station_m`` and any of ``width_mm``, ``base_height_mm``, ``EI_N_m2``,
-    ``GJ_N_m2``, ``mass_per_length_kg_per_m``. Separators are commas, semicolons or tabs, decimals have a point, lines
-    beginning with # are remarks.
+    ``GJ_N_m2``, ``mass_per_length_kg_per_m``. Separators are commas, semicolons or tabs, decimals have a point or a
+    comma, one of them in a file; lines beginning with # are remarks.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
         The file cannot be read, a column is unknown or missing, a cell is no number or outside its range, or the
         stations do not fall. Line numbers are those of the file.
     """
-    lines = _lines(path)
+    separator, lines = _lines(path)
     first, header = lines[0]
     for place, name in enumerate(header):
         if name not in COLUMNS:
@@ -44,7 +44,8 @@ def read_table(path: Path) -> dict[str, StationTable]:
             raise ParameterError(f"{path}, line {first}: the column {name} stands there twice. Remove one.")
     if "station_m" not in header or len(header) < 2:
         raise ParameterError(f"{path}, line {first}: needed are the column station_m and one or more others. Add it.")
-    rows = [_row(path, line, header, cells) for line, cells in lines[1:]]
+    mark = decimal_mark([(cell for _, cells in lines[1:] for cell in cells)], separator=separator)
+    rows = [_row(path, line, header, cells, mark) for line, cells in lines[1:]]
     columns = dict(zip(header, np.array(rows).T, strict=True))
     numbers = [line for line, _ in lines[1:]]
     station = columns["station_m"]  # in m, as it is
@@ -55,15 +56,18 @@ def read_table(path: Path) -> dict[str, StationTable]:
     return {name: StationTable(station, column * COLUMNS[name].factor) for name, column in columns.items()}
 
 
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
+def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
+    """The separator, and the lines that are no remarks with their cells."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = decoded(path.read_bytes()).text
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}. Check the path.") from error
-    except UnicodeDecodeError as error:
-        raise ParameterError(f"{path} is not UTF-8 text ({error.reason}). Save it as UTF-8.") from error
-    separator = next((mark for mark in ";\t" if mark in text), ",")
-    rows = enumerate(csv.reader(io.StringIO(text), delimiter=separator), start=1)
+    except NoTextError as error:
+        raise ParameterError(f"{path} is no text ({error.place} is no {error.encoding}). Save it as UTF-8.") from error
+    named = named_separator(text)
+    first = 2 if named in SEPARATOR_NAMES else 1
+    separator = named if named is not None and first == 2 else next((mark for mark in ";\t" if mark in text), ",")
+    rows = enumerate(csv.reader(text.splitlines()[first - 1 :], delimiter=separator), start=first)
     try:
         lines = [(line, [cell.strip() for cell in row]) for line, row in rows if any(map(str.strip, row))]
     except csv.Error as error:
@@ -71,24 +75,29 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
     lines = [(line, cells) for line, cells in lines if not cells[0].startswith("#")]
     if len(lines) < 3:
         raise ParameterError(f"{path}: a table needs a line of column names and two rows or more. Complete it.")
-    return lines
+    return separator, lines
 
 
-def _row(path: Path, line: int, header: list[str], cells: list[str]) -> list[float]:
+def _row(path: Path, line: int, header: list[str], cells: list[str], mark: str) -> list[float]:
     if len(cells) != len(header):
         raise ParameterError(f"{path}, line {line}: {len(cells)} cells stand under {len(header)} columns. Correct it.")
-    return [_cell(path, line, name, cell) for name, cell in zip(header, cells, strict=True)]
+    return [_cell(path, line, name, cell, mark) for name, cell in zip(header, cells, strict=True)]
 
 
-def _cell(path: Path, line: int, name: str, cell: str) -> float:
+def _cell(path: Path, line: int, name: str, cell: str, mark: str) -> float:
     column = replace(COLUMNS[name], name=f"line {line}, {name}")
     try:
-        value: object = float(cell)
+        value: object = float(cell if mark == "." else _with_point(cell))
     except ValueError:
         value = cell
     number = checked(path, value, column)
     assert isinstance(number, float)
     return number
+
+
+def _with_point(cell: str) -> str:
+    """A number with a decimal comma as one with a point; what has a point stays no number: it could be a thousand."""
+    return cell if is_number(cell, ".") and "." not in cell else cell.replace(".", "·").replace(",", ".")
 
 
 def _require_falling(path: Path, station: FloatArray, lines: list[int]) -> None:

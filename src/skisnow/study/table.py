@@ -7,15 +7,27 @@ import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from ..errors import ParameterError
 from ..given import json_value
 from ..inputs import Quantity
 from ..parallel.kept_rows import Row
 from ..shown import Facts, Shown
-from ..spreadsheet_text import guarded, unguarded
+from ..spreadsheet_text import (
+    SEPARATOR_NAMES,
+    NoTextError,
+    decimal_mark,
+    decoded,
+    guarded,
+    most_frequent_separator,
+    named_separator,
+    unguarded,
+)
+
+_HEAD: Final = 1 << 16
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -81,14 +93,20 @@ def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequen
         It cannot be read, or is no study's table.
     """
     try:
-        with Path(path).open(newline="", encoding="utf-8") as stream:
-            reader = csv.reader(stream)
-            columns = tuple(next(reader, ()))
-            _require_columns(path, columns)
-            rows = [_row(f"{path}, line {reader.line_num}", columns, cells, keys) for cells in reader if cells]
+        text = decoded(Path(path).read_bytes()).text
+        named = named_separator(text)
+        separator = named if named in SEPARATOR_NAMES else most_frequent_separator(text[:_HEAD])
+        stream = io.StringIO(text, newline="")
+        skipped = len(stream.readline()[:1]) if named in SEPARATOR_NAMES else 0
+        reader = csv.reader(stream, delimiter=str(separator))
+        columns = tuple(next(reader, ()))
+        _require_columns(path, columns)
+        lines = [(reader.line_num + skipped, cells) for cells in reader if cells]
+        mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
+        rows = [_row(f"{path}, line {line}", columns, cells, keys, mark) for line, cells in lines]
     except OSError as error:
         raise ParameterError(f"{path} cannot be read: {error.strerror or error}") from error
-    except (UnicodeDecodeError, csv.Error) as error:
+    except (NoTextError, csv.Error) as error:
         raise ParameterError(f"{path} is no table of a study: {error}") from error
     return StudyTable(columns, rows, tuple(varied))
 
@@ -98,7 +116,7 @@ def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
         raise ParameterError(f"{path} is no table of a study: its first line names no columns outcome and study")
 
 
-def _row(place: str, columns: Sequence[str], cells: Sequence[str], keys: Mapping[str, Quantity]) -> Row:
+def _row(place: str, columns: Sequence[str], cells: Sequence[str], keys: Mapping[str, Quantity], mark: str) -> Row:
     if len(cells) != len(columns):
         raise ParameterError(
             f"{place}: a row of this table has {len(columns)} cells, this line has {len(cells)}. Remove the line"
@@ -106,7 +124,7 @@ def _row(place: str, columns: Sequence[str], cells: Sequence[str], keys: Mapping
     row = {}
     for name, cell in zip(columns, cells, strict=True):
         try:
-            row[name] = _value(name, cell, keys)
+            row[name] = _value(name, cell, keys, mark)
         except (ValueError, TypeError):
             raise ParameterError(f"{place}: {name} is {cell!r}; it must be a number. Correct or remove it") from None
     return row
@@ -125,7 +143,7 @@ def _cell(value: Any) -> str:
 _TEXTS = ("outcome", "ski_name", "warnings", "reason", "study")
 
 
-def _value(name: str, cell: str, keys: Mapping[str, Quantity]) -> Any:
+def _value(name: str, cell: str, keys: Mapping[str, Quantity], mark: str) -> Any:
     is_text = name in _TEXTS or (name in keys and keys[name].kind == "text")
     if cell == "":
         return "" if name in ("warnings", "reason") else None
@@ -133,6 +151,10 @@ def _value(name: str, cell: str, keys: Mapping[str, Quantity]) -> Any:
         return unguarded(cell)
     if cell.startswith("["):
         return [float(each) for each in json_value(cell)]
-    if cell in ("true", "false"):
-        return cell == "true"
-    return int(cell) if name in keys and keys[name].kind == "whole number" else float(cell)
+    if cell.lower() in ("true", "false"):
+        return cell.lower() == "true"
+    return (
+        int(cell)
+        if name in keys and keys[name].kind == "whole number"
+        else float(cell if mark == "." else cell.replace(",", "."))
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -13,11 +13,13 @@ from .assembling import density_samples, drop_cone_tests, penetration_tests, she
 from .campaign_file import CAMPAIGN_FILE, read_campaign_file
 from .campaign_files import FilesInMemory, FilesOfFolder
 from .corrections import corrections_by_file, refuse_without_file
+from .headings import Headings
 from .raw_files import RawFiles
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, TABLES
 from .tables import read_table
 from .text import UnreadableTextError, decode, inspect_csv
 from .together import check_together
+from .workbook_files import is_workbook, unfolded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -40,7 +42,7 @@ def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None 
     Parameters
     ----------
     folder
-        The folder with campaign.toml and the tables.
+        The folder with campaign.toml and the tables; or a workbook (.xlsx) with all of it in its sheets.
     progress
         Called now and then with a few words on how far the reading is.
 
@@ -127,21 +129,25 @@ class _Contents:
 
 
 def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
+    if folder.is_file() and is_workbook(folder.name):
+        return _read(FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress)
     if not folder.is_dir():
-        action = "Name the folder that holds campaign.toml and the tables."
+        action = "Name the folder that holds campaign.toml and the tables, or a workbook (.xlsx) with all of it."
         value = "a file" if folder.exists() else "nothing"
         nowhere = error("unreadable_file", str(folder), value=value, allowed="a folder that exists", action=action)
         return _Contents(folder, None, {}, {}, (nowhere,))
     return _read(FilesOfFolder(folder), progress)
 
 
-def _read(campaign: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
-    files = RawFiles(campaign)
+def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
+    campaign = unfolded(lying)
+    files = RawFiles(campaign, found=campaign.found)
     described = _described(files)
-    corrections = _corrections(files)
+    headings = described.headings if described is not None else Headings()
+    corrections = _corrections(files, headings)
     tables: dict[str, Table] = {}
     for form in TABLES:
-        table = _table(files, form, corrections.get(form.file, {}), progress)
+        table = _table(files, form, corrections.get(form.file, {}), headings, progress)
         if table is not None:
             tables[form.file] = table
             files.found.extend(check_together(table, described))
@@ -149,6 +155,7 @@ def _read(campaign: CampaignFiles, progress: Callable[[str], None] | None) -> _C
     files.found.extend(_misnamed(there, files.absent))
     if {PENETRATION.file, SHEAR.file} <= files.absent:
         files.found.append(_no_measurements())
+    hashes = {name: digest for name, digest in files.hashes.items() if name not in campaign.of_sheets}
     applied = sorted(
         (each for rows in corrections.values() for row in rows.values() for each in row), key=lambda each: each.line
     )
@@ -156,11 +163,17 @@ def _read(campaign: CampaignFiles, progress: Callable[[str], None] | None) -> _C
         campaign.folder,
         described,
         tables,
-        files.hashes,
-        _in_order(files.found),
+        hashes | campaign.hashes,
+        tuple(_placed(problem, campaign.places) for problem in _in_order(files.found)),
         tuple(each.applied() for each in applied),
-        _unread(there),
+        (*_unread(there), *campaign.unread),
     )
+
+
+def _placed(problem: Problem, places: Mapping[str, str]) -> Problem:
+    """A problem of a table that is a sheet of a workbook, under the sheet's name."""
+    place = places.get(problem.file)
+    return problem if place is None else replace(problem, file=place)
 
 
 def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
@@ -215,15 +228,19 @@ def _described(files: RawFiles) -> CampaignFile | None:
     return read_campaign_file(decoded.text, files.found)
 
 
-def _corrections(files: RawFiles) -> Mapping[str, RowCorrections]:
-    table = _table(files, CORRECTIONS, {}, None)
+def _corrections(files: RawFiles, headings: Headings) -> Mapping[str, RowCorrections]:
+    table = _table(files, CORRECTIONS, {}, headings, None)
     if table is None or table.absent:
         return {}
     return corrections_by_file(table, files.found)
 
 
 def _table(
-    files: RawFiles, form: TableForm, corrections: RowCorrections, progress: Callable[[str], None] | None
+    files: RawFiles,
+    form: TableForm,
+    corrections: RowCorrections,
+    headings: Headings,
+    progress: Callable[[str], None] | None,
 ) -> Table | None:
     data = files.read(form.file)
     if form.file in files.absent:
@@ -236,7 +253,7 @@ def _table(
         files.report_unreadable(form.file, failure)
         return None
     files.report_encoding(form.file, text.foreign_encoding)
-    return read_table(form, text, corrections=corrections, files=files, progress=progress)
+    return read_table(form, text, corrections=corrections, files=files, headings=headings, progress=progress)
 
 
 def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:

@@ -13,6 +13,8 @@ from ...given import GivenError, toml_values
 from ...inputs import Quantity, own_quantities
 from ..problems import error, warning
 from ..quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
+from .headings import KEY as COLUMNS_KEY
+from .headings import Headings, headings_of
 from .toml_values import TomlValues
 from .tool_shapes import SHAPES
 
@@ -86,12 +88,13 @@ class CampaignFile:
     plate_names: frozenset[str]
     flat_tools: frozenset[str]
     excluding: frozenset[str]
+    headings: Headings
 
 
 CAMPAIGN_KEYS: Final = {key.name: key for key in own_quantities(CampaignFile)}
 """Keys with one value or a list of numbers."""
 (PLATE_LENGTH,) = own_quantities(Plate)
-_TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], "tool", "plate", "screening")
+_TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], "tool", "plate", "screening", COLUMNS_KEY)
 
 
 def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
@@ -131,6 +134,7 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
         plate_names=plate_names,
         flat_tools=flat_tools,
         excluding=_excluding(top),
+        headings=headings_of(top),
     )
 
 

@@ -27,6 +27,7 @@ def campaign_schema() -> Schema:
             "observers": {"description": "who", **_one_or_several({"type": "string"})},
             "tool": {"type": "array", "items": {"$ref": "#/$defs/tool"}},
             "plate": {"type": "array", "items": {"$ref": "#/$defs/plate"}},
+            "columns": _columns(),
             "screening": {"type": "object", "properties": {"exclude": _exclude()}},
         },
         "$defs": {"mark": {"enum": list(QUALITY_FLAGS)}, "tool": _tool(), "plate": _plate()},
@@ -40,6 +41,14 @@ def _one_or_several(item: Schema) -> Schema:
 def _exclude() -> Schema:
     words = "Codes of the quality flags that exclude an experiment; replaces the default."
     return {"description": words, **_one_or_several({"$ref": "#/$defs/mark"})}
+
+
+def _columns() -> Schema:
+    """Headings that stand for columns, for all tables or for one."""
+    pairs = {"type": "object", "additionalProperties": {"type": "string"}}
+    either: Schema = {"anyOf": [{"type": "string"}, pairs]}
+    words = "Column by the heading that stands for it; in a table of a table's name, such as penetration, for that one."
+    return {"description": words, "type": "object", "additionalProperties": either}
 
 
 def _tool() -> Schema:

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import difflib
+import json
+import re
 from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ..problems import error, warning
+from .heading_words import other_unit, proposed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..problems import Problem
+    from .headings import Headings
     from .table_forms import TableForm
+
+_LONGEST_SHOWN: Final = 120
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +33,10 @@ class Header:
     def from_cells(cls, cells: Sequence[str], row: int) -> Header:
         """Make a header from its cells."""
         return cls(tuple(cell.strip().strip("\ufeff").strip() for cell in cells), row)
+
+    def renamed(self, form: TableForm, headings: Headings) -> Header:
+        """Name the columns as the program does, where headings stand for them."""
+        return Header(tuple(headings.name(form, column) for column in self.columns), self.row)
 
     @property
     def position(self) -> dict[str, int]:
@@ -46,15 +56,64 @@ class Header:
 
 
 def check_header(form: TableForm, header: Header) -> list[Problem]:
-    """Find missing, repeated and unknown columns."""
+    """Find missing, repeated and unknown columns; one problem alone where no needed column is there."""
     present = header.position
     unknown = [name for name in present if name not in form.known]
     missing = [name for name in form.required if name not in present]
+    if len(missing) == len(form.required):
+        return [_all_missing(form, header)]
     repeated = [name for name, times in Counter(filter(None, header.columns)).items() if times > 1]
     problems = [_repeated(form, name, header.row) for name in repeated]
     problems += [_missing(form, name, unknown, header.row) for name in missing]
     problems += [_unknown(form, name, header) for name in unknown]
     return problems
+
+
+def check_units(form: TableForm, header: Header, headings: Headings) -> list[Problem]:
+    """Find headings that stand for a column and name another unit than the column's."""
+    pairs = [(heading, headings.name(form, heading)) for heading in header.columns]
+    return [_other_unit(form, heading, name, header.row) for heading, name in pairs if other_unit(heading, name)]
+
+
+def _other_unit(form: TableForm, heading: str, name: str, row: int) -> Problem:
+    return error(
+        "other_unit",
+        form.file,
+        row=row,
+        column=name,
+        value=heading,
+        allowed=f"numbers in the unit of {name}",
+        action=f"Convert the numbers from {other_unit(heading, name)}, and write the unit in the heading.",
+    )
+
+
+def _all_missing(form: TableForm, header: Header) -> Problem:
+    """One line for a table whose columns are called otherwise: what to write into campaign.toml."""
+    meant = proposed(form, header.columns)
+    left = [name for name in form.required if name not in meant.values()]
+    table = form.file.removesuffix(".csv")
+    pairs = ", ".join(
+        f"{json.dumps(heading, ensure_ascii=False)} = {json.dumps(name)}" for heading, name in meant.items()
+    )
+    line = f"Put this line at the top of campaign.toml if it is right: columns.{table} = {{{pairs}}}" if meant else ""
+    other = [f"{heading} names {unit}" for heading in header.columns if (unit := _unit_of_none(form, heading))]
+    lost = f"{'Nothing' if not meant else 'No heading'} looks like {', '.join(left)}: rename or add it" if left else ""
+    action = ". ".join(filter(None, (line, lost, f"Convert first: {', '.join(other)}" if other else "")))
+    return error(
+        "missing_column",
+        form.file,
+        row=header.row,
+        value=", ".join(filter(None, header.columns))[:_LONGEST_SHOWN],
+        allowed=f"the columns {', '.join(form.required)}, or headings that campaign.toml maps to them",
+        action=f"{action}.",
+    )
+
+
+def _unit_of_none(form: TableForm, heading: str) -> str | None:
+    """The unit of a heading that would stand for a column if it were the column's unit."""
+    bare = re.sub(r"[\[(].*", "", heading)
+    column = next(iter(proposed(form, [bare]).values()), "") if bare != heading else ""
+    return other_unit(heading, column)
 
 
 def _repeated(form: TableForm, name: str, row: int) -> Problem:
@@ -72,8 +131,11 @@ def _repeated(form: TableForm, name: str, row: int) -> Problem:
 def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Problem:
     as_written = {each.lower(): each for each in unknown}
     near = difflib.get_close_matches(name.lower(), list(as_written), n=1)
-    meant = as_written[near[0]] if near else None
-    hint = f"Is the column {meant!r} meant? Rename it" if meant else "Add it"
+    likely = {column: heading for heading, column in proposed(form, unknown).items()}
+    meant = as_written[near[0]] if near else likely.get(name)
+    hint = (
+        f"Is the column {meant!r} meant? Rename it, or map it under [columns] in campaign.toml" if meant else "Add it"
+    )
     return error(
         "missing_column",
         form.file,
@@ -97,4 +159,5 @@ def _unknown(form: TableForm, name: str, header: Header) -> Problem:
         value=name,
         allowed=f"the columns {', '.join(form.known)}",
         action=f"The column is kept as text and not interpreted; {hint}.",
+        needs_action=bool(near),
     )

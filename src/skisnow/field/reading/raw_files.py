@@ -76,5 +76,12 @@ class RawFiles:
         how = "It was guessed" if foreign_encoding == "Windows-1252" else "It was read as such"
         action = f"{how}; save as UTF-8 if letters look wrong in the report."
         self.found.append(
-            warning("encoding", name, value=foreign_encoding, allowed="UTF-8, in the plain form", action=action)
+            warning(
+                "encoding",
+                name,
+                value=foreign_encoding,
+                allowed="UTF-8, in the plain form",
+                action=action,
+                needs_action=False,
+            )
         )

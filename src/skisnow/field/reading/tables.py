@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from ..problems import error, warning
 from .columns import NameCollector, NumberCollector, Rows, TextCollector
 from .corrections import Corrector, header_with_status
-from .header import Header, check_header
+from .dates import DateCollector
+from .header import Header, check_header, check_units
+from .headings import Headings
 from .number_cells import decimal_mark
 from .table import Table
 from .text import SEPARATOR_NAMES, CsvText, UnreadableTextError
@@ -27,12 +29,19 @@ if TYPE_CHECKING:
     from .text import Records
 
 
+OWN_NAMES: Final = Headings()
+"""Columns are called by their names."""
+DATES: Final = ("time", "when")
+"""Columns of days and times."""
+
+
 def read_table(
     form: TableForm,
     text: CsvText,
     *,
     corrections: RowCorrections,
     files: RawFiles,
+    headings: Headings = OWN_NAMES,
     progress: Callable[[str], None] | None = None,
 ) -> Table | None:
     """Read one table, with its corrections applied, and check each cell.
@@ -47,6 +56,8 @@ def read_table(
         Those of this file.
     files
         Takes every problem.
+    headings
+        What stands for the columns' names.
     progress
         Called now and then with how many rows were read.
 
@@ -59,9 +70,9 @@ def read_table(
     try:
         for lines, rows in text.records():
             if reading is None and rows:
-                reading = _TableReading(
-                    form, Header.from_cells(rows.pop(0), lines.pop(0)), text, corrections, files.found
-                )
+                header = Header.from_cells(rows.pop(0), lines.pop(0))
+                files.found.extend(check_units(form, header, headings))
+                reading = _TableReading(form, header.renamed(form, headings), text, corrections, files.found)
             if reading is not None and rows:
                 reading.take(lines, rows)
                 if progress is not None:
@@ -110,7 +121,11 @@ class _TableReading:
         self._names = {name: NameCollector(name, required=name in form.names) for name in form.names + form.optional}
         self._numbers = {column.name: NumberCollector(column, mark) for column in form.numbers}
         interpreted = (set(self._names) | set(self._numbers)) - set(form.further)
-        self._further = {name: TextCollector() for name in present if name not in interpreted}
+        self._further = {
+            name: DateCollector(name) if name in DATES else TextCollector()
+            for name in present
+            if name not in interpreted
+        }
         collectors: list[tuple[str, Collector]] = [*self._names.items(), *self._numbers.items(), *self._further.items()]
         self._collectors = [(present[name], collector) for name, collector in collectors if name in present]
 
@@ -162,6 +177,9 @@ class _TableReading:
     def finish(self) -> None:
         """Report what only the whole file shows."""
         self._corrector.finish()
+        for collector in self._further.values():
+            if isinstance(collector, DateCollector):
+                self._found.extend(collector.problems(self._form.file))
 
     def table(self) -> Table:
         """Join what was collected."""
@@ -207,4 +225,5 @@ def _not_plain(file: str, separator: str, mark: str) -> Iterator[Problem]:
             value=value,
             allowed="commas between cells and decimal points, in the plain form",
             action="It was read as found; nothing need be done.",
+            needs_action=False,
         )

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..reading.campaign_files import FilesOfFolder
 from ..reading.corrections import Corrector, corrections_by_file, header_with_status
 from ..reading.header import Header
+from ..reading.headings import Headings
 from ..reading.raw_files import RawFiles
 from ..reading.table_forms import CORRECTIONS, TABLES
 from ..reading.tables import decimal_mark_of, read_table
-from ..reading.text import UnreadableTextError, inspect_csv
+from ..reading.text import UnreadableTextError, decode, inspect_csv
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -45,8 +47,9 @@ class StoredTable:
 def stored_tables(campaign: CampaignFiles | Path) -> dict[str, StoredTable]:
     """Every table of a campaign that can be read, by its file; the campaign is a folder, or files that are at hand."""
     files = RawFiles(FilesOfFolder(campaign) if isinstance(campaign, Path) else campaign)
-    corrections = _corrections(files)
-    found = {form.file: _stored_table(files, form, corrections.get(form.file, {})) for form in TABLES}
+    headings = _headings(files)
+    corrections = _corrections(files, headings)
+    found = {form.file: _stored_table(files, form, corrections.get(form.file, {}), headings) for form in TABLES}
     return {file: table for file, table in found.items() if table is not None}
 
 
@@ -78,13 +81,25 @@ def _csv_text(files: RawFiles, form: TableForm) -> CsvText | None:
         return None
 
 
-def _corrections(files: RawFiles) -> Mapping[str, RowCorrections]:
+def _headings(files: RawFiles) -> Headings:
+    """What stands for the columns' names; nothing where campaign.toml cannot be read."""
+    data = files.read(CAMPAIGN_FILE)
+    try:
+        described = read_campaign_file(decode(data).text, []) if data is not None else None
+    except UnreadableTextError:
+        return Headings()
+    return described.headings if described is not None else Headings()
+
+
+def _corrections(files: RawFiles, headings: Headings) -> Mapping[str, RowCorrections]:
     text = _csv_text(files, CORRECTIONS)
-    table = read_table(CORRECTIONS, text, corrections={}, files=files) if text is not None else None
+    table = read_table(CORRECTIONS, text, corrections={}, files=files, headings=headings) if text is not None else None
     return corrections_by_file(table, files.found) if table is not None and not table.absent else {}
 
 
-def _stored_table(files: RawFiles, form: TableForm, corrections: RowCorrections) -> StoredTable | None:
+def _stored_table(
+    files: RawFiles, form: TableForm, corrections: RowCorrections, headings: Headings
+) -> StoredTable | None:
     text = _csv_text(files, form)
     if text is None:
         return None
@@ -94,7 +109,8 @@ def _stored_table(files: RawFiles, form: TableForm, corrections: RowCorrections)
     try:
         for lines, rows in text.records():
             if header is None and rows:
-                header = header_with_status(form, Header.from_cells(rows.pop(0), lines.pop(0)), corrections)
+                written = Header.from_cells(rows.pop(0), lines.pop(0)).renamed(form, headings)
+                header = header_with_status(form, written, corrections)
                 mark = decimal_mark_of(form, header, text)
                 corrector = Corrector(form, header, corrections, mark=mark, found=files.found)
             if header is None or corrector is None or form.key not in header.position:

@@ -1,0 +1,196 @@
+"""Workbooks of spreadsheet programs (.xlsx): the cells of their sheets as text, within limits.
+
+The zip archive is looked through before openpyxl opens it: sizes are counted while parts are unpacked, not believed,
+and a part with a document type, in which entities could grow without end, is refused. Nothing is computed: a formula
+gives the value that the spreadsheet program stored with it, and one without a value is refused.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+import zipfile
+from datetime import date, datetime, time
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from xml.parsers import expat
+
+from .errors import GivenError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+Rows: TypeAlias = list[list[str]]
+"""Cells as texts, row 1 first, blank rows as empty lists."""
+
+MOST_WORKBOOK_BYTES: Final = 1 << 25
+MOST_UNPACKED_BYTES: Final = 1 << 26
+MOST_PARTS: Final = 2_000
+MOST_SHEETS: Final = 100
+MOST_ROWS: Final = 1 << 20
+"""What a sheet of Excel has."""
+MOST_COLUMNS: Final = 1_000
+MOST_ELEMENTS: Final = 8_000_000
+DEEPEST_ELEMENT: Final = 64
+
+_CHUNK: Final = 1 << 18
+_OLD_KIND: Final = b"\xd0\xcf\x11\xe0"
+_DAMAGED: Final = (
+    "is no workbook that can be read, or it is damaged. Open it in a spreadsheet program, save it as .xlsx."
+)
+
+
+def workbook_sheets(data: bytes, *, wanted: Callable[[str], bool]) -> dict[str, Rows | None]:
+    """Read the sheets of a workbook.
+
+    Parameters
+    ----------
+    data
+        The .xlsx file.
+    wanted
+        Says by its name whether a sheet is to be read.
+
+    Returns
+    -------
+    Rows by the names of the sheets, in their order; None for those that are not wanted. Numbers have a decimal point,
+    days are written as 2026-11-23 and times as 2026-11-23T09:10:00, line breaks in a cell are spaces.
+
+    Raises
+    ------
+    GivenError
+        It is no workbook, is protected by a password, is beyond a limit, or holds what a table has no need of.
+    """
+    _require_sound(data)
+    from openpyxl import load_workbook
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of parts that are not read: validations, drawings
+        book = _undamaged(lambda: load_workbook(io.BytesIO(data), read_only=True, data_only=True, keep_links=False))
+        if len(book.worksheets) > MOST_SHEETS:
+            raise GivenError(f"has {len(book.worksheets)} sheets; at most {MOST_SHEETS} are read. Take some out.")
+        return {sheet.title: _rows(sheet) if wanted(sheet.title) else None for sheet in book.worksheets}
+
+
+def _undamaged(doing: Callable[[], Any]) -> Any:
+    """What openpyxl does: it tells of damage by a dozen kinds of errors, from any of its steps."""
+    try:
+        return doing()
+    except GivenError:
+        raise
+    except Exception as error:
+        raise GivenError(_DAMAGED) from error
+
+
+def _rows(sheet: Any) -> Rows:
+    sheet.reset_dimensions()  # what the file says of its own size is not believed
+    found: Rows = []
+
+    def read() -> None:
+        for cells in sheet.iter_rows(values_only=True):
+            if len(found) >= MOST_ROWS:
+                raise GivenError(f"has more than {MOST_ROWS} rows in the sheet {sheet.title!r}. Take some out.")
+            texts = [_text(value) for value in cells]
+            while texts and not texts[-1]:
+                texts.pop()
+            if len(texts) > MOST_COLUMNS:
+                what = f"has {len(texts)} cells in row {len(found) + 1} of the sheet {sheet.title!r}"
+                raise GivenError(f"{what}; at most {MOST_COLUMNS} columns are read. Take out what is not needed.")
+            found.append(texts)
+
+    _undamaged(read)
+    while found and not found[-1]:
+        found.pop()
+    return found
+
+
+def _text(value: object) -> str:
+    if value is None or isinstance(value, bool):
+        return "" if value is None else str(value).upper()
+    if isinstance(value, float):
+        return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    return _moment(value) if isinstance(value, date | time) else re.sub(r"\s*[\r\n]\s*", " ", str(value)).strip()
+
+
+def _moment(value: date | time) -> str:
+    if isinstance(value, datetime) and value.time() == time():
+        return value.date().isoformat()
+    if isinstance(value, datetime | time):
+        return value.isoformat(timespec="seconds")
+    return value.isoformat()
+
+
+def _require_sound(data: bytes) -> None:
+    if len(data) > MOST_WORKBOOK_BYTES:
+        raise GivenError(
+            f"is too large: workbooks of at most {MOST_WORKBOOK_BYTES >> 20} MiB are read. Save it as CSV."
+        )
+    if data.startswith(_OLD_KIND):
+        raise GivenError("is protected by a password, or in Excel's old form. Save it as .xlsx without a password.")
+    if data.count(b"PK\1\2") > MOST_PARTS:
+        raise GivenError(f"has more than {MOST_PARTS} parts, which no table has.")
+    archive: zipfile.ZipFile = _undamaged(lambda: zipfile.ZipFile(io.BytesIO(data)))
+    with archive:
+        _require_small(archive)
+
+
+def _require_small(archive: zipfile.ZipFile) -> None:
+    unpacked = 0
+    for part in archive.infolist():
+        looked_at = _Part(part.filename) if part.filename.endswith((".xml", ".rels")) else None
+        pieces: Iterable[bytes] = iter(_pieces(archive, part))
+        while piece := _undamaged(lambda pieces=pieces: next(pieces, b"")):  # type: ignore[misc]
+            unpacked += len(piece)
+            if unpacked > MOST_UNPACKED_BYTES:
+                most = MOST_UNPACKED_BYTES >> 20
+                raise GivenError(f"holds more than {most} MiB when it is unpacked. Save its sheets as CSV.")
+            if looked_at is not None:
+                looked_at.take(piece)
+        if looked_at is not None:
+            looked_at.finish()
+
+
+def _pieces(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterable[bytes]:
+    with archive.open(part) as content:
+        while piece := content.read(_CHUNK):
+            yield piece
+
+
+class _Part:
+    """Looks at the XML of one part as it comes, and keeps nothing of it."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._parser = expat.ParserCreate(namespace_separator=" ")
+        self._parser.StartDoctypeDeclHandler = self._refuse_document_type
+        self._parser.StartElementHandler = self._begin
+        self._parser.EndElementHandler = self._end
+        self._elements = self._depth = 0
+        self._cell = ""
+        self._in_cell: set[str] = set()
+
+    def take(self, piece: bytes) -> None:
+        _undamaged(lambda: self._parser.Parse(piece, False))
+
+    def finish(self) -> None:
+        _undamaged(lambda: self._parser.Parse(b"", True))
+
+    def _refuse_document_type(self, *_: object) -> None:
+        raise GivenError(f"has a document type in its part {self._name}, which no spreadsheet program writes.")
+
+    def _begin(self, name: str, attributes: dict[str, str]) -> None:
+        self._elements += 1
+        self._depth += 1
+        if self._elements > MOST_ELEMENTS or self._depth > DEEPEST_ELEMENT:
+            raise GivenError(f"has a part {self._name} that is larger than any table. Save its sheets as CSV.")
+        local = name.rpartition(" ")[2]
+        if local == "c":
+            self._cell = attributes.get("r", "?")
+            self._in_cell.clear()
+        elif local in ("f", "v"):
+            self._in_cell.add(local)
+
+    def _end(self, name: str) -> None:
+        self._depth -= 1
+        if name.endswith(" c") and self._in_cell == {"f"}:
+            what = f"has a formula without its value in the cell {self._cell[:20]} ({self._name})"
+            raise GivenError(f"{what}. Open it in a spreadsheet program and save it.")
