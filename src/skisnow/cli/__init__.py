@@ -21,7 +21,22 @@ def build_parser() -> argparse.ArgumentParser:
     """Put the commands together; nothing heavy is imported before a command runs."""
     from importlib.metadata import version
 
-    from . import analyse, carve, check, compare, identify, new, reference, serve, simulate, store, study, track, turn
+    from . import (
+        analyse,
+        carve,
+        check,
+        compare,
+        identify,
+        new,
+        reference,
+        replay,
+        serve,
+        simulate,
+        store,
+        study,
+        track,
+        turn,
+    )
     from .words import Parser
 
     parser = argparse.ArgumentParser(
@@ -30,7 +45,9 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=Parser)
-    every = (new, check, analyse, store, reference, carve, simulate, turn, study, track, compare, identify, serve)
+    every = (
+        new, check, analyse, store, reference, carve, simulate, replay, turn, study, track, compare, identify, serve,
+    )  # fmt: skip
     for command in every:
         command.add_parser(commands)
     return parser
