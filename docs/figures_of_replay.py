@@ -25,15 +25,12 @@ SCENARIO = "carved-46m"
 MOMENT = 2.5
 SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 
-PAGE = (
-    "replay.seek({time}); replay.show('ghost', false); replay.look('edge'); replay.exaggerate(5); "
-    "replay.turn(0.55, 0.22)"
-)
+PAGE = "replay.pause(); replay.seek({time}); replay.show('ghost', false)"
 VIEWS = (
-    "replay.exaggerate(1); replay.show('ghost', false); replay.look('boot')",
+    "replay.show('forces', true); replay.look('edge')",
+    "replay.show('forces', false); replay.look('boot')",
     "replay.look('above'); replay.nearer(1.7)",
-    "replay.exaggerate(5); replay.look('edge')",
-    "replay.exaggerate(1); replay.show('ghost', true); replay.turn(0.4, 0.3); replay.nearer(1.3)",
+    "replay.show('ghost', true); replay.seek(4.6); replay.look('chase'); replay.turn(0.5, 0.1)",
 )
 
 
@@ -81,7 +78,9 @@ def main() -> None:
     run, ghost = replays()
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         address = write_replay(run, Path(folder) / "replay.html", ghost=ghost).as_uri()
-        place = os.environ.get("SKISNOW_CHROMIUM") or shutil.which("chromium")
+        place = (
+            os.environ.get("SKISNOW_CHROMIUM") or shutil.which("chromium-headless-shell") or shutil.which("chromium")
+        )
         browser = playwright.chromium.launch(executable_path=place, args=SOFTWARE)
         page = browser.new_page(viewport={"width": 1200, "height": 860}, device_scale_factor=1.5)
         page.goto(address)
@@ -94,7 +93,7 @@ def main() -> None:
         write(sheet(taken), "views.png")
         phone = browser.new_page(viewport={"width": 390, "height": 844}, device_scale_factor=1.5)
         phone.goto(address)
-        does(phone, "replay.seek({time}); replay.show('ghost', false)")
+        does(phone, PAGE)
         write(picture(phone.screenshot(), width=300), "phone.png")
         browser.close()
 

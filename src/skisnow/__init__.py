@@ -21,6 +21,8 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     What a run is: a built-in scenario by its name or any other from its file; `Scenario.with_` makes another of it.
 ``Plane``, ``Profile``, ``Contact``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
     The parts of a scenario: slope, how snow and skis meet, drag, sledge, where it begins and ends, how it is computed.
+``Boots``, ``BootPose``, ``BootMoment``
+    Boots that move: a table over time or distance; what a function that moves them knows, and gives.
 ``simulate``, ``Run``, ``verify``, ``Refinement``
     A sledge on two flexible skis: the run that comes out of a scenario, and how exact it is.
 ``chain``, ``TurnChain``
@@ -50,6 +52,7 @@ if TYPE_CHECKING:
     from .carve.equilibrium import carve
     from .chain.chaining import chain
     from .contact import ContactForces, Runner, SnowContact, SnowField
+    from .dynamics import BootPose
     from .estimate import Analysis, analyse, results_dict
     from .field import Campaign, check_campaign, read_campaign, write_reference
     from .field.store import Store
@@ -57,9 +60,22 @@ if TYPE_CHECKING:
     from .identify.identifying import identify
     from .parallel.batch import run_batch
     from .report import TurnChain, write_report
-    from .scenario import Air, Contact, Plane, Profile, RigidSledge, Scenario, Solver, Start, Stop, scenario_names
+    from .scenario import (
+        Air,
+        Boots,
+        Contact,
+        Plane,
+        Profile,
+        RigidSledge,
+        Scenario,
+        Solver,
+        Start,
+        Stop,
+        scenario_names,
+    )
     from .scenario import read_scenario as scenario
     from .simulate import Run
+    from .simulate.moving_boots import BootMoment
     from .simulate.simulated_run import simulate
     from .simulate.verification import Refinement, verify
     from .ski import Ski, read_ski, ski_names
@@ -77,6 +93,9 @@ if TYPE_CHECKING:
 __all__ = [
     "Air",
     "Analysis",
+    "BootMoment",
+    "BootPose",
+    "Boots",
     "Campaign",
     "Comparison",
     "Contact",
@@ -136,6 +155,7 @@ __all__ = [
 _PACKAGES = {
     "carve": ("Equilibrium", "rest"),
     "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
+    "dynamics": ("BootPose",),
     "estimate": ("Analysis", "analyse", "results_dict"),
     "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
     "field.store": ("Store",),
@@ -144,6 +164,7 @@ _PACKAGES = {
     "report": ("TurnChain", "write_report"),
     "scenario": (
         "Air",
+        "Boots",
         "Contact",
         "Plane",
         "Profile",
@@ -155,6 +176,7 @@ _PACKAGES = {
         "scenario_names",
     ),
     "simulate": ("Run",),
+    "simulate.moving_boots": ("BootMoment",),
     "simulate.verification": ("Refinement", "verify"),
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),

@@ -148,3 +148,19 @@ def test_settings_are_words_for_people() -> None:
     assert facts["H_V"] == "0.2 N/mm³"
     assert facts["S_f"] == "0.5 N/mm²"
     assert facts["Skis"] == "giant-slalom, edge angle 30°"
+
+
+def test_gates_stand_on_the_snow() -> None:
+    places = [[2.0, 1.0], [8.0, -1.5]]
+    assert replay_of_run(circle_run(count=5)).gates is None
+    on_plane = replay_of_run(circle_run(count=5), gates=places).gates
+    assert on_plane is not None and on_plane.tolist() == [[2.0, 1.0, 0.0], [8.0, -1.5, 0.0]]
+    run = circle_run(count=5)
+    x = np.linspace(-30.0, 60.0, 91)
+    on_profile = replay_of_run(
+        replace(run, scenario=replace(run.scenario, slope=Profile(x, -0.2 * x))), gates=places
+    ).gates
+    assert on_profile is not None and on_profile[:, 2] == pytest.approx([-0.4, -1.6])
+    for wrong in ([1.0, 2.0], [[1.0, 2.0, 3.0]], [[np.nan, 1.0]]):
+        with pytest.raises(ParameterError, match="pairs of x and y"):
+            replay_of_run(run, gates=wrong)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import re
 import subprocess
 import sys
@@ -16,6 +15,7 @@ from skisnow.replay import replay_bytes, replay_of_run, replay_page, write_repla
 from skisnow.replay.page import MODULES, static_text
 
 from ..report.runs import circle_run
+from .held import held_replay
 
 STATIC = Path(__file__).resolve().parents[2] / "src" / "skisnow" / "replay" / "static"
 
@@ -23,10 +23,8 @@ STATIC = Path(__file__).resolve().parents[2] / "src" / "skisnow" / "replay" / "s
 def test_the_runs_are_inside_to_the_byte(tmp_path: Path) -> None:
     run, ghost = replay_of_run(circle_run()), replay_of_run(circle_run(unloading_ratio=1.0), title="elastic")
     path = write_replay(run, tmp_path / "deep" / "replay.html", ghost=ghost)
-    text = path.read_text(encoding="utf-8")
-    held = dict(re.findall(r'<script type="application/octet-stream" id="(\w+)">([^<]+)</script>', text))
-    assert base64.b64decode(held["run"]) == replay_bytes(run)
-    assert base64.b64decode(held["ghost"]) == replay_bytes(ghost)
+    assert held_replay(path, "run") == replay_bytes(run)
+    assert held_replay(path, "ghost") == replay_bytes(ghost)
 
 
 def test_every_module_is_inside_after_those_that_it_imports() -> None:

@@ -31,6 +31,7 @@ def build_parser() -> argparse.ArgumentParser:
         man,
         new,
         reference,
+        replay,
         serve,
         simulate,
         store,
@@ -48,22 +49,9 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help())
     every = (
-        new,
-        check,
-        analyse,
-        store,
-        reference,
-        carve,
-        simulate,
-        turn,
-        study,
-        track,
-        compare,
-        identify,
-        serve,
-        completion,
-        man,
-    )
+        new, check, analyse, store, reference, carve, simulate, replay, turn, study, track, compare, identify, serve,
+        completion, man,
+    )  # fmt: skip
     for command in every:
         command.add_parser(commands)
     return parser

@@ -73,6 +73,7 @@ KEPT: Final[dict[str, _Kept]] = {
     "groove_ski": _Kept(_COARSE, "1"),
     "track_place": _Kept(_EXACT, "m"),
     "track_time": _Kept(_EXACT, "s"),
+    "gate_place": _Kept(_EXACT, "m"),
 }
 """Every array that a file may hold. Those in uint16 are off by half a step at most: 1/131070 of the array's range."""
 
@@ -153,6 +154,7 @@ def _arrays(replay: Replay) -> dict[str, FloatArray]:
         found[f"groove_{name}"] = getattr(groove, name)
     if replay.track is not None:
         found |= {"track_place": replay.track.place, "track_time": replay.track.time}
+    found["gate_place"] = replay.gates
     return {name: np.asarray(values, dtype=float) for name, values in found.items() if values is not None}
 
 
@@ -216,4 +218,5 @@ def _rebuilt(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay
             ski=np.rint(arrays["groove_ski"]).astype(np.int64), spacing=header["groove_spacing"], **pieces
         ),
         track=track,
+        gates=arrays.get("gate_place"),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -50,7 +50,13 @@ class Setting:
     facts: tuple[tuple[str, str], ...]
 
 
-def replay_of_run(run: Run, *, title: str = "A simulated run", track: ReplayTrack | None = None) -> Replay:
+def replay_of_run(
+    run: Run,
+    *,
+    title: str = "A simulated run",
+    track: ReplayTrack | None = None,
+    gates: npt.ArrayLike | None = None,
+) -> Replay:
     """The replay of a run.
 
     Parameters
@@ -61,13 +67,26 @@ def replay_of_run(run: Run, *, title: str = "A simulated run", track: ReplayTrac
         What the reader sees.
     track
         A measured track in the run's axes, shown beside.
+    gates
+        (g, 2) x and y of the poles of gates (m), red and blue by turns; they stand on the snow.
 
     Raises
     ------
     ParameterError
-        The run has not even a first moment.
+        The run has not even a first moment, its boots move, or the gates are no pairs of finite numbers.
     """
-    return assembled(_arrays(run), _setting(run), title=title, track=track)
+    require_still(run.boots_by)
+    found = assembled(_arrays(run), _setting(run), title=title, track=track)
+    return found if gates is None else replace(found, gates=_gates(gates, run.scenario.slope))
+
+
+def require_still(boots_by: str | None) -> None:
+    """Refuse a run whose boots move: the replay draws skis where the sledge has them."""
+    if boots_by is not None:
+        raise ParameterError(
+            f"the boots of this run are {boots_by}, and a replay shows skis that stay where the sledge has them. Take "
+            "the figures of the report, or the boots' poses in run.nc"
+        )
 
 
 def _arrays(run: Run) -> dict[str, FloatArray]:
@@ -152,11 +171,22 @@ def _profile(slope: Profile) -> FloatArray:
     return np.column_stack([x, slope.heights(x)])
 
 
+def _gates(places: npt.ArrayLike, slope: Plane | Profile) -> FloatArray:
+    """Feet of poles on the snow."""
+    found = np.asarray(places, dtype=float)
+    if found.ndim != 2 or found.shape[1] != 2 or not np.isfinite(found).all():
+        raise ParameterError(f"gates are pairs of x and y in m; given is an array of shape {found.shape}")
+    return np.column_stack([found, _heights(slope, found[:, 0])])
+
+
+def _heights(slope: Plane | Profile, x: FloatArray) -> FloatArray:
+    return np.zeros(len(x)) if isinstance(slope, Plane) else slope.heights(x)
+
+
 def _on_the_snow(track: ReplayTrack, slope: Plane | Profile) -> ReplayTrack:
     """A height that was not measured is that of the snow."""
     place = np.array(track.place, dtype=float)
-    snow = np.zeros(len(place)) if isinstance(slope, Plane) else slope.heights(place[:, 0])
-    place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], snow)
+    place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], _heights(slope, place[:, 0]))
     return ReplayTrack(name=track.name, place=place, time=track.time)
 
 

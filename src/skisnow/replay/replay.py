@@ -139,6 +139,8 @@ class Replay:
         Their shape and load, and what they left.
     track
         A measured one beside, or None.
+    gates
+        (g, 3) feet of the poles of gates on the snow (m), one gate after the other, or None.
     """
 
     title: str
@@ -156,3 +158,4 @@ class Replay:
     skis: ReplaySkis
     groove: ReplayGroove
     track: ReplayTrack | None = None
+    gates: FloatArray | None = None

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from ..simulate.run import Run
 
 SUMMARY, REPLAY = "summary.json", "replay.html"
-_STALE: Final = (*picture_files(FIGURES), REPLAY)
+_STALE: Final = (*picture_files(FIGURES), REPLAY, "replay.glb")
+_MOMENTS: Final = "replay-*s.glb"
 
 
 def write_run(
@@ -61,7 +62,7 @@ def write_run(
         report(sentence)
     contents = summary_dict(run, warnings=implausible_values(run.scenario)) if summary is None else summary
     with staged(folder, last=SUMMARY) as stage:
-        stage.stale += _STALE
+        stage.stale += [*_STALE, *(each.name for each in folder.glob(_MOMENTS))]
         text = json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
         write_file(stage.path / SUMMARY, f"{text}\n")
         write_track(run, stage.path / "track.csv")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,6 +13,8 @@ from ..snow import SnowProperties
 from ..snow.given_stress import require_stress, with_stress
 from ..snow.mean_snow import without_measured
 from ..sources import Sources
+from .boots import Boots
+from .boots_file import read_boots
 from .contact import ELASTIC, Contact
 from .given import GivenScenario
 from .keys import SCENARIO_KEYS
@@ -40,7 +43,14 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
     if "run.duration_s" not in values and "run.length_m" not in values:
         raise ParameterError("the run has no end: give run.duration_s or run.length_m")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
-    return made(Scenario, values, slope=slope, contact=contact, ski=ski), warned
+    return made(Scenario, values, slope=slope, contact=contact, ski=ski, boots=_boots(given, values)), warned
+
+
+def _boots(given: GivenScenario, values: Mapping[str, Any]) -> Boots | None:
+    if "boots.file" not in values:
+        return None
+    edge_angle = math.radians(values["sledge.edge_angle_deg"])
+    return read_boots(given.path("boots.file"), edge_angle=edge_angle, stance_width=values["sledge.stance_width_m"])
 
 
 def outdone(given: GivenScenario, snow: SnowProperties) -> frozenset[str]:

@@ -14,6 +14,7 @@ from ..contact import Laws
 from ..errors import SolverError
 from ..former_names import formerly
 from ..scenario import Scenario
+from .moving_boots import BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_record import Record
 from .run_setup import AT_REST, Setup, set_up
@@ -61,6 +62,7 @@ def simulate(
     progress: Progress | None = None,
     strength_along: Strength | None = None,
     laws: Laws | None = None,
+    boots: BootControl | None = None,
 ) -> Run:
     """Simulate a scenario from static equilibrium.
 
@@ -76,6 +78,9 @@ def simulate(
     laws
         In place of the scenario's: laws of `skisnow.forces`, or of your own. Run, summary.json and report name them
         with their numbers.
+    boots
+        Moves the boots against the sledge, in place of the scenario's boots.file: called with a `BootMoment` before
+        each output interval, it gives the `BootPose` of the left and the right boot at its end.
 
     Returns
     -------
@@ -103,7 +108,7 @@ def simulate(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * The page docs/methods/simulated-turn.md.
     """
-    setup = set_up(scenario, laws=laws)
+    setup = set_up(scenario, laws=laws, boots=boots)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):
         return replace(computed_run(setup, record, "sunk", 0.0), laws=laws, strength_along=strength_along)
@@ -180,6 +185,7 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
         rejected_steps=rejected,
         wall_s=wall,
         numbers=setup.numbers,
+        boots_by=None if setup.drive is None else setup.drive.described,
     )
     if outcome in _COMPUTED_WRONG or not run.has_residual_above(OPEN_SHARE):
         return run

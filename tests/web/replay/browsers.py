@@ -29,7 +29,8 @@ def slowly(page: Any) -> None:
 class Watched:
     """A page with all that it asked for and said."""
 
-    def __init__(self, browser: Any, address: str, *, width: int = 960, height: int = 600) -> None:
+    def __init__(self, browser: Any, address: str, *, width: int = 960, height: int = 600, plays: bool = False) -> None:
+        """Open it; but for `plays` it is stopped and at its start."""
         self.page = browser.new_page(viewport={"width": width, "height": height})
         self.page.set_default_timeout(PATIENCE_MS)
         self.requests: list[str] = []
@@ -39,6 +40,8 @@ class Watched:
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.goto(address)
         self.page.wait_for_function("window.skisnowReplay")
+        if not plays:
+            self.does("replay.pause(); replay.seek(0)")
 
     def _heard(self, said: Any) -> None:
         if said.type in {"error", "warning"}:

@@ -40,6 +40,7 @@ def test_runs_are_listed_and_two_are_watched(served: Any, page: Any) -> None:
     page.get_by_role("button", name="Watch together").click()
     page.wait_for_function("window.skisnowReplay")
     assert page.evaluate("[skisnowReplay.run.title, skisnowReplay.ghost.title]") == ["tight", ODD]
+    page.evaluate("() => { skisnowReplay.pause(); skisnowReplay.seek(0); }")  # it opens playing
     slowly(page)
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("window.skisnowReplay.time > 0.2")

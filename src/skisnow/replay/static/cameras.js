@@ -1,12 +1,13 @@
-// Where one looks from: the boot, above, along the edge, or freely around the sledge.
+// Where one looks from: behind the run, the boot, above, along the edge, or freely around the sledge.
 
 import * as THREE from "./three.module.min.js";
-import { surfaceHeight } from "./motion.js";
+import { poseAt, surfaceHeight } from "./motion.js";
 
-export const VIEWS = ["boot", "above", "edge", "free"];
+export const VIEWS = ["chase", "boot", "above", "edge", "free"];
 const UPRIGHT = new THREE.Vector3(0, 0, 1);
 const NEAREST = 0.15;
 const FARTHEST = 15;
+const CHASE = { behind: 2.9, height: 1.35, outward: 0.7, ahead: 1.5, lag: 0.7 }; // m, and s that the camera comes after
 
 /** A camera that follows a run shown in `space`, whose axes may be tilted against the horizon. */
 export class Follower {
@@ -14,8 +15,8 @@ export class Follower {
     this.run = run;
     this.space = space;
     this.camera = new THREE.PerspectiveCamera(50, 1, 0.05, 900);
-    this.view = "boot";
-    this.zoom = { boot: 1, above: 1, edge: 1, free: 1 };
+    this.view = "chase";
+    this.zoom = { chase: 1, boot: 1, above: 1, edge: 1, free: 1 };
     this.around = { azimuth: -2.4, height: 0.42 };
     this.outer = outerSki(run);
   }
@@ -49,6 +50,32 @@ export class Follower {
   follow(pose) {
     this.pose = pose;
     this[this.view](pose);
+  }
+
+  /** Behind and above, a little on the outside of the turn: both skis, what they leave, and where they go. */
+  chase(pose) {
+    const zoom = this.zoom.chase;
+    const [x, y] = this.#heading(pose);
+    const turning = Math.sign(pose.left[0] * x + pose.left[1] * y) || (this.outer === 1 ? 1 : -1);
+    const side = -turning * CHASE.outward * zoom;
+    const from = [
+      pose.place[0] - CHASE.behind * zoom * x - side * y,
+      pose.place[1] - CHASE.behind * zoom * y + side * x,
+      0,
+    ];
+    from[2] = surfaceHeight(this.run, from[0]) + CHASE.height * zoom;
+    this.#look(from, offset(pose, CHASE.ahead, 0, 0), UPRIGHT);
+  }
+
+  /** Where the skis have pointed of late, on the slope. */
+  #heading(pose) {
+    let [x, y] = pose.forward;
+    for (const part of [0.25, 0.5, 0.75, 1]) {
+      const before = poseAt(this.run, pose.time - part * CHASE.lag).forward;
+      [x, y] = [x + before[0], y + before[1]];
+    }
+    const size = Math.hypot(x, y) || 1;
+    return [x / size, y / size];
   }
 
   boot(pose) {

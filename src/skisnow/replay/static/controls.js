@@ -1,14 +1,18 @@
 // The words, buttons and sliders around the picture: made once, each with a name that a screen reader says.
 
 import { css, GHOST, gradient, TRACK } from "./colours.js";
+import { SETTINGS } from "./sharpness.js";
 
+export const MOST_RELIEF = 30;
 export const SPEEDS = [[1, "true speed"], [0.5, "half speed"], [0.25, "a quarter"], [0.1, "a tenth"]];
-export const VIEW_NAMES = { boot: "From the boot", above: "From above", edge: "Along the edge", free: "Free" };
+export const VIEW_NAMES = { chase: "From behind", boot: "From the boot", above: "From above", edge: "Along the edge", free: "Free" };
+const ARROWS = "Arrows: orange, force per length; purple, force of a whole ski";
 export const FORCE_TITLE = "Force of the snow on the ski (N/mm)";
 const KEYS = [
   ["Space", "play or pause"], ["← →", "a twentieth of a second; with Shift half a second"], ["Home End", "start, end"],
-  ["1 2 3 4", "boot, above, edge, free"], ["+ −", "nearer, farther"], ["A D W S", "turn the free view"],
-  ["X C", "less, more exaggeration"], ["G O T", "groove, other run, measured track"],
+  ["1 2 3 4 5", "behind, boot, above, edge, free"], ["+ −", "nearer, farther"], ["A D W S", "turn the free view"],
+  ["X C", "less, more exaggeration of bending and twist"], ["V B", "the groove less, more deep"],
+  ["G F O T", "groove, forces, other run, measured track"],
 ];
 
 /** An element with properties, attributes (`aria-…`, `data-…`, `for`) and children. */
@@ -34,6 +38,9 @@ export function controls({ run, ghost, modelAddress, movingModelAddress }) {
     speed: choice("Speed of play", SPEEDS),
     exaggeration: slider("Exaggeration of bending and twist", 1, 20, 1),
     exaggerated: made("output", { textContent: "1 ×" }),
+    relief: slider("Exaggeration of the groove", 1, MOST_RELIEF, 1),
+    deepened: made("output", { textContent: "1 ×" }),
+    drawing: choice("Drawing", SETTINGS),
     views: made("div", { className: "replay-views", role: "group", "aria-label": "View" }),
     shown: made("div", { className: "replay-shown", role: "group", "aria-label": "What is shown" }),
     picture: made("button", { type: "button", textContent: "Picture (PNG)" }),
@@ -44,10 +51,10 @@ export function controls({ run, ghost, modelAddress, movingModelAddress }) {
   for (const [name, text] of Object.entries(VIEW_NAMES)) {
     parts.views.append(made("button", { type: "button", textContent: text, "data-view": name, "aria-pressed": "false" }));
   }
-  const toggles = [["groove", "Groove", null]];
+  const toggles = [["groove", "Groove", null], ["forces", "Forces", null]];
   if (ghost) toggles.push(["ghost", `Other run: ${ghost.title}`, css(GHOST)]);
   if (run.track_name) toggles.push(["track", `Measured: ${run.track_name}`, css(TRACK)]);
-  for (const [name, text, colour] of toggles) parts.shown.append(toggle(name, text, colour));
+  for (const [name, text, colour] of toggles) parts.shown.append(toggle(name, text, colour, name !== "forces"));
   return parts;
 }
 
@@ -62,8 +69,8 @@ function choice(label, entries) {
   return made("select", { "aria-label": label }, ...options);
 }
 
-function toggle(name, text, colour) {
-  const box = made("input", { type: "checkbox", checked: true, "data-show": name });
+function toggle(name, text, colour, checked) {
+  const box = made("input", { type: "checkbox", checked, "data-show": name });
   const mark = colour ? [made("span", { className: "replay-swatch", style: `background:${colour}` })] : [];
   return made("label", {}, box, ...mark, made("span", { textContent: text }));
 }
@@ -78,15 +85,17 @@ export function laidOut(root, parts, run) {
   const takeAway = [parts.picture, parts.film, parts.movingModel, parts.model].filter(Boolean);
   root.classList.add("replay");
   root.replaceChildren(
-    made("div", { className: "replay-stage" }, parts.canvas, parts.readings, parts.legend),
+    made("div", { className: "replay-stage" }, parts.canvas, parts.readings, parts.legend, parts.map),
     made(
       "div",
       { className: "replay-controls", role: "group", "aria-label": "Controls of the replay" },
       made("div", { className: "replay-row replay-playing" }, parts.play, parts.time, parts.speed),
-      made("div", { className: "replay-row" }, parts.views, field("Bending and twist", parts.exaggeration, parts.exaggerated)),
-      made("div", { className: "replay-row" }, parts.shown, field("Export", ...takeAway)),
+      made("div", { className: "replay-row" }, parts.views, parts.shown),
+      made("div", { className: "replay-row" }, field("Groove depth", parts.relief, parts.deepened),
+        field("Bending and twist", parts.exaggeration, parts.exaggerated), field("Export", ...takeAway)),
       parts.message,
-      made("details", {}, made("summary", { textContent: "Keys, and what this run is" }), keys, facts),
+      made("details", {}, made("summary", { textContent: "Drawing, keys, and what this run is" }),
+        field("Drawing", parts.drawing), keys, facts),
     ),
   );
 }
@@ -105,6 +114,7 @@ export function fillLegend(element, scales, colours) {
     scales.staysNothing
       ? made("span", { textContent: "Elastic snow: no groove stays; the line is where the skis went" })
       : bar("depth", "Permanent groove depth (mm)", ticksOf(scales.depth * 1000)),
+    made("span", { className: "replay-arrows", hidden: true, textContent: ARROWS }),
   );
 }
 
@@ -112,17 +122,25 @@ function ticksOf(most) {
   return [0, most / 2, most].map((value) => String(Number(value.toPrecision(3))));
 }
 
-/** Lines of name and value for a moment. */
-export function readings(run, pose, time, row) {
+const SIDES = ["left", "right"];
+
+/**
+ * What is told of a moment, as {name, text, large, words}: the numbers that matter first and large. `outer` is the ski
+ * that carries more; `forces` (N) of both skis are told where they are shown.
+ */
+export function readings(run, pose, { row, outer, forces = null }) {
   const of = (name, size = 1) => row(run.arrays[name].values, pose.at, size);
   const curvature = of("curvature")[0];
-  const radius = Math.abs(curvature) < 1e-3 ? "straight" : `${(1 / Math.abs(curvature)).toFixed(1)} m ${curvature > 0 ? "left" : "right"}`;
-  const [left, right] = Array.from(of("depth", 2), (depth) => (depth > 0 ? `${(1000 * depth).toFixed(1)} mm` : "above the snow"));
-  return [
-    ["Time", `${time.toFixed(2)} s`],
-    ["Speed", `${of("speed")[0].toFixed(2)} m/s`],
-    ["Turn radius", radius],
-    ["Depth at left boot", left],
-    ["Depth at right boot", right],
+  const radius = Math.abs(curvature) < 1e-3 ? "straight" : `${(1 / Math.abs(curvature)).toFixed(1)} m ${SIDES[curvature > 0 ? 0 : 1]}`;
+  const depths = Array.from(of("depth", 2), (depth) => (depth > 0 ? `${(1000 * depth).toFixed(1)} mm` : "above the snow"));
+  const depth = (ski, large) => ({ name: `Depth at ${SIDES[ski]} boot`, text: depths[ski], large });
+  const lines = [
+    { name: "Speed", text: `${of("speed")[0].toFixed(2)} m/s`, large: true },
+    { name: "Turn radius", text: radius, large: true },
+    depth(outer, true),
+    depth(1 - outer, false),
+    { name: "Time", text: `${pose.time.toFixed(2)} s`, large: false },
   ];
+  if (!forces) return lines;
+  return [...lines, ...SIDES.map((side, ski) => ({ name: `Force on ${side} ski`, text: `${forces[ski].toFixed(0)} N`, large: false }))];
 }

@@ -4,10 +4,10 @@ import { surfaceHeight } from "./motion.js";
 import { extent, flat, hills, shade, shades } from "./snow.js";
 import * as THREE from "./three.module.min.js";
 
-const FINE = { every: 1, width: 0.012, colour: [205, 219, 231], reach: 22, gone: 45 };
-const COARSE = { every: 5, width: 0.02, colour: [168, 190, 209], reach: 60, gone: 150 };
+const FINE = { every: 1, width: 0.012, colour: [214, 225, 235], reach: 18, gone: 45 };
+const COARSE = { every: 5, width: 0.02, colour: [184, 202, 218], reach: 60, gone: 150 };
 
-// Lines on the snow, smooth at their edges and as faint as they are thin: mixed with the snow's own colour.
+// Lines on the snow, smooth at their edges and as faint as they are thin: over the snow that is there.
 const LINES = {
   vertex: `
     attribute vec3 beside;   // half the width, across
@@ -28,7 +28,6 @@ const LINES = {
   fragment: `
     precision highp float;
     uniform vec3 colour;
-    uniform vec3 horizon;
     uniform vec3 snow;
     uniform vec2 fades;
     uniform float half_width;
@@ -39,8 +38,7 @@ const LINES = {
       float wide = half_width / pixel;
       float covered = clamp(wide + 0.7 - abs(across) / pixel, 0.0, 1.0) * min(1.0, 2.0 * wide + 0.3);
       float there = 1.0 - clamp((away - fades.x) / (fades.y - fades.x), 0.0, 1.0);
-      vec3 behind = mix(snow, horizon, clamp((away - 25.0) / 125.0, 0.0, 1.0));
-      gl_FragColor = vec4(mix(behind, colour, covered * there), 1.0);
+      gl_FragColor = vec4(mix(vec3(1.0), colour / snow, covered * there), 1.0); // the snow is multiplied with it
     }`,
 };
 
@@ -57,18 +55,20 @@ function lines(run, kind) {
     const [low, high] = extent(place, axis);
     return [Math.floor((low - kind.gone) / 5) * 5, Math.ceil((high + kind.gone) / 5) * 5];
   });
-  const chains = steps(y0, y1, kind.every).map((y) => steps(x0, x1, hills(run) ? 0.5 : 5).map((x) => [x, y]));
-  for (const x of steps(x0, x1, kind.every)) chains.push(steps(y0, y1, 5).map((y) => [x, y]));
+  const own = (at) => kind.every === COARSE.every || at % COARSE.every !== 0;
+  const chains = steps(y0, y1, kind.every).filter(own).map((y) => steps(x0, x1, hills(run) ? 0.5 : 5).map((x) => [x, y]));
+  for (const x of steps(x0, x1, kind.every).filter(own)) chains.push(steps(y0, y1, 5).map((y) => [x, y]));
   const mesh = chained(run, chains, kind);
   mesh.material = new THREE.ShaderMaterial({
     vertexShader: LINES.vertex,
     fragmentShader: LINES.fragment,
     uniforms: {
-      ...shades(), colour: shade(kind.colour), height: { value: 720 },
+      snow: shades().snow, colour: shade(kind.colour), height: { value: 720 },
       half_width: { value: kind.width / 2 }, fades: { value: new THREE.Vector2(kind.reach, kind.gone) },
     },
-    blending: THREE.CustomBlending, // the darker one stays where lines cross, whichever comes first
-    blendEquation: THREE.MinEquation,
+    blending: THREE.CustomBlending,
+    blendSrc: THREE.ZeroFactor,
+    blendDst: THREE.SrcColorFactor,
     side: THREE.DoubleSide,
     depthWrite: false,
     depthTest: hills(run),

@@ -3,21 +3,31 @@
 import { depthColour, TRACK } from "./colours.js";
 import { largest } from "./binary.js";
 import { between, surfaceHeight } from "./motion.js";
+import { relief } from "./relief.js";
 import { hills, ribbon } from "./snow.js";
 
 /** The deepest groove that stays in a run (m). */
 export const deepest = (run) => Math.max(0, largest(run.arrays.groove_residual_depth.values));
 
-/** A run's groove as a mesh with `grow(time)`; `colour` fixed for a ghost, else by the depth that stays. */
+/**
+ * A run's groove as a mesh with `grow(time)`: in relief and coloured by the depth that stays, or flat in one `colour` for
+ * a ghost. `deepen(times)` draws depth and width so often.
+ */
 export function groove(run, { most, colour = null, order = 3 }) {
   const beside = neighbours(run.arrays.groove_ski.values);
   const pieces = Array.from(run.arrays.groove_time.values, (_, i) => piece(run, i, beside[i], most, colour));
-  const mesh = ribbon(pieces, { least: colour ? 1.6 : 2.4, relief: colour ? 0 : 0.16, order, hidden: hills(run) });
+  const hidden = hills(run);
+  const mesh = colour
+    ? ribbon(pieces, { least: 1.6, order, hidden })
+    : relief(pieces, { edgeAngle: run.edge_angle, least: 2.4, order, hidden });
   const times = run.arrays.groove_time.values; // rising
   return {
     mesh,
     grow(time) {
       mesh.geometry.setDrawRange(0, 6 * made(times, time));
+    },
+    deepen(factor) {
+      if (!colour) mesh.material.uniforms.times.value = factor;
     },
   };
 }
@@ -56,6 +66,7 @@ function piece(run, i, beside, most, colour) {
     middle: middle.values.subarray(3 * i, 3 * i + 3),
     beside: Array.from(across, (part) => (part * width.values[i]) / 2),
     along: reach(run, across, beside.map((j) => middle.values.subarray(3 * j, 3 * j + 3)), middle.values[3 * i]),
+    deep: depth.values[i],
     colour: colour ?? depthColour(depth.values[i], most, run.colours),
   };
 }

@@ -40,6 +40,7 @@ export function poseAt(run, time) {
   const r = rotation(row(run.arrays.attitude.values, at, 4));
   return {
     at,
+    time,
     place: row(run.arrays.place.values, at, 3),
     forward: [r[0], r[3], r[6]],
     left: [r[1], r[4], r[7]],

@@ -2,14 +2,17 @@
 
 import { decoded } from "./binary.js";
 import { VIEWS } from "./cameras.js";
-import { controls, fillLegend, FORCE_TITLE, laidOut, made, readings } from "./controls.js";
+import { controls, fillLegend, FORCE_TITLE, laidOut, made, MOST_RELIEF, readings } from "./controls.js";
+import { wholeForces } from "./force_arrows.js";
+import { miniMap } from "./mini_map.js";
 import { edges, row } from "./motion.js";
-import { Sharpness, STILL } from "./sharpness.js";
+import { MOST_EFFECTS, Sharpness, STILL } from "./sharpness.js";
 import { Stage } from "./stage.js";
 import { composed, filmType, recording, saved } from "./takeaway.js";
 
 const STEP = 0.05; // s that an arrow key goes
 const LARGE_STEP = 0.5;
+const RELIEF = 8; // times that the groove is deeper and wider than it is, at first
 const LONGEST = 1000; // ms of play in one picture: a page that was hidden meanwhile goes on from where it was
 
 /**
@@ -29,11 +32,13 @@ class Player {
     this.ghost = ghost;
     this.addresses = addresses;
     this.parts = controls({ run, ghost, ...addresses });
+    this.map = miniMap(run);
+    this.parts.map = this.map.canvas;
     laidOut(root, this.parts, run);
     const times = run.arrays.time.values;
     [this.start, this.end] = [times[0], times[times.length - 1]];
-    Object.assign(this, { time: this.start, playing: false, rate: 1, exaggeration: 1, frames: 0, film: null });
-    this.shown = { groove: true, ghost: true, track: true };
+    Object.assign(this, { time: this.start, playing: false, rate: 1, exaggeration: 1, relief: RELIEF, frames: 0, film: null });
+    this.shown = { groove: true, forces: false, ghost: true, track: true };
     this.flat = document.createElement("canvas");
     this.sharpness = new Sharpness();
     try {
@@ -46,6 +51,7 @@ class Player {
     this.#listen(root);
     new ResizeObserver(() => this.resize()).observe(this.parts.canvas.parentElement);
     this.resize();
+    if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
   }
 
   #fill() {
@@ -56,7 +62,8 @@ class Player {
       parts.film.disabled = true;
       parts.film.title = "This browser records no film.";
     }
-    this.look("boot");
+    this.deepen(RELIEF);
+    this.look("chase");
   }
 
   say(text) {
@@ -66,6 +73,7 @@ class Player {
   resize() {
     const [width, height] = this.#size();
     if (!width || !height) return;
+    this.stage.spend(this.playing && !this.film ? this.sharpness.effects : MOST_EFFECTS);
     this.stage.resize(width, height, this.#ratio());
     this.draw();
   }
@@ -79,21 +87,24 @@ class Player {
   draw() {
     const pose = this.stage.draw(this.time, this.exaggeration);
     this.frames += 1;
-    this.lines = readings(this.run, pose, this.time, row);
+    const forces = this.shown.forces ? wholeForces(this.run, pose.at) : null;
+    this.lines = readings(this.run, pose, { row, outer: this.stage.follower.outer, forces });
     this.#tell();
+    this.map.show(pose.place);
     if (this.film) this.#compose();
   }
 
   #tell() {
     const { parts } = this;
-    if (!parts.readings.children.length) {
-      this.values = this.lines.map(([name]) => {
-        const value = made("dd");
-        parts.readings.append(made("dt", { textContent: name }), value);
-        return value;
-      });
+    if (parts.readings.children.length !== this.lines.length) {
+      this.values = this.lines.map(() => made("dd"));
+      parts.readings.replaceChildren(
+        ...this.lines.map(({ name, large }, i) =>
+          made("div", { className: large ? "replay-large" : "replay-small" }, made("dt", { textContent: name }), this.values[i]),
+        ),
+      );
     }
-    this.lines.forEach(([, text], i) => {
+    this.lines.forEach(({ text }, i) => {
       if (this.values[i].textContent !== text) this.values[i].textContent = text;
     });
     parts.time.value = this.time;
@@ -104,7 +115,8 @@ class Player {
 
   #compose() {
     const bent = this.exaggeration === 1 ? [] : [`Bending and twist ${this.exaggeration} times`];
-    const words = [this.run.title, ...this.lines.map(([name, value]) => `${name}: ${value}`), ...bent];
+    const deep = this.relief === 1 || !this.shown.groove ? [] : [`Groove ${this.relief} times as deep and wide`];
+    const words = [this.run.title, ...this.lines.map(({ name, text }) => `${name}: ${text}`), ...bent, ...deep];
     const most = this.stage.scales.force / 1000;
     composed(this.parts.canvas, this.flat, words, { title: FORCE_TITLE, colours: this.run.colours.force, most });
   }
@@ -162,10 +174,27 @@ class Player {
     this.draw();
   }
 
+  /** Draw the groove so often as deep and wide as it is. */
+  deepen(times) {
+    this.relief = Math.min(Math.max(times, 1), MOST_RELIEF);
+    this.parts.relief.value = this.relief;
+    this.parts.deepened.textContent = `${this.relief} ×`;
+    this.stage.deepen(this.relief);
+    if (this.stage.follower.pose) this.draw();
+  }
+
+  /** How it is drawn while it plays: one of the settings of sharpness.js. */
+  drawAs(setting) {
+    this.sharpness.choose(setting);
+    this.parts.drawing.value = setting;
+    this.resize();
+  }
+
   show(name, on) {
     this.shown[name] = on;
     const box = this.parts.shown.querySelector(`[data-show="${name}"]`);
     if (box) box.checked = on;
+    this.parts.legend.querySelector(".replay-arrows").hidden = !this.shown.forces;
     this.stage.choose(this.shown);
     this.draw();
   }
@@ -221,6 +250,8 @@ class Player {
     parts.time.addEventListener("input", () => this.seek(Number(parts.time.value)));
     parts.speed.addEventListener("change", () => (this.rate = Number(parts.speed.value)));
     parts.exaggeration.addEventListener("input", () => this.exaggerate(Number(parts.exaggeration.value)));
+    parts.relief.addEventListener("input", () => this.deepen(Number(parts.relief.value)));
+    parts.drawing.addEventListener("change", () => this.drawAs(parts.drawing.value));
     parts.views.addEventListener("click", (event) => event.target.dataset.view && this.look(event.target.dataset.view));
     parts.shown.addEventListener("change", (event) => this.show(event.target.dataset.show, event.target.checked));
     parts.film.addEventListener("click", () => (this.film ? this.pause() : this.startFilm()));
@@ -277,7 +308,10 @@ class Player {
       s: () => this.turn(0, -0.08),
       x: () => this.exaggerate(this.exaggeration - 1),
       c: () => this.exaggerate(this.exaggeration + 1),
+      v: () => this.deepen(this.relief - 1),
+      b: () => this.deepen(this.relief + 1),
       g: () => this.show("groove", !this.shown.groove),
+      f: () => this.show("forces", !this.shown.forces),
       o: () => this.show("ghost", !this.shown.ghost),
       t: () => this.show("track", !this.shown.track),
     };

@@ -1,10 +1,10 @@
 // Two skis and the sledge on them, as meshes that follow a run.
 
 import * as THREE from "./three.module.min.js";
-import { largest } from "./binary.js";
 import { forceColour, GHOST } from "./colours.js";
 import { poseAt, row, sections, surfaceHeight } from "./motion.js";
-import { hills } from "./snow.js";
+import { SHADOW, sledgeMesh, slopeShadow } from "./sledge.js";
+import { hills, SUN } from "./snow.js";
 
 // corners of a cross section, each as often as a face needs its own colour and normal: [across, thickness, kind]
 const CORNERS = [
@@ -19,20 +19,31 @@ export function skis(run, { most, ghost = false }) {
   const group = new THREE.Group();
   const parts = [0, 1].map((ski) => skiMesh(run, ski, ghost));
   const shadows = [0, 1].map(() => shadowMesh(run, ghost));
-  const sledge = sledgeMesh(run, ghost);
+  const sledge = sledgeMesh(run, ghost ? tone(GHOST) : null);
+  const shade = slopeShadow(run, sledge);
+  const sun = sunOnSlope(run);
   group.add(...shadows, ...parts, sledge);
+  if (!ghost) group.add(shade.mesh);
   return {
     group,
+    sections: [null, null],
+    /** Whether the sun casts shadows; else the skis' lie straight below them. */
+    shine(on) {
+      this.isSunny = on;
+      shade.mesh.visible = on;
+    },
     show(time, exaggeration) {
       const pose = poseAt(run, time);
       for (const ski of [0, 1]) {
         const found = sections(run, pose, ski, exaggeration);
+        this.sections[ski] = found;
         bendMesh(parts[ski], run, found);
         if (!ghost) colourMesh(parts[ski], run, pose, ski, most);
-        castShadow(shadows[ski], run, found);
+        castShadow(shadows[ski], run, found, this.isSunny ? sun : [0, 0, 1]);
       }
       sledge.matrix.makeBasis(...[pose.forward, pose.left, pose.up].map((axis) => new THREE.Vector3(...axis)));
       sledge.matrix.setPosition(...pose.place);
+      if (this.isSunny) shade.cast(pose, sun);
       return pose;
     },
   };
@@ -110,11 +121,17 @@ function colourMesh(mesh, run, pose, ski, most) {
   colours.needsUpdate = true;
 }
 
-/** A shadow straight under each ski tells how high its ends are. */
+/** Towards the sun in the run's axes. */
+function sunOnSlope(run) {
+  const [c, s] = [Math.cos(run.tilt), Math.sin(run.tilt)];
+  return [c * SUN.x - s * SUN.z, SUN.y, s * SUN.x + c * SUN.z];
+}
+
+/** A shadow on the snow tells how high the ends of a ski are. */
 function shadowMesh(run, ghost) {
   const geometry = strip(run.arrays.station.values.length, 2, [[0, 1]]);
   const material = new THREE.MeshBasicMaterial({
-    color: 0xc3d0dc, side: THREE.DoubleSide, depthWrite: false, depthTest: hills(run), // flat on the snow, under the rest
+    color: SHADOW, side: THREE.DoubleSide, depthWrite: false, depthTest: hills(run), // flat on the snow, under the rest
   });
   const mesh = new THREE.Mesh(geometry, material);
   mesh.renderOrder = 2;
@@ -123,55 +140,16 @@ function shadowMesh(run, ghost) {
   return mesh;
 }
 
-function castShadow(mesh, run, found) {
+function castShadow(mesh, run, found, sun) {
   const half = run.arrays.half_width.values;
   const positions = mesh.geometry.attributes.position;
   for (let j = 0; j < half.length; j++) {
     [1, -1].forEach((side, c) => {
-      const [x, y] = [0, 1].map((i) => found[9 * j + i] + side * half[j] * found[9 * j + 3 + i]);
+      const edge = [0, 1, 2].map((i) => found[9 * j + i] + side * half[j] * found[9 * j + 3 + i]);
+      const high = Math.max(edge[2] - surfaceHeight(run, edge[0]), 0) / sun[2];
+      const [x, y] = [edge[0] - high * sun[0], edge[1] - high * sun[1]];
       positions.setXYZ(2 * j + c, x, y, surfaceHeight(run, x));
     });
   }
   positions.needsUpdate = true;
-}
-
-/** Two boots, the beam between them and the centre of mass: enough to see how the sledge leans. */
-function sledgeMesh(run, ghost) {
-  const group = new THREE.Group();
-  group.matrixAutoUpdate = false;
-  const material = ghost
-    ? new THREE.MeshBasicMaterial({ color: tone(GHOST), transparent: true, opacity: 0.25, depthWrite: false })
-    : new THREE.MeshLambertMaterial({ color: 0x8492a0 });
-  const middle = run.arrays.middle.values;
-  const bases = [0, 1].map((ski) => new THREE.Vector3(...middle.subarray(3 * ski, 3 * ski + 3)));
-  const height = 0.085;
-  const thick = largest(run.arrays.thickness.values);
-  for (const base of bases) {
-    const boot = new THREE.Mesh(new THREE.BoxGeometry(0.27, 0.062, height), material);
-    const turned = new THREE.Group();
-    turned.add(boot);
-    boot.position.z = thick + height / 2;
-    turned.position.copy(base);
-    turned.rotation.x = -run.edge_angle;
-    group.add(turned);
-  }
-  const top = bases.map((base) => base.clone().add(upAlong(run.edge_angle, thick + height)));
-  group.add(beam(top[0], top[1], material));
-  const mass = new THREE.Mesh(new THREE.SphereGeometry(0.03, 16, 10), material);
-  mass.position.set(0, 0, run.centre_of_mass_height);
-  group.add(mass);
-  group.traverse((each) => {
-    each.renderOrder = ghost ? 8 : 5;
-  });
-  return group;
-}
-
-const upAlong = (angle, size) => new THREE.Vector3(0, size * Math.sin(angle), size * Math.cos(angle));
-
-function beam(from, to, material) {
-  const way = to.clone().sub(from);
-  const mesh = new THREE.Mesh(new THREE.BoxGeometry(0.035, way.length(), 0.02), material);
-  mesh.position.copy(from).addScaledVector(way, 0.5);
-  mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), way.normalize());
-  return mesh;
 }

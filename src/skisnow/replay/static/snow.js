@@ -1,6 +1,10 @@
-// The slope, calm: one light surface, fading into the sky; and what is drawn flat on it.
+// The slope: one light surface in the sun, fading into the sky; and what is drawn flat on it.
 
+import { snowTile } from "./snow_tile.js";
 import * as THREE from "./three.module.min.js";
+
+/** Towards the sun, in the world's axes: low and from the side, so that ripples and grooves show. */
+export const SUN = new THREE.Vector3(-0.5, 0.72, 0.56).normalize();
 
 const FAR = 260; // m that the surface reaches beyond the run
 const HORIZON = new THREE.Color(0xdfe9f1);
@@ -10,15 +14,17 @@ const LOWEST_SKY = 0.12; // rad below the horizontal: under it all is snow, or t
 export const BACKGROUND = HORIZON;
 
 const SNOW = [241, 245, 249];
-// plain, as most of the picture is snow: where there is no graphics card, each sum of a pixel counts
+// Most of the picture is snow: where there is no graphics card, each sum of a pixel counts, and it is plain.
 const SURFACE = {
   // It hides as if it were a little farther away: what lies on it is drawn whole, what is behind a crest is not.
   vertex: `
     varying float away;
     varying vec2 depth;
+    varying vec2 at;
     void main() {
       vec4 seen = modelViewMatrix * vec4(position, 1.0);
       away = -seen.z;
+      at = position.xy;
       depth = vec2(projectionMatrix[2][2], projectionMatrix[3][2]);
       gl_Position = projectionMatrix * seen;
     }`,
@@ -26,10 +32,19 @@ const SURFACE = {
     precision highp float;
     uniform vec3 horizon;
     uniform vec3 snow;
+    uniform float lit;
+    uniform sampler2D tile;
     varying float away;
     varying vec2 depth;
+    varying vec2 at;
     void main() {
-      gl_FragColor = vec4(mix(snow, horizon, clamp((away - 25.0) / 125.0, 0.0, 1.0)), 1.0);
+      vec3 tone = snow;
+      if (lit > 0.5) {
+        float near = texture2D(tile, at * 0.37).r - 0.5;
+        float wide = texture2D(tile, at.yx * 0.041 + 0.3).r - 0.5;
+        tone *= 1.0 + vec3(0.22, 0.17, 0.12) * near + vec3(0.1, 0.08, 0.06) * wide; // shaded snow is bluer
+      }
+      gl_FragColor = vec4(mix(tone, horizon, clamp((away - 25.0) / 125.0, 0.0, 1.0)), 1.0);
       #ifdef HILLS
         float farther = 1.01 * away + 0.05; // m
         gl_FragDepth = 0.5 + 0.5 * (depth.y / farther - depth.x);
@@ -46,7 +61,6 @@ const RIBBON = {
     uniform float height;    // of the picture in pixels
     uniform float least;     // width in pixels
     varying vec3 hue;
-    varying float across;
     void main() {
       vec4 middle = modelViewMatrix * vec4(position, 1.0);
       float pixel = 2.0 * max(-middle.z, 0.01) / (projectionMatrix[1][1] * height);
@@ -54,16 +68,13 @@ const RIBBON = {
       float wide = max(half_width, 0.5 * least * pixel) / max(half_width, 1e-9);
       vec3 place = position + corner.x * wide * beside + corner.y * along;
       hue = tint;
-      across = corner.x;
       gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
     }`,
   fragment: `
     precision highp float;
-    uniform float relief;
     varying vec3 hue;
-    varying float across;
     void main() {
-      gl_FragColor = vec4(hue * (1.0 - relief * across), 1.0);
+      gl_FragColor = vec4(hue, 1.0);
     }`,
 };
 
@@ -84,7 +95,7 @@ export function surface(run) {
   const material = new THREE.ShaderMaterial({
     vertexShader: SURFACE.vertex,
     fragmentShader: SURFACE.fragment,
-    uniforms: shades(),
+    uniforms: { ...shades(), lit: { value: 1 }, tile: { value: snowTile() } },
     defines: hills(run) ? { HILLS: 1 } : {},
     side: THREE.DoubleSide,
     depthWrite: hills(run),
@@ -153,7 +164,7 @@ export function sky() {
  * Pieces lying on the snow, each a rectangle: middle, half across, half ahead, colour (0 to 255). It is never narrower
  * than `least` pixels, so that a groove of millimetres is seen from above.
  */
-export function ribbon(pieces, { least = 2, relief = 0, order = 3, hidden = false } = {}) {
+export function ribbon(pieces, { least = 2, order = 3, hidden = false } = {}) {
   const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
   const names = { position: [], beside: [], along: [], tint: [], corner: [] };
   const indices = [];
@@ -176,7 +187,7 @@ export function ribbon(pieces, { least = 2, relief = 0, order = 3, hidden = fals
   const material = new THREE.ShaderMaterial({
     vertexShader: RIBBON.vertex,
     fragmentShader: RIBBON.fragment,
-    uniforms: { height: { value: 720 }, least: { value: least }, relief: { value: relief } },
+    uniforms: { height: { value: 720 }, least: { value: least } },
     side: THREE.DoubleSide,
     depthWrite: false,
     depthTest: hidden, // by hills; else drawn in the order given, before the skis

@@ -1,13 +1,17 @@
-// Everything that is drawn: snow, grooves, skis, ghost, measured track; one call draws a moment.
+// Everything that is drawn: snow, grooves, skis, forces, poles, ghost, measured track; one call draws a moment.
 
 import * as THREE from "./three.module.min.js";
 import { largest } from "./binary.js";
 import { Follower } from "./cameras.js";
 import { GHOST, roundAbove, TRACK } from "./colours.js";
+import { forceArrows } from "./force_arrows.js";
 import { grid } from "./grid.js";
 import { deepest, groove, measuredTrack } from "./groove.js";
+import { fallLine, gates, horizonHills, poles } from "./landmarks.js";
+import { plume } from "./plume.js";
+import { MOST_EFFECTS } from "./sharpness.js";
 import { skis } from "./skis.js";
-import { BACKGROUND, sky, surface } from "./snow.js";
+import { BACKGROUND, sky, SUN, surface } from "./snow.js";
 
 const GHOST_GROOVE = GHOST.map((part) => 255 - 0.55 * (255 - part));
 
@@ -21,7 +25,8 @@ export class Stage {
     this.scene.background = BACKGROUND;
     this.space = new THREE.Group();
     this.space.rotation.y = run.tilt; // x goes down by the slope's inclination
-    this.scene.add(sky(), this.space);
+    this.scene.add(sky(), horizonHills(), this.space);
+    this.effects = MOST_EFFECTS;
     this.#light();
     const runs = ghost ? [run, ghost] : [run];
     this.scales = {
@@ -35,9 +40,11 @@ export class Stage {
   }
 
   #light() {
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xd6e2ec, 2.1));
-    const sun = new THREE.DirectionalLight(0xffffff, 1.5);
-    sun.position.set(-4, 6, 9);
+    const sky = new THREE.HemisphereLight(0xffffff, 0xc9d8e5, 1.9);
+    sky.position.set(0, 0, 1);
+    const sun = new THREE.DirectionalLight(0xfff4e4, 1.9);
+    sun.position.copy(SUN);
+    this.scene.add(sky);
     this.scene.add(sun);
   }
 
@@ -45,7 +52,14 @@ export class Stage {
     const { run, ghost } = this;
     this.skis = skis(run, { most: this.scales.force });
     this.groove = groove(run, { most: this.scales.depth, order: 4 });
-    this.space.add(surface(run), grid(run), this.groove.mesh, this.skis.group);
+    this.surface = surface(run);
+    this.fallLine = fallLine(run);
+    this.arrows = forceArrows(run, this.scales.force);
+    this.plume = plume(run);
+    this.space.add(this.surface, grid(run), this.groove.mesh, this.skis.group, poles(run), gates(run));
+    this.space.add(this.fallLine.group, this.arrows.group, this.plume.points);
+    this.arrows.group.visible = false;
+    this.spend(MOST_EFFECTS);
     if (ghost) {
       this.ghostSkis = skis(ghost, { most: this.scales.force, ghost: true });
       this.ghostGroove = groove(ghost, { most: this.scales.depth, colour: GHOST_GROOVE, order: 3 });
@@ -67,9 +81,18 @@ export class Stage {
     });
   }
 
-  /** What is shown: groove, ghost and track, each true or false. */
-  choose({ groove: grooves, ghost, track }) {
+  /** So many effects: 0 none, 1 light on the snow and shadows of the sun, 2 the plume too. */
+  spend(effects) {
+    this.effects = effects;
+    this.surface.material.uniforms.lit.value = effects > 0 ? 1 : 0;
+    this.skis.shine(effects > 0);
+    this.plume.points.visible = effects > 1;
+  }
+
+  /** What is shown: groove, forces, ghost and track, each true or false. */
+  choose({ groove: grooves, forces, ghost, track }) {
     this.groove.mesh.visible = grooves;
+    this.arrows.group.visible = forces;
     if (this.ghost) {
       this.ghostSkis.group.visible = ghost;
       this.ghostGroove.mesh.visible = ghost && grooves;
@@ -78,9 +101,17 @@ export class Stage {
     this.trackShown = track;
   }
 
+  /** Draw the groove's depth and width so often. */
+  deepen(times) {
+    this.groove.deepen(times);
+  }
+
   draw(time, exaggeration) {
     const pose = this.skis.show(time, exaggeration);
     this.groove.grow(time);
+    this.fallLine.show(pose);
+    if (this.arrows.group.visible) this.arrows.show(pose, this.skis.sections);
+    if (this.effects > 1) this.plume.show(time);
     if (this.ghost) {
       this.ghostSkis.show(time, exaggeration);
       this.ghostGroove.grow(time);

@@ -1,0 +1,115 @@
+"""``skisnow replay``: a run that was written, as a page that plays and as glTF models."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from .announced import announced
+from .words import number
+
+if TYPE_CHECKING:
+    from ..replay import Replay, ReplayTrack
+
+LARGEST_FACTOR: Final = 20.0
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "replay",
+        help="a simulated run in three dimensions: a page that plays, glTF models",
+        description="Write replay.html of a run that was simulated with --out, a second run or a measured track over "
+        "it, and the run or a moment of it as a glTF model.",
+    )
+    parser.add_argument("folder", type=Path, metavar="RUN", help="the folder of a run, with its run.nc")
+    parser.add_argument("--over", type=Path, metavar="RUN", help="a second run, laid over it translucent")
+    parser.add_argument("--track", type=Path, metavar="FILE", help="a measured track to stand beside it")
+    parser.add_argument(
+        "--fall-line-azimuth-deg",
+        type=number("degrees", lowest=-360, highest=360),
+        metavar="DEG",
+        help="compass direction in which the slope falls, for a track in latitude and longitude",
+    )
+    parser.add_argument(
+        "--starts-at-s",
+        type=number("s", lowest=-36_000, highest=36_000),
+        default=0.0,
+        metavar="S",
+        help="time of the run at the track's first point; left out: 0",
+    )
+    parser.add_argument(
+        "--model", action="store_true", help="also write replay.glb, the run as a glTF model that moves"
+    )
+    parser.add_argument(
+        "--moment-s",
+        type=number("s", lowest=-36_000, highest=36_000),
+        metavar="S",
+        help="also write replay-S.SSs.glb, the moment nearest to S as a glTF model",
+    )
+    parser.add_argument(
+        "--exaggeration",
+        type=number("", lowest=1, highest=LARGEST_FACTOR),
+        default=1.0,
+        metavar="X",
+        help="bending and twist so many times in the models; left out: 1",
+    )
+    parser.add_argument("--title", help="what the reader sees above it; left out: the folder's name")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="the folder to write into; left out: the run's")
+    parser.set_defaults(run=run, parser=parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Read the run and write what was asked for."""
+    if options.track is None and (options.fall_line_azimuth_deg is not None or options.starts_at_s):
+        options.parser.error("--fall-line-azimuth-deg and --starts-at-s place a track: name it with --track")
+    with announced(f"reading {options.folder}"):
+        from ..replay import replay_of_file
+
+        shown = replay_of_file(options.folder, title=options.title)
+        if options.track is not None:
+            shown = replay_of_file(options.folder, title=options.title, track=_beside(options, shown))
+        ghost = None if options.over is None else replay_of_file(options.over)
+    for place in _written(options, shown, ghost):
+        print(place, flush=True)
+    return 0
+
+
+def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
+    """The measured track in the axes of the run."""
+    from ..errors import ParameterError
+    from ..replay import measured_track
+    from ..track.read import read_track
+    from ..track.slope_frame import in_slope_frame
+    from ..units import DEGREE
+
+    track = replace(read_track(options.track), name=options.track.name)
+    azimuth = options.fall_line_azimuth_deg
+    if track.axes == "east_north_up":
+        if azimuth is None:
+            raise ParameterError(
+                f"{options.track} is in latitude and longitude: say with --fall-line-azimuth-deg in which compass "
+                "direction the slope falls"
+            )
+        angle = shown.tilt if shown.profile is None else None
+        track = in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=angle, missing_height="on_slope")
+    elif azimuth is not None:
+        raise ParameterError(f"{options.track} is in the axes of the slope already: leave the direction out")
+    return measured_track(track, starts_at=options.starts_at_s)
+
+
+def _written(options: argparse.Namespace, shown: Replay, ghost: Replay | None) -> list[Path]:
+    from ..replay import write_moving_replay_model, write_replay, write_replay_model
+
+    folder = options.out or (options.folder if options.folder.is_dir() else options.folder.parent)
+    with announced("writing"):
+        written = [write_replay(shown, folder / "replay.html", ghost=ghost)]
+        if options.model:
+            written.append(folder / "replay.glb")
+            write_moving_replay_model(shown, written[-1], exaggeration=options.exaggeration)
+        if options.moment_s is not None:
+            written.append(folder / f"replay-{options.moment_s:.2f}s.glb")
+            write_replay_model(shown, written[-1], options.moment_s, exaggeration=options.exaggeration)
+    return written

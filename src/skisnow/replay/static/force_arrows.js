@@ -1,0 +1,105 @@
+// Force of the snow as arrows: along each ski its force per length, and one for the whole ski.
+
+import { row } from "./motion.js";
+import * as THREE from "./three.module.min.js";
+
+const LONGEST = 0.55; // m, of the largest force per length of the run
+const LEAST = 0.02; // share of it below which none is drawn
+const EVERY = 0.06; // m between arrows, at least
+const WHOLE = 0.0011; // m for each N of a whole ski's force
+const COLOURS = { along: 0xd55e00, whole: 0x7a1fa2 };
+const AWAY = new THREE.Vector3(0, 0, 1);
+
+/** Force of each ski (N): its force per length, summed along it by trapezoids. */
+export function wholeForces(run, at) {
+  const station = run.arrays.station.values;
+  const count = station.length;
+  const force = row(run.arrays.force_per_length.values, at, 2 * count);
+  return [0, 1].map((ski) => {
+    let sum = 0;
+    for (let j = 1; j < count; j++) {
+      sum += 0.5 * (force[ski * count + j] + force[ski * count + j - 1]) * Math.abs(station[j] - station[j - 1]);
+    }
+    return sum;
+  });
+}
+
+/** Arrows that `show(pose, sections)` sets; sections of both skis are those that motion.js gives. */
+export function forceArrows(run, most) {
+  const chosen = spaced(run.arrays.station.values);
+  const along = arrows(2 * chosen.length, 0.007, COLOURS.along);
+  const whole = arrows(2, 0.016, COLOURS.whole);
+  const group = new THREE.Group();
+  group.add(...along.meshes, ...whole.meshes);
+  const count = run.arrays.station.values.length;
+  return {
+    group,
+    show(pose, sections) {
+      const force = row(run.arrays.force_per_length.values, pose.at, 2 * count);
+      const sums = wholeForces(run, pose.at);
+      for (const ski of [0, 1]) {
+        const own = force.subarray(ski * count, (ski + 1) * count);
+        chosen.forEach((j, i) => {
+          const share = own[j] / most;
+          along.set(ski * chosen.length + i, ...placed(sections[ski], j), share > LEAST ? LONGEST * share : 0);
+        });
+        const [place, away] = centre(run, sections[ski], own);
+        whole.set(ski, place, away, WHOLE * sums[ski]);
+      }
+      for (const each of [along, whole]) each.done();
+    },
+  };
+}
+
+function spaced(station) {
+  const found = [0];
+  for (let j = 1; j < station.length; j++) if (Math.abs(station[j] - station[found.at(-1)]) >= EVERY) found.push(j);
+  return found;
+}
+
+const placed = (section, j) => [Array.from(section.subarray(9 * j, 9 * j + 3)), Array.from(section.subarray(9 * j + 6, 9 * j + 9))];
+
+/** Where the whole force acts on a ski, and which way. */
+function centre(run, section, force) {
+  const station = run.arrays.station.values;
+  const [place, away] = [[0, 0, 0], [0, 0, 0]];
+  let sum = 0;
+  for (let j = 0; j < station.length; j++) {
+    const [before, after] = [station[Math.max(j - 1, 0)], station[Math.min(j + 1, station.length - 1)]];
+    const share = force[j] * Math.abs(after - before);
+    sum += share;
+    for (let i = 0; i < 3; i++) {
+      place[i] += share * section[9 * j + i];
+      away[i] += share * section[9 * j + 6 + i];
+    }
+  }
+  return sum > 0 ? [place.map((part) => part / sum), away] : placed(section, 0);
+}
+
+/** So many arrows of one thickness and colour: a shaft and a head each. */
+function arrows(number, radius, colour) {
+  const material = new THREE.MeshLambertMaterial({ color: colour });
+  const shaft = new THREE.CylinderGeometry(radius, radius, 1, 8).translate(0, 0.5, 0).rotateX(Math.PI / 2);
+  const head = new THREE.ConeGeometry(2.6 * radius, 6 * radius, 10).translate(0, 3 * radius, 0).rotateX(Math.PI / 2);
+  const meshes = [shaft, head].map((geometry) => new THREE.InstancedMesh(geometry, material, number));
+  for (const each of meshes) {
+    each.frustumCulled = false;
+    each.renderOrder = 6;
+  }
+  const [matrix, turn] = [new THREE.Matrix4(), new THREE.Quaternion()];
+  return {
+    meshes,
+    set(i, place, away, length) {
+      const way = new THREE.Vector3(...away).normalize();
+      turn.setFromUnitVectors(AWAY, way);
+      const from = new THREE.Vector3(...place);
+      const stem = Math.max(length - 6 * radius, 0);
+      const there = length > 0 ? 1 : 0;
+      meshes[0].setMatrixAt(i, matrix.compose(from, turn, new THREE.Vector3(there, there, stem)));
+      meshes[1].setMatrixAt(i, matrix.compose(from.addScaledVector(way, stem), turn, new THREE.Vector3(there, there, there)));
+    },
+    done() {
+      for (const each of meshes) each.instanceMatrix.needsUpdate = true;
+    },
+  };
+}
