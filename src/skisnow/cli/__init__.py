@@ -47,7 +47,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
-    parser.set_defaults(run=lambda _: parser.print_help())
+    parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
     every = (
         new, check, analyse, store, reference, carve, simulate, replay, turn, study, track, compare, identify, serve,
         completion, man,

@@ -63,10 +63,8 @@ def run(options: argparse.Namespace) -> int:
     if options.shell != WORDS:
         print(_SCRIPTS[options.shell], end="")
         return 0
-    from . import build_parser
-
     given = options.given[1:] if options.given[:1] == ["--"] else options.given
-    print("\n".join(candidates(build_parser(), given[:-1], (given or [""])[-1])))
+    print("\n".join(candidates(options.program, given[:-1], (given or [""])[-1])))
     return 0
 
 

@@ -14,13 +14,11 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.set_defaults(run=run)
 
 
-def run(_: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print the page."""
     from importlib.metadata import version
 
-    from . import build_parser
-
-    print(manual_page(build_parser(), version("skisnow")), end="")
+    print(manual_page(options.program, version("skisnow")), end="")
     return 0
 
 
