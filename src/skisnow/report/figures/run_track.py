@@ -11,7 +11,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from ...scenario import Profile
+from ...scenario import Plane
 from ...units import MM
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
 
@@ -89,7 +89,7 @@ def draw_plan(axes: Axes, run: Run, limits: tuple[float, float, float, float]) -
     for ski, colour in enumerate(SKI_COLOURS):
         axes.plot(run.skis.track[:, ski, 0], run.skis.track[:, ski, 1], color=colour, linewidth=0.9)
     _time_marks(axes, run)
-    plan_axes(axes, limits, profile=isinstance(run.scenario.slope, Profile))
+    plan_axes(axes, limits, profile=not isinstance(run.scenario.slope, Plane))
 
 
 def _time_marks(axes: Axes, run: Run) -> None:
