@@ -22,6 +22,8 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
 ``Plane``, ``Profile``, ``Terrain``, ``Contact``, ``SnowMap``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
     The parts of a scenario: slope, how snow and skis meet, snow over the place, drag, sledge, where it begins and ends,
     how it is computed.
+``read_course``, ``Course``, ``Gate``, ``time_gates``, ``CourseResult``
+    Gates from a file, and who passed them when: a run or a measured track.
 ``simulate``, ``Run``, ``verify``, ``Refinement``
     A sledge on two flexible skis: the run that comes out of a scenario, and how exact it is.
 ``chain``, ``TurnChain``
@@ -51,6 +53,7 @@ if TYPE_CHECKING:
     from .carve.equilibrium import carve
     from .chain.chaining import chain
     from .contact import ContactForces, Runner, SnowContact, SnowField
+    from .course import Course, CourseResult, Gate, read_course
     from .estimate import Analysis, analyse, results_dict
     from .field import Campaign, check_campaign, read_campaign, write_reference
     from .field.store import Store
@@ -74,6 +77,7 @@ if TYPE_CHECKING:
     )
     from .scenario import read_scenario as scenario
     from .simulate import Run
+    from .simulate.run_gates import time_gates
     from .simulate.simulated_run import simulate
     from .simulate.verification import Refinement, verify
     from .ski import Ski, read_ski, ski_names
@@ -95,7 +99,10 @@ __all__ = [
     "Comparison",
     "Contact",
     "ContactForces",
+    "Course",
+    "CourseResult",
     "Equilibrium",
+    "Gate",
     "GeodeticPoint",
     "Identification",
     "Plane",
@@ -130,6 +137,7 @@ __all__ = [
     "published_names",
     "published_snow",
     "read_campaign",
+    "read_course",
     "read_ski",
     "read_study",
     "read_track",
@@ -143,6 +151,7 @@ __all__ = [
     "ski_names",
     "snow_from_results",
     "study",
+    "time_gates",
     "track_summary",
     "verify",
     "write_reference",
@@ -152,6 +161,7 @@ __all__ = [
 _PACKAGES = {
     "carve": ("Equilibrium", "rest"),
     "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
+    "course": ("Course", "CourseResult", "Gate", "read_course"),
     "estimate": ("Analysis", "analyse", "results_dict"),
     "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
     "field.store": ("Store",),
@@ -173,6 +183,7 @@ _PACKAGES = {
         "scenario_names",
     ),
     "simulate": ("Run",),
+    "simulate.run_gates": ("time_gates",),
     "simulate.verification": ("Refinement", "verify"),
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),

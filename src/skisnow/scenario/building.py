@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from ..course import Course, on_slope, read_course
 from ..errors import ParameterError
 from ..inputs import made, meant
 from ..ski import Ski, ski_names
@@ -47,7 +48,9 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
     if "run.duration_s" not in values and "run.length_m" not in values:
         raise ParameterError("the run has no end: give run.duration_s or run.length_m")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
-    return made(Scenario, values, slope=slope, contact=contact, ski=ski), warned
+    course = _course(given, slope)
+    told = () if course is None else course.warnings
+    return made(Scenario, values, slope=slope, contact=contact, ski=ski, course=course), (*warned, *told)
 
 
 def outdone(given: GivenScenario, snow: SnowProperties, snow_map: SnowMap | None) -> frozenset[str]:
@@ -78,6 +81,17 @@ def _slope(given: GivenScenario, values: Mapping[str, Any]) -> Slope:
         return read_terrain(given.path("slope.grid"), smoothing=smoothing, origin_x=origin[0], origin_y=origin[1])
     _require(values, "slope.profile", 'or a plane: slope.kind = "plane" and slope.angle_deg')
     return read_profile(given.path("slope.profile"), gap=values.get("slope.profile_gap", _default("slope.profile_gap")))
+
+
+def _course(given: GivenScenario, slope: Slope) -> Course | None:
+    said = {name.partition(".")[2]: value for name, value in given.values.items() if name.startswith("course.")}
+    if "file" not in said:
+        if said:
+            raise ParameterError(f"course.{next(iter(said))} is given without a course; give course.file, or leave it out")
+        return None
+    del said["file"]
+    course = read_course(given.path("course.file"), **said)
+    return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
 
 
 def _default(name: str) -> Any:
