@@ -64,6 +64,9 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
         skisnow.read_study(folder / "study.toml"), field, runner, contact,
         skisnow.StudyTable(("mu_0", "outcome"), [{"mu_0": 0.01, "outcome": "finished"}], ("mu_0",)),
         contact.force(np.zeros((1, 3)), np.eye(3)[None], np.zeros((1, 6)), 1e-3), identified(), equilibrium(),
+        skisnow.BootPose.of(np.zeros(3), 0.5), skisnow.BootMoment(0.0, 0.01, 0.0, np.zeros(3), np.eye(3), np.zeros(6),
+                                                                  np.zeros((2, 6, 3)), np.zeros((2, 6))),
+        skisnow.Boots(np.arange(4.0), np.zeros((4, 2, 3)), np.tile(np.eye(3), (4, 2, 1, 1))),
         skisnow.Store(folder / "store", None),  # type: ignore[arg-type]
     )  # fmt: skip
     return {type(each).__name__: each for each in made}

@@ -135,10 +135,12 @@ void add_forces(const Body& body, const Layout& layout, const BodyState& state, 
   const Vector3 pull{drag * air[0], drag * air[1], drag * air[2]};
   const Vector3 arm{0.0, 0.0, body.drag_height};
   const Vector3 force = cross(o, p), own = cross(o, b), weight = cross(body.first_moment, g), lever = cross(arm, pull);
+  const Vector3 pushed = state.in_body(body.push), pushed_lever = cross(body.push_at, pushed);
   const Vector3 gyration = cross(o, l), carried = cross(v, p), beams = cross(v, b);
   for (std::size_t a = 0; a < 3; a++) {
     out[a] += body.mass * g[a] + pull[a] - force[a] - own[a];
     out[a + 3] += weight[a] + lever[a] - gyration[a] - carried[a] + beams[a];
+    out[a] += pushed[a], out[a + 3] += pushed_lever[a];
   }
 }
 
@@ -157,8 +159,10 @@ void fill_pose(const FlexibleSki& ski, const BodyState& state, int first, Pose& 
 
 void fill_motion(const FlexibleSki& ski, const BodyState& state, int first, Motion& out) {
   const Vector3 v = part(state.rate, 0), o = part(state.rate, 3), by_turning = cross(o, ski.boot);
-  out.velocity = state.in_space({v[0] + by_turning[0], v[1] + by_turning[1], v[2] + by_turning[2]});
-  out.turning = state.in_space(o);
+  const Vector3 &moves = ski.velocity, &turns = ski.turning;
+  out.velocity = state.in_space(
+      {v[0] + by_turning[0] + moves[0], v[1] + by_turning[1] + moves[1], v[2] + by_turning[2] + moves[2]});
+  out.turning = state.in_space({o[0] + turns[0], o[1] + turns[1], o[2] + turns[2]});
   out.beam.resize(3 * ski.unknown.size());
   for (std::size_t j = 0; j < ski.unknown.size(); j++)
     for (std::size_t c = 0; c < 3; c++)
@@ -189,6 +193,12 @@ double drag_power(const Body& body, const BodyState& state) {
   const Vector3 v = air_velocity(body, state);
   const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   return body.drag * square * std::sqrt(square);
+}
+
+double push_power(const Body& body, const BodyState& state) {
+  const Vector3 v = part(state.rate, 0), by = cross(part(state.rate, 3), body.push_at);
+  const Vector3 velocity = state.in_space({v[0] + by[0], v[1] + by[1], v[2] + by[2]});
+  return body.push[0] * velocity[0] + body.push[1] * velocity[1] + body.push[2] * velocity[2];
 }
 
 double damping_power(const Body& body, const Layout& layout, const BodyState& state) {

@@ -60,6 +60,7 @@ class SnowContact {
   // one next to it.
   void begin(const Situation& foreseen);
   const Wrench& look(int k, const Pose& pose, const Motion& motion);
+  const Wrench& wrench(int k) const { return wrenches_[std::size_t(k)]; }  // of the last look
   void take_back();
   void accept(const Situation& at);
   // Weighted sum of minus the derivatives by pose and by motion at the pose looked at last: what Newton's method needs.

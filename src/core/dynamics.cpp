@@ -87,6 +87,7 @@ void Dynamics::add_snow(Numbers& out) {
 
 // [residual] F(x, v) - K (u + c w) - M (a₁ v - (1 + ω) v₀ + a₋ v₋₁)/h at the end.
 void Dynamics::find_residual(const Formula& f) {
+  if (!motions_.empty()) return find_moving_residual(f.newest, f.now, f.before, residual_);
   std::fill(residual_.begin(), residual_.end(), 0.0);
   fill_end();
   add_snow(residual_);
@@ -159,8 +160,19 @@ bool Dynamics::factor(double reach) {
     }
   }
   add_contact_tangent(reach * reach, reach);
+  if (held_) hold_rows();
   reach_ = reach;
   return system_.factor();
+}
+
+// The body's unknowns stay as they are.
+void Dynamics::hold_rows() {
+  for (int a = 0; a < BODY; a++) {
+    for (int b = 0; b < BODY; b++) system_.corner[a][b] = a == b ? 1.0 : 0.0;
+    for (std::size_t k = 0; k < body_.skis.size(); k++)
+      for (int i = 0; i < body_.skis[k].size(); i++)
+        system_.border(int(k), i)[a] = system_.border_column(int(k), i)[a] = 0.0;
+  }
 }
 
 // How far rates move the boots, ends a metre off that turn with them, and the beams, in a time (m).
@@ -236,12 +248,16 @@ void Dynamics::add_work(double h) {
   }
   now.drag = drag_power(body_, next_);
   now.damping = damping_power(body_, layout_, next_);
+  now.push = push_power(body_, next_);
+  for (std::size_t k = 0; k < skis_.size() && !motions_.empty(); k++) now.boots += skis_[k].power(body_.skis[k]);
   work_.shear += 0.5 * h * (power_.shear + now.shear);
   work_.friction += 0.5 * h * (power_.friction + now.friction);
   work_.normal += 0.5 * h * (power_.normal + now.normal);
   work_.drag += 0.5 * h * (power_.drag + now.drag);
   work_.damping += 0.5 * h * (power_.damping + now.damping);
   work_.snow_damping += 0.5 * h * (power_.snow_damping + now.snow_damping);
+  work_.boots += 0.5 * h * (power_.boots + now.boots);
+  work_.push += 0.5 * h * (power_.push + now.push);
   power_ = now;
 }
 
@@ -257,6 +273,10 @@ void Dynamics::observe() {
 }
 
 void Dynamics::accept(const Formula& f, bool observed) {
+  if (observed || !motions_.empty())
+    feel_boots(f.newest, f.now, f.before);
+  else
+    follow_skis();
   add_work(f.h);
   if (observed) observe();
   fill_end();
@@ -268,6 +288,7 @@ void Dynamics::accept(const Formula& f, bool observed) {
   for (std::size_t a = 0; a < 3; a++) moved_[a] = way[a];
   last_step_ = f.h;
   counts_.steps++;
+  for (MovingSki& each : skis_) each.accept();
 }
 
 bool Dynamics::is_sound(double h) const {
@@ -283,12 +304,15 @@ double Dynamics::on_ladder(double h) const {
 }
 
 void Dynamics::begin() {
+  place_boots(0.0);
   next_ = state;
   fill_end();
   end_.dt = 0.0;
   contact_->begin(end_);
   residual_.assign(residual_.size(), 0.0);
   add_snow(residual_);
+  feel_boots(0.0, 0.0, 0.0);
+  for (MovingSki& each : skis_) each.begin();
   add_work(0.0);
   observe();
   contact_->accept(end_);
@@ -345,6 +369,7 @@ Advance Dynamics::advance(double until, long most) {
     if (std::fabs(h - last_step_) < ROUNDING * h) h = last_step_;
     h *= share_;
     const Formula f = formula(h);
+    place_boots(time + h);
     predict(f);
     fill_end();
     end_.dt = h;

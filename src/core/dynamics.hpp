@@ -4,6 +4,7 @@
 
 #include "along.hpp"
 #include "body.hpp"
+#include "boots.hpp"
 #include "contact.hpp"
 
 namespace skisnow {
@@ -24,9 +25,10 @@ struct Counts {
 };
 
 // Energy (J) that was taken since the start by shear, friction, air and the skis' damping, and given to the base by the
-// snow's normal force; and what of it the snow's dashpot took.
+// snow's normal force; what of it the snow's dashpot took; and what whoever moves the boots and pushes the body gave.
 struct Work {
   double shear = 0.0, friction = 0.0, normal = 0.0, drag = 0.0, damping = 0.0, snow_damping = 0.0;
+  double boots = 0.0, push = 0.0;
 };
 
 class Dynamics {
@@ -46,6 +48,18 @@ class Dynamics {
   double snow_energy() const { return snow_energy_; }  // elastic (J), at that moment
   double held_energy() const { return held_energy_; }  // in the displaced shear (J)
   bool touches() const { return touches_; }            // whether any ski is in the snow
+
+  // Boots: each ski's inertia about its boot, in its own axes, (6, 6), lets what it does to its boot be known, and lets
+  // the boots move. Then, before each `advance`, which may not go beyond their ends, their motions may be given anew.
+  void set_skis(const std::vector<double>& inertia);
+  void move_boots(std::vector<BootMotion> motions);
+  // The body stays as it is; with boots that move, they alone carry the skis.
+  void hold_body() { held_ = true; }
+  void set_push(const Vector3& force, const Vector3& at);
+  // What a ski does to its boot, about it in its axes, at the last moment that `advance` or `begin` reached (6).
+  const Vector3* boot_wrench(int k) const { return boot_[std::size_t(k)].data(); }
+  Energies total_energies() const;
+  const FlexibleSki& stage(int k) const { return body_.skis[std::size_t(k)]; }
 
   // Move to static equilibrium in height, roll, pitch and bend; place and heading are held. Newton's last step (m).
   double settle();
@@ -67,6 +81,12 @@ class Dynamics {
   Numbers rate_before_, moved_;
   double last_step_ = 0.0;
   double share_ = 1.0;  // of a fixed step, less than 1 where Newton's method has failed
+  // skis as bodies of their own; boots that move; what is left of the body without skis
+  std::vector<MovingSki> skis_;
+  std::vector<BootMotion> motions_;
+  Body trunk_;
+  bool held_ = false;
+  std::vector<std::array<Vector3, 2>> boot_;
   // what was observed at the last moment reached
   std::vector<Along> along_;
   double snow_energy_ = 0.0, held_energy_ = 0.0;
@@ -91,7 +111,12 @@ class Dynamics {
   void fill_end();
   void add_snow(Numbers& out);
   void find_residual(const Formula& f);
+  void find_moving_residual(double newest, double now, double before, Numbers& out);
+  void place_boots(double when);
+  void follow_skis();
+  void feel_boots(double newest, double now, double before);
   bool factor(double reach);
+  void hold_rows();
   void add_contact_tangent(double stiffness, double damping);
   double size_of(const Numbers& rates, double reach) const;
   bool solve_step(const Formula& f);

@@ -50,6 +50,44 @@ Body body(const Array& inertia, double mass, const Array& first_moment, std::vec
   return out;
 }
 
+// Of each boot, start, place (4, 3), turn (3, 3) and axes (3, 3): (skis, 31).
+void move_boots(Dynamics& self, const Array& motions) {
+  constexpr std::size_t ROW = 31;
+  std::vector<BootMotion> out(motions.size() / ROW);
+  for (std::size_t k = 0; k < out.size(); k++) {
+    const double* row = motions.data() + ROW * k;
+    out[k].start = row[0];
+    for (std::size_t i = 0; i < 4; i++) std::copy_n(row + 1 + 3 * i, 3, out[k].place[i].begin());
+    for (std::size_t i = 0; i < 3; i++) std::copy_n(row + 13 + 3 * i, 3, out[k].turn[i].begin());
+    std::copy_n(row + 22, 9, &out[k].axes[0][0]);
+  }
+  self.move_boots(std::move(out));
+}
+
+void set_push(Dynamics& self, const Array& force, const Array& at) {
+  self.set_push({force.data()[0], force.data()[1], force.data()[2]}, {at.data()[0], at.data()[1], at.data()[2]});
+}
+
+// What each ski does to its boot, (skis, 6), in its axes.
+Result boot_wrench(const Dynamics& self) {
+  std::vector<double> all;
+  for (int k = 0; k < self.layout().beams(); k++)
+    for (int part = 0; part < 2; part++)
+      all.insert(all.end(), self.boot_wrench(k)[part].begin(), self.boot_wrench(k)[part].end());
+  return array(std::move(all), {std::size_t(self.layout().beams()), BODY});
+}
+
+// Of the boots against the body: place, rows of the axes, velocity and angular velocity, (skis, 18).
+Result boots(const Dynamics& self) {
+  std::vector<double> all;
+  for (int k = 0; k < self.layout().beams(); k++) {
+    const FlexibleSki& ski = self.stage(k);
+    for (const Vector3* each : {&ski.boot, &ski.axes[0], &ski.axes[1], &ski.axes[2], &ski.velocity, &ski.turning})
+      all.insert(all.end(), each->begin(), each->end());
+  }
+  return array(std::move(all), {std::size_t(self.layout().beams()), 18});
+}
+
 void set_pose(Dynamics& self, const Array& position, const Array& rotation) {
   std::copy_n(position.data(), 3, self.state.position.begin());
   std::copy_n(rotation.data(), 9, &self.state.rotation[0][0]);
@@ -71,13 +109,13 @@ Result along_of(const Dynamics& self, int k) {
 }
 
 nb::tuple energies_of(const Dynamics& self) {
-  const Energies e = energies(self.body(), self.layout(), self.state);
+  const Energies e = self.total_energies();
   return nb::make_tuple(e.kinetic, e.potential, e.elastic);
 }
 
 nb::tuple work_of(const Dynamics& self) {
   const Work& w = self.work();
-  return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping, w.snow_damping);
+  return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping, w.snow_damping, w.boots, w.push);
 }
 
 nb::tuple counts_of(const Dynamics& self) {
@@ -129,6 +167,12 @@ void bind_dynamics(nb::module_& m) {
   bound.def(nb::init<Body, SnowContact&, const StepRule&>(), nb::keep_alive<1, 3>())
       .def_rw("time", &Dynamics::time)
       .def("set_pose", &set_pose)
+      .def("set_skis", [](Dynamics& self, const Array& inertia) { self.set_skis(copied(inertia)); })
+      .def("move_boots", &move_boots)
+      .def("hold_body", &Dynamics::hold_body)
+      .def("set_push", &set_push)
+      .def_prop_ro("boot_wrench", &boot_wrench, nb::rv_policy::move)
+      .def_prop_ro("boots", &boots, nb::rv_policy::move)
       .def("settle", &Dynamics::settle, nb::call_guard<nb::gil_scoped_release>())
       .def("begin", &Dynamics::begin, nb::call_guard<nb::gil_scoped_release>())
       .def(

@@ -46,12 +46,16 @@ void Dynamics::static_residual(const BodyState& at, Numbers& out) {
   next_.bend = at.bend;
   std::fill(next_.rate.begin(), next_.rate.end(), 0.0);
   std::fill(out.begin(), out.end(), 0.0);
-  fill_end();
-  add_snow(out);
-  add_forces(body_, layout_, next_, out);
-  add_stiffness(body_, layout_, next_.bend, next_.rate, -1.0, out);
+  if (!motions_.empty()) {
+    find_moving_residual(0.0, 0.0, 0.0, out);
+  } else {
+    fill_end();
+    add_snow(out);
+    add_forces(body_, layout_, next_, out);
+    add_stiffness(body_, layout_, next_.bend, next_.rate, -1.0, out);
+  }
   for (std::size_t a = 0; a < BODY; a++)
-    if (HELD[a]) out[a] = 0.0;
+    if (HELD[a] || held_) out[a] = 0.0;
 }
 
 // [static matrix] K + K_snow, the turning of gravity with the body, and a trace of inertia; held unknowns stay.
@@ -84,7 +88,7 @@ bool Dynamics::factor_static(double inertia) {
           system_.border(int(k), i)[b + 3] -= body_.skis[k].coupling[std::size_t(BODY * i + a)] * turned[a][b];
     }
   for (int a = 0; a < BODY; a++) {
-    if (!HELD[a]) continue;
+    if (!HELD[a] && !held_) continue;
     for (int b = 0; b < BODY; b++) system_.corner[a][b] = system_.corner[b][a] = a == b ? 1.0 : 0.0;
     for (std::size_t k = 0; k < body_.skis.size(); k++)
       for (int i = 0; i < body_.skis[k].size(); i++)
@@ -152,8 +156,10 @@ double Dynamics::find_equilibrium() {
   Numbers left = state.rate, step = state.rate;
   BodyState trial = state;
   double longest = std::numeric_limits<double>::infinity(), inertia = FIRST_INERTIA;
+  place_boots(time);
+  for (FlexibleSki& each : body_.skis) each.velocity = each.turning = {};  // at rest
   stand();
-  find_height(left);
+  if (!held_) find_height(left);
   for (int tries = 0; tries < MOST_STEPS && inertia < MOST_INERTIA; tries++) {
     stand();
     static_residual(state, left);

@@ -22,6 +22,8 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
 ``Plane``, ``Profile``, ``Terrain``, ``Contact``, ``SnowMap``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
     The parts of a scenario: slope, how snow and skis meet, snow over the place, drag, sledge, where it begins and ends,
     how it is computed.
+``Boots``, ``BootPose``, ``BootMoment``
+    Boots that move: a table over time or distance; what a function that moves them knows, and gives.
 ``read_course``, ``Course``, ``Gate``, ``time_gates``, ``CourseResult``
     Gates from a file, and who passed them when: a run or a measured track.
 ``simulate``, ``Run``, ``verify``, ``Refinement``
@@ -54,6 +56,7 @@ if TYPE_CHECKING:
     from .chain.chaining import chain
     from .contact import ContactForces, Runner, SnowContact, SnowField
     from .course import Course, CourseResult, Gate, read_course
+    from .dynamics import BootPose
     from .estimate import Analysis, analyse, results_dict
     from .field import Campaign, check_campaign, read_campaign, write_reference
     from .field.store import Store
@@ -63,6 +66,7 @@ if TYPE_CHECKING:
     from .report import TurnChain, write_report
     from .scenario import (
         Air,
+        Boots,
         Contact,
         Plane,
         Profile,
@@ -77,6 +81,7 @@ if TYPE_CHECKING:
     )
     from .scenario import read_scenario as scenario
     from .simulate import Run
+    from .simulate.moving_boots import BootMoment
     from .simulate.run_gates import time_gates
     from .simulate.simulated_run import simulate
     from .simulate.verification import Refinement, verify
@@ -95,6 +100,9 @@ if TYPE_CHECKING:
 __all__ = [
     "Air",
     "Analysis",
+    "BootMoment",
+    "BootPose",
+    "Boots",
     "Campaign",
     "Comparison",
     "Contact",
@@ -162,6 +170,7 @@ _PACKAGES = {
     "carve": ("Equilibrium", "rest"),
     "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
     "course": ("Course", "CourseResult", "Gate", "read_course"),
+    "dynamics": ("BootPose",),
     "estimate": ("Analysis", "analyse", "results_dict"),
     "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
     "field.store": ("Store",),
@@ -170,6 +179,7 @@ _PACKAGES = {
     "report": ("TurnChain", "write_report"),
     "scenario": (
         "Air",
+        "Boots",
         "Contact",
         "Plane",
         "Profile",
@@ -183,6 +193,7 @@ _PACKAGES = {
         "scenario_names",
     ),
     "simulate": ("Run",),
+    "simulate.moving_boots": ("BootMoment",),
     "simulate.run_gates": ("time_gates",),
     "simulate.verification": ("Refinement", "verify"),
     "ski": ("Ski", "read_ski", "ski_names"),

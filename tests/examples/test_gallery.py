@@ -224,6 +224,14 @@ def test_straight_glide(find: Find) -> None:
     assert float(found["run"].speed[-1]) == pytest.approx(exact, rel=2e-3)
 
 
+def test_one_leg_drawn_up(find: Find) -> None:
+    """Statics of a lean by hand, with what the legs' stop still swings."""
+    found = find("one_leg_drawn_up")
+    assert found["lean"][-1] == pytest.approx(math.degrees(math.atan2(0.08, 0.5)), abs=0.1)
+    known = 80.0 * 9.81 * (0.25 + 0.6 * 0.16) / (0.5 + 0.08 * 0.16)
+    assert found["found"] == pytest.approx(known, rel=0.01)
+
+
 def test_over_a_roll(find: Find) -> None:
     """Height and speed exchange; what the skis swing with the roll is a few hundredths of a metre per second."""
     found = find("over_a_roll")

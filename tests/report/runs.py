@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from skisnow.scenario import Air, Contact, Plane, RigidSledge, Scenario, Solver, Start, Stop
+from skisnow.simulate.boot_history import BootHistory
 from skisnow.simulate.run import Groove, Run, SkiHistory
 from skisnow.ski import ski_named
 from skisnow.snow import SnowProperties
@@ -61,6 +62,7 @@ def circle_run(
         heading=heading, turn_radius=np.full(count, turn * radius), skis=skis,
         groove=_groove(skis), energies=energies, run_length=SPEED * duration, steps=8000, rejected_steps=3,
         wall_s=0.5, numbers={"elements": 40.0, "line_spacing_m": 0.02},
+        boots=_boots(skis, attitude),
     )  # fmt: skip
 
 
@@ -83,6 +85,15 @@ def _skis(time: np.ndarray, place: np.ndarray, to_left: np.ndarray, deep: float)
         shear_per_length=0.4 * 0.5e6 * np.maximum(edge_depth, 0.0),
         bending=np.broadcast_to(0.02 * station**2, shape),
         twist=np.broadcast_to(-0.5 * DEGREE * station**2, shape),
+    )
+
+
+def _boots(skis: SkiHistory, attitude: np.ndarray) -> BootHistory:
+    """Flat boots over the tracks, each bearing 400 N along the normal."""
+    shape = skis.track.shape
+    axes = np.broadcast_to(np.swapaxes(attitude, 1, 2)[:, None], (*shape[:2], 3, 3))
+    return BootHistory(
+        place=skis.track, axes=axes, own_force=np.broadcast_to([0.0, 0.0, 400.0], shape), own_moment=np.zeros(shape)
     )
 
 

@@ -19,7 +19,7 @@ from .runs import RADIUS, SPEED, STANCE, circle_run
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "files" / "run.md").read_text(encoding="utf-8")
 VARIABLES = PAGE.split("| variable |")[1].splitlines()
-UNITS = {"s", "m", "m s-1", "rad", "N m-1", "J", "1"}
+UNITS = {"s", "m", "m s-1", "rad", "N m-1", "J", "1", "N", "N m"}
 
 
 def written(run: Run, path: Path, **further: Any) -> Any:

@@ -44,6 +44,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json, track.csv, run.nc and a report")
     replay = "with --out: also write replay.html, the run in three dimensions, which opens without network"
     parser.add_argument("--replay", action="store_true", help=replay)
+    boots = "write poses of the boots, and force and moment on each, as .csv, .mot or .sto"
+    parser.add_argument("--boots-out", type=Path, metavar="FILE", help=boots)
     finer = (
         "repeat the run, finer and with 0.1 %% more and less of its inputs, one at a time; say how far its end moves"
     )
@@ -86,6 +88,10 @@ def _list(name: str | None) -> int:
 
 def _prepare(options: argparse.Namespace, asked: ScenarioFile) -> None:
     """What can be refused is refused before the work."""
+    if options.boots_out is not None:
+        from ..simulate.boots_table import require_ending
+
+        require_ending(options.boots_out)
     if options.out is not None:
         ready(options.out)
     for text in asked.warnings:
@@ -134,6 +140,11 @@ def _tell(
         print(simulate_summary(summary, title=asked.title), flush=True)
     for text in (*near, *run_warnings(found)):
         print(f"warning: {text}", file=sys.stderr)
+    if options.boots_out is not None:
+        from ..simulate.boots_table import write_boots
+
+        write_boots(found, options.boots_out)
+        print(f"Boots: {options.boots_out}", file=sys.stderr)
     if options.out is not None:
         _write(options.out, found, summary, replay_title=asked.title if options.replay else None)
 

@@ -1,6 +1,7 @@
 """Motion of a body on flexible skis over snow: implicit steps with error control, static equilibrium, energies."""
 
 from .body import Body, FlexibleSki
+from .boots import BootMotion, BootPose
 from .motion import Dynamics, Ended, StepControl
 
-__all__ = ["Body", "Dynamics", "Ended", "FlexibleSki", "StepControl"]
+__all__ = ["Body", "BootMotion", "BootPose", "Dynamics", "Ended", "FlexibleSki", "StepControl"]

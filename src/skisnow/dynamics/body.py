@@ -43,6 +43,9 @@ class FlexibleSki(ShownFields):
         Of the mass matrix between the beam's unknowns and the body's six, (n, 6).
     damping
         Times the stiffness (s): Kelvin–Voigt damping.
+    inertia
+        Mass matrix of the undeformed ski about its boot, in its own axes, (6, 6): part of the body's, too. Without it
+        nobody knows what the ski does to its boot, and its boot cannot move.
 
     Raises
     ------
@@ -57,6 +60,7 @@ class FlexibleSki(ShownFields):
     stiffness: FloatArray
     coupling: FloatArray
     damping: float
+    inertia: FloatArray | None = None
 
     def __post_init__(self) -> None:
         n, nodes = len(self.mass), len(self.unknown)
@@ -65,6 +69,8 @@ class FlexibleSki(ShownFields):
         for name, shape in shapes.items():
             shaped(f"FlexibleSki: {name}", getattr(self, name), shape)
         shaped("FlexibleSki: damping", self.damping, ())
+        if self.inertia is not None:
+            shaped("FlexibleSki: inertia", self.inertia, (6, 6))
         free = np.asarray(self.unknown)[np.asarray(self.unknown) >= 0]
         if not np.array_equal(np.sort(free), np.arange(0, n, 3)) or n % 3:
             raise ParameterError(

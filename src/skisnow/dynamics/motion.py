@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Final, TypeAlias
@@ -14,6 +15,7 @@ from ..contact import SnowContact
 from ..errors import ParameterError
 from ..former_names import warn_of_former_name
 from .body import Body, shaped
+from .boots import BootMotion
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -121,6 +123,52 @@ class Dynamics:
         self.body, self.contact = body, contact
         self._core = core.Dynamics(body.compiled(), contact.compiled, control.compiled())
         self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
+        inertia = [ski.inertia for ski in body.skis if ski.inertia is not None]
+        self.feels_boots = len(inertia) == len(body.skis)
+        if self.feels_boots:
+            self._core.set_skis(np.ascontiguousarray(inertia, float))
+
+    def move_boots(self, motions: Sequence[BootMotion]) -> None:
+        """Let the boots move against the body from now on, each as one of these says; to be given anew before its end.
+
+        Before `find_equilibrium` they say where the boots are at rest.
+
+        Raises
+        ------
+        ParameterError
+            There is not one for each ski, or a ski has no inertia of its own.
+        """
+        if not self.feels_boots:
+            raise ParameterError("boots can move where each FlexibleSki has its inertia; one has none")
+        if len(motions) != len(self.body.skis):
+            raise ParameterError(f"there are {len(motions)} motions of boots for {len(self.body.skis)} skis")
+        self._core.move_boots(np.array([each.numbers for each in motions]))
+
+    def hold_body(self) -> None:
+        """Let the body stay where it is from the start on: boots that move carry the skis alone."""
+        self._core.hold_body()
+
+    def push(self, force: npt.ArrayLike, at: npt.ArrayLike) -> None:
+        """Let a force (N, in space) act on the body at a place in its own frame (m) until another is given."""
+        self._core.set_push(shaped("push", force, (3,)), shaped("place of the push", at, (3,)))
+
+    @property
+    def boots(self) -> FloatArray:
+        """Of each boot against the body, in its frame, (skis, 6, 3).
+
+        Place (m), axes ahead, left and off the base, velocity (m/s), angular velocity (rad/s).
+        """
+        return self._core.boots.reshape(-1, 6, 3)
+
+    @property
+    def boot_wrench(self) -> FloatArray:
+        """What each ski did to its boot at the last time reached, (skis, 6): force (N), moment about the boot (N m).
+
+        In the ski's axes; not a number where a ski has no inertia of its own.
+        """
+        if not self.feels_boots:
+            return np.full((len(self.body.skis), 6), np.nan)
+        return self._core.boot_wrench
 
     def find_equilibrium(self) -> float:
         """Move to static equilibrium in height, roll, pitch and deflection; Newton's last step, the residual (m).
@@ -214,7 +262,12 @@ class Dynamics:
 
         The last: what of the normal force's work the snow's dashpot took.
         """
-        return self._core.work
+        return self._core.work[:6]
+
+    @property
+    def work_given(self) -> tuple[float, float]:
+        """Since `begin` (J), by who moves the boots, and by the push."""
+        return self._core.work[6:]
 
     @property
     def counts(self) -> tuple[int, int, int, int, int]:

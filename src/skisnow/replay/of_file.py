@@ -14,7 +14,7 @@ from ..given import GivenError, json_value
 from ..scenario import Plane, Profile, read_profile
 from ..ski import read_ski, ski_named
 from ..units import DEGREE
-from .of_run import Setting, assembled, facts_of, no_replay_on_grid
+from .of_run import Setting, assembled, facts_of, no_replay_on_grid, require_still
 
 if TYPE_CHECKING:
     from ..ski import Ski
@@ -58,6 +58,8 @@ def replay_of_file(
         with netcdf_file(path, "r", mmap=False) as file:
             content: Any = file  # its attributes are those of the file
             arrays, values = _arrays(content), _scenario(content)
+            boots = getattr(content, "boots", b"").decode("utf-8")
+            require_still(boots if boots.startswith("moved") else None)
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
         setting = _setting(path, values, outcome, spacing, ski)
         return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track)

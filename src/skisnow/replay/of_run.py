@@ -73,12 +73,22 @@ def replay_of_run(
     Raises
     ------
     ParameterError
-        The run has not even a first moment, the gates are no pairs of finite numbers, or it went over a grid, whose
-        surface a replay cannot show.
+        The run has not even a first moment, its boots move, the gates are no pairs of finite numbers, or it went over
+        a grid, whose surface a replay cannot show.
     """
+    require_still(run.boots_by)
     setting = _setting(run)
     found = assembled(_arrays(run), setting, title=title, track=track)
     return found if gates is None else replace(found, gates=_gates(gates, setting.slope))
+
+
+def require_still(boots_by: str | None) -> None:
+    """Refuse a run whose boots move: the replay draws skis where the sledge has them."""
+    if boots_by is not None:
+        raise ParameterError(
+            f"the boots of this run are {boots_by}, and a replay shows skis that stay where the sledge has them. Take "
+            "the figures of the report, or the boots' poses in run.nc"
+        )
 
 
 def _arrays(run: Run) -> dict[str, FloatArray]:

@@ -76,6 +76,7 @@ def _attributes(file: Any, run: Run, values: Mapping[str, Any], provenance: Mapp
         "outcome": run.outcome,
         "remedy": run.remedy,
         "scenario": json.dumps(values, allow_nan=False, ensure_ascii=False),
+        "boots": run.boots_by or "stay where the sledge has them",
         "laws": json.dumps(run.given_laws, ensure_ascii=False),
         "scenario_keys": json.dumps({name: key.described for name, key in SCENARIO_KEYS.items()}, ensure_ascii=False),
         "provenance": json.dumps(provenance, allow_nan=False, ensure_ascii=False),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from ..simulate.run import LOST, STORED
+from ..simulate.run import GIVEN, LOST, STORED
 
 if TYPE_CHECKING:
     from ..simulate.run import Run
@@ -89,7 +89,43 @@ def _energies() -> list[RunVariable]:
         "snow_damping": "work lost to damping and delayed depth of the snow since the start",
     }
     found = [RunVariable(f"{name}_energy", (TIME,), "J", stored[name], of(name)) for name in STORED]
-    return found + [RunVariable(f"lost_{name}", (TIME,), "J", lost[name], of(name)) for name in LOST]
+    found += [RunVariable(f"lost_{name}", (TIME,), "J", lost[name], of(name)) for name in LOST]
+    given = {
+        "boots": "work given since the start by what moves the boots",
+        "push": "work given since the start by a push on the body",
+    }
+    return found + [RunVariable(f"given_{name}", (TIME,), "J", given[name], _given(name)) for name in GIVEN]
+
+
+def _given(name: str) -> Values:
+    return lambda run: run.energies.get(name, np.zeros(len(run.time)))
+
+
+def _of_boots() -> list[RunVariable]:
+    place = "middle of the boot's sole at the level of the base: {}"
+    found = _three("boot_{}", (TIME, SKI), "m", place, lambda run: _boots(run, "place"))
+    angles = ("edge_angle", "pitch", "heading")
+    meanings = ("edge angle, positive: left edge down", "pitch, positive: tip up", "heading, positive to the left")
+    for i, (name, meaning) in enumerate(zip(angles, meanings, strict=True)):
+        found.append(RunVariable(f"boot_{name}", (TIME, SKI), "rad", f"of the boot: {meaning}", _part("angles", i)))
+    for what, unit in (("force", "N"), ("moment", "N m")):
+        for i, axis in enumerate("xyz"):
+            meaning = f"{what} of the ski on its boot, in space: {axis}"
+            found.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(what, i)))
+        for i, axis in enumerate(("ahead", "left", "up")):
+            meaning = f"{what} of the ski on its boot, in the boot's axes: {axis}"
+            found.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(f"own_{what}", i)))
+    return found
+
+
+def _boots(run: Run, name: str) -> npt.NDArray[np.float64]:
+    if run.boots is None:
+        return np.full((len(run.time), 2, 3), np.nan)
+    return np.asarray(getattr(run.boots, name))
+
+
+def _part(name: str, axis: int) -> Values:
+    return lambda run: _boots(run, name)[..., axis]
 
 
 def _along_skis() -> list[RunVariable]:
@@ -163,5 +199,5 @@ def _of_groove() -> list[RunVariable]:
     ]  # fmt: skip
 
 
-RUN_VARIABLES: Final = (*_coordinates(), *_over_time(), *_along_skis(), *_energies(), *_of_groove())
+RUN_VARIABLES: Final = (*_coordinates(), *_over_time(), *_along_skis(), *_of_boots(), *_energies(), *_of_groove())
 """Every variable of run.nc but the names of the skis, in the order of the file."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from ..callable_packages import make_callable
 from .air import Air
+from .boots import Boots
 from .built_in import scenario_names, scenario_text
 from .contact import Contact
 from .profile_file import read_profile
@@ -25,6 +26,7 @@ from .values import scenario_values
 
 __all__ = [
     "Air",
+    "Boots",
     "Contact",
     "Plane",
     "Profile",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,6 +15,8 @@ from ..snow.given_stress import require_stress, with_stress
 from ..snow.mean_snow import without_measured
 from ..sources import Sources
 from ..units import N_PER_MM2, N_PER_MM3
+from .boots import Boots
+from .boots_file import read_boots
 from .contact import ELASTIC, Contact
 from .given import GivenScenario
 from .keys import SCENARIO_KEYS
@@ -50,7 +53,15 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
     course = _course(given, slope)
     told = () if course is None else course.warnings
-    return made(Scenario, values, slope=slope, contact=contact, ski=ski, course=course), (*warned, *told)
+    parts = {"slope": slope, "contact": contact, "ski": ski, "course": course, "boots": _boots(given, values)}
+    return made(Scenario, values, **parts), (*warned, *told)
+
+
+def _boots(given: GivenScenario, values: Mapping[str, Any]) -> Boots | None:
+    if "boots.file" not in values:
+        return None
+    edge_angle = math.radians(values["sledge.edge_angle_deg"])
+    return read_boots(given.path("boots.file"), edge_angle=edge_angle, stance_width=values["sledge.stance_width_m"])
 
 
 def outdone(given: GivenScenario, snow: SnowProperties, snow_map: SnowMap | None) -> frozenset[str]:

@@ -18,6 +18,7 @@ from ..ski import Ski, ski_names
 from ..ski.beam.clamped import CLAMP_LENGTH
 from ..units import DEGREE
 from .air import Air
+from .boots import Boots
 from .checks import require_sound
 from .contact import Contact
 from .shear import Shear
@@ -43,6 +44,10 @@ def _ski_file(ski: Ski) -> str | None:
     return None if ski.name in ski_names() else ski.name
 
 
+def _boots_file(boots: Boots | None) -> str | None:
+    return None if boots is None else boots.source
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Scenario(Shown):
     """What a run follows from.
@@ -58,6 +63,8 @@ class Scenario(Shown):
     ski, stiffness_factor, clamp_length, footprint_stiffness, damping_ratio
         The ski of both sides, what its EI and GJ are multiplied with, the length that its binding keeps straight (m),
         or holds with a stiffness (N/m²; None: rigid), damping of its first bending mode.
+    boots
+        Where the boots are against the sledge, or in the slope, over time or distance; None: they stay.
     start, stop, solver
         Where it begins, when it ends, how it is computed.
     gravity
@@ -130,6 +137,16 @@ class Scenario(Shown):
             origin="choice: a lightly damped beam",
         ),
     ] = 0.02
+    boots: Annotated[
+        Boots | None,
+        Word(
+            "boots.file",
+            "poses of the boots over time or distance (CSV, .mot or .sto); left out: they stay where the sledge has "
+            "them",
+            word_of=_boots_file,
+            names_file=True,
+        ),
+    ] = None
     start: Start
     stop: Stop
     shear: Shear = field(default_factory=Shear)
@@ -210,6 +227,7 @@ class Scenario(Shown):
             ("friction", f"{friction}, drag area {amount(self.air.drag_area, 'm²')}"),
             ("sledge", f"{amount(sledge.mass, 'kg')}, edge angle {amount(sledge.edge_angle / DEGREE, '°')}"),
             ("ski", repr(self.ski).strip("<>")),
+            *([("boots", repr(self.boots).strip("<>"))] if self.boots is not None else []),
             ("start", f"{amount(start.speed, 'm/s')}, heading {amount(start.heading / DEGREE, '°')}"),
             *([("course", repr(self.course).strip("<>"))] if self.course is not None else []),
             ("end", " or ".join(amount(value, unit) for value, unit in end if value is not None)),

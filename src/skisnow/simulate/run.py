@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..contact import Laws
+    from .boot_history import BootHistory
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Outcome: TypeAlias = Literal[
@@ -46,6 +47,7 @@ STEADY_SPEED, STEADY_FROM = 1.0, 0.5
 """Speed (m/s) above which, and time (s) from which on, a run's turn radius counts: before, it is that of the start."""
 STORED: Final = ("kinetic", "potential", "elastic_ski", "elastic_snow")
 LOST: Final = ("penetration", "shear", "friction", "drag", "damping", "snow_damping")
+GIVEN: Final = ("boots", "push")
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
@@ -137,7 +139,7 @@ class Run(Shown):
     groove
         What they left.
     energies
-        (n,) each (J): STORED, and what is LOST since the start.
+        (n,) each (J): STORED, what is LOST since the start, and what was GIVEN by boots that move and by pushes.
     run_length
         Of the middle's path (m).
     steps, rejected_steps
@@ -146,6 +148,10 @@ class Run(Shown):
         Time it took, without the start (s).
     numbers
         What the solver chose: elements, line_spacing_m.
+    boots
+        Where the boots were, and force and moment on each; None where nothing is known of them.
+    boots_by
+        What moved them, in words; None where they stay where the sledge has them.
     laws, strength_along
         What acted in place of the scenario's laws, as `skisnow.simulate` was given it.
 
@@ -172,6 +178,8 @@ class Run(Shown):
     rejected_steps: int
     wall_s: float
     numbers: dict[str, float]
+    boots: BootHistory | None = None
+    boots_by: str | None = None
     laws: Laws | None = None
     strength_along: Strength | None = None
 
@@ -209,7 +217,8 @@ class Run(Shown):
         ----------
         what
             "track": from above, with the grooves; "motion": speed, heading and turn radius; "along_ski": depth and
-            force along both skis over time; "grip": the share of the shear strength in use; "energies"; "course": the line over the gates, with the edge angle as colour.
+            force along both skis over time; "grip": the share of the shear strength in use; "energies";
+            "course": the line over the gates, with the edge angle as colour.
 
         Returns
         -------
@@ -294,10 +303,17 @@ class Run(Shown):
 
     @property
     def energy_exchanged(self) -> float:
-        """Kinetic energy at the start, all losses, and the largest fall in potential energy (J)."""
+        """Kinetic energy at the start, all losses, and the largest fall in potential energy (J).
+
+        Boots that move may give energy and take it; what they took is a loss here.
+        """
         potential = self.energies["potential"]
         lost = sum(float(self.energies[name][-1]) for name in LOST)
-        return float(self.energies["kinetic"][0]) + lost + float(potential[0] - potential.min())
+        taken = sum(max(0.0, -float(self._given(name)[-1])) for name in GIVEN)
+        return float(self.energies["kinetic"][0]) + lost + taken + float(potential[0] - potential.min())
+
+    def _given(self, name: str) -> FloatArray:
+        return self.energies.get(name, np.zeros(len(self.time)))
 
     @property
     def energy_balance_error(self) -> float | None:
@@ -310,7 +326,7 @@ class Run(Shown):
         """|energy at the end + losses - energy at the start| (J)."""
         change = sum(float(self.energies[name][-1] - self.energies[name][0]) for name in STORED)
         lost = sum(float(self.energies[name][-1]) for name in LOST)
-        return abs(change + lost)
+        return abs(change + lost - sum(float(self._given(name)[-1]) for name in GIVEN))
 
     def has_residual_above(self, share: float) -> bool:
         """Whether the energy residual is more than a share of the energy exchanged, and more than 1 J."""

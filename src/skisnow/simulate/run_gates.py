@@ -61,6 +61,14 @@ def time_gates(course: Course, moving: Run | Track) -> CourseResult:
 def racer_parts(run: Run) -> dict[str, MovingPoint]:
     """Both feet and both ski tips, from above."""
     side, tip = run.scenario.sledge.stance_width / 2.0, float(run.scenario.ski.station[0])
+    if run.boots is not None:
+        tips = run.boots.place + tip * run.boots.axes[:, :, 0]
+        points = {"foot": run.boots.place, "tip": tips}
+        return {
+            f"{name} {part}": MovingPoint(run.time, place[:, ski, :2])
+            for part, place in points.items()
+            for ski, name in enumerate(("left", "right"))
+        }
     places = {
         f"{name} {part}": np.array([ahead, left, 0.0])
         for name, left in (("left", side), ("right", -side))

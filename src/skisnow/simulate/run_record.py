@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from ..dynamics import Ended
 from ..scenario.slope_surface import down_and_left, heights_of, normals_of
-from .run import LOST, STORED, Outcome, SkiHistory
+from .boot_history import BootHistory
+from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
 from .run_setup import Setup
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -33,10 +34,12 @@ class Moment:
         Of the boots' middle, in space: (), (3,), (3, 3), (3,).
     energies
         Kinetic, potential, elastic in the skis and in the snow; lost to penetration, shear, friction, drag, damping of
-        the skis and of the snow since the start (J), (10,).
+        the skis and of the snow since the start; given by boots that move and by pushes (J), (12,).
     along
         Depth of the edge (m), force and shear per length (N/m), deflection (m) and twist (rad) at the nodes, of both
         skis: (5, 2, m).
+    boots
+        Place and axes in space, force and moment of the ski on it in its own axes, (2, 18).
     """
 
     time: float
@@ -45,6 +48,7 @@ class Moment:
     velocity: FloatArray
     energies: FloatArray
     along: FloatArray
+    boots: FloatArray
 
 
 @dataclass(slots=True)
@@ -65,7 +69,7 @@ class Record:
 
         The outcome if the steps cannot go on.
         """
-        ended = self.setup.dynamics.advance(moment)
+        ended = self.setup.advance(moment, self.run_length)
         last, present = self._moments[-1], self._present()
         self.run_length += _arc(last, present)
         if (replace and len(self._moments) > 1) or present.time <= last.time:
@@ -75,15 +79,15 @@ class Record:
         return _OUTCOMES.get(ended)
 
     def _present(self) -> Moment:
-        dynamics = self.setup.dynamics
-        rotation = dynamics.rotation
+        setup, dynamics = self.setup, self.setup.dynamics
         dofs = at_nodes(dynamics.beam_dofs, dynamics.body.skis[0].unknown)
         along = np.concatenate(
             [np.stack([dynamics.along(k) for k in range(len(dofs))], axis=1), dofs[:, :, 0][None], dofs[:, :, 2][None]]
         )
-        return Moment(
-            dynamics.time, dynamics.position, rotation, rotation @ dynamics.velocity[:3], self._energies(), along
-        )
+        axes = np.einsum("ab,kcb->kca", dynamics.rotation, dynamics.boots[:, 1:4])
+        place = dynamics.position + dynamics.boots[:, 0] @ dynamics.rotation.T
+        boots = np.concatenate([place, axes.reshape(len(dofs), 9), dynamics.boot_wrench], axis=1)
+        return Moment(dynamics.time, setup.place, setup.attitude, setup.velocity, self._energies(), along, boots)
 
     def _energies(self) -> FloatArray:
         """Where the energy is, and where it went.
@@ -103,7 +107,7 @@ class Record:
         by_press = min(shear, 0.0)
         lifted = min(penetration + by_press, 0.0)
         lost = (penetration + by_press - lifted, shear - by_press + lifted, by_friction, by_drag, by_damping, by_rate)
-        return np.array([*dynamics.energies, normal_elastic + shear_elastic, *lost])
+        return np.array([*dynamics.energies, normal_elastic + shear_elastic, *lost, *dynamics.work_given])
 
     @property
     def last_interval(self) -> float:
@@ -114,8 +118,9 @@ class Record:
     def gains_energy(self) -> bool:
         """Whether motion, height and deflection have more energy than at the start: numbers have diverged."""
         first, last = self._moments[0].energies, self._moments[-1].energies
-        gained = float(last[:_MECHANICAL].sum() - first[:_MECHANICAL].sum())
-        exchanged = float(first[0] + max(0.0, first[1] - last[1]))
+        given = float(last[-len(GIVEN) :].sum())
+        gained = float(last[:_MECHANICAL].sum() - first[:_MECHANICAL].sum()) - given
+        exchanged = float(first[0] + max(0.0, first[1] - last[1])) + abs(given)
         return not gained <= GAINED_SHARE * exchanged + GAINED
 
     def drop(self) -> None:
@@ -126,12 +131,16 @@ class Record:
 
     def histories(self) -> dict[str, Any]:
         """The arrays of a `Run`."""
-        time, place, attitude, velocity, energies, along = (
+        time, place, attitude, velocity, energies, along, boots = (
             np.array([getattr(each, name) for each in self._moments]) for name in Moment.__slots__
         )
         normal = normals_of(self.setup.scenario.slope, place[:, 0], place[:, 1])
         skis = {name: along[:, i] for i, name in enumerate(_ALONG)}
-        track, node = self._tracks(place, attitude), self.setup.node
+        node = self.setup.node
+        shapes = {"place": (slice(0, 3), (3,)), "axes": (slice(3, 12), (3, 3))}
+        shapes |= {"own_force": (slice(12, 15), (3,)), "own_moment": (slice(15, 18), (3,))}
+        history = BootHistory(**{name: boots[..., at].reshape(-1, 2, *shape) for name, (at, shape) in shapes.items()})
+        track = self._tracks(place, attitude) if self.setup.drive is None else self._moved_tracks(history)
         return {
             "time": time,
             "place": place,
@@ -140,8 +149,18 @@ class Record:
             "heading": _heading(attitude, normal),
             "turn_radius": turn_radius(time, velocity, attitude[:, :, 2]),
             "skis": SkiHistory(station=node, track=track, depth=_at_boot(node, along[:, 0]), **skis),
-            "energies": {name: energies[:, i] for i, name in enumerate((*STORED, *LOST))},
+            "energies": {name: energies[:, i] for i, name in enumerate((*STORED, *LOST, *GIVEN))},
+            "boots": history,
         }
+
+    def _moved_tracks(self, boots: BootHistory) -> FloatArray:
+        """The same of boots that move: (n, 2, 3)."""
+        scenario, at_boot = self.setup.scenario, self.setup.scenario.ski.at(0.0)
+        left, off = boots.axes[:, :, 1], boots.axes[:, :, 2]
+        side = -np.sign(left[..., 2:]) * float(at_boot.width) / 2.0
+        out = boots.place + float(at_boot.base_height) * off + side * left
+        out[:, :, 2] = heights_of(scenario.slope, out[:, :, 0], out[:, :, 1])
+        return np.asarray(out)
 
     def _tracks(self, place: FloatArray, attitude: FloatArray) -> FloatArray:
         """The edge of each ski that is down at the boot, brought to the slope's surface: (n, 2, 3)."""

@@ -12,14 +12,15 @@ import numpy.typing as npt
 
 from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
-from ..dynamics import Dynamics, StepControl
+from ..dynamics import Dynamics, Ended, StepControl
 from ..dynamics.motion import LONGEST_STEP
-from ..errors import RangeWarning
+from ..errors import ParameterError, RangeWarning
 from ..forces.friction import LinearFriction
 from ..geometry.surfaces import Grid
 from ..scenario import Plane, Scenario, SnowMap
 from ..scenario.slope_surface import down_and_left, heights_of, normals_of, reach_of, surface_of
 from ..ski.beam.clamped import clamped
+from .moving_boots import BootControl, BootDrive, TableControl
 from .sledge.body import sledge_body
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -53,6 +54,40 @@ class Setup:
     node: FloatArray
     numbers: dict[str, float]
     static_residual: float
+    drive: BootDrive | None = None
+
+    def advance(self, until: float, distance: float) -> Ended:
+        """Let the run go on to a time (s), from a distance run (m)."""
+        if self.drive is not None and until > self.time:
+            self.drive.move(self.dynamics, until, distance)
+        return self.dynamics.advance(until)
+
+    @property
+    def place(self) -> FloatArray:
+        """Of the middle between the boots, in space (m), (3,)."""
+        if self.drive is None:
+            return self.dynamics.position
+        return self.dynamics.position + self.dynamics.rotation @ self.dynamics.boots[:, 0].mean(axis=0)
+
+    @property
+    def velocity(self) -> FloatArray:
+        """Of the middle between the boots, in space (m/s), (3,)."""
+        rotation, rates = self.dynamics.rotation, self.dynamics.velocity
+        if self.drive is None:
+            return rotation @ rates[:3]
+        boots = self.dynamics.boots.mean(axis=0)
+        return np.asarray(rotation @ (rates[:3] + np.cross(rates[3:], boots[0]) + boots[4]))
+
+    @property
+    def attitude(self) -> FloatArray:
+        """Of the sledge, or where nothing carries the boots, of a level between their skis: axes as columns, (3, 3)."""
+        if self.drive is None or not self.drive.held:
+            return self.dynamics.rotation
+        normal = self.slope_normal(*self.place[:2].tolist())
+        ahead = self.dynamics.boots[:, 1].mean(axis=0)
+        ahead -= (ahead @ normal) * normal
+        ahead /= np.linalg.norm(ahead)
+        return np.column_stack([ahead, np.cross(normal, ahead), normal])
 
     @property
     def time(self) -> float:
@@ -62,7 +97,7 @@ class Setup:
     @property
     def speed(self) -> float:
         """Of the boots' middle (m/s)."""
-        return float(np.linalg.norm(self.dynamics.velocity[:3]))
+        return float(np.linalg.norm(self.dynamics.velocity[:3] if self.drive is None else self.velocity))
 
     @property
     def touches(self) -> bool:
@@ -72,12 +107,12 @@ class Setup:
     @property
     def leaning(self) -> float:
         """Angle between the sledge's axis upwards and the snow's normal (rad)."""
-        return math.acos(min(1.0, max(-1.0, float(self.dynamics.rotation[:, 2] @ self._slope_at_boots()[1]))))
+        return math.acos(min(1.0, max(-1.0, float(self.attitude[:, 2] @ self._slope_at_boots()[1]))))
 
     @property
     def height(self) -> float:
         """Of the boots' middle above the slope (m)."""
-        return float(self.dynamics.position[2] - self._slope_at_boots()[0])
+        return float(self.place[2] - self._slope_at_boots()[0])
 
     @property
     def sinks(self) -> bool:
@@ -90,7 +125,7 @@ class Setup:
     @property
     def past_end(self) -> bool:
         """Whether tips or boots are past the end of the slope, or past a side of it."""
-        boots, ahead = self.dynamics.position[:2], self.dynamics.rotation[:2, 0]
+        boots, ahead = self.place[:2], self.attitude[:2, 0]
         low, high = np.transpose(reach_of(self.scenario.slope))
         tips = boots + float(self.node[0]) * ahead
         aside = np.maximum(low - boots, boots - high).max()
@@ -107,16 +142,39 @@ class Setup:
         return normals_of(self.scenario.slope, x, y)
 
     def _slope_at_boots(self) -> tuple[float, FloatArray]:
-        x, y = self.dynamics.position[:2].tolist()
+        x, y = self.place[:2].tolist()
         return float(heights_of(self.scenario.slope, x, y)), self.slope_normal(x, y)
 
 
-def set_up(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | None = None) -> Setup:
+def set_up(
+    scenario: Scenario,
+    snow: SnowField | None = None,
+    *,
+    laws: Laws | None = None,
+    boots: BootControl | None = None,
+) -> Setup:
     """Choose the solver's numbers, lay the snow out, or take this one, and set the sledge down on it."""
     setup = laid_out(scenario, snow, laws=laws)
+    setup.drive = _drive(scenario, boots)
+    speed = scenario.start.speed
+    if setup.drive is not None:
+        if setup.drive.held:
+            setup.dynamics.move_to(np.zeros(3), np.eye(3))
+            speed = 0.0
+        setup.drive.begin(setup.dynamics, scenario.solver.output_interval)
     setup.static_residual = setup.dynamics.find_equilibrium()
-    setup.dynamics.begin(np.array([scenario.start.speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    setup.dynamics.begin(np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0]))
     return setup
+
+
+def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
+    if boots is not None:
+        if scenario.boots is not None:
+            raise ParameterError("the boots move by boots.file and by a function; give one of them")
+        return BootDrive(boots)
+    if scenario.boots is None:
+        return None
+    return BootDrive(TableControl(scenario.boots), held=scenario.boots.frame == "slope")
 
 
 def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | None = None) -> Setup:

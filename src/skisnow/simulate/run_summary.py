@@ -17,7 +17,7 @@ from ..json_number import json_number
 from ..scenario.values import in_sections, scenario_values
 from ..snow.snow_dict import snow_dict
 from ..units import DEGREE
-from .run import LEAST_OPEN, LOST, STORED, WARNED_SHARE, Run
+from .run import GIVEN, LEAST_OPEN, LOST, STORED, WARNED_SHARE, Run
 from .run_gates import run_gates
 
 SCHEMA_VERSION: Final = 1
@@ -72,10 +72,11 @@ def summary_dict(
 
 
 def energies_dict(run: Run) -> dict[str, float | None]:
-    """Energies (J) at the end and at the start, and what was lost between."""
+    """Energies (J) at the end and at the start, what was lost between, and given by boots that move and by pushes."""
     stored = {f"{name}_J": json_number(run.energies[name][-1]) for name in STORED}
     start = {f"{name}_start_J": json_number(run.energies[name][0]) for name in STORED}
-    return stored | start | {f"lost_{name}_J": json_number(run.energies[name][-1]) for name in LOST}
+    given = {f"given_{name}_J": json_number(run.energies[name][-1]) for name in GIVEN if name in run.energies}
+    return stored | start | {f"lost_{name}_J": json_number(run.energies[name][-1]) for name in LOST} | given
 
 
 def end_dict(run: Run) -> dict[str, float | None]:

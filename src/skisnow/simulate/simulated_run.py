@@ -14,6 +14,7 @@ from ..contact import Laws
 from ..errors import SolverError
 from ..former_names import formerly
 from ..scenario import Scenario
+from .moving_boots import BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_gates import GatesAhead, run_gates
 from .run_record import Record
@@ -68,6 +69,7 @@ def simulate(
     progress: Progress | None = None,
     strength_along: Strength | None = None,
     laws: Laws | None = None,
+    boots: BootControl | None = None,
 ) -> Run:
     """Simulate a scenario from static equilibrium.
 
@@ -83,6 +85,9 @@ def simulate(
     laws
         In place of the scenario's: laws of `skisnow.forces`, or of your own. Run, summary.json and report name them
         with their numbers.
+    boots
+        Moves the boots against the sledge, in place of the scenario's boots.file: called with a `BootMoment` before
+        each output interval, it gives the `BootPose` of the left and the right boot at its end.
 
     Returns
     -------
@@ -110,7 +115,7 @@ def simulate(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * The page docs/methods/simulated-turn.md.
     """
-    setup = set_up(scenario, laws=laws)
+    setup = set_up(scenario, laws=laws, boots=boots)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):
         return replace(computed_run(setup, record, "sunk", 0.0), laws=laws, strength_along=strength_along)
@@ -138,7 +143,7 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
     ahead = GatesAhead(setup.scenario.course)
     while True:
         now = setup.time
-        if ahead.is_over(setup.dynamics.position, CLEAR):
+        if ahead.is_over(setup.place, CLEAR):
             return "finished"
         if now >= duration:
             return "finished"
@@ -190,6 +195,7 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
         rejected_steps=rejected,
         wall_s=wall,
         numbers=setup.numbers,
+        boots_by=None if setup.drive is None else setup.drive.described,
     )
     if outcome in _COMPUTED_WRONG:
         return run

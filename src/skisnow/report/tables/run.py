@@ -30,6 +30,10 @@ _LOST: Final = (
     ("lost_damping_J", "lost to damping of the skis"),
     ("lost_snow_damping_J", "lost to damping and delayed depth of the snow"),
 )
+_GIVEN: Final = (
+    ("given_boots_J", "given by what moves the boots"),
+    ("given_push_J", "given by a push"),
+)
 
 
 def scenario_table(values: Json) -> Table:
@@ -89,6 +93,7 @@ def energies_table(summary: Json) -> Table:
         (label, *_change(energies[f"{key.removesuffix('_J')}_start_J"], energies[key])) for key, label in _STORED
     ]
     rows += [(label, None, energies[key], energies[key]) for key, label in _LOST]
+    rows += [(label, None, energies[key], -energies[key]) for key, label in _GIVEN if energies.get(key)]
     error = summary["energy_balance_error"]
     note = (
         "No energy was exchanged."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -18,7 +19,14 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 def sledge_body(
-    sledge: RigidSledge, ski: ClampedSki, *, damping_ratio: float, gravity: FloatArray, drag: float, drag_height: float
+    sledge: RigidSledge,
+    ski: ClampedSki,
+    *,
+    damping_ratio: float,
+    gravity: FloatArray,
+    drag: float,
+    drag_height: float,
+    asides: Sequence[float] | None = None,
 ) -> Body:
     """A sledge on two of these skis, its origin between the boots on the level of the bases.
 
@@ -32,17 +40,21 @@ def sledge_body(
         In space (m/s²), (3,).
     drag, drag_height
         ½ ρ C_d A (kg/m), height of the centre of pressure (m).
+    asides
+        Places of the boots to the left (m), one for each ski: one of 0 is a sledge on one ski, or on a monoski. Left
+        out: two, with the stance width between them.
     """
-    inertia, side = sledge_inertia(sledge, ski), sledge.stance_width / 2.0
+    sides = (sledge.stance_width / 2.0, -sledge.stance_width / 2.0) if asides is None else asides
+    inertia = sledge_inertia(sledge, ski, sides)
     axes = np.array([[1.0, 0.0, 0.0], base_lateral(sledge.edge_angle), base_normal(sledge.edge_angle)])
     mass, stiffness = _lower(ski.mass), _lower(ski.stiffness)
     damping = 2.0 * damping_ratio / _first_bending_frequency(ski)
     skis = tuple(
         FlexibleSki(
             boot=np.array([0.0, y, 0.0]), axes=axes, unknown=_first_unknowns(ski), mass=mass, stiffness=stiffness,
-            coupling=inertia.coupling[k], damping=damping,
+            coupling=inertia.coupling[k], damping=damping, inertia=inertia.ski,
         )
-        for k, y in enumerate((side, -side))
+        for k, y in enumerate(sides)
     )  # fmt: skip
     return Body(
         inertia=inertia.rigid, mass=inertia.mass, first_moment=inertia.first_moment, skis=skis, gravity=gravity,

@@ -9,6 +9,7 @@ then drift by no more than mass × w × v × ω.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -32,31 +33,35 @@ class SledgeInertia:
     rigid
         (6, 6): velocity of the origin and angular velocity, in the sledge's frame.
     coupling
-        (2, size, 6): what the unknowns of the left and the right ski add.
+        (skis, size, 6): what the unknowns of the left and the right ski add.
     mass
         Of sledge and skis (kg).
     first_moment
         (3,) mass times the place of the common centre of mass (kg m).
+    ski
+        (6, 6) of one undeformed ski about its boot, in its own axes.
     """
 
     rigid: FloatArray
     coupling: FloatArray
     mass: float
     first_moment: FloatArray
+    ski: FloatArray
 
 
-def sledge_inertia(sledge: RigidSledge, ski: ClampedSki) -> SledgeInertia:
-    """Add up the inertia of a sledge and of one and the same ski on both sides."""
+def sledge_inertia(sledge: RigidSledge, ski: ClampedSki, asides: Sequence[float] | None = None) -> SledgeInertia:
+    """Add up the inertia of a sledge and of one and the same ski on both sides, or at these places aside (m)."""
+    sides = (sledge.stance_width / 2.0, -sledge.stance_width / 2.0) if asides is None else asides
     centre = np.array([sledge.centre_of_mass[0], 0.0, sledge.centre_of_mass[1]])
     rigid = _of_points(np.array([sledge.mass]), centre[None, :])
     rigid[3:, 3:] += np.diag(sledge.inertia)
-    coupling = np.zeros((2, ski.size, 6))
-    for k, side in enumerate((1.0, -1.0)):
-        middle = np.array([0.0, side * sledge.stance_width / 2.0, 0.0])
+    coupling = np.zeros((len(sides), ski.size, 6))
+    for k, side in enumerate(sides):
+        middle = np.array([0.0, side, 0.0])
         of_ski, coupling[k] = _of_ski(ski, middle, sledge.edge_angle)
         rigid += of_ski
     first = np.array([rigid[5, 1], rigid[3, 2], rigid[4, 0]])
-    return SledgeInertia(rigid, coupling, float(rigid[0, 0]), first)
+    return SledgeInertia(rigid, coupling, float(rigid[0, 0]), first, _of_ski(ski, np.zeros(3), 0.0)[0])
 
 
 def _of_points(mass: FloatArray, place: FloatArray) -> FloatArray:

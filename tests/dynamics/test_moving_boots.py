@@ -1,0 +1,175 @@
+"""Boots that move against the body: at rest as if they were fixed; in the air by momentum; forces by weight."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow.contact import Runner, SnowContact
+from skisnow.dynamics import Body, BootMotion, BootPose, Dynamics, Ended, StepControl
+from skisnow.errors import ParameterError
+from skisnow.geometry.boot_axes import angles_of, axes_of
+from skisnow.simulate.sledge.body import sledge_body
+
+from .sledges import ahead, body_of, clamped_ski, fixed, given, gravity, placed, sledge, snow_of
+
+FloatArray = npt.NDArray[np.float64]
+SCENARIO = given()
+SLEDGE = SCENARIO.sledge
+SIDES = np.array([0.25, -0.25])
+
+
+def stays(end: float = 1.0) -> list[BootMotion]:
+    poses = [BootPose.of([0.0, side, 0.0], SLEDGE.edge_angle) for side in SIDES]
+    return [BootMotion(0.0, end, pose, pose) for pose in poses]
+
+
+def test_boots_that_stay_are_fixed_boots() -> None:
+    """The same balance to the last digits; moving, both take a bent ski's momentum about another point: ω² r apart."""
+    runs = []
+    for moves in (False, True):
+        dynamics = sledge(SCENARIO)
+        if moves:
+            dynamics.move_boots(stays())
+        assert dynamics.find_equilibrium() < 1e-9
+        runs.append((dynamics, dynamics.position, dynamics.beam_dofs))
+    assert runs[0][1] == pytest.approx(runs[1][1], abs=1e-13)
+    assert runs[0][2] == pytest.approx(runs[1][2], abs=1e-12)
+    for dynamics, *_ in runs:
+        dynamics.begin(ahead(7.0))
+        assert dynamics.advance(0.2) is Ended.REACHED
+    assert runs[0][0].position == pytest.approx(runs[1][0].position, abs=2e-6)
+    assert runs[0][0].boot_wrench == pytest.approx(runs[1][0].boot_wrench, abs=0.5)
+    assert runs[1][0].work_given == (0.0, 0.0)
+
+
+def test_boots_bear_the_weight_of_what_stands_on_them() -> None:
+    """At rest the skis give the sledge its own weight and no more; the moment is that of its centre of mass."""
+    dynamics = sledge(SCENARIO)
+    dynamics.find_equilibrium()
+    dynamics.begin(np.zeros(6))
+    wrench, boots = dynamics.boot_wrench, dynamics.boots
+    force = np.einsum("kca,kc->ka", boots[:, 1:4], wrench[:, :3])
+    moment = np.einsum("kca,kc->ka", boots[:, 1:4], wrench[:, 3:]) + np.cross(boots[:, 0], force)
+    weight = SLEDGE.mass * dynamics.rotation.T @ gravity(SCENARIO)
+    centre = np.array([SLEDGE.centre_of_mass[0], 0.0, SLEDGE.centre_of_mass[1]])
+    assert force.sum(axis=0)[2] == pytest.approx(-weight[2], rel=1e-9)
+    assert moment.sum(axis=0)[:2] == pytest.approx(-np.cross(centre, weight)[:2], abs=1e-6)
+
+
+def weightless(body: Body) -> Body:
+    return replace(body, gravity=np.zeros(3), drag=0.0)
+
+
+def centre_of_mass(dynamics: Dynamics) -> FloatArray:
+    """Of sledge and unbent skis, in space, from their parts."""
+    places = [np.array([SLEDGE.centre_of_mass[0], 0.0, SLEDGE.centre_of_mass[1]])]
+    masses = [SLEDGE.mass]
+    for ski, (boot, *axes, _, _) in zip(dynamics.body.skis, dynamics.boots, strict=True):
+        assert ski.inertia is not None
+        own = np.array([ski.inertia[5, 1], ski.inertia[3, 2], ski.inertia[4, 0]]) / ski.inertia[0, 0]
+        places.append(boot + own @ np.array(axes))
+        masses.append(ski.inertia[0, 0])
+    return dynamics.position + dynamics.rotation @ np.average(places, axis=0, weights=masses)
+
+
+def test_in_the_air_the_centre_of_mass_stays_and_the_work_of_the_boots_is_there() -> None:
+    """Both skis are moved by 0.1 m within 0.1 s and turned: momentum 0, angular momentum 0; then all of it rests."""
+    body = weightless(body_of(SCENARIO, 8))
+    dynamics = sledge(SCENARIO, fixed(5e-4), body=body, height=1.0, elements=8)
+    first = [BootPose.of([0.0, side, 0.0], SLEDGE.edge_angle) for side in SIDES]
+    last = [BootPose.of([0.0, side, 0.1], SLEDGE.edge_angle, 0.2, 0.0) for side in SIDES]
+    start = dynamics.position
+    dynamics.move_boots(stays())
+    before = centre_of_mass(dynamics)
+    dynamics.move_boots([BootMotion(0.0, 0.1, *pair) for pair in zip(first, last, strict=True)])
+    dynamics.begin(np.zeros(6))
+    assert dynamics.advance(0.05) is Ended.REACHED
+    kinetic, _, elastic = dynamics.energies
+    assert kinetic > 1.0
+    assert dynamics.work_given[0] == pytest.approx(kinetic + elastic + dynamics.work[4], rel=2e-3)
+    assert dynamics.advance(0.1) is Ended.REACHED
+    assert centre_of_mass(dynamics) == pytest.approx(before, abs=2e-4)  # a bent ski's own is not counted
+    assert dynamics.position[2] - start[2] < -0.004
+
+
+def test_angles_of_a_boot() -> None:
+    """Left edge down, tip up, to the left."""
+    ahead_, left, off = axes_of(0.3, 0.2, 0.1)
+    assert left[2] < 0.0 < ahead_[2]
+    assert ahead_[1] > 0.0
+    assert np.cross(ahead_, left) == pytest.approx(off)
+    assert angles_of(axes_of(0.3, 0.2, 0.1)) == pytest.approx([0.3, 0.2, 0.1])
+
+
+def test_a_boot_meets_both_ends_of_its_motion_with_their_rates() -> None:
+    """The body held: what the core makes of the cubics, by differences in time."""
+    first = BootPose(np.array([0.1, 0.2, 1.0]), axes_of(0.1, 0.2, 0.3), np.array([1.0, 2.0, 3.0]),
+                     np.array([0.5, -1.0, 2.0]))  # fmt: skip
+    last = BootPose(np.array([0.2, 0.3, 1.2]), axes_of(0.3, 0.1, 0.5), np.array([0.0, 1.0, -1.0]),
+                    np.array([-2.0, 0.3, 0.1]))  # fmt: skip
+    dynamics = sledge(SCENARIO, fixed(1e-3), body=weightless(body_of(SCENARIO, 8)), height=1.0, elements=8)
+    dynamics.hold_body()
+    dynamics.move_boots([BootMotion(0.0, 0.1, first, last)] * 2)
+    dynamics.begin(np.zeros(6))
+    for until, pose in ((0.0, first), (0.1, last)):
+        dynamics.advance(until)
+        boot = dynamics.boots[0]
+        for place, known in enumerate((pose.place, *pose.axes, pose.velocity, pose.turning)):
+            assert boot[place] == pytest.approx(known, abs=1e-12)
+        assert dynamics.velocity == pytest.approx(0.0, abs=0.0)
+    assert dynamics.advance(0.1 + 1e-5) is Ended.REACHED
+    after = dynamics.boots[0]
+    assert after[1:4] - last.axes == pytest.approx(np.cross(last.turning, last.axes) * 1e-5, abs=1e-8)
+
+
+@pytest.mark.parametrize("asides", [(0.0,), (0.3, 0.0, -0.3)])
+def test_any_number_of_skis(asides: tuple[float, ...]) -> None:
+    """A sledge on one ski that is held upright by nothing but its flat base, and on three."""
+    scenario = given(sledge__edge_angle_deg=0.0, sledge__centre_of_mass_height_m=0.05, start__heading_deg=0.0)
+    ski = clamped_ski(scenario, 40)
+    body = sledge_body(
+        scenario.sledge, ski, damping_ratio=0.02, gravity=gravity(scenario), drag=0.0, drag_height=0.0, asides=asides
+    )
+    runner = Runner.of(scenario.ski, nodes=ski.node)
+    contact = SnowContact(snow_of(scenario), [runner] * len(asides))
+    dynamics = Dynamics(body, contact, *placed(scenario, height=0.0), StepControl())
+    dynamics.move_boots([BootMotion(0.0, 1.0, *[BootPose.of([0.0, side, 0.0], 0.0)] * 2) for side in asides])
+    assert dynamics.find_equilibrium() < 1e-9
+    dynamics.begin(ahead(5.0))
+    assert dynamics.advance(0.1) is Ended.REACHED
+    assert dynamics.boot_wrench.shape == (len(asides), 6)
+    assert dynamics.boot_wrench[:, 2].sum() == pytest.approx(-scenario.sledge.mass * body.gravity[2], rel=0.05)
+
+
+def test_a_push_gives_momentum() -> None:
+    """F t / m along the push at the centre of mass in the air, and its work is the kinetic energy."""
+    body = weightless(body_of(SCENARIO, 8))
+    dynamics = sledge(SCENARIO, fixed(1e-3), body=body, height=1.0, elements=8)
+    dynamics.push([50.0, 0.0, 0.0], body.first_moment / body.mass)
+    dynamics.begin(np.zeros(6))
+    dynamics.advance(0.2)
+    velocity = dynamics.rotation @ dynamics.velocity[:3]
+    assert velocity[0] == pytest.approx(50.0 * 0.2 / body.mass, rel=3e-3)
+    assert dynamics.work_given[1] == pytest.approx(dynamics.energies[0], rel=5e-3)
+
+
+def test_what_cannot_move_is_refused() -> None:
+    body = body_of(SCENARIO, 8)
+    plain = replace(body, skis=tuple(replace(ski, inertia=None) for ski in body.skis))
+    dynamics = sledge(SCENARIO, body=plain, elements=8)
+    assert np.isnan(dynamics.boot_wrench).all()
+    with pytest.raises(ParameterError, match="inertia; one has none"):
+        dynamics.move_boots(stays())
+    with pytest.raises(ParameterError, match="1 motions of boots for 2 skis"):
+        sledge(SCENARIO, body=body, elements=8).move_boots(stays()[:1])
+    pose = stays()[0].first
+    with pytest.raises(ParameterError, match="not later"):
+        BootMotion(1.0, 1.0, pose, pose)
+    with pytest.raises(ParameterError, match="turns by 90 degrees"):
+        BootMotion(0.0, 1.0, pose, BootPose.of(pose.place, SLEDGE.edge_angle, 0.0, np.pi / 2.0))
+    with pytest.raises(ParameterError, match="orthonormal"):
+        BootPose(np.zeros(3), np.eye(3) * 1.1)
