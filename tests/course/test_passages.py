@@ -180,8 +180,11 @@ def test_feet_and_tips_on_both_sides_of_a_pole_straddle_it(
 
 def test_a_vertical_gate_has_its_own_direction() -> None:
     """Both poles down the fall line: it is passed from left to right, below its upper pole."""
-    gate = ((20.0, 0.0), "left", (25.0, 0.0))
-    vertical = course(((10.0, -3.0), "left", (10.0, -8.0 + 10.0)), gate, ((30.0, 3.0), "right", (30.0, -2.0)))
+    vertical = course(
+        ((10.0, -3.0), "left", (10.0, 2.0)),
+        ((20.0, 0.0), "left", (25.0, 0.0)),
+        ((30.0, 3.0), "right", (30.0, -2.0)),
+    )
     line = vertical.lines[1]
     np.testing.assert_allclose(line.across, [1.0, 0.0])
     np.testing.assert_allclose(line.along, [0.0, -1.0])  # with x ahead, left is y: what has x to its left goes to -y
@@ -189,4 +192,5 @@ def test_a_vertical_gate_has_its_own_direction() -> None:
     track = MovingPoint(time, np.column_stack([5.0 + 6.0 * time, 2.0 - time]))
     found = passages(vertical, track, {}).passages[1]
     # y = 2 - t is 0 after 2 s, at x = 17: before the gate, whose poles stand at 20 and 25
-    assert (found.outcome, found.time) == ("missed", pytest.approx(2.0, abs=1e-12))
+    assert found.outcome == "missed"
+    assert found.time == pytest.approx(2.0, abs=1e-12)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .built_in import course_names
 from .course import Course, Discipline
 from .course_file import on_slope, read_course
 from .crossings import MovingPoint
@@ -16,6 +17,7 @@ __all__ = [
     "Gate",
     "MovingPoint",
     "Passage",
+    "course_names",
     "course_warnings",
     "on_slope",
     "passages",

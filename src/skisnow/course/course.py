@@ -11,6 +11,7 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..inputs import Quantity, Word, require_declared
 from ..shown import Facts, Shown, amount
+from .built_in import file_of_course, name_in_catalogue
 from .gate import Gate
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -66,11 +67,12 @@ class Course(Shown):
     gates: tuple[Gate, ...]
     source: Annotated[
         str,
+        Word("course.name", "a course of the catalogue", word_of=name_in_catalogue),
         Word(
             "course.file",
             "gates: CSV with gate, x_m, y_m, side and, where it is known, outer_x_m, outer_y_m; or GPX with a waypoint "
             "for each",
-            word_of=str,
+            word_of=file_of_course,
             names_file=True,
         ),
     ] = "given as numbers"

@@ -14,6 +14,7 @@ from ..errors import ParameterError
 from ..track.projection import GeodeticPoint, east_north_up
 from ..track.slope_frame import slope_axes
 from ..units import DEGREE
+from .built_in import course_names, course_place
 from .course import Course, Discipline
 from .gate import Gate, Side
 from .gpx_course import Waypoint, read_waypoints
@@ -43,7 +44,7 @@ def read_course(
     Parameters
     ----------
     path
-        CSV with the columns ``gate``, ``x_m``, ``y_m``, ``side``, and where the outer poles are known ``outer_x_m``,
+        A name of `course_names`; or the path of a CSV with the columns ``gate``, ``x_m``, ``y_m``, ``side``, and where the outer poles are known ``outer_x_m``,
         ``outer_y_m``; or GPX with one waypoint for each gate, in their order, whose type, symbol, comment,
         description or name says left or right.
     discipline
@@ -71,9 +72,10 @@ def read_course(
     ----------
     The page docs/files/course.md.
     """
-    path = Path(path)
+    name = str(path)
+    path = course_place(name) if name in course_names() else Path(path)
     said: dict[str, Any] = {
-        "source": str(path), "discipline": discipline, "fall_line_azimuth_deg": fall_line_azimuth_deg,
+        "source": name, "discipline": discipline, "fall_line_azimuth_deg": fall_line_azimuth_deg,
     }  # fmt: skip
     if (latitude_deg is None) != (longitude_deg is None):
         raise ParameterError(f"{path}: latitude and longitude of the origin go together; give both, or neither")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -59,7 +59,8 @@ class MovingPoint:
         self.time, self.place = np.asarray(time, float), np.asarray(place, float)
         if len(self.time) < 2 or not np.all(np.diff(self.time) > 0.0):
             raise ParameterError("gates need two places or more at rising times; this track has fewer")
-        known = np.gradient(self.place, self.time, axis=0, edge_order=min(2, len(self.time) - 1))
+        order: Literal[1, 2] = 2 if len(self.time) > 2 else 1
+        known = np.gradient(self.place, self.time, axis=0, edge_order=order)
         self.velocity = known if velocity is None else np.where(np.isfinite(velocity), velocity, known)
 
     def crossings(self, origin: FloatArray, along: FloatArray, across: FloatArray) -> list[Crossing]:

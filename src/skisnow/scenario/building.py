@@ -53,8 +53,9 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
     course = _course(given, slope)
     told = () if course is None else course.warnings
-    parts = {"slope": slope, "contact": contact, "ski": ski, "course": course, "boots": _boots(given, values)}
-    return made(Scenario, values, **parts), (*warned, *told)
+    boots = _boots(given, values)
+    scenario = made(Scenario, values, slope=slope, contact=contact, ski=ski, course=course, boots=boots)
+    return scenario, (*warned, *told)
 
 
 def _boots(given: GivenScenario, values: Mapping[str, Any]) -> Boots | None:
@@ -95,10 +96,14 @@ def _slope(given: GivenScenario, values: Mapping[str, Any]) -> Slope:
 
 
 def _course(given: GivenScenario, slope: Slope) -> Course | None:
-    said = {name.partition(".")[2]: value for name, value in given.values.items() if name.startswith("course.")}
+    said: dict[str, Any] = {
+        name.partition(".")[2]: value for name, value in given.values.items() if name.startswith("course.")
+    }
     if "file" not in said:
         if said:
-            raise ParameterError(f"course.{next(iter(said))} is given without a course; give course.file, or leave it out")
+            raise ParameterError(
+                f"course.{next(iter(said))} is given without a course; give course.file, or leave it out"
+            )
         return None
     del said["file"]
     course = read_course(given.path("course.file"), **said)

@@ -12,7 +12,7 @@ from ..given import MOST_TOML_BYTES, GivenError, is_file, plain_text, toml_value
 from ..inputs import InputValue, Word, meant, nearest
 from ..shown import ShownFields
 from ..spreadsheet_text import is_number
-from .built_in import scenario_names, scenario_place, scenario_text
+from .built_in import scenario_names, scenario_text
 from .identify_section import require_known
 from .keys import SCENARIO_KEYS, SECTIONS
 from .replaced import replaced
@@ -134,7 +134,7 @@ def _given(title: str, file: Path | None, text: str) -> GivenScenario:
         values = in_ranges(flat(parsed))
     except ParameterError as error:
         raise ParameterError(f"{title}: {error}") from error
-    folder = scenario_place(title).parent if file is None else file.parent
+    folder = file.parent if file is not None else Path()
     return GivenScenario(title, file, values, dict.fromkeys(PATH_KEYS, folder), identify)
 
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..course.gates_table import gates_dict, time_warnings
+from ..course.gates_table import gates_dict
 from ..json_number import json_number
 from ..scenario.values import in_sections, scenario_values
 from ..snow.snow_dict import snow_dict

@@ -51,8 +51,8 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
     "Take harder snow, less mass or a wider ski.",
     "missed_gate": "Change line or start, or the course; gates.csv says of each gate what became of it.",
-    "straddled": "By the rules that is no passage. Change line or start, or the course; gates.csv says of each gate what "
-    "became of it.",
+    "straddled": "By the rules that is no passage. Change line or start, or the course; gates.csv says of each gate "
+    "what became of it.",
     "energy_open": "The energy residual is more than a tenth of the energy exchanged: these numbers are not "
     "those of a sledge on snow. Take smaller steps, or the error control (solver.fixed false); on "
     "very hard snow, or at more than 50° of edge angle, a smaller tolerance.",
