@@ -57,12 +57,17 @@ def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Pictu
     )
 
 
+def tables_html(tables: Mapping[str, Table]) -> dict[str, Markup]:
+    """Tables by name as HTML, numbered as in the report."""
+    in_html = [table for table in tables.values() if table.rows_in_html]
+    return {table.name: table_html(table, number=i) for i, table in enumerate(in_html, start=1)}
+
+
 class _Tables:
-    """Tables by name as HTML, numbered as they stand; nothing for one without rows."""
+    """Tables by name as HTML; nothing for one without rows."""
 
     def __init__(self, tables: Mapping[str, Table]) -> None:
-        in_html = [table for table in tables.values() if table.rows_in_html]
-        self._html = {table.name: table_html(table, number=i) for i, table in enumerate(in_html, start=1)}
+        self._html = tables_html(tables)
 
     def __getitem__(self, name: str) -> Markup:
         return self._html.get(name, Markup(""))
@@ -88,6 +93,7 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "has_unloading": bool(data.unloaded),
         "has_displacement": bool(results["shear"]["displacement"]),
         "selected": results["penetration"]["selected"],
+        "not_selected": next(iter(results["penetration"]["warnings"]), ""),
         "sections": [(name, SECTIONS[name]) for name in ids],
         "titles": SECTIONS,
         "numbers": {name: number for number, name in enumerate(ids, start=1)},

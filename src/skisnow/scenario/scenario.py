@@ -83,6 +83,7 @@ class Scenario(Shown):
         Word(
             "slope.kind",
             "a plane, a measured profile of heights, or a grid of them",
+            label="shape of the slope",
             choices=("plane", "profile", "grid"),
             default="plane",
             origin="choice: the simpler one",
@@ -94,14 +95,21 @@ class Scenario(Shown):
     sledge: RigidSledge
     ski: Annotated[
         Ski,
-        Word("ski.name", "a ski of the catalogue", word_of=_ski_name),
-        Word("ski.file", "the path of a ski file, in place of a name", word_of=_ski_file, names_file=True),
+        Word("ski.name", "a ski of the catalogue", label="ski", word_of=_ski_name),
+        Word(
+            "ski.file",
+            "the path of a ski file, in place of a name",
+            label="file of the ski",
+            word_of=_ski_file,
+            names_file=True,
+        ),
     ]
     stiffness_factor: Annotated[
         float,
         Quantity(
             "ski.stiffness_factor",
             "what the ski's EI and GJ are multiplied with",
+            label="stiffness factor",
             lowest=0.01,
             highest=100.0,
             origin="the ski as it is given",
@@ -113,6 +121,7 @@ class Scenario(Shown):
         Quantity(
             "ski.clamp_length_m",
             "length of ski that boot and binding keep straight",
+            label="clamp length",
             lowest=0.0,
             origin="choice: about a boot's sole",
         ),
@@ -122,6 +131,7 @@ class Scenario(Shown):
         Quantity(
             "ski.footprint_stiffness_N_per_mm2",
             "stiffness of boot and binding under each metre of the clamp length, against bending; left out: rigid",
+            label="footprint stiffness",
             lowest=0.0,
             highest=1e4,
             above=True,
@@ -132,6 +142,7 @@ class Scenario(Shown):
         Quantity(
             "ski.damping_ratio",
             "damping ratio of the ski's first bending mode",
+            label="damping ratio of the ski",
             lowest=0.0,
             highest=1.0,
             origin="choice: a lightly damped beam",
@@ -156,6 +167,8 @@ class Scenario(Shown):
         Quantity(
             "slope.gravity_m_per_s2",
             "acceleration of gravity",
+            label="gravity",
+            symbol="g",
             lowest=0.0,
             highest=100.0,
             above=True,

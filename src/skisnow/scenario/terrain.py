@@ -93,6 +93,7 @@ class Terrain(Shown):
         Quantity(
             "slope.origin_x_m",
             "x of the grid's file (east of a map) where the scenario's x is 0; only with kind = \"grid\"",
+            label="x of the grid at the origin",
             origin="choice: the file's own",
         ),
     ] = field(default=0.0, kw_only=True)
@@ -101,6 +102,7 @@ class Terrain(Shown):
         Quantity(
             "slope.origin_y_m",
             "y of the grid's file (north of a map) where the scenario's y is 0; only with kind = \"grid\"",
+            label="y of the grid at the origin",
             origin="choice: the file's own",
         ),
     ] = field(default=0.0, kw_only=True)

@@ -22,7 +22,7 @@ LISTED: Final = 12
 
 def key_results(data: ReportData) -> list[Markup]:
     """One sentence for each result that the campaign has."""
-    found = [_hardness(data), _unloading(data), _stress(data), _displacement(data), _law(data), _relations(data)]
+    found = [_hardness(data), _stress(data), _unloading(data), _displacement(data), _law(data), _relations(data)]
     return [sentence for sentence in found if sentence is not None]
 
 
