@@ -24,7 +24,7 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     how it is computed.
 ``Boots``, ``BootPose``, ``BootMoment``
     Boots that move: a table over time or distance; what a function that moves them knows, and gives.
-``read_course``, ``Course``, ``Gate``, ``time_gates``, ``CourseResult``
+``read_course``, ``course_names``, ``Course``, ``Gate``, ``time_gates``, ``CourseResult``
     Gates from a file, and who passed them when: a run or a measured track.
 ``simulate``, ``Run``, ``verify``, ``Refinement``
     A sledge on two flexible skis: the run that comes out of a scenario, and how exact it is.
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from .carve.equilibrium import carve
     from .chain.chaining import chain
     from .contact import ContactForces, Runner, SnowContact, SnowField
-    from .course import Course, CourseResult, Gate, read_course
+    from .course import Course, CourseResult, Gate, course_names, read_course
     from .dynamics import BootPose
     from .estimate import Analysis, analyse, results_dict
     from .field import Campaign, check_campaign, read_campaign, write_reference
@@ -140,6 +140,7 @@ __all__ = [
     "chain",
     "check_campaign",
     "compare_tracks",
+    "course_names",
     "identify",
     "in_slope_frame",
     "published_names",
@@ -169,7 +170,7 @@ __all__ = [
 _PACKAGES = {
     "carve": ("Equilibrium", "rest"),
     "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
-    "course": ("Course", "CourseResult", "Gate", "read_course"),
+    "course": ("Course", "CourseResult", "Gate", "course_names", "read_course"),
     "dynamics": ("BootPose",),
     "estimate": ("Analysis", "analyse", "results_dict"),
     "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),

@@ -20,11 +20,10 @@ def track_point(track: Track, course: Course) -> MovingPoint:
     """
     degrees = track.axes == "east_north_up"
     if degrees != (course.axes == "east_north_up"):
-        other = "in metres" if degrees else "in degrees"
         own, other = ("degrees", "metres") if degrees else ("metres", "degrees")
         raise ParameterError(
-            f"the track {track.name} is in {own}, the course {course.source} in {other}. Give the course as the track is: "
-            "GPX with waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
+            f"the track {track.name} is in {own}, the course {course.source} in {other}. Give the course as the track "
+            "is: GPX with waypoints, or CSV with x_m and y_m; or turn the track into the slope's frame first"
         )
     good = track.usable & np.isfinite(track.place[:, :2]).all(axis=1)
     time, place = track.time[good], track.place[good, :2]

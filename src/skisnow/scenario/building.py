@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ..course import Course, on_slope, read_course
+from ..course import Course, course_names, on_slope, read_course
 from ..errors import ParameterError
 from ..inputs import made, meant
 from ..ski import Ski, ski_names
@@ -99,14 +99,19 @@ def _course(given: GivenScenario, slope: Slope) -> Course | None:
     said: dict[str, Any] = {
         name.partition(".")[2]: value for name, value in given.values.items() if name.startswith("course.")
     }
-    if "file" not in said:
+    name, file = said.pop("name", None), said.pop("file", None)
+    if name is not None and file is not None:
+        raise ParameterError("a course has either course.name, of the catalogue, or course.file; both are there")
+    if name is None and file is None:
         if said:
             raise ParameterError(
-                f"course.{next(iter(said))} is given without a course; give course.file, or leave it out"
+                f"course.{next(iter(said))} is there without a course; give course.file, or leave it out"
             )
         return None
-    del said["file"]
-    course = read_course(given.path("course.file"), **said)
+    if name is not None and name not in course_names():
+        known = f"{meant(str(name), course_names())}There are {', '.join(course_names())}"
+        raise ParameterError(f"course.name is {name!r}, no course of the catalogue. {known}. A path is course.file")
+    course = read_course(name or given.path("course.file"), **said)
     return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
 
 
