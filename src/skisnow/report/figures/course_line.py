@@ -111,7 +111,7 @@ def _frame(axes: Axes, points: FloatArray, words: str) -> None:
 def _handles(result: CourseResult) -> list[Line2D]:
     style = {"linestyle": "none", "marker": "o"}
     handles = [Line2D([], [], color=c, markersize=4.2, label=w, **style)  # type: ignore[arg-type]
-               for c, w in ((VERMILLION, "turning poles,"), (BLUE, "one gate and the next"))]  # fmt: skip
+               for c, w in ((VERMILLION, "turning pole of gate 1, 3, 5 …"), (BLUE, "of gate 2, 4, 6 …"))]  # fmt: skip
     if any(gate.outer is not None for gate in result.course.gates):
         handles.append(Line2D([], [], color=GREY, markerfacecolor="none", markersize=3.0, label="outer pole", **style))  # type: ignore[arg-type]
     if result.fault is not None:
