@@ -32,8 +32,10 @@ if TYPE_CHECKING:
     from .figures.drawing import Picture
 
 Json = dict[str, Any]
-FIGURES: Final = ("track", "course", "motion", "along_ski", "grip", "energies")
+FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
+OF_COURSE: Final = "course"
+"""The one that a run with a course has beside them."""
 
 
 def write_run_report(
@@ -67,7 +69,7 @@ def write_run_report(
     report = progress or _silent
     report("run.nc")
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
-    pictures = write_pictures(run_drawings(run), folder / "figures", every=FIGURES, progress=report)
+    pictures = write_pictures(run_drawings(run), folder / "figures", every=(*FIGURES, OF_COURSE), progress=report)
     report("report.html")
     write_file(folder / "report.html", run_page(run, summary, pictures))
     return folder / "report.html"

@@ -23,8 +23,10 @@ if TYPE_CHECKING:
     from ..course import CourseResult
     from ..track.summary import TrackSummary
 
-FIGURES: Final = ("map", "along", "course")
+FIGURES: Final = ("map", "along")
 """Names of a track's figures, in figures/ as .png and .svg."""
+OF_COURSE: Final = "course"
+"""The one that is there beside them where gates were given."""
 
 
 def write_track_report(
@@ -66,10 +68,10 @@ def write_track_report(
         summary_dict(summary) if values is None else values, ensure_ascii=False, allow_nan=False, indent=1
     )
     with staged(folder, last="track.json") as stage:
-        stage.stale += [*picture_files(FIGURES), "gates.csv"]
+        stage.stale += [*picture_files((*FIGURES, OF_COURSE)), "gates.csv"]
         if gates is not None:
             write_file(stage.path / "gates.csv", gates_csv(gates))
-        write_pictures(track_drawings(summary, gates), stage.path / "figures", every=FIGURES, progress=progress)
+        write_pictures(track_drawings(summary, gates), stage.path / "figures", every=(*FIGURES, OF_COURSE), progress=progress)
         write_file(stage.path / "track.json", f"{text}\n")
     return folder / "track.json"
 
