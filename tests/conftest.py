@@ -8,7 +8,6 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import count
-from typing import Literal
 from unittest.mock import patch
 
 import pytest
@@ -55,13 +54,23 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @contextmanager
 def without_png() -> Iterator[None]:
-    """It takes half of a figure's time: for tests of what the SVG and the words say."""
+    """It and PDF, EPS and the telephone's SVG take most of a figure's time: for tests of what SVG and words say."""
+    with only_drawn("svg"):
+        yield
+
+
+@contextmanager
+def only_drawn(*forms: figure_drawing.Form) -> Iterator[None]:
+    """Pictures in these forms; the others are empty files."""
     drawn_as = figure_drawing._drawn_as
 
-    def drawn(form: Literal["png", "svg"], drawing: Drawing) -> bytes:
-        return drawn_as(form, drawing) if form == "svg" else b""
+    def drawn(form: figure_drawing.Form, drawing: Drawing) -> bytes:
+        return drawn_as(form, drawing) if form in forms else b""
 
-    with patch.object(figure_drawing, "_drawn_as", drawn):
+    def no_narrow_svg(_: Drawing) -> str:
+        return ""
+
+    with patch.multiple(figure_drawing, _drawn_as=drawn, _narrow_svg=no_narrow_svg):
         yield
 
 
