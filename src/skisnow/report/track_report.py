@@ -71,7 +71,8 @@ def write_track_report(
         stage.stale += [*picture_files((*FIGURES, OF_COURSE)), "gates.csv"]
         if gates is not None:
             write_file(stage.path / "gates.csv", gates_csv(gates))
-        write_pictures(track_drawings(summary, gates), stage.path / "figures", every=(*FIGURES, OF_COURSE), progress=progress)
+        drawings, every = track_drawings(summary, gates), (*FIGURES, OF_COURSE)
+        write_pictures(drawings, stage.path / "figures", every=every, progress=progress)
         write_file(stage.path / "track.json", f"{text}\n")
     return folder / "track.json"
 
