@@ -21,6 +21,10 @@ def course_names() -> tuple[str, ...]:
     --------
     skisnow.read_course
 
+    References
+    ----------
+    The page docs/files/course.md.
+
     Examples
     --------
     >>> course_names()
