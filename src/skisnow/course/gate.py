@@ -32,6 +32,11 @@ class Gate(ShownFields):
     ------
     ParameterError
         A place is not finite, both poles stand at one place, or the side is no side.
+
+    See Also
+    --------
+    skisnow.Course
+    skisnow.read_course
     """
 
     name: str
