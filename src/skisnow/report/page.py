@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from .dates import days_words, moment_words
 from .number_formatting import counted, significant, whole
 from .sentences.caveats import caveats
-from .sentences.key_results import key_results
+from .sentences.key_results import headline, key_results
 from .sentences.penetration import procedures_compared, readings_used, seating_found, unloading_found
 from .sentences.regressions import regression_sentences
 from .table_html import table_html
@@ -87,7 +88,9 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "shapes": {type(tool).__name__ for tool in data.campaign.tools.values()},
         "stated": _stated(results["campaign"]),
         "synthetic": data.synthetic,
-        "dates": data.dates,
+        "dates": None if data.dates is None else days_words(*data.dates),
+        "analysed": moment_words(results["provenance"]["time"]),
+        "headline": headline(data),
         "counts": _counts(data),
         "has_penetration": has_penetration,
         "has_unloading": bool(data.unloaded),
