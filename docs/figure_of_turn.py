@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from fewer_colours import write_fewer_colours
 from matplotlib.lines import Line2D
-from PIL import Image
 
 from skisnow import scenario, simulate
 from skisnow.report.figures.figure_file import write_figure
@@ -65,14 +65,12 @@ def _draw_depth(figure: Figure, axes: Axes, run: Run) -> None:
 
 
 def main() -> None:
-    """Simulate and draw, with 128 colours: a third of the bytes."""
+    """Simulate and draw."""
     run, elastic = (
         simulate(scenario(SCENARIO, changes={"snow.penetration": kind})) for kind in ("hypoplastic", "elastic")
     )
     write_figure(PICTURE, lambda: turn(run, elastic))
-    with Image.open(PICTURE) as picture:
-        fewer = picture.convert("RGB").quantize(128, dither=Image.Dither.NONE)
-    fewer.save(PICTURE, optimize=True)
+    write_fewer_colours(PICTURE, colours=128)
 
 
 if __name__ == "__main__":

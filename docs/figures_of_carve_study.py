@@ -9,7 +9,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from PIL import Image
+from fewer_colours import write_fewer_colours
 
 from skisnow.carve.answer import answered
 from skisnow.carve.answer_dict import answers_dict
@@ -22,7 +22,6 @@ from skisnow.study import read_study, run_study
 
 DOCS = Path(__file__).resolve().parent
 GALLERY = DOCS / "_static" / "gallery"
-COLOURS = 128
 
 
 def main() -> None:
@@ -36,10 +35,7 @@ def main() -> None:
     found = answers_dict([answered(carve_question(asked | {"ski": ski})) for ski in ("slalom", "giant-slalom")])
     write_figure(GALLERY / "two-skis.png", lambda: carved_skis(found))
     for name in ("carve-study-radius", "carve-study-grip", "two-skis"):
-        path = GALLERY / f"{name}.png"
-        with Image.open(path) as picture:
-            fewer = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-        fewer.save(path, optimize=True)
+        write_fewer_colours(GALLERY / f"{name}.png", colours=128)
 
 
 if __name__ == "__main__":

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+from fewer_colours import write_fewer_colours
 from matplotlib.lines import Line2D
-from PIL import Image
 
 from skisnow import scenario, simulate
 from skisnow.report.figures.figure_file import write_figure
@@ -222,12 +222,9 @@ def _handles() -> list[Line2D]:
 
 
 def _draw(name: str, draw: Any) -> None:
-    """Write a PNG with 128 colours: a third of the bytes, and nobody sees it in a drawing of lines."""
     path = GALLERY / f"{name}.png"
     write_figure(path, draw)
-    with Image.open(path) as picture:
-        fewer = picture.convert("RGB").quantize(128, dither=Image.Dither.NONE)
-    fewer.save(path, optimize=True)
+    write_fewer_colours(path, colours=128)
 
 
 def main() -> None:

@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from benchmarks.contrast.found import Found, demand_and_strength, found, read_rows
 from benchmarks.contrast.pairs import PARTED, SCENARIOS, turn
 from benchmarks.contrast.unknowns import design
+from fewer_colours import write_fewer_colours
 
 from skisnow import simulate
 from skisnow.report.figures.figure_file import write_figure
@@ -147,8 +148,10 @@ def main() -> None:
     pairs = found(read_rows(PAIRS))
     if "--fold" in sys.argv[1:]:
         compute_fold()
-    write_figure(DOCS / "_static" / "gallery" / "turn-contrast-map.png", lambda: the_map(pairs))
-    write_figure(DOCS / "_static" / "gallery" / "turn-contrast-fold.png", the_fold)
+    for name, draw in (("map", lambda: the_map(pairs)), ("fold", the_fold)):
+        path = DOCS / "_static" / "gallery" / f"turn-contrast-{name}.png"
+        write_figure(path, draw)
+        write_fewer_colours(path)
 
 
 if __name__ == "__main__":

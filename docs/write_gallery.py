@@ -23,7 +23,7 @@ import matplotlib
 
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
-from PIL import Image
+from fewer_colours import write_fewer_colours
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -56,8 +56,6 @@ STYLE: Final[dict[str, Any]] = {
     "axes.prop_cycle": matplotlib.cycler(color=["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"]),
     "legend.frameon": False,
 }
-COLOURS: Final = 64
-"""Of a picture's file: a third of the bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,9 +171,7 @@ def _differs(path: Path, text: str, *, check: bool) -> bool:
 
 
 def _draw(name: str, picture: bytes) -> None:
-    with Image.open(io.BytesIO(picture)) as drawn:
-        fewer = drawn.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-    fewer.save(PICTURES / f"{name}.png", optimize=True)
+    write_fewer_colours(PICTURES / f"{name}.png", io.BytesIO(picture))
 
 
 def main() -> int:

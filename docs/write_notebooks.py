@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING, Any, Final
 import matplotlib
 
 matplotlib.use("agg")
+from fewer_colours import write_fewer_colours
 from matplotlib.figure import Figure
-from PIL import Image
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -104,9 +104,7 @@ def _draw(name: str, cells: list[Cell]) -> None:
     for number, figure in enumerate((each for cell in cells for each in cell.pictures), start=1):
         drawn = io.BytesIO()
         figure.savefig(drawn, dpi=130)
-        with Image.open(drawn) as picture:
-            fewer = picture.convert("RGB").quantize(64, dither=Image.Dither.NONE)
-        fewer.save(PICTURES / f"{name}-{number}.png", optimize=True)
+        write_fewer_colours(PICTURES / f"{name}-{number}.png", drawn)
 
 
 def names_of_all() -> Iterator[str]:

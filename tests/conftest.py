@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import count
-from typing import Literal
 from unittest.mock import patch
 
 import pytest
@@ -19,6 +19,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from skisnow.report.figures import drawing as figure_drawing
 from skisnow.report.figures.drawing import Drawing, Picture
 
+# what is collected stays until the end: looking for garbage among it takes four tenths of the collection
+gc.disable()
+
 # what is started in the background is told to ignore Ctrl-C, which tests of an interrupt would wait for
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -28,6 +31,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "chromium" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.browser)
+
+
+def pytest_collection_finish() -> None:
+    """Look for garbage again, in what comes from now on."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture
@@ -45,13 +54,23 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @contextmanager
 def without_png() -> Iterator[None]:
-    """It takes half of a figure's time: for tests of what the SVG and the words say."""
+    """It and PDF, EPS and the telephone's SVG take most of a figure's time: for tests of what SVG and words say."""
+    with only_drawn("svg"):
+        yield
+
+
+@contextmanager
+def only_drawn(*forms: figure_drawing.Form) -> Iterator[None]:
+    """Pictures in these forms; the others are empty files."""
     drawn_as = figure_drawing._drawn_as
 
-    def drawn(form: Literal["png", "svg"], drawing: Drawing) -> bytes:
-        return drawn_as(form, drawing) if form == "svg" else b""
+    def drawn(form: figure_drawing.Form, drawing: Drawing) -> bytes:
+        return drawn_as(form, drawing) if form in forms else b""
 
-    with patch.object(figure_drawing, "_drawn_as", drawn):
+    def no_narrow_svg(_: Drawing) -> str:
+        return ""
+
+    with patch.multiple(figure_drawing, _drawn_as=drawn, _narrow_svg=no_narrow_svg):
         yield
 
 

@@ -44,7 +44,9 @@ class Written:
         sys.addaudithook(self._hear)  # stays until Python ends
 
     def _hear(self, event: str, args: tuple[Any, ...]) -> None:
-        if self.listens and event == "open" and isinstance(args[1], str) and set(args[1]) & set("wax+"):
+        if not self.listens or event != "open" or isinstance(args[0], int):
+            return  # a number is a pipe, to a process of the test runner's say; a file had its name when it was opened
+        if isinstance(args[1], str) and set(args[1]) & set("wax+"):
             self.files += (args[0],)
 
 
@@ -181,7 +183,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_report_of_a_run_is_the_folder_of_the_command(folder: Path) -> None:
     names = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
     drawn = ("track", "motion", "along_ski", "grip", "energies")
-    figures = {f"figures/{name}.{form}" for name in drawn for form in ("png", "svg")}
+    figures = {f"figures/{name}.{form}" for name in drawn for form in ("png", "svg", "pdf", "eps")}
     assert names == {"summary.json", "track.csv", "run.nc", "report.html", *figures}
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert summary["outcome"] == "finished"

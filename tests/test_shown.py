@@ -31,8 +31,8 @@ def identified() -> skisnow.Identification:
 def equilibrium() -> skisnow.Equilibrium:
     along = np.linspace(0.9, -0.9, 161)
     return skisnow.Equilibrium(
-        "equilibrium", "", True, 800.0, 900.0, 12.5, 12.6, 12.7, 1.5, 1.4, 0.9, 0.0, along, 0.002 * along, along, along,
-        along, along, 1e-9, 1e-9, (), 8,
+        "equilibrium", "", True, 800.0, 900.0, 12.5, 12.6, 12.7, 1.5, 1.4, 0.9, 420.0, 380.0, 0.0, along,
+        0.002 * along, along, along, along, along, 1e-9, 1e-9, (), 8,
     )  # fmt: skip
 
 

@@ -5,22 +5,17 @@
 
 #define SKISNOW_LANES alone
 #include "force_kernels.hpp"
+#include "quadrature.hpp"
 
 namespace skisnow {
 
 namespace {
 
-// Gauss's points between -1 and 1, exact for powers up to the fifth.
 constexpr int POINTS = 3;
-constexpr double POINT[POINTS] = {-0.7745966692414834, 0.0, 0.7745966692414834};
-constexpr double WEIGHT[POINTS] = {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
+using Quadrature = Gauss<POINTS>;
 
-double point_of(double from, double to, int which) { return 0.5 * (from + to) + 0.5 * (to - from) * POINT[which]; }
-
-// Where a straight line over x passes zero strictly between two places.
-void add_zero(double at_zero, double slope, double from, double to, Values& out) {
-  const double x = -at_zero / slope;
-  if (x > from + THIN && x < to - THIN) out.push_back(x);
+double point_of(double from, double to, int which) {
+  return 0.5 * (from + to) + 0.5 * (to - from) * Quadrature::POINT[which];
 }
 
 }  // namespace
@@ -28,10 +23,10 @@ void add_zero(double at_zero, double slope, double from, double to, Values& out)
 // A part on which the base and the ground are straight, divided where one of them meets the other or a bend of the law.
 void Bearing::add_straight(const BearingPart& part) {
   cuts_.assign({part.from, part.to});
-  add_zero(part.deepest - part.depth, part.deepening - part.fall, part.from, part.to, cuts_);
+  add_zero(part.deepest - part.depth, part.deepening - part.fall, part.from + THIN, part.to - THIN, cuts_);
   for (const double bend : law_.bends) {
-    add_zero(part.depth - bend, part.fall, part.from, part.to, cuts_);
-    add_zero(part.deepest - bend, part.deepening, part.from, part.to, cuts_);
+    add_zero(part.depth - bend, part.fall, part.from + THIN, part.to - THIN, cuts_);
+    add_zero(part.deepest - bend, part.deepening, part.from + THIN, part.to - THIN, cuts_);
   }
   std::sort(cuts_.begin(), cuts_.end());
   for (std::size_t i = 0; i + 1 < cuts_.size(); i++) {
@@ -109,7 +104,7 @@ void Bearing::add_up() {
   for (const BearingPart& part : parts_) {
     Sums& sums = sums_[std::size_t(part.owner)];
     for (int k = 0; k < POINTS; k++, pressure++, energy++) {
-      const double weight = 0.5 * (part.to - part.from) * WEIGHT[k];
+      const double weight = 0.5 * (part.to - part.from) * Quadrature::WEIGHT[k];
       sums.force += weight * *pressure;
       sums.moment += weight * *pressure * point_of(part.from, part.to, k);
       sums.energy += weight * *energy;
@@ -174,12 +169,12 @@ double Bearing::lost(const Ground& ground) const {
     const double deepening = (ground.depth[j + 1] - ground.depth[j]) / (b - a),
                  at_zero = ground.depth[j] - deepening * a;
     places.assign({a, b});
-    for (const double bend : law_.bends) add_zero(at_zero - bend, deepening, a, b, places);
+    for (const double bend : law_.bends) add_zero(at_zero - bend, deepening, a + THIN, b - THIN, places);
     std::sort(places.begin(), places.end());
     for (std::size_t i = 0; i + 1 < places.size(); i++)
       for (int k = 0; k < POINTS; k++) {
         deepest.push_back(at_zero + deepening * point_of(places[i], places[i + 1], k));
-        weights.push_back(0.5 * (places[i + 1] - places[i]) * WEIGHT[k]);
+        weights.push_back(0.5 * (places[i + 1] - places[i]) * Quadrature::WEIGHT[k]);
       }
   }
   if (deepest.empty()) return 0.0;

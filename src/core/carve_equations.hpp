@@ -1,6 +1,7 @@
 // The equations of a carving ski, linearised: a band for the beam, bordered by the unknowns of boot and links.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -35,6 +36,7 @@ struct CarveEquations {
   int used() const { return CARVE_BORDER + 2 * int(links.size()); }
   // Where a tile begins, and where in it a column: its numbers lie `BAND_TILE` apart.
   std::size_t tile(int number) const { return std::size_t(number) * BAND_TILE * residual.size(); }
+  double deepest() const { return *std::max_element(depth.begin(), depth.end()); }  // of the depths
   double* column(int k) { return columns.data() + tile(k / BAND_TILE) + k % BAND_TILE; }
 };
 

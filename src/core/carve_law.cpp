@@ -3,36 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quadrature.hpp"
+
 namespace skisnow {
 
 namespace {
 
-// Gauss's points between -1 and 1, exact for powers up to the ninth.
 constexpr int POINTS = 5;
-constexpr double POINT[POINTS] = {-0.906179845938664, -0.5384693101056831, 0.0, 0.5384693101056831, 0.906179845938664};
-constexpr double WEIGHT[POINTS] = {0.23692688505618908, 0.47862867049936647, 0.5688888888888889, 0.47862867049936647,
-                                   0.23692688505618908};
+using Quadrature = Gauss<POINTS>;
 constexpr double STEP = 1e-8;        // (m) of differences of the law
 constexpr double ANGLE_STEP = 1e-6;  // (rad)
 constexpr int MOST_GUESSES = 30;
 constexpr double DRY = 1e-9;     // depth at one end of a part, over that at the other, that is the surface
 constexpr double CLOSE = 1e-15;  // (m) to the depth at which a place bears nothing
 
-// Where a straight line passes zero within a length.
-void add_zero(double at_zero, double slope, double length, CarveLaws::Values& out) {
-  const double x = -at_zero / slope;
-  if (x > 0.0 && x < length) out.push_back(x);
-}
-
 }  // namespace
 
 double CarvePressure::Part::point(int which) const {
-  const double share = 0.5 * (1.0 + POINT[which]), length = to - from;
+  const double share = 0.5 * (1.0 + Quadrature::POINT[which]), length = to - from;
   return dry > 0 ? to - length * share * share : from + length * (dry < 0 ? share * share : share);
 }
 
 double CarvePressure::Part::weight(int which) const {
-  return 0.5 * (to - from) * WEIGHT[which] * (dry != 0 ? 1.0 + POINT[which] : 1.0);
+  return 0.5 * (to - from) * Quadrature::WEIGHT[which] * (dry != 0 ? 1.0 + Quadrature::POINT[which] : 1.0);
 }
 
 void CarvePressure::begin(const CarveLaws* laws, double share, double memory, double hardness, double excess) {
@@ -60,11 +53,11 @@ void CarvePressure::add_by_law(const CarveInterval& at, StripSums& sums) {
 void CarvePressure::divide(const CarveInterval& at) {
   const double fall = (at.depth1 - at.depth0) / at.length, deepening = (at.groove1 - at.groove0) / at.length;
   cuts_.assign({0.0, at.length});
-  add_zero(at.depth0, fall, at.length, cuts_);
-  add_zero(at.groove0 - at.depth0, deepening - fall, at.length, cuts_);
+  add_zero(at.depth0, fall, 0.0, at.length, cuts_);
+  add_zero(at.groove0 - at.depth0, deepening - fall, 0.0, at.length, cuts_);
   for (const double bend : laws_->bends) {
-    add_zero(at.depth0 - bend, fall, at.length, cuts_);
-    add_zero(at.groove0 - bend, deepening, at.length, cuts_);
+    add_zero(at.depth0 - bend, fall, 0.0, at.length, cuts_);
+    add_zero(at.groove0 - bend, deepening, 0.0, at.length, cuts_);
   }
   std::sort(cuts_.begin(), cuts_.end());
   const double angle = std::asin(std::min(std::fabs(at.sine), 1.0));

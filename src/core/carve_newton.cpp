@@ -77,7 +77,7 @@ bool CarveNewton::solve(const CarveConditions& conditions, CarveGroove& groove) 
     iterations++;
     const bool balanced = std::fabs(at.border_residual[0]) <= FORCE_TOLERANCE * conditions.load;
     // a fine mesh has its rounding floor above the tolerance: there the corrections no longer fall
-    const double floor = STALL_TOLERANCE * *std::max_element(at.depth.begin(), at.depth.end());
+    const double floor = STALL_TOLERANCE * at.deepest();
     const bool stalled = *following > 0.5 * length && std::max(length, *following) < floor;
     if (damping == 1.0 && ((*following < TOLERANCE && balanced) || stalled)) return true;
   }

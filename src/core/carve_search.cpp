@@ -117,8 +117,18 @@ class Search {
     elastic.excess = elastic.law_share = 0.0;
     virgin.excess = virgin.law_memory = 0.0;
     if (!reaches(elastic)) return false;
-    keep_groove_at_waterline();
+    const std::vector<double> linear = places_across(ski_, conditions_, newton.at.deepest());
     if (!takes_law(virgin)) return false;
+    const CarveState before = newton.state;
+    keep_groove_at_waterline();  // of the law on virgin snow, which does not hang on where the search began
+    if (takes_memory(conditions)) return true;
+    newton.state = before;
+    groove_.edge.place = linear;
+    return takes_memory(conditions);
+  }
+
+  // The law from outside is told of a growing share of the groove, as fast as the logarithm of the unloading ratio.
+  bool takes_memory(const CarveConditions& conditions) {
     const double ratio = conditions.excess / conditions.hardness, goal = std::log1p(ratio);
     return follows([&](double share) {
       CarveConditions out = conditions;
@@ -137,10 +147,7 @@ class Search {
   }
 
   // Of the present state.
-  void keep_groove_at_waterline() {
-    const auto& depth = newton.at.depth;
-    groove_.edge.place = places_across(ski_, conditions_, *std::max_element(depth.begin(), depth.end()));
-  }
+  void keep_groove_at_waterline() { groove_.edge.place = places_across(ski_, conditions_, newton.at.deepest()); }
 
   // To the equilibrium under these conditions; stays where it was if that fails.
   bool reaches(const CarveConditions& conditions) {

@@ -145,18 +145,22 @@ void bind_motion(nb::class_<Dynamics>& bound) {
            [](Dynamics& self, const Array& rate) { std::copy_n(rate.data(), 6, self.state.rate.begin()); })
       .def_prop_ro(
           "position",
-          [](const Dynamics& self) { return array({self.state.position.begin(), self.state.position.end()}, {3}); },
-          nb::rv_policy::move)
+          [](const Dynamics& self) {
+            return array({self.state.position.begin(), self.state.position.end()}, {3});
+          },
+          nb::rv_policy::automatic)
       .def_prop_ro(
           "rotation",
           [](const Dynamics& self) {
             return array({&self.state.rotation[0][0], &self.state.rotation[0][0] + 9}, {3, 3});
           },
-          nb::rv_policy::move)
+          nb::rv_policy::automatic)
       .def_prop_ro(
           "velocity",
-          [](const Dynamics& self) { return array({self.state.rate.begin(), self.state.rate.begin() + BODY}, {BODY}); },
-          nb::rv_policy::move);
+          [](const Dynamics& self) {
+            return array({self.state.rate.begin(), self.state.rate.begin() + BODY}, {BODY});
+          },
+          nb::rv_policy::automatic);
 }
 
 }  // namespace
@@ -171,14 +175,14 @@ void bind_dynamics(nb::module_& m) {
       .def("move_boots", &move_boots)
       .def("hold_body", &Dynamics::hold_body)
       .def("set_push", &set_push)
-      .def_prop_ro("boot_wrench", &boot_wrench, nb::rv_policy::move)
-      .def_prop_ro("boots", &boots, nb::rv_policy::move)
+      .def_prop_ro("boot_wrench", &boot_wrench, nb::rv_policy::automatic)
+      .def_prop_ro("boots", &boots, nb::rv_policy::automatic)
       .def("settle", &Dynamics::settle, nb::call_guard<nb::gil_scoped_release>())
       .def("begin", &Dynamics::begin, nb::call_guard<nb::gil_scoped_release>())
       .def(
           "advance", [](Dynamics& self, double until, long most) { return int(self.advance(until, most)); },
           nb::call_guard<nb::gil_scoped_release>())
-      .def_prop_ro("bend", &bend_of, nb::rv_policy::move)
+      .def_prop_ro("bend", &bend_of, nb::rv_policy::automatic)
       .def("along", &along_of)
       .def_prop_ro("snow_energy", &Dynamics::snow_energy)
       .def_prop_ro("held_energy", &Dynamics::held_energy)

@@ -5,6 +5,7 @@
 
 #define SKISNOW_LANES alone
 #include "force_kernels.hpp"
+#include "quadrature.hpp"
 
 namespace skisnow {
 
@@ -13,9 +14,6 @@ namespace {
 using alone::Acting, alone::Pushed;
 using Section = alone::Cut<double>;
 
-// Gauss's points between -1 and 1, exact for powers up to the fifth.
-constexpr double POINT[3] = {-0.7745966692414834, 0.0, 0.7745966692414834};
-constexpr double WEIGHT[3] = {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
 constexpr double RATE_STEP = 1e-4;  // of differences by rates (m/s, rad/s)
 
 // A quantity that is straight over x, which counts across along the line from the edge (m).
@@ -114,8 +112,8 @@ void add_straight(const PointLaw& law, double from, double to, const Straight& d
   std::sort(cuts, cuts + count);
   for (int i = 0; i + 1 < count; i++)
     for (int k = 0; k < 3; k++) {
-      const double half = 0.5 * (cuts[i + 1] - cuts[i]), x = 0.5 * (cuts[i + 1] + cuts[i]) + POINT[k] * half;
-      const double weight = half * WEIGHT[k];
+      const double half = 0.5 * (cuts[i + 1] - cuts[i]), x = 0.5 * (cuts[i + 1] + cuts[i]) + Gauss<3>::POINT[k] * half;
+      const double weight = half * Gauss<3>::WEIGHT[k];
       const double stress = law.stress(depth(x), deepest(x));
       if (!(stress > 0.0)) continue;
       const double damping = law.damped(stress, rate(x));

@@ -114,6 +114,10 @@ def test_mirror() -> None:
     assert back.turn_radius_boot == pytest.approx(plain.turn_radius_boot, rel=1e-7)
     assert plain.afterbody_depth_ratio is not None
     assert back.afterbody_depth_ratio == pytest.approx(1.0 / plain.afterbody_depth_ratio, rel=1e-6)
+    assert plain.forebody_load is not None and plain.afterbody_load is not None
+    assert back.afterbody_load == pytest.approx(plain.forebody_load, rel=1e-6)
+    assert plain.forebody_load + plain.afterbody_load == pytest.approx(800.0, rel=1e-7)
+    assert plain.forebody_load > plain.afterbody_load  # the moment presses the tip down
 
 
 def test_memory_tells_forwards_from_backwards() -> None:

@@ -112,6 +112,14 @@ def test_a_twisted_ski_slips_on_pressure_alone() -> None:
     assert (stiff.outcome, stiff.holds) == ("equilibrium", True)
 
 
+@pytest.mark.parametrize("share", [0.5, 0.8])
+def test_the_answer_does_not_hang_on_where_the_search_begins(monkeypatch: pytest.MonkeyPatch, share: float) -> None:
+    case: dict[str, Any] = {**CASE, "penetration": Power(3e9, 1.5, unloading_ratio=8.0)}
+    known = carve(read_ski("slalom"), snow(0.2), **case)
+    monkeypatch.setattr("skisnow.carve.laws._LOADED_SHARE", share)
+    alike(carve(read_ski("slalom"), snow(0.2), **case), known, 1e-8)
+
+
 def test_a_hardness_by_the_edge_angle() -> None:
     """Without twist it is one number: (0.99 + 0.14 ϑ) H_V."""
     law = VolumeWithAnglePoint(snow_hardness=0.2e9, unloading_ratio=10.0)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from skisnow.cli import main
+from skisnow.report.figures.drawing import FORMS
 
 from ..identify import straight_tracks
 from ..identify.test_photo_cell_times import AREA, CHANGES, MU, STATION, truth
@@ -63,7 +64,7 @@ def test_a_report_is_written(cells: Path, tmp_path: Path, capsys: Printed) -> No
     lines = (out / "fits.csv").read_text(encoding="utf-8").splitlines()
     assert len(lines) == 1 + len(STATION)
     assert {path.name for path in (out / "figures").iterdir()} == {
-        f"{name}.{kind}" for name in ("residuals_photo_cells", "profiles") for kind in ("png", "svg")
+        f"{name}.{kind}" for name in ("residuals_photo_cells", "profiles") for kind in FORMS
     }
 
 

@@ -7,6 +7,11 @@ import pytest
 from skisnow.cli.progress import Progress
 
 
+@pytest.fixture(autouse=True)
+def patient() -> None:
+    """As its users have it."""
+
+
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     now = [100.0]

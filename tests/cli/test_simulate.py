@@ -17,6 +17,7 @@ import pytest
 
 from skisnow import Run, Scenario
 from skisnow.cli import main
+from skisnow.cli.progress import Progress
 
 from ..simulate.straight_run import STRAIGHT, straight_run
 
@@ -241,6 +242,7 @@ def test_progress_tells_the_real_time_factor(
     capsys: Printed, replaced: Replaced, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now = 100.0
+    monkeypatch.setitem(Progress.__init__.__kwdefaults__ or {}, "patience_s", 1.0)
     for module in ("simulate", "progress"):
         monkeypatch.setattr(f"skisnow.cli.{module}.time", SimpleNamespace(monotonic=lambda: now))
 

@@ -10,6 +10,7 @@ import pytest
 
 import skisnow.track
 from skisnow.cli import main
+from skisnow.report.figures.drawing import FORMS
 
 from ..track.paths import NOISE, circle
 
@@ -50,7 +51,7 @@ def test_figures_and_json_are_written(turn: Path, tmp_path: Path, capsys: Printe
     assert main(["track", str(turn), "--json", "--out", str(out)]) == 0
     assert json.loads((out / "track.json").read_text(encoding="utf-8")) == json.loads(capsys.readouterr().out)
     written = sorted(path.name for path in (out / "figures").iterdir())
-    assert written == ["along.png", "along.svg", "map.png", "map.svg"]
+    assert written == sorted(f"{name}.{form}" for name in ("along", "map") for form in FORMS)
 
 
 def test_window_and_noise_are_obeyed(turn: Path, capsys: Printed) -> None:

@@ -21,8 +21,12 @@ def text_of_page(name: str) -> str:
     return (DOCS / "tutorials" / f"{name}.md").read_text(encoding="utf-8")
 
 
-def test_there_are_two() -> None:
-    assert NAMES == ("track", "turn")
+def test_there_are_five_of_about_a_dozen_cells() -> None:
+    assert NAMES == ("estimating", "reading", "study", "track", "turn")
+    for name in NAMES:
+        code = [cell for cell in write_notebooks.cells_of(name) if cell.kind == "code"]
+        assert 6 <= len(code) <= 12, name
+        assert any(cell.alt for cell in code), name  # a figure that shows in place
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -42,6 +46,42 @@ def test_page_has_every_cell(name: str) -> None:
     page, place = text_of_page(name), 0
     for cell in write_notebooks.cells_of(name):
         place = page.index(cell.text, place)
+
+
+def test_reading() -> None:
+    """Both mistakes are found where they were planted, and none is left once they are mended."""
+    cells, names = write_notebooks.executed("reading")
+    assert write_notebooks.page("reading", cells) == text_of_page("reading")
+    tool, unit = names["tool"] + 1, names["unit"] + 1
+    assert {(each.code, each.row) for each in names["problems"]} >= {("unknown_tool", tool), ("not_a_number", unit)}
+    assert cells[-2].printed == "0\n"
+
+
+def test_study() -> None:
+    """Carved radii follow R_sc cos ϑ; weaker snow lets go at a lower angle; the sample fills its ranges evenly."""
+    cells, names = write_notebooks.executed("study")
+    assert write_notebooks.page("study", cells) == text_of_page("study")
+    rows = [row for row in names["table"].rows if row["published"] == "race-piste"]
+    for row in rows[:6]:
+        carved = row["sidecut_radius_of_three_widths_m"] * np.cos(np.radians(row["edge_angle_deg"]))
+        assert row["turn_radius_boot_m"] == pytest.approx(carved, rel=0.12)
+    held = {
+        snow: max(row["edge_angle_deg"] for row in names["table"].rows if row["published"] == snow and row["holds"])
+        for snow in ("race-piste", "spring-snow")
+    }
+    assert held["spring-snow"] < held["race-piste"]
+    share = np.sort([(row["edge_angle_deg"] - 20.0) / 50.0 for row in names["answers"].rows])
+    assert np.floor(12 * share).astype(int).tolist() == list(range(12))
+
+
+def test_estimating() -> None:
+    """The law is that of the paper, the sites' order that of the drawn hardness, the snow that of the table."""
+    cells, names = write_notebooks.executed("estimating")
+    assert write_notebooks.page("estimating", cells) == text_of_page("estimating")
+    means = [row["mean"] for row in names["sites"]]
+    assert means == sorted(means)
+    assert names["snow"].snow_hardness / 1e9 == pytest.approx(means[2])
+    assert names["answer"].side_force > names["answer"].side_force_limit
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """The nine candidate models against an independent constrained optimiser, by-hand cases and the paper's structure."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from scipy import optimize
 import skisnow
 from skisnow.estimate.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimate.model_choice import bootstrap_intervals, compare_nested_rows
-from skisnow.estimate.models import MODELS, NESTED_PAIRS, Model, ModelFit, fit_models, select_model
+from skisnow.estimate.models import MODELS, NESTED_PAIRS, Model, ModelFit, fit_models, select_model, why_no_choice
 from skisnow.estimate.readings import Readings
 from skisnow.geometry import SkiPiece
 from skisnow.snow.published.moessner_2013 import PRINTED_RMSE_N
@@ -275,8 +276,20 @@ def test_rows_that_repeat_each_other_are_equal_and_not_a_rounding_apart(make_cam
     for test in results["tests"]:
         if ids[test["full"]]["n_parameters"] == ids[test["reduced"]]["n_parameters"]:
             assert test["rmse_change_percent"] == 0.0
-    assert "e-" not in results["selected"]["reason"]
-    assert results["warnings"] == []
+    assert results["selected"] is None
+    assert results["warnings"] == [
+        "No law of the penetration force is selected: that takes 4 series at 2 edge angles, and used are 6 at 1."
+    ]
+
+
+@pytest.mark.parametrize(
+    ("angles_deg", "m", "chooses"), [((0.0, 45.0), 4, True), ((0.0, 45.0), 3, False), ((45.0,), 12, False)]
+)
+def test_a_law_is_chosen_from_four_series_at_two_angles_on(
+    angles_deg: tuple[float, ...], m: int, chooses: bool
+) -> None:
+    readings = replace(simulated(5, angles_deg, m=m), edge_angle=np.radians(np.resize(angles_deg, m)))
+    assert (why_no_choice(readings) == "") == chooses
 
 
 def test_a_law_that_is_worse_than_no_force_is_warned_of(make_campaign: MakeCampaign) -> None:

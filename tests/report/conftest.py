@@ -13,6 +13,8 @@ from skisnow.field import Campaign, PenetrationTests, ShearTests
 from skisnow.field.reference import reference_campaign
 from skisnow.report import write_report
 
+from ..conftest import only_drawn
+
 
 @dataclass(frozen=True)
 class Reported:
@@ -47,8 +49,10 @@ def altered(analysis: Analysis, results: dict[str, Any]) -> Analysis:
 
 
 def reported(campaign: Campaign, folder: Path) -> Reported:
+    """Its pictures are PNG and SVG alone; every form is drawn in test_drawing.py, and a whole report in a slow test."""
     analysis = analysis_of(campaign)
-    write_report(analysis, folder)
+    with only_drawn("png", "svg"):
+        write_report(analysis, folder)
     return Reported(analysis, folder)
 
 

@@ -13,6 +13,7 @@ import pytest
 from skisnow.identify.identification import Effort, Identification, Identified, Profile, identification_dict
 from skisnow.identify.observations import Fit
 from skisnow.identify.parameter import Parameter
+from skisnow.report.figures.drawing import FORMS
 from skisnow.report.figures.identify_fits import residuals_along, tracks_above
 from skisnow.report.figures.identify_profiles import profiles_drawn
 from skisnow.report.figures.style import journal_style
@@ -105,6 +106,7 @@ def test_the_page_has_its_sections_and_the_table_every_measured_number(found: Id
     page = write_identify_report(found, identification_dict(found), tmp_path, progress=said.append)
     assert page == tmp_path / "report.html"
     text = page.read_text(encoding="utf-8")
+    assert "<strong>0.0423</strong>, 95 % interval [0.0399, 0.0447].</p>" in text
     for heading in (
         "Outcome",
         "Warnings",
@@ -132,7 +134,7 @@ def test_the_page_has_its_sections_and_the_table_every_measured_number(found: Id
     ]
     assert json.loads((tmp_path / "identification.json").read_text(encoding="utf-8"))["points"] == 6
     names = {path.name for path in (tmp_path / "figures").iterdir()}
-    assert names == {f"{name}.{kind}" for name in ("residuals_photo_cells", "profiles") for kind in ("png", "svg")}
+    assert names == {f"{name}.{kind}" for name in ("residuals_photo_cells", "profiles") for kind in FORMS}
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from skisnow.report.figures.drawing import FORMS
 from skisnow.report.run_report import FIGURES, write_run_report
 from skisnow.report.tables.run import energies_table, scenario_table
 from skisnow.scenario.keys import SCENARIO_KEYS
@@ -44,7 +45,10 @@ def first_rows(run: Run, count: int) -> Run:
         **{name: getattr(run.skis, name)[:count] for name in SkiHistory.__slots__ if name != "station"},
     )
     energies = {name: values[:count] for name, values in run.energies.items()}
-    return replace(run, **cut, turn_radius=run.turn_radius[:count], skis=skis, energies=energies)
+    boots = run.boots
+    if boots is not None:
+        boots = replace(boots, **{each.name: getattr(boots, each.name)[:count] for each in fields(boots)})
+    return replace(run, **cut, turn_radius=run.turn_radius[:count], skis=skis, energies=energies, boots=boots)
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +71,7 @@ def html(folder: Path) -> str:
 
 def test_everything_is_written(folder: Path) -> None:
     names = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
-    figures = {f"figures/{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
+    figures = {f"figures/{name}.{kind}" for name in FIGURES for kind in FORMS}
     assert names == {"run.nc", "report.html"} | figures
 
 
@@ -94,6 +98,22 @@ def test_outcome_and_numbers_are_those_of_the_run(html: str) -> None:
     assert "median turn radius 12.0 m" in html
     # a right angle less than a half turn: 8/12 × 4 s = 152.8°, half of it to each side
     assert "Heading from −76.4° to 76.4°" in html
+
+
+def test_the_headline_is_one_number_and_how_far_it_goes(html: str) -> None:
+    """On a circle the radius is 12 m all the time."""
+    (headline,) = re.findall(r'<p class="headline">(.*?)</p>', html)
+    assert headline == "Turn radius <strong>12.0 m</strong> (median; nine tenths of the time from 12.0 to 12.0 m)."
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_headline_of_a_straight_run_is_its_speed(run: Run, tmp_path: Path) -> None:
+    ahead = np.array([1.0, 0.0, 0.0])
+    velocity = np.linspace(4.0, 8.0, len(run.time))[:, None] * ahead
+    straight = replace(run, velocity=velocity, turn_radius=np.full(len(run.time), np.inf))
+    page = write_run_report(straight, summary_of(run), tmp_path).read_text(encoding="utf-8")
+    (headline,) = re.findall(r'<p class="headline">(.*?)</p>', page)
+    assert headline == "Speed <strong>6.00 m/s</strong> (median; nine tenths of the time from 4.20 to 7.80 m/s)."
 
 
 def test_energies_add_up(run: Run) -> None:

@@ -88,6 +88,11 @@ def test_page_stands_alone_with_all_its_figures(folder: Path) -> None:
     assert not re.findall(r'(?:src|href)="(?!data:|#)', html)
     assert {path.stem for path in (folder / "figures").iterdir()} == set(FIGURES)
     assert "Synthetic data." in html
+    assert re.search(
+        r'<p class="headline">Turn radius <strong>12.0 m</strong> \(median\); its end is known within [\d.]+ m '
+        r"across and [\d.]+ m along the track \(90 % of 9 runs\)\.</p>",
+        html.replace("\u00a0", " "),
+    )
     assert "A &lt;b&gt; campaign" in html
     assert "the nominal run ends 0.043 m from" in html
     assert "8 of 9 runs ended like the nominal one (finished)" in html

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import pytest
@@ -14,7 +15,9 @@ from skisnow.estimate.results_text import results_json
 from skisnow.field import Campaign
 from skisnow.files import write_file
 from skisnow.report import write_report
+from skisnow.report.figures.drawing import FORMS
 
+from ..conftest import only_drawn
 from .conftest import Reported, first_series, reported
 
 FIGURES = {
@@ -39,7 +42,7 @@ def _contents(folder: Path) -> dict[str, bytes]:
 
 def test_every_figure_and_table_is_there_in_both_forms(reference: Reported) -> None:
     names = set(_contents(reference.folder))
-    assert {f"figures/{name}{ending}" for name in FIGURES for ending in (".svg", ".png")} <= names
+    assert {f"figures/{name}{ending}" for name in FIGURES for ending in (".svg", ".png", ".pdf", ".eps")} <= names
     tables = {name.removesuffix(".csv") for name in names if name.endswith(".csv")}
     assert {"tables/models_synthetic", "tables/sites_synthetic", "tables/regressions_synthetic"} <= tables
     assert {f"{table}.tex" for table in tables} <= names
@@ -50,6 +53,18 @@ def test_results_json_is_that_of_the_estimates(reference: Reported) -> None:
     text = (reference.folder / "results.json").read_bytes()
     assert text == results_json(reference.results)
     assert json.loads(text) == json.loads(json.dumps(reference.results))
+
+
+@pytest.mark.slow
+def test_every_form_of_every_figure_is_written(reference: Reported, tmp_path: Path) -> None:
+    write_report(reference.analysis, tmp_path)
+    begins = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF", "eps": b"%!PS-Adobe-3.0 EPSF"}
+    for name in FIGURES:
+        for form in FORMS:
+            content = (tmp_path / "figures" / f"{name}.{form}").read_bytes()
+            assert content.startswith(begins[form]), (name, form)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert page.count("<source media=") == page.count("<figure id=") - page.count('"><picture><img') > 0
 
 
 def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
@@ -64,7 +79,8 @@ def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
         write_file(path, content)
 
     monkeypatch.setattr("skisnow.report.write.write_file", noting)
-    with matplotlib.rc_context({"font.size": 31.0, "svg.fonttype": "path", "axes.grid": True}):
+    others: Any = {"font.size": 31.0, "svg.fonttype": "path", "axes.grid": True}
+    with matplotlib.rc_context(others), only_drawn("png", "svg"):
         write_report(reference.analysis, tmp_path, progress=said.append)
         assert matplotlib.rcParams["font.size"] == 31.0
         assert matplotlib.rcParams["svg.fonttype"] == "path"
@@ -89,7 +105,7 @@ def test_other_files_stay_and_those_of_an_earlier_report_go(campaign: Campaign, 
     reported(replace(campaign, name="real", shear=None, penetration=first_series(campaign, 2)), tmp_path)
     names = set(_contents(tmp_path))
     assert mine.read_bytes() == b"mine"
-    gone = {"figures/fig08_stress_angle.svg", "figures/fig08_stress_angle.png", "tables/shear_experiments.csv"}
+    gone = {f"figures/fig08_stress_angle.{form}" for form in FORMS} | {"tables/shear_experiments.csv"}
     assert not gone & names
     assert not [name for name in names if "synthetic" in name]
     assert {"tables/models.csv", "figures/fig05_force_depth.svg"} <= names

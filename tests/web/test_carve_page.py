@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pytest
+
 from skisnow.carve.answer import answered
 from skisnow.carve.answer_dict import answer_dict
 from skisnow.carve.keys import CARVE_KEYS
@@ -16,13 +18,15 @@ from .conftest import Served
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+PARTS = ("forebody", "afterbody")
 ANSWERED_MS = 60_000  # on a busy machine
 
 
-def radius(edge_angle_deg: float) -> str:
-    asked = {"ski": "carver", "edge_angle_deg": edge_angle_deg, "load_N": 800.0, "H_V_N_per_mm3": 0.2}
-    answer = answer_dict(answered(carve_question({**asked, "S_f_N_per_mm2": 0.5, "unloading_ratio": 10.0})))
-    return f"{significant(answer['turn_radius_boot_m'])} m"
+def radius(edge_angle_deg: float, **snow: object) -> str:
+    asked = {"ski": "carver", "edge_angle_deg": edge_angle_deg, "load_N": 800.0, "unloading_ratio": 10.0}
+    numbers = {"H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
+    answer = answer_dict(answered(carve_question({**asked, **(snow or numbers)})))
+    return f"carver: carved radius {significant(answer['turn_radius_boot_m'])} m"
 
 
 def test_the_sliders_are_inputs_of_a_carved_turn() -> None:
@@ -36,15 +40,23 @@ def test_the_sliders_are_inputs_of_a_carved_turn() -> None:
 
 def test_the_radius_follows_the_slider(page: Page, served: Served) -> None:
     page.goto(f"{served.address}carve")
-    first = page.get_by_role("row", name="Turn radius at the boot").get_by_role("cell")
-    first.wait_for(timeout=ANSWERED_MS)
-    assert first.inner_text() == radius(45.0)
+    headline = page.get_by_role("region", name="Carved radius")
+    headline.get_by_text("carved radius").wait_for(timeout=ANSWERED_MS)
+    assert headline.inner_text() == radius(45.0)
     slider = page.get_by_role("slider", name="Edge angle (°)")
     slider.focus()
     for _ in range(3):
         page.keyboard.press("ArrowRight")
     page.get_by_text("Edge angle (°): 48").wait_for()
-    row = page.get_by_role("row", name="Turn radius at the boot")
-    row.get_by_role("cell", name=radius(48.0), exact=True).wait_for()
+    headline.get_by_text(radius(48.0), exact=True).wait_for()
     assert slider.get_attribute("aria-valuetext") == "48"
     assert radius(48.0) != radius(45.0)
+    loads = [page.get_by_role("row", name=f"Load on the {part}").get_by_role("cell").inner_text() for part in PARTS]
+    assert sum(float(load.removesuffix(" N")) for load in loads) == pytest.approx(800.0, abs=2.0)  # three digits each
+    assert page.locator("svg .name").all_text_contents() == ["carver"] * 4
+    assert page.locator("svg .end").all_text_contents() == ["◂ tail", "tip ▸"] * 4
+    page.get_by_label("Snow", exact=True).click()
+    page.get_by_role("option", name="published: race-piste").click()
+    page.get_by_text("Snow: H_V = 0.207 N/mm³").wait_for()
+    headline.get_by_text(radius(48.0, published="race-piste"), exact=True).wait_for()
+    assert page.get_by_role("slider", name="Snow hardness H_V (N/mm³)").is_hidden()

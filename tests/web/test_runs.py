@@ -39,8 +39,7 @@ def test_jobs_are_kept_in_their_order_and_cancelled_before_they_begin(tmp_path: 
 
 def test_a_run_that_the_server_was_killed_in_is_begun_again(page: Page, served: Served) -> None:
     page.goto(f"{served.address}simulate")
-    page.get_by_text("Run", exact=True).click()
-    page.get_by_label("run.duration_s", exact=True).fill("0.2")
+    page.get_by_label("Ends after (s)", exact=True).fill("0.2")
     page.get_by_role("button", name="Simulate").click()
     page.get_by_text("is in the queue.").wait_for()
     page.get_by_text("running").first.wait_for()
@@ -55,11 +54,15 @@ def test_a_run_that_the_server_was_killed_in_is_begun_again(page: Page, served: 
 
 def test_a_value_that_cannot_be_is_refused_in_words(page: Page, served: Served) -> None:
     page.goto(f"{served.address}simulate")
-    page.get_by_text("Sledge", exact=True).click()
-    page.get_by_label("sledge.mass_kg", exact=True).fill("-5")
+    page.locator("summary", has_text="Expert inputs").click()
+    wrong = page.get_by_label("Stance width (m)", exact=True)
+    wrong.fill("-5")
+    page.get_by_text("Expert inputs").click()
     page.get_by_role("button", name="Simulate").click()
-    page.get_by_text("Not begun: ").wait_for()
+    page.get_by_text("Not begun: Stance width (m) is -5").wait_for()
     page.get_by_text("Nothing was simulated yet.").wait_for()
+    assert wrong.evaluate("field => field === document.activeElement && field.selectionEnd - field.selectionStart") == 2
+    page.get_by_role("alert").get_by_text("Stance width (m) is -5").wait_for()
 
 
 def kept_campaign(served: Served, folder: Path) -> tuple[str, SnowProperties]:
@@ -85,8 +88,7 @@ def test_the_snow_of_a_campaign_comes_with_its_uncertainty(page: Page, served: S
     low, high = (significant(end / N_PER_MM3) for end in snow.snow_hardness_interval)
     page.get_by_text(f"H_V = {significant(snow.snow_hardness / N_PER_MM3)} N/mm³, [{low}, {high}]").wait_for()
     choose(page, "Ski", "mine")
-    page.get_by_text("Run", exact=True).click()
-    page.get_by_label("run.duration_s", exact=True).fill("0.1")
+    page.get_by_label("Ends after (s)", exact=True).fill("0.1")
     page.get_by_role("button", name="Simulate").click()
     page.get_by_text("finished: ").wait_for(timeout=LONG_MS)
     card = page.locator(".card").inner_text()
@@ -129,9 +131,8 @@ def pressed_while_it_goes_on(page: Page, button: Locator) -> None:
 
 def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> None:
     page.goto(f"{served.address}simulate")
-    page.get_by_text("Run", exact=True).click()
-    page.get_by_label("run.duration_s", exact=True).fill("60")
-    page.get_by_label("run.length_m", exact=True).fill("900")
+    page.get_by_label("Ends after (s)", exact=True).fill("60")
+    page.get_by_label("Ends after a way of (m)", exact=True).fill("900")
     for _ in range(2):
         page.get_by_role("button", name="Simulate").click()
         page.get_by_text("is in the queue.").wait_for()

@@ -145,16 +145,17 @@ def test_a_ski_file_that_was_not_drawn_is_not_passed_over(page: Page, served: Se
 
 def test_what_is_typed_for_a_run_is_neither_lost_nor_passed_over(page: Page, served: Served) -> None:
     page.goto(f"{served.address}simulate")
-    page.get_by_text("Run", exact=True).click()
-    duration = page.get_by_label("run.duration_s", exact=True)
+    duration = page.get_by_label("Ends after (s)", exact=True)
+    duration.fill("500")
+    page.get_by_text("Will take about 8 min.").wait_for()  # no run has told how long it takes: as long as it simulates
     duration.fill("")
     page.get_by_role("button", name="Simulate").click()
-    page.get_by_text("Not begun: run.duration_s is empty; the scenario has 5").wait_for()
+    page.get_by_text("Not begun: Ends after (s) is empty; the scenario has 5").wait_for()
     duration.fill("0,05")
     page.get_by_label("Scenario", exact=True).click()
     page.get_by_role("option").nth(1).click()
-    page.wait_for_function("document.querySelector('[aria-label=\"run.duration_s\"]')?.value === '0.05'")
+    page.wait_for_function("document.querySelector('[aria-label=\"Ends after (s)\"]')?.value === '0.05'")
     page.get_by_role("button", name="Simulate").click()
-    page.get_by_text("run.duration_s = 0.05").wait_for()
+    page.get_by_text("Ends after (s): 0.05").wait_for()
     assert page.locator(".card").count() == 1  # the refused one was not begun
     page.get_by_role("button", name="Cancel").click()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import http.client
+import shutil
+import ssl
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -17,6 +19,8 @@ from .conftest import MISSING, Served
 
 if "nicegui" in MISSING:
     pytest.skip("the web lab is not installed", allow_module_level=True)
+
+from skisnow.web.addresses import for_others
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +87,55 @@ def test_a_port_that_is_none_is_said(port: str, capsys: pytest.CaptureFixture[st
         main(["serve", f"--port={port}"])
     told = capsys.readouterr().err
     assert f"argument --port: '{port}' is" in told
+
+
+@pytest.mark.usefixtures("unserved")
+def test_a_certificate_that_is_none_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    broken = tmp_path / "lab.pem"
+    broken.write_text("no certificate")
+    assert main(["serve", "--certificate", str(broken), "--store", str(tmp_path / "s.sqlite3")]) == 1
+    err = capsys.readouterr().err
+    assert "lab.pem: no certificate" in err and "--certificate-key" in err and "Traceback" not in err
+    assert main(["serve", "--certificate-key", str(broken), "--store", str(tmp_path / "s.sqlite3")]) == 1
+    assert "goes with --certificate" in capsys.readouterr().err
+
+
+def test_who_lets_phones_in_is_told_the_addresses_and_what_can_be_read_on_the_way() -> None:
+    told = "\n".join(for_others(["http://192.168.1.7:80/", "http://10.0.0.2:80/"], secure=False))
+    assert "also: http://10.0.0.2:80/" in told and "open http://192.168.1.7:80/" in told
+    assert "not encrypted, the token neither" in told
+    code = [line for line in told.splitlines() if set(line) <= set("█▀▄ ")]
+    assert len(code) > 10 and len({len(line) for line in code}) == 1  # a block of modules
+    assert "is encrypted" in "\n".join(for_others(["https://192.168.1.7:80/"], secure=True))
+
+
+@pytest.mark.slow
+def test_a_lab_with_a_certificate_is_encrypted(tmp_path: Path) -> None:
+    pem, key = tmp_path / "lab.pem", tmp_path / "key.pem"
+    openssl = shutil.which("openssl")
+    if openssl is None:
+        pytest.skip("there is no openssl on this machine to make a certificate with")
+    made = [openssl, "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", str(key), "-out", str(pem)]
+    subprocess.run([*made, "-days", "1", "-subj", "/CN=localhost"], check=True, capture_output=True)
+    words = ["--port", "0", "--store", str(tmp_path / "s.sqlite3"), "--certificate", str(pem)]
+    lab = subprocess.Popen(
+        [sys.executable, "-m", "skisnow", "serve", *words, "--certificate-key", str(key)],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert lab.stdout is not None
+        parts = urlsplit(lab.stdout.readline().strip())
+        assert parts.scheme == "https" and parts.hostname is not None
+        trusted = ssl.create_default_context(cafile=str(pem))
+        trusted.check_hostname = False  # the certificate is that of a name, the address is asked
+        connection = http.client.HTTPSConnection(parts.hostname, parts.port, timeout=30, context=trusted)
+        connection.request("GET", "/")
+        assert connection.getresponse().status == 200
+        connection.close()
+    finally:
+        lab.kill()
+        lab.communicate()
 
 
 def test_no_trace_reaches_a_page(served: Served) -> None:

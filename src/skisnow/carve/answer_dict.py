@@ -73,6 +73,8 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
         "contact_length_m": json_number(equilibrium.contact_length),
         "bearing_length_m": json_number(equilibrium.bearing_length),
         "afterbody_depth_ratio": json_number(equilibrium.afterbody_depth_ratio),
+        "forebody_load_N": json_number(equilibrium.forebody_load),
+        "afterbody_load_N": json_number(equilibrium.afterbody_load),
         "boot_pitch_moment_Nm": json_number(equilibrium.boot_pitch_moment),
         "residual_force_N": json_number(equilibrium.residual_force),
         "residual_moment_Nm": json_number(equilibrium.residual_moment),

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..compiled import core
+from ..contact.asked_laws import AskedPressure, AskedStrength
 from ..errors import ParameterError
 from ..forces.penetration import PenetrationLaw, PointLaw
 from ..forces.shear import ShearLaw
@@ -25,49 +26,34 @@ _DEPTHS: Final = np.geomspace(1e-6, 1.0, 600)  # m, of a straight edge
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
 
 
-class PressureLaw:
-    """Stress and residual depth of a law, for arrays. Where they are not finite ``refused`` says so.
-
-    A step that is tried may look at depths that no ski comes to.
-    """
+class PressureLaw(AskedPressure):
+    """Stress of a law. What is not finite is kept in ``refused``: a step may try depths that no ski comes to."""
 
     def __init__(self, law: PointLaw) -> None:
-        self.law = law
+        super().__init__(law)
         self.refused = ""
 
     def stress(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
-        """Stress (N/m²) of points at depths (m), of places that were at deepest depths (m), and edge angles (rad)."""
-        found = np.broadcast_to(self.law.stress_and_energy(depth, deepest, edge_angle), (2, len(depth)))[0]
-        return self._noted(found, depth)
+        """Stress (N/m²) of places at depths (m), that were at deepest depths (m), at edge angles (rad)."""
+        return self.bear(depth, deepest, edge_angle)[0]
 
-    def residual(self, deepest: FloatArray, /) -> FloatArray:
-        """Depth (m) at which places bear nothing any more."""
-        return self._noted(np.broadcast_to(self.law.residual_depth(deepest), deepest.shape), deepest)
-
-    def _noted(self, found: FloatArray, depth: FloatArray) -> FloatArray:
-        found = np.ascontiguousarray(found, float)
-        bad = ~np.isfinite(found)
-        if bad.any():
-            self.refused = f"{self.law!r} gives no finite answer at a depth of {1e3 * depth[bad][0]:.4g} mm"
-        return found
+    def refuse(self, reason: str) -> None:
+        """Keep the reason."""
+        self.refused = reason
 
 
 class StrengthLaw:
     """Failure stress of a law over that at one depth and the boot's edge angle, for arrays; `refused` as above."""
 
     def __init__(self, law: ShearLaw, edge_angle: float) -> None:
-        self.law = law
+        self._asked = AskedStrength(law)
+        self._unit = float(self._asked(np.array([_SOME_DEPTH]), np.array([edge_angle]))[0, 0])
         self.refused = ""
-        self._unit = float(law.stress_and_thrust(np.array([_SOME_DEPTH]), np.array([edge_angle]))[0, 0])
 
     def share(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
         """Of depths (m), 0 where there is none, and edge angles (rad)."""
-        found, meets = np.zeros(len(depth)), depth > 0.0
-        found[meets] = self.law.stress_and_thrust(depth[meets], edge_angle[meets])[0] / self._unit
-        bad = ~np.isfinite(found)
-        if bad.any():
-            worst = math.degrees(edge_angle[bad][0])
-            self.refused = f"{self.law!r} gives no finite strength at an edge angle of {worst:.3g} degrees"
+        found = self._asked(depth, edge_angle)[0] / self._unit
+        self.refused = self.refused or self._asked.refused
         return found
 
 

@@ -72,6 +72,8 @@ class Equilibrium(Shown):
         Of the places that carry force (m): in a groove that does not spring back, parts of the contact carry none.
     afterbody_depth_ratio
         Mean edge depth of the contact behind the boot over that before it.
+    forebody_load, afterbody_load
+        What the snow bears before and behind the boot, along its normal (N).
     boot_pitch_moment
         What boot and skier hold about the ski's cross axis, positive where they press the tip down (N m):
         ∫ s (f cos ϑ + τ e sin ϑ) ds.
@@ -112,6 +114,8 @@ class Equilibrium(Shown):
     contact_length: float | None
     bearing_length: float | None
     afterbody_depth_ratio: float | None
+    forebody_load: float | None
+    afterbody_load: float | None
     boot_pitch_moment: float | None
     station: FloatArray
     edge_depth: FloatArray | None
@@ -155,7 +159,7 @@ def equilibrium_of(
     sinks = deepest > SINKING_DEPTH if solution.converged else _too_soft(model, conditions)
     if not solution.converged or sinks:
         outcome: Outcome = "sinks" if sinks else "not_converged"
-        nothing = (None,) * 10
+        nothing = (None,) * 12
         return Equilibrium(outcome, REMEDIES[outcome], *nothing, station, *(None,) * 7, (), solution.iterations)
     line = EdgeLine(model, conditions.edge_angle, solution)
     weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
@@ -167,6 +171,7 @@ def equilibrium_of(
     of_force = float(weight @ (force * station))
     drawn_from = force if conditions.by_reaction else np.maximum(depth, 0.0)
     of_shear = solution.shear_stress * float(weight @ (drawn_from * station))
+    before = float(weight @ (force * np.heaviside(station, 0.5)))
     turns = conditions.side_force > 0.0
     return Equilibrium(
         outcome=outcome,
@@ -180,6 +185,8 @@ def equilibrium_of(
         contact_length=ends[0] - ends[1],
         bearing_length=float(weight[force > 0.0].sum()),
         afterbody_depth_ratio=_depth_ratio(station, weight, depth),
+        forebody_load=before,
+        afterbody_load=float(weight @ force) - before,
         boot_pitch_moment=math.cos(conditions.edge_angle) * of_force + math.sin(conditions.edge_angle) * of_shear,
         station=station,
         edge_depth=depth,

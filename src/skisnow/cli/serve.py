@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from ..errors import ParameterError
 from .words import whole_number
 
 
@@ -14,13 +15,21 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser(
         "serve",
         help="open the web lab: enter a campaign, look at it, play with the turn",
-        description="Serve the web lab. The first line printed is its address; Ctrl-C ends it. No network is used.",
+        description="Serve the web lab. The first line printed is its address; Ctrl-C ends it. No network is used. "
+        "With --host 0.0.0.0 phones in the same network can open it: addresses and a code for the camera are printed.",
     )
     parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: this machine alone)")
     parser.add_argument(
         "--port", type=whole_number(0, 65_535), default=8765, help="port, 0 for a free one (default: 8765)"
     )
     parser.add_argument("--token", help="word that is asked for before anything else; needed with any other host")
+    parser.add_argument(
+        "--certificate",
+        type=Path,
+        metavar="FILE",
+        help="PEM file with a certificate and its private key: pages and token are then encrypted on their way",
+    )
+    parser.add_argument("--certificate-key", type=Path, metavar="FILE", help="PEM file of the key, where it is another")
     parser.add_argument("--store", type=Path, metavar="PATH", help="file of the store (default: the user's own)")
     parser.set_defaults(run=run)
 
@@ -28,7 +37,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(options: argparse.Namespace) -> int:
     """Serve until interrupted; 1 where the web lab is not installed."""
     try:
-        from ..web.server import require_allowed, serve
+        from ..web.server import Certificate, require_allowed, serve
     except ModuleNotFoundError as missing:
         if missing.name is None or missing.name.split(".")[0] == "skisnow":
             raise
@@ -39,10 +48,18 @@ def run(options: argparse.Namespace) -> int:
     from ..web.settings import Lab
 
     require_allowed(options.host, options.token)
+    if options.certificate is None and options.certificate_key is not None:
+        raise ParameterError("--certificate-key goes with --certificate")
+    certificate = None if options.certificate is None else Certificate(options.certificate, options.certificate_key)
     place = options.store if options.store is not None else default_path()
     with Store.open(place) as store:
         serve(
-            Lab(store, place.parent / "lab"), host=options.host, port=options.port, token=options.token, tell=_printed
+            Lab(store, place.parent / "lab"),
+            host=options.host,
+            port=options.port,
+            token=options.token,
+            tell=_printed,
+            certificate=certificate,
         )
     return 0
 

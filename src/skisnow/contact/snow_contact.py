@@ -12,11 +12,9 @@ import numpy.typing as npt
 from ..compiled import core
 from ..errors import ParameterError
 from ..shown import Facts, Shown, field_facts
+from .asked_laws import AskedFriction, AskedPressure, AskedStrength
 
 if TYPE_CHECKING:
-    from ..forces.friction import FrictionLaw
-    from ..forces.penetration import PointLaw
-    from ..forces.shear import ShearLaw
     from .runner import Runner
     from .snow_field import SnowField
 
@@ -141,13 +139,13 @@ class SnowContact(Shown):
         self.snow, self.runners = snow, tuple(runners)
         self.compiled = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
         friction, shear = snow.friction_in_python, snow.shear_in_python
-        self._shear = None if shear is None else _strength(shear)
+        self._shear = None if shear is None else AskedStrength(shear)
         if friction is not None or shear is not None:
-            called = None if friction is None else _coefficient(friction)
+            called = None if friction is None else AskedFriction(friction)
             self.compiled.set_laws(called, self._shear, snow.fade_speed)
         if snow.penetration is not None:
             law = snow.penetration
-            self.compiled.set_penetration(_PointStress(law), np.array(law.bends, float), law.along_base_normal)
+            self.compiled.set_penetration(AskedPressure(law), np.array(law.bends, float), law.along_base_normal)
 
     def _facts(self) -> Facts:
         return Facts(f"of {len(self.runners)} runners, {self.compiled.instruction_set}: {self.snow._facts().title}")
@@ -272,60 +270,6 @@ def _array(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
     if not np.all(np.isfinite(array)):
         raise ParameterError(f"SnowContact: {name} holds a number that is not finite")
     return array
-
-
-class _coefficient:  # noqa: N801 - a function that can be pickled
-    """μ of a law, for arrays of speeds."""
-
-    def __init__(self, law: FrictionLaw) -> None:
-        self.law = law
-
-    def __call__(self, speed: FloatArray) -> FloatArray:
-        return np.ascontiguousarray(np.broadcast_to(self.law.coefficient(speed), speed.shape), float)
-
-
-class _strength:  # noqa: N801
-    """Strength and thrust of a law (2, n), for arrays of depths and edge angles.
-
-    Where they are not finite ``refused`` says so: a trial step may evaluate a pose that no ski comes to.
-    """
-
-    def __init__(self, law: ShearLaw) -> None:
-        self.law = law
-        self.refused = ""
-
-    def __call__(self, depth: FloatArray, angle: FloatArray) -> FloatArray:
-        meets = depth > 0.0
-        found = np.zeros((2, len(depth)))
-        found[:, meets] = self.law.stress_and_thrust(depth[meets], angle[meets])
-        self.refused = ""
-        if not np.all(np.isfinite(found)):
-            worst = float(np.degrees(angle[meets][~np.isfinite(found[:, meets]).all(axis=0)][0]))
-            self.refused = f"{self.law!r} gives no finite strength at an edge angle of {worst:.3g} degrees"
-        return found
-
-
-class _PointStress:
-    """A penetration law as the core asks it: arrays over points, finite numbers back."""
-
-    def __init__(self, law: PointLaw) -> None:
-        self.law = law
-
-    def residual(self, deepest: FloatArray, /) -> FloatArray:
-        return self._sound(self.law.residual_depth(deepest), deepest.shape, deepest)
-
-    def bear(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
-        return self._sound(self.law.stress_and_energy(depth, deepest, edge_angle), (2, len(depth)), depth)
-
-    def lost(self, deepest: FloatArray, /) -> FloatArray:
-        return self._sound(self.law.lost_energy(deepest), deepest.shape, deepest)
-
-    def _sound(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
-        found = np.ascontiguousarray(np.broadcast_to(found, shape), float)
-        bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
-        if bad.any():
-            raise ParameterError(f"{self.law!r} gives no finite answer at a depth of {1e3 * depth[bad][0]:.4g} mm")
-        return found
 
 
 def _wrench_in_words(wrench: FloatArray) -> str:

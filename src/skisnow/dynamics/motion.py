@@ -42,6 +42,9 @@ class Ended(IntEnum):
     NOT_FINITE = 2
 
 
+_LAST: Final = max(Ended)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepControl:
     """Length of the steps.
@@ -201,7 +204,7 @@ class Dynamics:
         """
         while True:
             ended = self._core.advance(until, STEPS_AT_ONCE)
-            if ended <= max(Ended):
+            if ended <= _LAST:
                 if ended != Ended.REACHED:
                     self.contact.require_finite_laws()
                 return Ended(ended)

@@ -23,7 +23,7 @@ from .fit_warnings import fit_warnings
 from .growing_hardness import growing_hardness, site_growth
 from .hardness import DEFINITIONS, ReadingUncertainty, hardness
 from .model_choice import bootstrap_intervals, compare_nested_rows
-from .models import Model, fit_models, select_model
+from .models import Model, fit_models, select_model, why_no_choice
 from .observations import (
     DENSITY_KEY,
     HARDNESS_KEY,
@@ -268,7 +268,8 @@ def _penetration(
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
     fitted_used = fitted.of(screened.used)
     depth_fits, _ = fit_models_with_depth_errors(fitted_used, uncertainty)
-    selected = select_model(fits)
+    no_choice = why_no_choice(used)
+    selected = None if no_choice else select_model(fits)
     return PenetrationAnalysis(
         screened=screened,
         readings=readings,
@@ -283,7 +284,7 @@ def _penetration(
         nested=compare_nested_rows(fits),
         selected=selected,
         errors_in_depth=ModelTable(depth_fits, {}),  # no intervals: a bootstrap covers b in 7 to 90 % of campaigns
-        warnings=fit_warnings(fits, selected, depth_fits, used.load),
+        warnings=(*filter(None, (no_choice,)), *fit_warnings(fits, selected, depth_fits, used.load)),
     )
 
 

@@ -22,15 +22,15 @@ _ACTION: Final = "Look for wrong units, depths or tools, and for snow that follo
 
 
 def fit_warnings(
-    fits: tuple[ModelFit, ...], selected: ModelFit, in_depth: tuple[ModelFit, ...], load: npt.NDArray[np.float64]
+    fits: tuple[ModelFit, ...], selected: ModelFit | None, in_depth: tuple[ModelFit, ...], load: npt.NDArray[np.float64]
 ) -> tuple[str, ...]:
     """Sentences about rows that miss the loads (N) by more than the loads themselves, and a poor selected row."""
     size = float(np.sqrt(np.mean(load**2)))
     return (*_poor(selected, size), *_worse_than_nothing(fits, "", size), *_worse_than_nothing(in_depth, _DEPTH, size))
 
 
-def _poor(selected: ModelFit, size: float) -> Iterator[str]:
-    if POOR * size < selected.rmse <= size:
+def _poor(selected: ModelFit | None, size: float) -> Iterator[str]:
+    if selected is not None and POOR * size < selected.rmse <= size:
         yield (
             f"Even the selected law misses the loads by {100.0 * selected.rmse / size:.0f} % of their root mean square "
             f"({selected.rmse:.4g} N of {size:.4g} N). {_ACTION}"

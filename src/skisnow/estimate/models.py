@@ -250,6 +250,23 @@ def fit_models(readings: Readings, hardnesses: dict[str, FloatArray]) -> tuple[M
     return tuple(fit_model(readings, bases[model.hardness], model)[0] for model in MODELS)
 
 
+FEWEST_SERIES: Final = 4
+"""Fewer series do not tell one law from another (modelling assumption)."""
+FEWEST_ANGLES: Final = 2
+"""At one edge angle a and b stand for one number each, and rows repeat each other."""
+
+
+def why_no_choice(readings: Readings) -> str:
+    """Why no law can be selected from these readings, in a sentence; nothing where one can."""
+    angles = len(np.unique(np.round(readings.edge_angle, 9)))
+    if readings.n_series >= FEWEST_SERIES and angles >= FEWEST_ANGLES:
+        return ""
+    return (
+        f"No law of the penetration force is selected: that takes {FEWEST_SERIES} series at {FEWEST_ANGLES} edge "
+        f"angles, and used are {readings.n_series} at {angles}."
+    )
+
+
 def select_model(fits: tuple[ModelFit, ...], *, tolerance: float = 0.05) -> ModelFit:
     """Pick the simplest row whose rmse is within a share of the best: fewest parameters, smaller rmse, fewer terms.
 

@@ -41,8 +41,8 @@ class PenetrationAnalysis(Shown):
 
     ``hardness`` holds each definition by its symbol, ``fitted`` what all readings of a series say, ``growing`` what
     they say of a hardness that grows with depth, ``unloading`` what those say that were read while discs were taken
-    off. ``table``, ``errors_in_depth`` and ``selected`` are None where no experiment is used; ``warnings`` are those of
-    `fit_warnings`.
+    off. ``table``, ``errors_in_depth`` and ``selected`` are None where no experiment is used, ``selected`` also with
+    too few series; ``warnings`` say so, and hold those of `fit_warnings`.
     """
 
     screened: Screened

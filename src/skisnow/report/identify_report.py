@@ -10,13 +10,15 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from markupsafe import Markup
+
 from ..files import require_writable, write_file
 from ..spreadsheet_text import guarded
 from ..staging import staged
 from .figures.drawing import Drawing
 from .figures.identify_fits import residuals_along, tracks_above
 from .figures.identify_profiles import profiles_drawn
-from .number_formatting import counted
+from .number_formatting import counted, interval, significant
 from .pictures import picture_files, write_pictures
 from .sheet import Header, Section, sheet
 from .symbols import html, prose
@@ -24,8 +26,6 @@ from .tables.identified import correlation_table, parameters_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
-
-    from markupsafe import Markup
 
     from ..identify.identification import Identification
     from .figures.drawing import Picture
@@ -113,7 +113,20 @@ def identify_page(found: Identification, pictures: list[Picture]) -> str:
         sections.append(Section("profiles", "Profiles", pictures=profiles))
     sections.append(Section("provenance", "How it was computed", words=_methods(found)))
     facts = [("Scenario", found.scenario), ("Points", str(found.points)), ("Computed", f"skisnow {version('skisnow')}")]
-    return sheet(Header("Parameters identified from measurements", _title(found), facts), sections)
+    header = Header("Parameters identified from measurements", _title(found), facts, headline=_headline(found))
+    return sheet(header, sections)
+
+
+def _headline(found: Identification) -> Markup:
+    """The first parameter with its interval."""
+    if not found.parameters:
+        return Markup("")
+    first = found.parameters[0]
+    ends = "without an interval"
+    if first.interval is not None and None not in first.interval:
+        ends = f"95 % interval {interval([float(end) for end in first.interval if end is not None])}"
+    value = Markup("<strong>{}</strong>").format(f"{significant(first.value)} {first.parameter.unit}".strip())
+    return prose("{name} {value}, {ends}.", name=first.parameter.name, value=value, ends=ends)
 
 
 def _title(found: Identification) -> str:

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Style: TypeAlias = Literal["typeset", "plain", "latex"]
-"""Typeset: Unicode minus and powers; plain: what any terminal shows; latex: for text mode."""
+"""Typeset: Unicode minus and powers; plain: what any terminal shows; latex: for text mode, by siunitx."""
 
 ABSENT: Final = {"typeset": "–", "plain": "-", "latex": "--"}
 _SUPERSCRIPTS: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -24,7 +24,7 @@ def significant(value: float | None, digits: int = 3, *, style: Style = "typeset
     if value is None:
         return ABSENT[style]
     if value == 0:
-        return "0"
+        return _signed("0", style)
     mantissa, _, power = f"{value:.{digits - 1}e}".partition("e")
     exponent = int(power)
     if -4 <= exponent < 6:
@@ -32,14 +32,14 @@ def significant(value: float | None, digits: int = 3, *, style: Style = "typeset
     if style == "plain":
         return f"{mantissa}e{exponent}"
     if style == "latex":
-        return rf"${mantissa}\times10^{{{exponent}}}$"
+        return rf"\num{{{mantissa}e{exponent}}}"
     return f"{_signed(mantissa, style)}×10{str(exponent).translate(_SUPERSCRIPTS)}"
 
 
 def _signed(text: str, style: Style) -> str:
     if style == "typeset":
         return text.replace("-", "−")
-    return f"${text}$" if style == "latex" and text.startswith("-") else text
+    return rf"\num{{{text}}}" if style == "latex" else text
 
 
 def interval(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "typeset") -> str:

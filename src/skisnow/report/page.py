@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from .dates import days_words, moment_words
 from .number_formatting import counted, significant, whole
 from .sentences.caveats import caveats
-from .sentences.key_results import key_results
+from .sentences.key_results import headline, key_results
 from .sentences.penetration import procedures_compared, readings_used, seating_found, unloading_found
 from .sentences.regressions import regression_sentences
 from .table_html import table_html
@@ -57,12 +58,17 @@ def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Pictu
     )
 
 
+def tables_html(tables: Mapping[str, Table]) -> dict[str, Markup]:
+    """Tables by name as HTML, numbered as in the report."""
+    in_html = [table for table in tables.values() if table.rows_in_html]
+    return {table.name: table_html(table, number=i) for i, table in enumerate(in_html, start=1)}
+
+
 class _Tables:
-    """Tables by name as HTML, numbered as they stand; nothing for one without rows."""
+    """Tables by name as HTML; nothing for one without rows."""
 
     def __init__(self, tables: Mapping[str, Table]) -> None:
-        in_html = [table for table in tables.values() if table.rows_in_html]
-        self._html = {table.name: table_html(table, number=i) for i, table in enumerate(in_html, start=1)}
+        self._html = tables_html(tables)
 
     def __getitem__(self, name: str) -> Markup:
         return self._html.get(name, Markup(""))
@@ -82,12 +88,15 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "shapes": {type(tool).__name__ for tool in data.campaign.tools.values()},
         "stated": _stated(results["campaign"]),
         "synthetic": data.synthetic,
-        "dates": data.dates,
+        "dates": None if data.dates is None else days_words(*data.dates),
+        "analysed": moment_words(results["provenance"]["time"]),
+        "headline": headline(data),
         "counts": _counts(data),
         "has_penetration": has_penetration,
         "has_unloading": bool(data.unloaded),
         "has_displacement": bool(results["shear"]["displacement"]),
         "selected": results["penetration"]["selected"],
+        "not_selected": next(iter(results["penetration"]["warnings"]), ""),
         "sections": [(name, SECTIONS[name]) for name in ids],
         "titles": SECTIONS,
         "numbers": {name: number for number, name in enumerate(ids, start=1)},

@@ -1,11 +1,11 @@
-"""The figures of a report as files, PNG and SVG, and for its page."""
+"""The figures of a report as files, PNG, SVG, PDF and EPS, and for its page."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from ..files import write_file
-from .figures.drawing import pictured
+from .figures.drawing import FORMS, pictured
 from .figures.style import journal_style
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def picture_files(names: Iterable[str]) -> list[str]:
     """The files of these figures below a report's folder."""
-    return [f"figures/{name}.{ending}" for name in names for ending in ("png", "svg")]
+    return [f"figures/{name}.{ending}" for name in names for ending in FORMS]
 
 
 def write_pictures(
@@ -27,7 +27,7 @@ def write_pictures(
     every: Sequence[str],
     progress: Callable[[str], None] | None = None,
 ) -> list[Picture]:
-    """Draw one after the other in the house style, and write each as PNG and SVG.
+    """Draw one after the other in the house style, and write each as PNG, SVG, PDF and EPS.
 
     Parameters
     ----------
@@ -57,9 +57,20 @@ def write_pictures(
                 progress(f"figure {drawing.name}")
             pictures.append(pictured(drawing))
     for picture in pictures:
-        write_file(folder / f"{picture.name}.svg", picture.svg)
-        write_file(folder / f"{picture.name}.png", picture.png)
+        write_picture(picture, folder)
     for name in set(every) - {picture.name for picture in pictures}:
-        for ending in (".svg", ".png"):
-            (folder / f"{name}{ending}").unlink(missing_ok=True)
+        for ending in FORMS:
+            (folder / f"{name}.{ending}").unlink(missing_ok=True)
     return pictures
+
+
+def write_picture(picture: Picture, folder: Path) -> None:
+    """Write all files of a picture.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    """
+    for ending, content in picture.files.items():
+        write_file(folder / f"{picture.name}.{ending}", content)

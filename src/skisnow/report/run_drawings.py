@@ -33,8 +33,8 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
     yield Drawing(
         "track",
         prose(
-            "The run from above, the same scale along both axes. Below, the grooves over {length} m at half time: "
-            "along the track of the loaded edge in metres, across it in millimetres.",
+            "(a) The run from above, the same scale along both axes. (b, c) The grooves of both skis over {length} m "
+            "at half time: along the track of the loaded edge in metres, across it in millimetres.",
             length=significant(CUTOUT, 2),
         ),
         f"Tracks of both skis from above, {significant(run.run_length)} m long, and their grooves.",
@@ -44,9 +44,9 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
     yield Drawing(
         "motion",
         prose(
-            "Speed, heading of the skis and radius of the path of the middle between the boots. The radius is left out "
-            "where it is more than three times its median; dotted: the radius of a ski that is bent onto a hard plane "
-            "at {angle}° without twist.",
+            "(a) Speed, (b) heading of the skis and (c) radius of the path of the middle between the boots. The radius "
+            "is left out where it is more than three times its median; dotted: the radius of a ski that is bent onto a "
+            "hard plane at {angle}° without twist.",
             angle=f"{run.scenario.sledge.edge_angle / DEGREE:.3g}",
         ),
         "Speed, heading and turn radius over time.",
@@ -56,9 +56,9 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
     yield Drawing(
         "along_ski",
         prose(
-            "Depth of the edge below the undisturbed surface and force of the snow per length of ski, over time. "
-            "White: the edge is above the snow, or the snow does not press: behind the place of the largest load the "
-            "afterbody runs in the groove that the forebody cut."
+            "(a, b) Depth of the edge below the undisturbed surface and (c, d) force of the snow per length of ski, "
+            "over time. White: the edge is above the snow, or the snow does not press: behind the place of the largest "
+            "load the afterbody runs in the groove that the forebody cut."
         ),
         "Maps of edge depth and force per length over position along the ski and time, for both skis.",
         run_along_ski(run),
@@ -67,8 +67,8 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
     yield Drawing(
         "grip",
         prose(
-            "Grip utilisation, the side force over the shear capacity S_f e, along each ski and for each whole ski. "
-            "At 1 the snow yields and the edge side-slips."
+            "Grip utilisation, the side force over the shear capacity S_f e, (a, b) along each ski and (c) for each "
+            "whole ski. At 1 the snow yields and the edge side-slips."
         )
         + _other_strength(run),
         "Grip utilisation over position along the ski and time.",
@@ -78,8 +78,8 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
     yield Drawing(
         "energies",
         prose(
-            "Where the energy is and went. Everything on top of each other must stay at the dashed line; the losses "
-            "alone stand at the right."
+            "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) The "
+            "losses alone."
         ),
         "Stored energies and losses over time, stacked.",
         run_energies(run),

@@ -96,7 +96,26 @@ def _header(run: Run) -> Header:
         ("Skis", f"{scenario.ski.name}, edge angle {significant(scenario.sledge.edge_angle / DEGREE)}°"),
         ("Computed", f"skisnow {version('skisnow')}"),
     ]  # fmt: skip
-    return Header("A simulated run of a sledge on two flexible skis", _title(run), facts)
+    return Header("A simulated run of a sledge on two flexible skis", _title(run), facts, headline=_headline(run))
+
+
+def _headline(run: Run) -> Markup:
+    """The turn's radius, or the speed of a run that is nearly straight, with what it is for nine tenths of the time."""
+    radii = [run.turn_radius_quantile(share) for share in (0.05, 0.5, 0.95)]
+    if all(radius is not None and np.isfinite(radius) for radius in radii):
+        return _middle("Turn radius", "m", [float(radius) for radius in radii if radius is not None])
+    known = run.speed[np.isfinite(run.speed)]
+    if not known.size:
+        return Markup("")
+    return _middle("Speed", "m/s", np.quantile(known, [0.05, 0.5, 0.95]).tolist())
+
+
+def _middle(name: str, unit: str, found: Sequence[float]) -> Markup:
+    low, middle, high = map(significant, found)
+    return prose(
+        "{name} {value} (median; nine tenths of the time from {low} to {high} {unit}).",
+        name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=high, unit=unit,
+    )  # fmt: skip
 
 
 def _laws(run: Run) -> Iterator[tuple[str, str]]:

@@ -30,12 +30,15 @@ class Header:
         Names with texts.
     synthetic
         A sentence where the numbers were not measured; empty: nothing is said.
+    headline
+        The key result in a sentence: one number, with how sure it is or how far it goes; empty: there is none.
     """
 
     eyebrow: str
     title: str
     facts: Sequence[tuple[str, str | Markup]]
     synthetic: str = ""
+    headline: str | Markup = ""
 
 
 @dataclass(frozen=True, slots=True)

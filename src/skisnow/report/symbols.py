@@ -41,14 +41,24 @@ _LATEX_SPECIAL: Final = {
     "≤": r"$\le$",
     "≥": r"$\ge$",
     "ϑ": r"$\vartheta$",
+    "α": r"$\alpha$",
     "β": r"$\beta$",
+    "γ": r"$\gamma$",
+    "κ": r"$\kappa$",
+    "μ": r"$\mu$",
+    "σ": r"$\sigma$",
+    "τ": r"$\tau$",
+    "Δ": r"$\Delta$",
+    "≈": r"$\approx$",
+    "→": r"$\rightarrow$",
+    "½": r"\textonehalf{}",
     "ρ": r"$\rho$",
     "δ": r"$\delta$",
     "–": "--",
     "\u202f": r"\,",
     "\n": " ",
     "\r": " ",
-}
+} | {letter: rf"\textsubscript{{{digit}}}" for digit, letter in enumerate("₀₁₂₃₄₅₆₇₈₉")}
 
 
 def prose(template: str, **values: Any) -> Markup:

@@ -20,18 +20,24 @@ COLUMNS_OF_NARROW: Final = 7
 
 
 def table_html(table: Table, *, number: int) -> Markup:
-    """The table in a box that scrolls sideways by itself on a narrow screen."""
+    """The table in a box of its own.
+
+    On a narrow screen its rows stand below each other, each cell behind its column's name (report.css); roles say that
+    it stays a table.
+    """
     head = Markup("").join(_header(column) for column in table.columns)
     shown = table.rows[: table.rows_in_html]
     body = Markup("\n").join(
-        Markup("<tr>")
+        Markup('<tr role="row">')
         + Markup("").join(_cell(column, value, index) for index, (column, value) in _pairs(table, row))
         + Markup("</tr>")
         for row in shown
     )
     return Markup(
-        '<div class="table" id="table-{name}" role="region" aria-label="{label}" tabindex="0"><table{kind}>\n'
-        "<caption><b>Table {number}.</b> {caption}</caption>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>"
+        '<div class="table" id="table-{name}" role="region" aria-label="{label}" tabindex="0">'
+        '<table role="table"{kind}>\n'
+        "<caption><b>Table {number}.</b> {caption}</caption>\n"
+        '<thead role="rowgroup"><tr role="row">{head}</tr></thead>\n<tbody role="rowgroup">\n{body}\n</tbody>'
         "</table></div>\n{below}"
     ).format(
         name=table.name,
@@ -51,7 +57,7 @@ def _pairs(table: Table, row: tuple[Any, ...]) -> enumerate[tuple[Column, Any]]:
 
 def _header(column: Column) -> Markup:
     unit = Markup(" <small>{}</small>").format(html(column.unit)) if column.unit else Markup("")
-    return Markup('<th scope="col"{kind}>{text}{unit}</th>').format(
+    return Markup('<th scope="col" role="columnheader"{kind}>{text}{unit}</th>').format(
         kind=Markup(' class="n"') if column.numeric else Markup(""), text=html(column.header), unit=unit
     )
 
@@ -59,8 +65,10 @@ def _header(column: Column) -> Markup:
 def _cell(column: Column, value: Any, index: int) -> Markup:
     content = cell_html(column, value)
     if index == 0:
-        return Markup('<th scope="row">{}</th>').format(content)
-    return Markup('<td class="n">{}</td>' if column.numeric else "<td>{}</td>").format(content)
+        return Markup('<th scope="row" role="rowheader">{}</th>').format(content)
+    named = column.header + (f" ({column.unit})" if column.unit else "")
+    kind = Markup(' class="n"') if column.numeric else Markup("")
+    return Markup('<td role="cell"{} data-name="{}">{}</td>').format(kind, named, content)
 
 
 def cell_html(column: Column, value: Any) -> Markup:

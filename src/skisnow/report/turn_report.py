@@ -26,7 +26,7 @@ from .tables.run import scenario_table
 from .tables.turn import contacts_table, ensemble_table, parameters_table, shares_table
 from .turn_dict import turn_dict
 from .turn_numbers import middle_track
-from .turn_sentences import ensemble_accuracy, ensemble_sentence, key_sentences, meaning
+from .turn_sentences import ensemble_accuracy, ensemble_sentence, headline, key_sentences, meaning
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -121,7 +121,11 @@ def _header(chain: TurnChain) -> Header:
         "random number generator."
     )
     return Header(
-        "From a field campaign to a turn", f"A turn on the snow of {chain.site}", facts, said if chain.synthetic else ""
+        "From a field campaign to a turn",
+        f"A turn on the snow of {chain.site}",
+        facts,
+        said if chain.synthetic else "",
+        headline(chain),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from markupsafe import Markup
 
 from ..units import MM, N_PER_MM2, N_PER_MM3
 from .number_formatting import counted, interval, significant
@@ -23,8 +24,6 @@ from .turn_numbers import (
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from markupsafe import Markup
 
     from ..simulate.run import Run
     from .turn_chain import TurnChain
@@ -57,6 +56,22 @@ def key_sentences(chain: TurnChain) -> list[Markup]:
     contacts = [_contact(name, run) for name, run in chain.runs.items()]
     spreads = [_band(chain), *_spreads(chain), *_largest_share(chain)]
     return [_snow(chain), *contacts, *contrast(chain), *spreads, *_warned(chain)]
+
+
+def headline(chain: TurnChain) -> Markup:
+    """The turn's radius, and how well its end is known."""
+    radius = median_radius(chain.nominal)
+    aside, ahead = _widths(chain)
+    known = prose(
+        "its end is known within {aside} m across and {ahead} m along the track (90 % of {runs})",
+        aside=significant(aside, 2),
+        ahead=significant(ahead, 2),
+        runs=counted(len(chain.ensemble), "run"),
+    )
+    if radius is None:
+        return prose("The run is straight; {known}.", known=known)
+    value = Markup("<strong>{} m</strong>").format(significant(radius))
+    return prose("Turn radius {value} (median); {known}.", value=value, known=known)
 
 
 def plain_sentences(chain: TurnChain) -> list[Markup]:

@@ -14,6 +14,7 @@ from ..memory import paused_collector
 from ..staging import staged, tidied
 from .figures import figures_of
 from .page import page
+from .pictures import picture_files, write_picture
 from .report_data import ReportData
 from .table_csv import table_csv
 from .table_latex import table_latex
@@ -22,7 +23,6 @@ from .tables import tables_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from .figures import Picture
     from .table import Table
 
 RESULTS: Final = "results.json"
@@ -89,13 +89,13 @@ def _write(data: ReportData, stage: Path, report: Callable[[str], None]) -> list
         _write_table(table, stage / "tables")
     pictures, missing = figures_of(data, progress=report)
     for picture in pictures:
-        _write_picture(picture, stage / "figures")
+        write_picture(picture, stage / "figures")
     report("report.html")
     write_file(stage / "report.html", page(data, tables, pictures, missing))
     report("results.json")
     write_file(stage / RESULTS, results_json(data.results))
     stale = [f"tables/{stem}{ending}" for stem in _other_stems(every_table.values()) for ending in (".csv", ".tex")]
-    return stale + [f"figures/{left_out.name}{ending}" for left_out in missing for ending in (".svg", ".png")]
+    return stale + picture_files(left_out.name for left_out in missing)
 
 
 def _silent(_text: str) -> None:
@@ -105,11 +105,6 @@ def _silent(_text: str) -> None:
 def _write_table(table: Table, folder: Path) -> None:
     write_file(folder / f"{table.file_stem}.csv", table_csv(table))
     write_file(folder / f"{table.file_stem}.tex", table_latex(table))
-
-
-def _write_picture(picture: Picture, folder: Path) -> None:
-    write_file(folder / f"{picture.name}.svg", picture.svg)
-    write_file(folder / f"{picture.name}.png", picture.png)
 
 
 def _other_stems(tables: Iterable[Table]) -> Iterator[str]:

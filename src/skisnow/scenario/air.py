@@ -22,6 +22,8 @@ class Air:
         Quantity(
             "drag.drag_area_m2",
             "drag area C_dA; 0: no drag",
+            label="drag area",
+            symbol="$C_d A$",
             lowest=0.0,
             highest=10.0,
             origin="skiers 0.23 to 0.66; a warning beyond",
@@ -33,6 +35,8 @@ class Air:
         Quantity(
             "drag.air_density_kg_per_m3",
             "density of the air",
+            label="density of the air",
+            symbol="ρ",
             lowest=0.0,
             highest=2.0,
             above=True,
@@ -45,6 +49,7 @@ class Air:
         Quantity(
             "drag.centre_of_pressure_height_m",
             "height of the centre of pressure above the bases; left out: that of the centre of mass",
+            label="height of the centre of pressure",
             lowest=0.0,
             highest=3.0,
             search=Search(0.5, 0.0, 3.0),

@@ -53,6 +53,8 @@ class Contact:
             "snow.unloading_ratio",
             'k_u/H_V: 1 is elastic snow, 1000 all but rigid-plastic; left out or 1 with penetration = "elastic", left '
             "out where the results measured it",
+            label="unloading ratio",
+            symbol="$k_u/H_V$",
             lowest=1.0,
             highest=1000.0,
             origin="not published: a parameter",
@@ -61,6 +63,7 @@ class Contact:
         Word(
             "snow.penetration",
             "whether the snow is plastic (history-dependent), or elastic",
+            label="law of penetration",
             choices=get_args(Penetration),
             default="hypoplastic",
             origin="snow keeps its tracks",
@@ -72,6 +75,7 @@ class Contact:
         Quantity(
             "snow.compaction_resistance",
             "whether pushing the groove brakes the ski",
+            label="pushing the groove brakes",
             origin="exact: else a gliding ski would cut its groove for nothing",
         ),
     ] = True
@@ -80,6 +84,8 @@ class Contact:
         Quantity(
             "snow.shear_displacement_mm",
             "u_y, the way of an edge across until the snow holds it with all of S_f; left out where results have it",
+            label="shear displacement",
+            symbol="$u_y$",
             lowest=0.01,  # below, a step's corrections are as large
             highest=10.0,
             origin="not measured: a choice near the law of the paper, which is its limit 0",
@@ -91,6 +97,8 @@ class Contact:
         Quantity(
             "snow.damping_N_s_per_mm3",
             "c of p = H_V ε + c dε/dt, snow that answers to how fast it is pressed; 0: none",
+            label="damping of the snow",
+            symbol="c",
             lowest=0.0,
             highest=10.0,
             origin="choice: none, as the paper; steady penetration of snow hardly depends on speed",
@@ -102,6 +110,8 @@ class Contact:
         Quantity(
             "snow.delayed_share",
             "delayed elastic depth under a load that stays, over the depth at once; 0: none",
+            label="delayed share",
+            symbol="$H_V/H_2$",
             lowest=0.0,
             highest=10.0,
             origin="choice: none; not measured for groomed snow",
@@ -113,6 +123,8 @@ class Contact:
         Quantity(
             "snow.retardation_time_ms",
             "time in which 63 % of the delayed depth has come; without effect where there is none",
+            label="retardation time",
+            symbol="$c_2/H_2$",
             lowest=1.0,
             highest=1e7,
             origin="choice: what a ski takes to pass; not measured",
@@ -124,6 +136,8 @@ class Contact:
         Quantity(
             "friction.mu_0",
             "μ_0 of the glide friction μ = μ_0 + μ_1 v",
+            label="friction",
+            symbol="$μ_0$",
             lowest=0.0,
             highest=1.0,
             origin="measured μ 0.023 to 0.139; a warning beyond",
@@ -135,6 +149,8 @@ class Contact:
         Quantity(
             "friction.mu_1_s_per_m",
             "μ_1 of it, with the speed v",
+            label="friction that grows with speed",
+            symbol="$μ_1$",
             lowest=-0.1,
             highest=0.1,
             origin="choice: friction that does not depend on speed",
@@ -146,6 +162,7 @@ class Contact:
         Quantity(
             "friction.acts_on",
             "what μ is multiplied with: the load along the snow's normal, or square on the base, side force included",
+            label="friction acts on",
             origin="choice: it does not hang on how the side force spreads along the edge, which nobody measured",
         ),
     ] = "snow-normal"

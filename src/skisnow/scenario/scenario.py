@@ -76,6 +76,7 @@ class Scenario(Shown):
         Word(
             "slope.kind",
             "a plane, or a measured profile of heights",
+            label="shape of the slope",
             choices=("plane", "profile"),
             default="plane",
             origin="choice: the simpler one",
@@ -87,14 +88,21 @@ class Scenario(Shown):
     sledge: RigidSledge
     ski: Annotated[
         Ski,
-        Word("ski.name", "a ski of the catalogue", word_of=_ski_name),
-        Word("ski.file", "the path of a ski file, in place of a name", word_of=_ski_file, names_file=True),
+        Word("ski.name", "a ski of the catalogue", label="ski", word_of=_ski_name),
+        Word(
+            "ski.file",
+            "the path of a ski file, in place of a name",
+            label="file of the ski",
+            word_of=_ski_file,
+            names_file=True,
+        ),
     ]
     stiffness_factor: Annotated[
         float,
         Quantity(
             "ski.stiffness_factor",
             "what the ski's EI and GJ are multiplied with",
+            label="stiffness factor",
             lowest=0.01,
             highest=100.0,
             origin="the ski as it is given",
@@ -106,6 +114,7 @@ class Scenario(Shown):
         Quantity(
             "ski.clamp_length_m",
             "length of ski that boot and binding keep straight",
+            label="clamp length",
             lowest=0.0,
             origin="choice: about a boot's sole",
         ),
@@ -115,6 +124,7 @@ class Scenario(Shown):
         Quantity(
             "ski.footprint_stiffness_N_per_mm2",
             "stiffness of boot and binding under each metre of the clamp length, against bending; left out: rigid",
+            label="footprint stiffness",
             lowest=0.0,
             highest=1e4,
             above=True,
@@ -125,6 +135,7 @@ class Scenario(Shown):
         Quantity(
             "ski.damping_ratio",
             "damping ratio of the ski's first bending mode",
+            label="damping ratio of the ski",
             lowest=0.0,
             highest=1.0,
             origin="choice: a lightly damped beam",
@@ -149,6 +160,8 @@ class Scenario(Shown):
         Quantity(
             "slope.gravity_m_per_s2",
             "acceleration of gravity",
+            label="gravity",
+            symbol="g",
             lowest=0.0,
             highest=100.0,
             above=True,

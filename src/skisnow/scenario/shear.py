@@ -42,6 +42,7 @@ class Shear:
         Quantity(
             "shear.law",
             "law of the shear strength: S_f, S_f (1 - k ϑ), S_f of a density, or cutting with its thrust",
+            label="law of shear",
             origin="choice: the paper's own, Eqn 9",
         ),
     ] = "constant"
@@ -50,6 +51,7 @@ class Shear:
         Quantity(
             "shear.relative_decrease_per_rad",
             'k of law = "by-angle"; S_f is then that of a flat edge',
+            label="relative decrease with the edge angle",
             lowest=0.0,
             highest=0.6366,  # 2/π: beyond, an upright edge would have none
             origin="Eqn 13, one soft snow",
@@ -60,6 +62,8 @@ class Shear:
         Quantity(
             "shear.snow_density_kg_per_m3",
             'density of law = "by-density", whose S_f (Eqn 14) then counts in place of the snow\'s',
+            label="density of the snow",
+            symbol="ρ",
             lowest=151.7,  # below, Eqn 14 gives none
             highest=917.0,
         ),
@@ -69,6 +73,7 @@ class Shear:
         Quantity(
             "shear.dynamic_shear_strength_N_per_mm2",
             'S of law = "machining"; left out: half of S_f, with which an upright edge without μ_t fails at S_f',
+            label="dynamic shear strength",
             lowest=0.0,
             above=True,
         ),
@@ -78,6 +83,7 @@ class Shear:
         Quantity(
             "shear.transverse_friction",
             'μ_t = tan β of law = "machining", across the ski',
+            label="friction across the ski",
             lowest=0.0,
             highest=2.0,
             origin="choice: as the paper compares it; not measured",
@@ -88,6 +94,7 @@ class Shear:
         Quantity(
             "shear.least_shear_plane_deg",
             'angle that (ϑ - β)/2 of law = "machining" does not fall below where an edge comes to lie flat',
+            label="least shear plane",
             lowest=1.0,
             highest=45.0,
             origin="choice: strength and thrust grow without bound as it falls to 0",
@@ -98,6 +105,7 @@ class Shear:
         Quantity(
             "shear.residual_ratio",
             "share of the strength that is left once an edge has slipped, with any law; 1: all of it",
+            label="residual ratio",
             lowest=0.0,
             highest=1.0,
             origin="choice: the strength in slip was not measured",
@@ -108,6 +116,7 @@ class Shear:
         Quantity(
             "shear.slip_weakening_mm",
             "slip over which that share is reached, in proportion to it",
+            label="slip weakening length",
             lowest=0.001,
             highest=1000.0,
             origin="choice: not measured",

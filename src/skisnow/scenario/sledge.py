@@ -32,12 +32,25 @@ class RigidSledge:
     skisnow.Scenario
     """
 
-    mass: Annotated[float, Quantity("sledge.mass_kg", "mass without the skis", lowest=0.0, highest=1000.0, above=True)]
+    mass: Annotated[
+        float,
+        Quantity(
+            "sledge.mass_kg",
+            "mass without the skis",
+            label="mass of the sledge",
+            symbol="m",
+            lowest=0.0,
+            highest=1000.0,
+            above=True,
+        ),
+    ]
     inertia: Annotated[
         tuple[float, float, float],
         Quantity(
             "sledge.inertia_kg_m2",
             "roll, pitch and yaw moments of inertia at the centre of mass, without the skis",
+            label="moments of inertia",
+            symbol="I",
             lowest=0.0,
             above=True,
             origin="none is more than the sum of the others",
@@ -48,6 +61,7 @@ class RigidSledge:
         Quantity(
             "sledge.centre_of_mass_height_m",
             "height of the centre of mass above the bases",
+            label="height of the centre of mass",
             lowest=0.0,
             highest=3.0,
             search=Search(0.5, 0.0, 3.0),
@@ -56,6 +70,7 @@ class RigidSledge:
         Quantity(
             "sledge.centre_of_mass_forward_m",
             "how far the centre of mass lies before the boots",
+            label="centre of mass ahead of the boots",
             lowest=-1.0,
             highest=1.0,
             default=0.0,
@@ -69,6 +84,7 @@ class RigidSledge:
         Quantity(
             "sledge.stance_width_m",
             "between the middles of the skis; at least a ski's maximum width",
+            label="stance width",
             lowest=0.0,
             highest=3.0,
             above=True,
@@ -80,6 +96,8 @@ class RigidSledge:
         Quantity(
             "sledge.edge_angle_deg",
             "angle of both skis' bases to the sledge; positive: left edges down, a turn to the left",
+            label="edge angle",
+            symbol="ϑ",
             lowest=-85.0,
             highest=85.0,
             origin="at 90° an edge bears nothing",

@@ -43,6 +43,8 @@ class Plane:
         Quantity(
             "slope.angle_deg",
             'inclination of the plane; only with kind = "plane"',
+            label="slope angle",
+            symbol="α",
             lowest=0.0,
             highest=STEEPEST_DEG,
             origin="choice: steeper is a cliff",
@@ -97,6 +99,7 @@ class Profile(Shown):
         Word(
             "slope.profile",
             'CSV file with the columns x and y, horizontal distance and height in m; only with kind = "profile"',
+            label="file of the profile",
             word_of=str,
             names_file=True,
         ),
@@ -106,6 +109,7 @@ class Profile(Shown):
         Quantity(
             "slope.profile_gap",
             "what to do where points of the profile are more than 5 m apart",
+            label="gaps in the profile",
             origin="choice: nobody measured what lies between",
         ),
     ] = field(default="error", kw_only=True)

@@ -29,6 +29,7 @@ class Solver:
         Quantity(
             "solver.method",
             "how exact: fast holds the error of a step to ten times the tolerance",
+            label="method",
             origin="choice: the more exact one",
         ),
     ] = "default"
@@ -37,6 +38,7 @@ class Solver:
         Quantity(
             "solver.step_ms",
             "the first time step; with fixed = true every step",
+            label="time step",
             lowest=0.001,  # below, rounding counts
             highest=5.0,  # above, a ski's first bending mode is not resolved
             origin="choice: near what a start takes",
@@ -47,6 +49,7 @@ class Solver:
         Quantity(
             "solver.tolerance_mm",
             "largest error of place that one step may make by its own estimate; with method = fast ten times as large",
+            label="tolerance",
             lowest=1e-9,
             highest=10.0,
             origin="choice: see the tests of convergence",
@@ -57,6 +60,7 @@ class Solver:
         Quantity(
             "solver.fixed",
             "whether the step stays as it is, without control of the error",
+            label="fixed time step",
             origin="choice: a step that is too long is wrong without a sign",
         ),
     ] = False
@@ -65,6 +69,7 @@ class Solver:
         Quantity(
             "solver.elements",
             "finite elements over a ski; left out: from ski and snow",
+            label="elements of a ski",
             lowest=4,
             highest=MOST_ELEMENTS,
         ),
@@ -74,6 +79,7 @@ class Solver:
         Quantity(
             "solver.line_spacing_mm",
             "distance along the path between the lines that keep the snow's groove; left out: from ski and snow",
+            label="distance of the snow lines",
             lowest=0.1,
             highest=200.0,
         ),
@@ -83,6 +89,7 @@ class Solver:
         Quantity(
             "solver.groove_tolerance",
             "share of a contact's depth times width by which the groove on a line may be simplified",
+            label="tolerance of the groove",
             lowest=1e-9,
             highest=0.1,
             origin="choice: see the tests of convergence",
@@ -93,6 +100,7 @@ class Solver:
         Quantity(
             "solver.delayed_spacing_mm",
             "distance across a groove between the places that keep their delayed depth",
+            label="spacing of delayed depths",
             lowest=0.01,
             highest=20.0,
             origin="choice: see the page on rate",
@@ -103,6 +111,7 @@ class Solver:
         Quantity(
             "solver.cell_mm",
             "has no effect since the groove is kept as straight pieces; read so that older files stay good",
+            label="cells of the snow",
             lowest=0.01,
             highest=100.0,
         ),
@@ -112,6 +121,7 @@ class Solver:
         Quantity(
             "run.output_ms",
             "time between the rows that are kept",
+            label="time between outputs",
             lowest=0.1,
             highest=1000.0,
             origin="choice: a tenth of a metre at 10 m/s",

@@ -23,6 +23,8 @@ class Start:
         Quantity(
             "start.x_m",
             "place of the boots' middle down the slope; on a profile its horizontal distance",
+            label="start, down the fall line",
+            symbol="x",
             origin="choice: where x begins",
             search=Search(1.0, -20.0, 20.0, about=True),
         ),
@@ -32,6 +34,8 @@ class Start:
         Quantity(
             "start.y_m",
             "place to the left",
+            label="start, across it",
+            symbol="y",
             origin="choice: where y begins",
             search=Search(1.0, -20.0, 20.0, about=True),
         ),
@@ -39,7 +43,13 @@ class Start:
     speed: Annotated[
         float,
         Quantity(
-            "start.speed_m_per_s", "speed along the skis", lowest=0.0, highest=100.0, search=Search(10.0, 0.0, 60.0)
+            "start.speed_m_per_s",
+            "speed along the skis",
+            label="speed at the start",
+            symbol="v",
+            lowest=0.0,
+            highest=100.0,
+            search=Search(10.0, 0.0, 60.0),
         ),
     ]
     heading: Annotated[
@@ -47,6 +57,7 @@ class Start:
         Quantity(
             "start.heading_deg",
             "heading of the skis from the fall line, positive left",
+            label="heading at the start",
             lowest=-180.0,
             highest=180.0,
             origin="choice: down the fall line",
@@ -75,6 +86,7 @@ class Stop:
         Quantity(
             "run.duration_s",
             "simulated time; with length_m beside it, whichever comes first",
+            label="ends after",
             lowest=0.0,
             highest=3600.0,
             above=True,
@@ -85,6 +97,7 @@ class Stop:
         Quantity(
             "run.length_m",
             "length of the path of the boots' middle after which the run is done",
+            label="ends after a way of",
             lowest=0.0,
             highest=100_000.0,
             above=True,

@@ -36,19 +36,25 @@ class Moment:
         Kinetic, potential, elastic in the skis and in the snow; lost to penetration, shear, friction, drag, damping of
         the skis and of the snow since the start; given by boots that move and by pushes (J), (12,).
     along
-        Depth of the edge (m), force and shear per length (N/m), deflection (m) and twist (rad) at the nodes, of both
-        skis: (5, 2, m).
-    boots
-        Place and axes in space, force and moment of the ski on it in its own axes, (2, 18).
+        Depth of the edge (m), force and shear per length (N/m) at the nodes, for each ski (3, m).
+    dofs
+        Of the beams at the free nodes (skis, n): deflection (m), its slope and twist (rad).
+    body
+        Place of the body's origin and its axes as columns, in space, (3,) and (3, 3).
+    boots, wrench
+        In the body's axes, (skis, 5, 3), see `Dynamics.boots`; force and moment of the ski on it in its own (skis, 6).
     """
 
     time: float
     place: FloatArray
     attitude: FloatArray
     velocity: FloatArray
-    energies: FloatArray
-    along: FloatArray
+    energies: tuple[float, ...]
+    along: tuple[FloatArray, ...]
+    dofs: FloatArray
+    body: tuple[FloatArray, FloatArray]
     boots: FloatArray
+    wrench: FloatArray
 
 
 @dataclass(slots=True)
@@ -80,16 +86,13 @@ class Record:
 
     def _present(self) -> Moment:
         setup, dynamics = self.setup, self.setup.dynamics
-        dofs = at_nodes(dynamics.beam_dofs, dynamics.body.skis[0].unknown)
-        along = np.concatenate(
-            [np.stack([dynamics.along(k) for k in range(len(dofs))], axis=1), dofs[:, :, 0][None], dofs[:, :, 2][None]]
-        )
-        axes = np.einsum("ab,kcb->kca", dynamics.rotation, dynamics.boots[:, 1:4])
-        place = dynamics.position + dynamics.boots[:, 0] @ dynamics.rotation.T
-        boots = np.concatenate([place, axes.reshape(len(dofs), 9), dynamics.boot_wrench], axis=1)
-        return Moment(dynamics.time, setup.place, setup.attitude, setup.velocity, self._energies(), along, boots)
+        along = tuple(dynamics.along(k) for k in range(len(dynamics.body.skis)))
+        return Moment(
+            dynamics.time, setup.place, setup.attitude, setup.velocity, self._energies(), along, dynamics.beam_dofs,
+            (dynamics.position, dynamics.rotation), dynamics.boots, dynamics.boot_wrench,
+        )  # fmt: skip
 
-    def _energies(self) -> FloatArray:
+    def _energies(self) -> tuple[float, ...]:
         """Where the energy is, and where it went.
 
         Penetration: what the normal force took, less what the snow gives back, and what its damping and its delayed
@@ -107,7 +110,7 @@ class Record:
         by_press = min(shear, 0.0)
         lifted = min(penetration + by_press, 0.0)
         lost = (penetration + by_press - lifted, shear - by_press + lifted, by_friction, by_drag, by_damping, by_rate)
-        return np.array([*dynamics.energies, normal_elastic + shear_elastic, *lost, *dynamics.work_given])
+        return (*dynamics.energies, normal_elastic + shear_elastic, *lost, *dynamics.work_given)
 
     @property
     def last_interval(self) -> float:
@@ -118,9 +121,9 @@ class Record:
     def gains_energy(self) -> bool:
         """Whether motion, height and deflection have more energy than at the start: numbers have diverged."""
         first, last = self._moments[0].energies, self._moments[-1].energies
-        given = float(last[-len(GIVEN) :].sum())
-        gained = float(last[:_MECHANICAL].sum() - first[:_MECHANICAL].sum()) - given
-        exchanged = float(first[0] + max(0.0, first[1] - last[1])) + abs(given)
+        given = sum(last[-len(GIVEN) :])
+        gained = sum(last[:_MECHANICAL]) - sum(first[:_MECHANICAL]) - given
+        exchanged = first[0] + max(0.0, first[1] - last[1]) + abs(given)
         return not gained <= GAINED_SHARE * exchanged + GAINED
 
     def drop(self) -> None:
@@ -131,15 +134,13 @@ class Record:
 
     def histories(self) -> dict[str, Any]:
         """The arrays of a `Run`."""
-        time, place, attitude, velocity, energies, along, boots = (
-            np.array([getattr(each, name) for each in self._moments]) for name in Moment.__slots__
+        time, place, attitude, velocity, energies, along, dofs = (
+            np.array([getattr(each, name) for each in self._moments]) for name in _ARRAYS
         )
         normal = np.array([self.setup.slope_normal(float(x)) for x in place[:, 0]])
-        skis = {name: along[:, i] for i, name in enumerate(_ALONG)}
-        node = self.setup.node
-        shapes = {"place": (slice(0, 3), (3,)), "axes": (slice(3, 12), (3, 3))}
-        shapes |= {"own_force": (slice(12, 15), (3,)), "own_moment": (slice(15, 18), (3,))}
-        history = BootHistory(**{name: boots[..., at].reshape(-1, 2, *shape) for name, (at, shape) in shapes.items()})
+        bent = at_nodes(dofs, self.setup.dynamics.body.skis[0].unknown)
+        skis = dict(zip(_ALONG, (*np.moveaxis(along, 2, 0), bent[..., 0], bent[..., 2]), strict=True))
+        node, history = self.setup.node, self._boots()
         track = self._tracks(place, attitude) if self.setup.drive is None else self._moved_tracks(history)
         return {
             "time": time,
@@ -148,10 +149,21 @@ class Record:
             "velocity": velocity,
             "heading": _heading(attitude, normal),
             "turn_radius": turn_radius(time, velocity, attitude[:, :, 2]),
-            "skis": SkiHistory(station=node, track=track, depth=_at_boot(node, along[:, 0]), **skis),
+            "skis": SkiHistory(station=node, track=track, depth=_at_boot(node, skis["edge_depth"]), **skis),
             "energies": {name: energies[:, i] for i, name in enumerate((*STORED, *LOST, *GIVEN))},
             "boots": history,
         }
+
+    def _boots(self) -> BootHistory:
+        """The boots in space."""
+        origin, axes = (np.array([each.body[part] for each in self._moments]) for part in (0, 1))
+        boots, wrench = (np.array([getattr(each, name) for each in self._moments]) for name in ("boots", "wrench"))
+        return BootHistory(
+            place=origin[:, None] + np.einsum("nab,nkb->nka", axes, boots[:, :, 0]),
+            axes=np.einsum("nab,nkcb->nkca", axes, boots[:, :, 1:4]),
+            own_force=wrench[..., :3],
+            own_moment=wrench[..., 3:],
+        )
 
     def _moved_tracks(self, boots: BootHistory) -> FloatArray:
         """The same of boots that move: (n, 2, 3)."""
@@ -177,9 +189,9 @@ class Record:
 
 
 def at_nodes(dofs: FloatArray, unknown: FloatArray) -> FloatArray:
-    """Unknowns of the free nodes (skis, n) at all nodes, zero where held: (skis, nodes, 3)."""
-    out = np.zeros((len(dofs), len(unknown), 3))
-    out[:, unknown >= 0] = dofs.reshape(len(dofs), -1, 3)
+    """Unknowns of the free nodes (..., skis, n) at all nodes, zero where held: (..., skis, nodes, 3)."""
+    out = np.zeros((*dofs.shape[:-1], len(unknown), 3))
+    out[..., unknown >= 0, :] = dofs.reshape(*dofs.shape[:-1], -1, 3)
     return out
 
 
@@ -200,6 +212,7 @@ def _arc(one: Moment, other: Moment) -> float:
     return chord * (1.0 + angle2 / 24.0) if angle2 < 1.0 else chord
 
 
+_ARRAYS = ("time", "place", "attitude", "velocity", "energies", "along", "dofs")
 _ALONG = ("edge_depth", "force_per_length", "shear_per_length", "bending", "twist")
 
 

@@ -16,8 +16,9 @@ from ..report import write_report
 from ..report.figures import DRAWERS
 from ..report.figures.drawing import Drawing, svg_of
 from ..report.figures.style import journal_style, site_styles
+from ..report.page import tables_html
 from ..report.report_data import ReportData
-from ..report.table_html import table_html
+from ..report.sentences.key_results import key_results
 from ..report.tables import tables_of
 
 if TYPE_CHECKING:
@@ -48,9 +49,10 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """The campaign as chosen, analysed, and the tables as HTML by name."""
+    """The campaign as chosen, analysed; the report's key results and, by name, its tables, as HTML."""
 
     analysis: Analysis
+    key_results: tuple[str, ...]
     tables: dict[str, str]
 
     @property
@@ -87,10 +89,10 @@ def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
         analysis = analyse(_chosen(campaign_of_files(files.contents, others=files.others), choice))
     except SkisnowError as error:
         return Refusal(str(error))
-    tables = tables_of(ReportData(analysis))
-    present = [tables[name] for name in SHOWN_TABLES if name in tables and tables[name].rows]
-    html = {table.name: str(table_html(table, number=number)) for number, table in enumerate(present, start=1)}
-    return Numbers(analysis, html)
+    data = ReportData(analysis)
+    html = tables_html({name: table for name, table in tables_of(data).items() if table.rows})
+    shown: dict[str, str] = {name: str(html[name]) for name in SHOWN_TABLES if name in html}
+    return Numbers(analysis, tuple(map(str, key_results(data))), shown)
 
 
 def figure(analysis: Analysis, number: int) -> Shown | None:

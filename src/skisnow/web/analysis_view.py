@@ -14,6 +14,7 @@ from ..report.number_formatting import counted
 from .analysing import Choice, Numbers, Refusal, choosable_flags
 from .error_pages import error_sentence
 from .layout import heading, sentence
+from .worded import Words, named
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -30,6 +31,7 @@ LONG_TABLES: Final = {
     "penetration_experiments": "Every penetration experiment",
     "shear_experiments": "Every shear experiment",
 }
+FIRST_TABLE: Final = "sites"
 MOST_LISTED: Final = 400
 
 
@@ -55,10 +57,11 @@ class AnalysisView:
         self._page = page
         self._analyses = analyses
         self._asked = 0
-        self._status = ui.label("Computing …").classes("status").props("role=status aria-live=polite")
-        self._choices = ui.element("section").props('aria-label="Included data"')
-        self._tables = ui.element("section").props('aria-label="Tables"')
-        self._figures = ui.element("section").props('aria-label="Figures"')
+        self._status = Words("Computing …").classes("status").props("role=status aria-live=polite")
+        self._results = named(ui.element("section"), "Key results")
+        self._choices = named(ui.element("section"), "Included data")
+        self._tables = named(ui.element("section"), "Tables")
+        self._figures = named(ui.element("section"), "Figures")
 
     def show_known(self) -> None:
         """Show at once what was computed before."""
@@ -98,6 +101,7 @@ class AnalysisView:
         self._page.analysed = None
         self._page.refused = f"This campaign cannot be analysed yet. {refusal.said}"
         self._page.settled.set()
+        self._results.clear()
         self._tables.clear()
         self._figures.clear()
         self._status.set_text(self._page.refused)
@@ -106,6 +110,7 @@ class AnalysisView:
         first, self._page.analysed = not self._choices.default_slot.children, found
         if first:
             self._show_choices(found.numbers)
+        self._show_results(found.numbers)
         self._show_tables(found.numbers)
         self._status.set_text(f"{_counts(found.numbers)} Drawing the figures …")
 
@@ -125,13 +130,26 @@ class AnalysisView:
         if not self._is_old(asked):
             self._status.set_text(_counts(found.numbers))
 
+    def _show_results(self, found: Numbers) -> None:
+        """H_V and S_f first: the report's own sentences, and below them each site's."""
+        self._results.clear()
+        with self._results:
+            heading(found.results["campaign"]["name"])
+            with ui.element("ul").classes("results"):
+                for words in found.key_results:
+                    with ui.element("li"):
+                        ui.html(words, sanitize=False)  # the report's own, in which all that users wrote is escaped
+            for warning in found.results["penetration"]["warnings"]:
+                sentence(warning, "quiet")
+            if FIRST_TABLE in found.tables:
+                _table(found.tables[FIRST_TABLE])
+
     def _show_tables(self, found: Numbers) -> None:
         self._tables.clear()
         with self._tables:
-            heading(found.results["campaign"]["name"])
-            if (selected := found.results["penetration"]["selected"]) is not None:
-                sentence(f"Law: {selected['id']}. {selected['reason']}")
             for name, html in found.tables.items():
+                if name == FIRST_TABLE:
+                    continue
                 if name in LONG_TABLES:
                     _behind(LONG_TABLES[name], partial(_table, html))
                 else:
@@ -187,7 +205,7 @@ class AnalysisView:
 def _behind(words: str, fill: Callable[[], None]) -> None:
     """Let what is long be opened by who wants it; until then it costs nothing."""
     with ui.element("details") as details, ui.element("summary"):
-        ui.label(words)
+        Words(words)
 
     def opened() -> None:
         if len(details.default_slot.children) == 1:

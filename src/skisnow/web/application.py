@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Final
 from fastapi import FastAPI
 from nicegui import app as pages_app
 from nicegui import ui
-from starlette.responses import FileResponse
+from starlette.responses import FileResponse, RedirectResponse, Response
 
 from .error_pages import add_error_pages, log_to
 from .guard import Access, Guard
-from .layout import KEEPING, SCRIPT, STYLES
+from .language import COOKIE, languages
+from .layout import KEEPING, LANGUAGE, SCRIPT, STYLES
 from .pages import INNER, PAGES
 from .patience import RECONNECT_S, use_heartbeat
 from .socket_events import answer_quietly
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from .settings import Lab
 
 LOG_FILE: Final = "lab.log"
+KEPT_S: Final = 365 * 24 * 3600
 _HERE: Final = Path(__file__).parent
 
 
@@ -45,6 +47,7 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     outer.add_api_route(STYLES, lambda: _own("lab.css", "text/css"), include_in_schema=False)
     outer.add_api_route(SCRIPT, lambda: _own("lab.js", "text/javascript"), include_in_schema=False)
     outer.add_api_route(KEEPING, lambda: _own("kept.js", "text/javascript"), include_in_schema=False)
+    outer.add_api_route(LANGUAGE + "/{code}", _chosen, include_in_schema=False, response_model=None)
     add_transfer(outer, lab)
     for name in (*PAGES, *INNER):
         import_module(f".pages.{name}", __package__).add_page(lab)
@@ -61,6 +64,15 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     answer_quietly()
     pages_app.config.socket_io_js_transports = ["websocket"]
     return Guard(outer, Access(host, token, lab.limits.upload_bytes))
+
+
+def _chosen(code: str, back: str = "/") -> Response:
+    """Keep the language that was chosen, and go back to the page that it was chosen on."""
+    place = back if back.startswith("/") and not back.startswith(("//", "/\\")) else "/"
+    answer = RedirectResponse(place, 303)
+    if code in languages():
+        answer.set_cookie(COOKIE, code, max_age=KEPT_S, samesite="lax", path="/", httponly=True)
+    return answer
 
 
 def _own(name: str, kind: str) -> FileResponse:

@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class QuickResults:
-    """Quick results of a site: by experiment the rows of results.json and the quality flags in words; the curves."""
+    """Quick results of a site: rows of results.json and quality flags (words by code) by experiment; curves."""
 
     penetration: dict[str, dict[str, Any]]
     shear: dict[str, dict[str, Any]]
     curves: dict[str, SeriesCurve]
-    flags: dict[str, tuple[str, ...]]
+    flags: dict[str, dict[str, str]]
 
 
 class EditSession:
@@ -103,11 +103,12 @@ def quick_results(campaign: Campaign, site: str) -> QuickResults:
     )
 
 
-def _in_words(problems: list[Problem]) -> dict[str, tuple[str, ...]]:
-    """Quality flags by file and experiment, as sentences."""
-    sentences: dict[str, tuple[str, ...]] = {}
+def _in_words(problems: list[Problem]) -> dict[str, dict[str, str]]:
+    """Quality flags by file and experiment: sentences by code."""
+    sentences: dict[str, dict[str, str]] = {}
     for problem in problems:
         found = f" Found: {problem.value}; not flagged would be {problem.allowed}." if problem.value is not None else ""
         key = f"{problem.file}/{problem.experiment}"
-        sentences[key] = (*sentences.get(key, ()), f"{QUALITY_FLAGS[problem.code].sentence}{found} {problem.action}")
+        sentence = f"{QUALITY_FLAGS[problem.code].sentence}{found} {problem.action}"
+        sentences.setdefault(key, {})[problem.code] = sentence
     return sentences

@@ -7,7 +7,8 @@
   const PATIENCE_MS = 150000; // an answer that has not come by then is not coming: the connection is given up before
   const CONNECT_MS = 90000; // the framework loads the page anew where the lab has not taken a call by then
   const PAUSE_MS = 250; // a hand that types on is quicker, one that has seen a refusal is slower
-  const LOST = "The lab does not answer. What is shown as stored is stored. The fields open again by themselves.";
+  const { language, words } = document.currentScript.dataset;
+  const SAID = JSON.parse(words); // what is said here, in the language of the page
   const held = []; // keys typed while an answer is on its way
   let waiting = "ahead" in document.currentScript.dataset; // the page itself is the first answer, number 0
   let refused = false; // what was asked last
@@ -70,7 +71,7 @@
     left?.blur?.();
     fieldsets().forEach((each) => (each.disabled = true));
     document.documentElement.classList.add("not-connected");
-    say("connection", LOST);
+    say("connection", SAID.lost);
   }
 
   // The lab has answered what was sent again: those that it could not store are said in full.
@@ -95,7 +96,7 @@
     const before = kept.restore();
     if (before.held.length && (before.ready || before.ahead)) held.unshift(...before.held);
     else if (before.held.length) before.without.push(before.held.map(inWords).join(""));
-    if (before.without.length) refusals.push(`Typed before and not stored: ${before.without.join("; ")}`);
+    if (before.without.length) refusals.push(`${SAID.before} ${before.without.join("; ")}`);
     if (refusals.length) say("unused", refusals.join(" "));
     await pause(0); // the fields tell what was put back before a key comes
     waiting = false;
@@ -209,7 +210,7 @@
       before = held.length;
       await pause(PAUSE_MS);
     }
-    if (held.length) say("unused", `Typed meanwhile and not used: ${held.splice(0).map(inWords).join("")}`);
+    if (held.length) say("unused", `${SAID.meanwhile} ${held.splice(0).map(inWords).join("")}`);
   }
 
   const pause = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -264,6 +265,7 @@
     event.preventDefault();
     const next = behind(event.target, event.currentTarget).find((field) => field.checkVisibility());
     next?.focus();
+    next?.select(); // what stands there already is written over
   }
 
   // In a reading: it is told to the lab, and the next one is typed meanwhile. Where there was another one before, the
@@ -279,6 +281,24 @@
     const next = behind(field, row.parentElement).find((each) => !each.value);
     const button = field.closest(".lab").querySelector(".then");
     (next ?? (typed ? button : null))?.focus();
+  }
+
+  // The last reading was refused: its field again, all of it marked, unless somebody has gone elsewhere meanwhile.
+  function refusedLast(id) {
+    const field = getHtmlElement(id)?.querySelector("input") ?? getHtmlElement(id);
+    if (!document.activeElement?.matches("button.then")) return;
+    field.focus();
+    field.select();
+  }
+
+  // A field that has to be put right: shown, with the focus in it and all of it marked.
+  function goTo(id) {
+    const place = getHtmlElement(id);
+    const field = place?.matches("input") ? place : (place?.querySelector("input, [tabindex]") ?? place);
+    for (let each = field; each; each = each.parentElement) if (each.matches("details")) each.open = true;
+    field?.focus();
+    field?.select?.();
+    field?.scrollIntoView({ block: "center" });
   }
 
   // A reading is left: it counts as told, unless the connection closed its field, or only the window was left.
@@ -302,7 +322,9 @@
   window.addEventListener("input", () => setTimeout(save), true);
   window.addEventListener("pagehide", save);
   window.addEventListener("pageshow", () => goingTo && location.reload()); // come back to by the browser's button
+  document.documentElement.lang = language;
+  document.documentElement.style.setProperty("--not-stored", JSON.stringify(SAID.refused));
   document.documentElement.classList.add("not-connected");
   tellHolding();
-  window.lab = { ask, answered, connected, enter, grown, leave, leaving, onward, reading, resent, told };
+  window.lab = { ask, answered, connected, enter, goTo, grown, leave, leaving, onward, reading, refusedLast, resent, told };
 })();

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from contextlib import contextmanager
+from html import escape
 from importlib import import_module
 from typing import TYPE_CHECKING
+from urllib.parse import quote
 
 from nicegui import ui
 
+from .language import language_of, languages, said
 from .pages import PAGES
+from .worded import Words, named
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,6 +22,13 @@ STYLES = "/lab.css"
 SCRIPT = "/lab.js"
 KEEPING = "/kept.js"
 CONNECTED = "lab.connected()"
+LANGUAGE = "/language"
+SAID_BY_SCRIPT = {
+    "lost": "The lab does not answer. What is shown as stored is stored. The fields open again by themselves.",
+    "before": "Typed before and not stored:",
+    "meanwhile": "Typed meanwhile and not used:",
+    "refused": "not stored",
+}
 CONNECTING = "Connecting to the lab. The fields open as soon as it answers."
 
 
@@ -35,36 +47,54 @@ def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = Fal
     keeps
         What is typed and not stored yet is there again when the page is loaded anew; so it is where ``ahead``.
     """
-    ui.page_title(f"{title} · skisnow")
+    ui.page_title(f"{said(title)} · skisnow")
     ui.add_head_html(f'<link rel="stylesheet" href="{STYLES}">')
     ui.add_head_html(f'<script src="{KEEPING}"{" data-keeps" if keeps or ahead else ""}></script>')
-    ui.add_head_html(f'<script src="{SCRIPT}"{" data-ahead" if ahead else ""}></script>')
+    ui.add_head_html(_script(ahead=ahead))
     client = ui.context.client
     client.run_javascript(CONNECTED)  # before all else that the page has to say: no focus goes into a closed field
     client.on_connect(lambda: client.run_javascript(CONNECTED))
     with ui.element("a").props('href="#content"').classes("skip"):
-        ui.label("Skip to the content")
+        Words("Skip to the content")
     with ui.element("header").classes("lab-head"):
-        ui.label("skisnow").classes("lab-name")
-        with ui.element("nav").props('aria-label="Pages"'):
+        Words("skisnow").classes("lab-name")
+        with named(ui.element("nav"), "Pages"):
             for name in PAGES:
                 _link(name, here)
+        _other_language()
     with (
-        ui.element("main").props('id="content"'),
+        ui.element("div").props('id="content"'),  # inside the framework's main
         ui.element("fieldset").classes("lab").props("disabled role=none"),
     ):
         heading(title, 1)
         yield
     with ui.element("div").classes("lab-says"):
-        ui.label(CONNECTING).classes("connection").props("role=status")
-        ui.label("").classes("unused").props("role=status")
+        Words(CONNECTING).classes("connection").props("role=status")
+        Words("").classes("unused").props("role=status")
     if ahead:
         client.run_javascript("lab.answered(0, true)")
 
 
+def _script(*, ahead: bool) -> str:
+    """The element of the browser's side, with what that says in the language of the page."""
+    words = escape(json.dumps({key: said(text) for key, text in SAID_BY_SCRIPT.items()}, ensure_ascii=False))
+    further = f'data-language="{language_of()}" data-words="{words}"{" data-ahead" if ahead else ""}'
+    return f'<script src="{SCRIPT}" {further}></script>'
+
+
+def _other_language() -> None:
+    """A link for each language that the page is not in; it leads back here."""
+    request = ui.context.client.request
+    back = quote(request.url.path + (f"?{request.url.query}" if request.url.query else ""), safe="")
+    for code, name in languages().items():
+        if code != language_of():
+            link = ui.link(code.upper(), f"{LANGUAGE}/{code}?back={back}").classes("language")
+            link.props(f'hreflang={code} lang={code} title="{name}"').props["aria-label"] = name
+
+
 def _link(name: str, here: str) -> None:
     page = import_module(f".pages.{name}", __package__)
-    link = ui.link(page.TITLE, page.PATH)
+    link = ui.link(said(page.TITLE), page.PATH)
     if here == page.PATH:
         link.props('aria-current="page"')
 
@@ -72,9 +102,9 @@ def _link(name: str, here: str) -> None:
 def heading(text: str, level: int = 2) -> None:
     """A heading of the page's outline."""
     with ui.element(f"h{level}"):
-        ui.label(text)
+        Words(text)
 
 
 def sentence(text: str, kind: str = "") -> ui.label:
     """A sentence of its own; ``kind`` is a class of the stylesheet: quiet, good, bad."""
-    return ui.label(text).classes(f"sentence {kind}".strip())
+    return Words(text).classes(f"sentence {kind}".strip())

@@ -1,7 +1,7 @@
 // Lines over one quantity, as SVG: small, so that a page with several is there at once and follows the hand.
 import { toRaw } from "vue";
 
-const LEFT = 70, RIGHT = 12, TOP = 10, BOTTOM = 48, TICK = 6;
+const LEFT = 70, RIGHT = 12, EDGE = 10, BOTTOM = 48, TICK = 6, LEGEND = 22, LETTER = 8.2;
 const INK = "#14181c", GRID = "#d8dee4", ZERO = "#8b96a1";
 
 function made(kind, attributes, text) {
@@ -66,6 +66,22 @@ function drawn(line, { colour, dash, width, point }, across, up) {
   return made("path", { ...style, stroke: colour, fill: "none" });
 }
 
+// A row of names, each behind a piece of its line; a name that does not fit begins another row. The height of it all.
+function legend(lines, styles, from, to) {
+  let x = from, y = EDGE + 6;
+  const found = [];
+  for (const line of lines.filter((each) => each.name)) {
+    const { colour, dash } = styles[line.style], wide = 34 + LETTER * line.name.length;
+    if (x > from && x + wide > to) [x, y] = [from, y + LEGEND - 2];
+    const sample = line.points ? { d: `M${x + 12} ${y}h0`, "stroke-width": 9, "stroke-linecap": "round" }
+      : { d: `M${x} ${y}h24`, "stroke-width": 2.5, "stroke-dasharray": dash };
+    found.push(made("path", { ...sample, stroke: colour, fill: "none" }));
+    found.push(made("text", { x: x + 30, y: y + 5, class: "name" }, line.name));
+    x += wide + 14;
+  }
+  return [found, found.length ? y + LEGEND - EDGE : EDGE];
+}
+
 export default {
   template: '<div><svg role="img" style="display: block; width: 100%; touch-action: pan-y"></svg></div>',
   props: { panel: Object, height: Number, styles: Array },
@@ -88,25 +104,30 @@ export default {
       const xRange = extent(lines.flatMap((line) => line.x), panel.from_zero.includes("x"));
       const yRange = panel.range || extent(lines.flatMap((line) => line.y), panel.from_zero.includes("y"));
       const right = width - RIGHT, bottom = this.height - BOTTOM;
+      const [names, top] = legend(lines, this.styles, LEFT, right);
+      this.top = top;
       this.across = scale(xRange, LEFT, right);
-      this.up = scale(yRange, bottom, TOP);
-      const children = [];
+      this.up = scale(yRange, bottom, top);
+      const children = names;
       for (const [value, text] of ticks(xRange, right - LEFT, 70)) {
         const x = this.across(value);
-        children.push(made("path", { d: `M${x} ${TOP}V${bottom + TICK}`, stroke: value === 0 ? ZERO : GRID }));
+        children.push(made("path", { d: `M${x} ${top}V${bottom + TICK}`, stroke: value === 0 ? ZERO : GRID }));
         children.push(made("text", { x, y: bottom + 20, "text-anchor": "middle" }, text));
       }
-      for (const [value, text] of ticks(yRange, bottom - TOP, 38)) {
+      for (const [value, text] of ticks(yRange, bottom - top, 38)) {
         const y = this.up(value);
         children.push(made("path", { d: `M${LEFT - TICK} ${y}H${right}`, stroke: value === 0 ? ZERO : GRID }));
         children.push(made("text", { x: LEFT - 10, y: y + 5, "text-anchor": "end" }, text));
       }
       children.push(made("text", { x: (LEFT + right) / 2, y: this.height - 8, "text-anchor": "middle" }, panel.x));
-      const middle = (TOP + bottom) / 2;
+      const [before, behind] = panel.ends ?? ["", ""];
+      if (before) children.push(made("text", { x: LEFT, y: this.height - 8, class: "end" }, `◂ ${before}`));
+      if (behind) children.push(made("text", { x: right, y: this.height - 8, "text-anchor": "end", class: "end" }, `${behind} ▸`));
+      const middle = (top + bottom) / 2;
       children.push(made("text", { x: 16, y: middle, "text-anchor": "middle", transform: `rotate(-90 16 ${middle})` }, panel.y));
       // a window of its own: what is beyond the range is cut off
-      const inside = made("svg", { x: LEFT, y: TOP, width: Math.max(0, right - LEFT), height: bottom - TOP,
-                                   viewBox: `${LEFT} ${TOP} ${Math.max(1, right - LEFT)} ${bottom - TOP}` });
+      const inside = made("svg", { x: LEFT, y: top, width: Math.max(0, right - LEFT), height: bottom - top,
+                                   viewBox: `${LEFT} ${top} ${Math.max(1, right - LEFT)} ${bottom - top}` });
       inside.append(...lines.map((line) => drawn(line, this.styles[line.style], this.across, this.up)));
       this.svg.setAttribute("viewBox", `0 0 ${width} ${this.height}`);
       this.svg.setAttribute("height", this.height);
@@ -132,8 +153,8 @@ export default {
       const at = this.across(nearest[0][0]), text = nearest.map((pair) => pair[1].toPrecision(3)).join(" · ");
       this.reading = made("g", { "aria-hidden": "true" });
       this.reading.append(
-        made("path", { d: `M${at} ${TOP}V${this.height - BOTTOM}`, stroke: INK }),
-        made("text", { x: at > this.svg.clientWidth / 2 ? at - 6 : at + 6, y: TOP + 14, "font-weight": 700,
+        made("path", { d: `M${at} ${this.top}V${this.height - BOTTOM}`, stroke: INK }),
+        made("text", { x: at > this.svg.clientWidth / 2 ? at - 6 : at + 6, y: this.top + 14, "font-weight": 700,
                        "text-anchor": at > this.svg.clientWidth / 2 ? "end" : "start",
                        stroke: "#fff", "stroke-width": 4, "paint-order": "stroke" },
              `${nearest[0][0].toFixed(3).replace("-", "−")}: ${text.replaceAll("-", "−")}`));

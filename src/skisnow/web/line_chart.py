@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 from nicegui.element import Element
 
 from ..report.number_formatting import significant
+from .language import said
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,12 +34,14 @@ class ChartLine:
     """Values over places, None where there is none, which breaks the line.
 
     ``style`` 0, 1 or 2: the first, second or a further thing, or `BEHIND`. ``points``: points in place of a line.
+    ``name``: what the legend calls it; nothing where it has no entry of its own.
     """
 
     x: Sequence[float | None]
     y: Sequence[float | None]
     style: int = 0
     points: bool = False
+    name: str = ""
 
 
 class LineChart(Element, component="line_chart.js"):
@@ -52,11 +55,13 @@ class LineChart(Element, component="line_chart.js"):
         What it shows, for who cannot see it; the extent of the values is added.
     height
         In pixels of the page.
+    ends
+        What the axis along the bottom leads to on the left and on the right.
     """
 
-    def __init__(self, x: str, y: str, words: str, *, height: int = 240) -> None:
+    def __init__(self, x: str, y: str, words: str, *, height: int = 240, ends: tuple[str, str] = ("", "")) -> None:
         super().__init__()
-        self._titles = {"x": x, "y": y}
+        self._titles = {"x": said(x), "y": said(y), "ends": [said(each) for each in ends]}
         self._words = words
         self._drawn: list[tuple[ChartLine, dict[str, Any]]] = []
         self._props["height"] = height
@@ -90,12 +95,14 @@ class LineChart(Element, component="line_chart.js"):
         for known, plain in self._drawn:
             if known == line:
                 return plain
-        return {"x": _short(line.x), "y": _short(line.y), "style": line.style, "points": line.points}
+        plain = {"x": _short(line.x), "y": _short(line.y), "style": line.style, "points": line.points}
+        return plain | {"name": said(line.name, self.client)}
 
     def _label(self, lines: Sequence[ChartLine]) -> str:
         found = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]
         extent = f": {significant(min(found))} to {significant(max(found))}" if found else ": nothing yet"
-        return self._words + extent
+        names = ", ".join(said(line.name, self.client) for line in lines if line.name)
+        return said(self._words + extent, self.client) + (f" ({names})" if names else "")
 
 
 def _short(values: Sequence[float | None]) -> list[float | None]:

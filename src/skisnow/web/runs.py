@@ -12,6 +12,7 @@ import json
 import re
 import secrets
 import sys
+import time
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
@@ -37,7 +38,8 @@ _PAUSE_S: Final = 0.3
 class Job:
     """One simulation: its folder's name, the scenario, changed keys, when it was asked for (UTC), how it stands.
 
-    ``given`` is what was given with it by name, in words; its paths say nothing to a reader.
+    ``given`` is what was given with it by name, in words; its paths say nothing to a reader. ``took_s`` is how long it
+    took from start to report, once it is done.
     """
 
     name: str
@@ -47,6 +49,7 @@ class Job:
     state: State = "waiting"
     said: str = ""
     given: str = ""
+    took_s: float = 0.0
 
 
 class Runs:
@@ -140,6 +143,7 @@ class Runs:
     async def _run(self, job: Job) -> None:
         self._keep(replace(job, state="running"))
         self._running, self.progress = job.name, "starting"
+        begun = time.monotonic()
         changes = [word for key, value in job.changes.items() for word in ("--set", f"{key}={value}")]
         self._process = await asyncio.create_subprocess_exec(
             *COMMAND,
@@ -158,7 +162,8 @@ class Runs:
         cancelled = self._cancelling == job.name
         self._process, self._running, self._cancelling, self.progress = None, "", "", ""
         if not self._ended:
-            self._keep(self._over(job, last, cancelled=cancelled))
+            over = self._over(job, last, cancelled=cancelled)
+            self._keep(replace(over, took_s=time.monotonic() - begun if over.state == "done" else 0.0))
 
     async def _listen(self, process: asyncio.subprocess.Process) -> str:
         last = ""

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import socket
+import ssl
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import uvicorn
 
 from ..errors import ParameterError
+from .addresses import for_others, lab_addresses
 from .application import lab_application
 from .guard import is_loopback
 from .slow_requests import PatientToAPoint
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from .settings import Lab
 
@@ -35,7 +39,37 @@ def require_allowed(host: str, token: str | None) -> None:
         )
 
 
-def serve(lab: Lab, *, host: str, port: int, token: str | None, tell: Callable[[str], object]) -> None:
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """PEM files of a certificate and of its private key; ``key`` None: it stands in the same file."""
+
+    file: Path
+    key: Path | None = None
+
+    def __post_init__(self) -> None:
+        try:
+            ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(self.file, self.key, password=_no_password)
+        except (OSError, ssl.SSLError, ValueError) as error:
+            raise ParameterError(
+                f"{self.file}: no certificate with its private key can be read ({error}); give a PEM file with both, "
+                "or the key's file with --certificate-key"
+            ) from error
+
+
+def _no_password() -> str:
+    """The server asks nobody for a password."""
+    raise ValueError("the private key has a password")
+
+
+def serve(
+    lab: Lab,
+    *,
+    host: str,
+    port: int,
+    token: str | None,
+    tell: Callable[[str], object],
+    certificate: Certificate | None = None,
+) -> None:
     """Serve the lab until it is interrupted.
 
     Parameters
@@ -47,7 +81,9 @@ def serve(lab: Lab, *, host: str, port: int, token: str | None, tell: Callable[[
     token
         See `require_allowed`.
     tell
-        Called with the address as soon as requests are answered.
+        Called with the address as soon as requests are answered, then with further lines where others may come.
+    certificate
+        With which what goes between the machines is encrypted; None: it is not.
 
     Raises
     ------
@@ -68,17 +104,24 @@ def serve(lab: Lab, *, host: str, port: int, token: str | None, tell: Callable[[
             ws_ping_interval=None,  # the pages' sockets have a heartbeat of their own, which is more patient
             http=PatientToAPoint,
             lifespan="on",
+            ssl_certfile=None if certificate is None else certificate.file,
+            ssl_keyfile=None if certificate is None else certificate.key,
         )
-        _Announced(config, lambda: tell(_address(listener, host))).run(sockets=[listener])
+
+        def begun() -> None:
+            secure = certificate is not None
+            addresses = lab_addresses(host, listener.getsockname()[1], secure=secure)
+            tell(addresses[0])
+            if not is_loopback(host):
+                for line in for_others(addresses, secure=secure):
+                    tell(line)
+
+        _Announced(config, begun).run(sockets=[listener])
 
 
 def _listening(host: str, port: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     return socket.create_server((host, port), family=family)
-
-
-def _address(listener: socket.socket, host: str) -> str:
-    return f"http://{f'[{host}]' if ':' in host else host}:{listener.getsockname()[1]}/"
 
 
 class _Announced(uvicorn.Server):

@@ -10,6 +10,7 @@ from ..errors import ParameterError
 from .fields import button, field
 from .layout import heading, sentence
 from .ski_asked import CELLS, FACTORS, SkiAsked
+from .worded import Words, named
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Mapping
@@ -51,7 +52,7 @@ class SkiEditor:
     def _file(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
         with ui.element("details"):
             with ui.element("summary"):
-                ui.label("The file of the ski")
+                Words("The file of the ski")
             sentence(
                 "With units in its keys. Draw the file takes it as it is written here; factors and values at positions "
                 "start again from it.",
@@ -60,7 +61,7 @@ class SkiEditor:
             written = ui.textarea("File of the edited ski", value=text).props("outlined autogrow").classes("code")
             with ui.element("details"):
                 with ui.element("summary"):
-                    ui.label("Its table, where it has one")
+                    Words("Its table, where it has one")
                 rows = ui.textarea("Table of the edited ski", value=table).props("outlined").classes("code")
             button("Draw the file", self._take_file, "main")
         return written, rows
@@ -116,12 +117,12 @@ class SkiEditor:
             with ui.element("thead"), ui.element("tr"):
                 for words in (POSITION, *CELLS.values()):
                     with ui.element("th").props("scope=col"):
-                        ui.label(words)
+                        Words(words)
             with ui.element("tbody"):
                 for i, station in enumerate(self._stations):
                     with ui.element("tr"):
                         with ui.element("th").props("scope=row"):
-                            ui.label(f"{station:.3f}".replace("-", "−"))
+                            Words(f"{station:.3f}".replace("-", "−"))
                         for column in CELLS:
                             with ui.element("td"):
                                 self._cell(column, i, station)
@@ -129,7 +130,7 @@ class SkiEditor:
     def _cell(self, column: str, i: int, station: float) -> None:
         place = (column, i)
         made = ui.input(value=self._shown[place]).props("outlined dense inputmode=decimal autocomplete=off")
-        made.props(f'aria-label="{CELLS[column]} at {station:.3f} m"')
+        named(made, f"{CELLS[column]} at {station:.3f} m")
         self._cells[place] = made
 
         async def typed() -> None:

@@ -1,4 +1,4 @@
-"""The snow of a campaign for a simulation: its results, and in words what they say and how well it is known."""
+"""The snow of a campaign for a carve or a simulation: its results, and in words what they say and how well."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 from ..errors import ParameterError
 from ..estimate.results_text import results_json
 from ..report.write import RESULTS
-from ..units import MM
+from ..units import MM, N_PER_MM2, N_PER_MM3
 from .analysing import Choice, Refusal, numbers_of
 from .transfer import entry_files, kept_files
-from .words import estimate_words, hardness_words, stress_words
+from .words import estimate_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from ..estimate import Analysis
     from ..scenario.reading import ScenarioFile
     from ..snow import SnowProperties
     from ..sources import Sources
@@ -43,8 +44,8 @@ def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources
     return resolved(given, sources=sources)
 
 
-def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
-    """Results of a campaign, for the key snow.results, and what it says of the snow with intervals in words.
+def campaign_snow(lab: Lab, key: str) -> Analysis:
+    """The analysis of a campaign of the lab.
 
     Parameters
     ----------
@@ -52,35 +53,56 @@ def snow_of_campaign(lab: Lab, key: str, scenario: str, changes: Mapping[str, st
         Whose store has the campaign.
     key
         entry or kept, and the id, with - between.
-    scenario, changes
-        What is to be simulated with it.
 
     Raises
     ------
     ParameterError
-        The campaign gives no snow, or the scenario cannot be read.
+        The campaign gives no snow.
     """
-    from ..scenario import scenario_values
-    from ..snow.snow_dict import snow_dict
-    from ..sources import Sources
-
     kind, id_ = key.split("-", 1)
     found = numbers_of((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
     if isinstance(found, Refusal):
         raise ParameterError(f"this campaign gives no snow yet. {found.said}")
+    return found.analysis
+
+
+def sites_of(analysis: Analysis) -> list[str]:
+    """Sites that H_V was measured at."""
+    return list(dict.fromkeys(row.site for row in analysis.site_means if row.quantity.startswith("H_V")))
+
+
+def results_with(analysis: Analysis, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
+    """The text of results.json of a campaign, and in words the snow that the run then has.
+
+    Parameters
+    ----------
+    analysis
+        Of the campaign.
+    scenario, changes
+        What is to be simulated on its snow; ``snow.site`` names the site.
+
+    Raises
+    ------
+    ParameterError
+        A value cannot be read or is not allowed.
+    """
+    from ..sources import Sources
+
     sources, site = Sources(), changes.get("snow.site") or None
-    sources.take_snow(found.analysis.snow(site), results=RESULTS, site=site)
+    sources.take_snow(analysis.snow(site), results=RESULTS, site=site)
     asked = require_scenario(scenario, {**changes, "snow.results": RESULTS}, sources).scenario
-    values, snow = scenario_values(asked), snow_dict(asked.contact.snow)
-    hardness = {"H_V_N_per_mm3": values["snow.H_V_N_per_mm3"], **snow}
-    stress = {"S_f_N_per_mm2": values["snow.S_f_N_per_mm2"], **snow}
-    words = f"H_V = {hardness_words(hardness)}; S_f = {stress_words(stress)}"
-    return results_json(found.results), "; ".join((words, *_measured_too(asked.contact.snow)))
+    return results_json(analysis.results), snow_words(asked.contact.snow)
 
 
-def _measured_too(snow: SnowProperties) -> Iterator[str]:
-    """k_u/H_V and u_y in words, where the run takes the measured ones."""
+def snow_words(snow: SnowProperties) -> str:
+    """H_V, S_f, k_u/H_V and u_y of a snow in words, with their intervals where these are known."""
+    return "; ".join(_in_words(snow))
+
+
+def _in_words(snow: SnowProperties) -> Iterator[str]:
     known = (
+        ("H_V", snow.snow_hardness, snow.snow_hardness_interval, N_PER_MM3, "N/mm³"),
+        ("S_f", snow.failure_shear_stress, snow.failure_shear_stress_interval, N_PER_MM2, "N/mm²"),
         ("k_u/H_V", snow.unloading_ratio, snow.unloading_ratio_interval, 1.0, ""),
         ("u_y", snow.shear_displacement, snow.shear_displacement_interval, MM, "mm"),
     )

@@ -99,5 +99,5 @@ async def answer_to_token(
         await asyncio.sleep(_WAIT_S)
         return token_page(403, "This is not the token.")
     answer = RedirectResponse("/", 303)
-    answer.set_cookie(*cookie, httponly=True, samesite="strict", path="/")
+    answer.set_cookie(*cookie, httponly=True, samesite="strict", path="/", secure=scope.get("scheme") == "https")
     return answer

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, Final
 
 from ..report.number_formatting import interval, significant
@@ -34,6 +35,10 @@ TABLES: Final = {
     "drop_cone.csv": "Drop cone",
 }
 
+_CALLED: Final = {name: words for name, words in (LABELS | TABLES).items() if "_" in name or "." in name}
+"""Names that are no word of a sentence."""
+_KEYS: Final = re.compile("|".join(rf"(?<![\w.]){re.escape(name)}(?![\w.])" for name in sorted(_CALLED, key=len)[::-1]))
+
 
 def label(column: str) -> str:
     """What a column is called on a page.
@@ -42,6 +47,15 @@ def label(column: str) -> str:
     'Depth (mm)'
     """
     return LABELS.get(column, column)
+
+
+def in_words(message: str) -> str:
+    """A message of the library with the names of columns and tables as the pages call them.
+
+    >>> in_words("depth_mm is a number of 0 or more; it is blank")
+    'Depth (mm) is a number of 0 or more; it is blank'
+    """
+    return _KEYS.sub(lambda key: _CALLED[key[0]], message)
 
 
 def hardness_words(row: dict[str, Any]) -> str:

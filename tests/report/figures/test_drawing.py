@@ -1,14 +1,19 @@
-"""A figure becomes its two files."""
+"""A figure becomes its files: of print, of screens, of a telephone."""
 
 from __future__ import annotations
+
+from typing import Any, cast
 
 import pytest
 from markupsafe import Markup
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from skisnow.report.figures.drawing import Drawing, pictured
-from skisnow.report.figures.style import journal_style, new_figure
+from skisnow.report.figures.drawing import FORMS, Drawing, Picture, pictured
+from skisnow.report.figures.opaque import make_opaque
+from skisnow.report.figures.panels import letter_panels
+from skisnow.report.figures.style import DOUBLE_MM, journal_style, legend_below, new_figure
 
 
 def test_each_file_is_drawn_once_after_the_axes_were_placed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -29,5 +34,77 @@ def test_each_file_is_drawn_once_after_the_axes_were_placed(monkeypatch: pytest.
         monkeypatch.setattr(Figure, "draw", noted)
         picture = pictured(Drawing("name", Markup(""), "words", figure))
     assert picture.svg.lstrip().startswith("<?xml") and picture.png.startswith(b"\x89PNG")
-    assert len(drawn) == 2  # SVG and PNG
-    assert drawn[0] == drawn[1] != before  # of what the layout made of it
+    assert len(drawn) == 4  # each form once
+    assert drawn[0] == drawn[1] == drawn[2] != before  # of what the layout made of it
+    assert picture.narrow == ""
+
+
+def two_panels() -> Figure:
+    figure = new_figure(width_mm=DOUBLE_MM)
+    left, right = figure.subplots(1, 2, sharey=True)
+    band = left.fill_between([0, 1], [0, 0], [1, 1], color="#0000ff", alpha=0.25, label="a band")
+    left.set_title("a title that takes more room than a telephone has for it beside another one", loc="left")
+    left.set_ylabel("depth (mm)")
+    figure.colorbar(left.imshow([[0.0, 1.0]], aspect="auto"), ax=right)
+    twin = right.twinx()
+    twin.plot([0, 1], [0, 1], alpha=0.5, color="#ff0000")
+    legend_below(figure, [band])
+    return figure
+
+
+def test_panels_have_letters_and_scales_of_colour_have_none() -> None:
+    with journal_style():
+        figure = two_panels()
+        letter_panels(figure)
+        left, right, *others = figure.axes
+        single = new_figure()
+        single.subplots()
+        letter_panels(single)
+    assert left.get_title(loc="left").startswith("(a) a title")
+    assert right.get_title(loc="left") == "(b)"
+    assert [axes.get_title(loc="left") for axes in others] == ["", ""]
+    assert single.axes[0].get_title(loc="left") == ""
+
+
+def test_a_telephone_sees_all_words_in_their_size() -> None:
+    """96 mm are 363 pixels of a page; nothing reaches over the rim, and two panels of a row stand below each other."""
+    with journal_style():
+        figure = new_figure(width_mm=DOUBLE_MM)
+        left, right = figure.subplots(1, 2, sharey=True)
+        left.set_title("a title that takes more room than a telephone has for it beside another one", loc="left")
+        left.set_ylabel("depth (mm)")
+        legend_below(figure, [left.plot([0, 1], label=f"a long name of a line, number {i}")[0] for i in range(4)])
+        picture = pictured(Drawing("name", Markup(""), "words", figure, wide=True))
+        extent = figure.get_tightbbox()
+    assert 'width="272.1' in picture.narrow  # points
+    assert 'width="510.2' in picture.svg
+    assert extent.x0 > -0.02 and extent.x1 < 96.0 / 25.4 + 0.02
+    assert left.get_position().y0 > right.get_position().y1
+    assert right.get_ylabel() == "depth (mm)"
+    assert "number 3" in picture.narrow
+
+
+def test_eps_has_no_transparency_but_its_colour_on_white() -> None:
+    with journal_style():
+        figure = two_panels()
+        make_opaque(figure)
+    left, *_, twin = figure.axes
+    band = next(each for each in left.collections if each.get_label() == "a band")
+    (line,) = twin.lines
+    colours: list[Any] = [cast("Any", band.get_facecolor())[0], line.get_color()]
+    # a quarter of blue, and half of red, on white
+    assert [to_hex(each, keep_alpha=True) for each in colours] == ["#bfbfffff", "#ff8080ff"]
+    assert line.get_alpha() is None
+
+
+def test_files_of_print_are_the_same_each_time() -> None:
+    def once() -> Picture:
+        with journal_style():
+            figure = new_figure()
+            figure.subplots().plot([0, 1], [0, 1], alpha=0.5)
+            return pictured(Drawing("name", Markup(""), "words", figure))
+
+    first, second = once(), once()
+    assert first.pdf.startswith(b"%PDF") and first.eps.startswith(b"%!PS-Adobe-3.0 EPSF")
+    assert (first.pdf, first.eps) == (second.pdf, second.eps)
+    assert first.files.keys() == set(FORMS)

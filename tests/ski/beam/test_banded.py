@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.linalg import eigh
 
 from skisnow.compiled import core
-from skisnow.ski.beam.banded import HALF_BANDWIDTH, assembled, dense
+from skisnow.ski.beam.banded import HALF_BANDWIDTH, assembled, dense, lowest_eigenvalue
 
 from .conftest import FloatArray, banded_solution, chain
 
@@ -32,6 +33,23 @@ def test_solution_is_that_of_numpy(size: int, columns: int, seed: int) -> None:
     expected = np.linalg.solve(dense(matrix), right)
     found = core.banded_solution(core.banded_factors(matrix), right, 0)
     assert found == pytest.approx(expected, rel=1e-10, abs=1e-13)
+
+
+@pytest.mark.parametrize("size", [2, 7, 40])
+def test_lowest_eigenvalue_is_that_of_scipy(size: int) -> None:
+    """Of a chain between springs and masses that grow along it."""
+
+    def chained(spring: FloatArray, mass: FloatArray) -> FloatArray:
+        out = np.zeros((size, 2 * HALF_BANDWIDTH + 1))
+        out[:, HALF_BANDWIDTH] = spring[:-1] + spring[1:] + mass
+        out[1:, HALF_BANDWIDTH - 1] = out[:-1, HALF_BANDWIDTH + 1] = -spring[1:-1]
+        return out
+
+    along = np.linspace(1.0, 3.0, size + 1)
+    stiffness, mass = chained(along, np.zeros(size)), chained(np.full(size + 1, 0.1), along[1:])
+    known = eigh(dense(stiffness), dense(mass), eigvals_only=True)[0]
+    found = lowest_eigenvalue(stiffness, mass, np.stack([along[:-1], along[:-1] ** 2], axis=1))
+    assert found == pytest.approx(known, rel=1e-11)
 
 
 @given(st.integers(1, 40), st.integers(0, 2**32 - 1))

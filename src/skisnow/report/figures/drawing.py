@@ -7,9 +7,12 @@ import io
 import re
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from ..symbols import html
+from .narrowed import narrow
+from .opaque import make_opaque
+from .panels import letter_panels
 from .style import thinning_sentence
 
 if TYPE_CHECKING:
@@ -19,7 +22,12 @@ if TYPE_CHECKING:
 _UNDATED: Final[dict[str, dict[str, Any]]] = {
     "svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
     "png": {"Software": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+    "eps": {"Creator": "skisnow"},
 }
+_EPS_DPI: Final = 150
+"""Of clouds of points inside an EPS, which holds them as text."""
+_EPS_DATE: Final = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
 _FAMILY: Final = re.compile(r"'DejaVu Sans'(?!,)")
 
 
@@ -51,7 +59,7 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawing as files."""
+    """A drawing as files; ``narrow``: the SVG of a wide one for a telephone, empty where there is none."""
 
     name: str
     caption: Markup
@@ -59,32 +67,68 @@ class Picture:
     wide: bool
     svg: str
     png: bytes
+    pdf: bytes = b""
+    eps: bytes = b""
+    narrow: str = ""
 
     @property
     def data_uri(self) -> str:
         """The SVG inside an attribute of the HTML."""
-        return "data:image/svg+xml;base64," + base64.b64encode(self.svg.encode()).decode("ascii")
+        return _data_uri(self.svg)
+
+    @property
+    def narrow_data_uri(self) -> str:
+        """The same for a telephone; empty where there is none."""
+        return _data_uri(self.narrow) if self.narrow else ""
+
+    @property
+    def files(self) -> dict[str, str | bytes]:
+        """Contents by the endings of file names."""
+        return {"svg": self.svg, "png": self.png, "pdf": self.pdf, "eps": self.eps}
+
+
+FORMS: Final = ("png", "svg", "pdf", "eps")
+Form: TypeAlias = Literal["png", "svg", "pdf", "eps"]
+
+
+def _data_uri(svg: str) -> str:
+    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode("ascii")
 
 
 def pictured(drawing: Drawing) -> Picture:
     """Draw it, the same bytes for the same data."""
-    svg = svg_of(drawing)
-    return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, _drawn_as("png", drawing))
+    letter_panels(drawing.figure)
+    svg, png, pdf = _svg(drawing), _drawn_as("png", drawing), _drawn_as("pdf", drawing)
+    make_opaque(drawing.figure)
+    eps = _EPS_DATE.sub(b"", _drawn_as("eps", drawing))
+    words = drawing.name, drawing.whole_caption, drawing.alt, drawing.wide
+    return Picture(*words, svg, png, pdf, eps, _narrow_svg(drawing) if drawing.wide else "")
+
+
+def _narrow_svg(drawing: Drawing) -> str:
+    narrow(drawing.figure)
+    return _svg(drawing)
 
 
 def svg_of(drawing: Drawing) -> str:
     """Draw it for a page alone."""
+    letter_panels(drawing.figure)
+    return _svg(drawing)
+
+
+def _svg(drawing: Drawing) -> str:
     # Verdana has the widths of DejaVu Sans where that is not installed
     return _FAMILY.sub("'DejaVu Sans', Verdana, sans-serif", _drawn_as("svg", drawing).decode("utf-8"))
 
 
-def _drawn_as(form: Literal["png", "svg"], drawing: Drawing) -> bytes:
+def _drawn_as(form: Form, drawing: Drawing) -> bytes:
     content = io.BytesIO()
+    options: dict[str, Any] = {"dpi": _EPS_DPI} if form == "eps" else {}
     with warnings.catch_warnings():
         # a site's name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
         warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
         _lay_out(drawing.figure)
-        drawing.figure.savefig(content, format=form, metadata=_UNDATED[form])
+        drawing.figure.savefig(content, format=form, metadata=_UNDATED[form], **options)
     return content.getvalue()
 
 

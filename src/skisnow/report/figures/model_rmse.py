@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .style import SiteStyle
 
 NAME: Final = "model_rmse"
+TOO_FEW: Final = "the series are too few, or all at one edge angle"
 _WIDE_RATIO: Final = 20.0
 
 
@@ -29,6 +30,8 @@ def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftO
     rows = [row for row in data.results["penetration"]["models"] if row["n"]]
     if not rows:
         return LeftOut(NAME, "rmse of the nine laws", "no penetration experiment is used")
+    if data.results["penetration"]["selected"] is None:
+        return LeftOut(NAME, "rmse of the nine laws", TOO_FEW)
     own = [row["rmse_N"] for row in rows]
     printed = [PRINTED_RMSE_N.get(row["id"], math.nan) for row in rows]
     known = [value for value in own + printed if math.isfinite(value)]

@@ -10,6 +10,7 @@ from ..number_formatting import significant, whole
 from ..symbols import html, prose
 from ..tables.models import law
 from .drawing import Drawing, LeftOut
+from .model_rmse import TOO_FEW
 from .style import BLUE, GREY, PALE, RASTERISE_FROM, VERMILLION, mark_synthetic, new_figure, thinned
 
 if TYPE_CHECKING:
@@ -29,8 +30,10 @@ MOST_GROUPS: Final = 12
 def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
     """F of the law minus F applied, all used readings, with medians and 90 % ranges along the load."""
     found = data.analysis.penetration
-    if found is None or found.selected is None:
+    if found is None or found.table is None:
         return LeftOut(NAME, "Residuals of the selected law", "no penetration experiment is used")
+    if found.selected is None:
+        return LeftOut(NAME, "Residuals of the selected law", TOO_FEW)
     used = found.readings.of(found.screened.used)
     hardness = found.hardness[found.selected.model.hardness].value[found.screened.used]
     departure = _force(found.selected, hardness[used.series], used) - used.load

@@ -18,6 +18,7 @@ from ..symbols import figure_text
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
     from ..report_data import BoolArray, FloatArray, ReportData, TextArray
@@ -180,7 +181,7 @@ def error_bars(axes: Axes, x: FloatArray, ends: FloatArray, site: TextArray, sty
         axes.vlines(x[chosen], ends[chosen, 0], ends[chosen, 1], color=style.colour, linewidth=0.5, alpha=0.5, zorder=2)
 
 
-def legend_below(figure: Figure, handles: Sequence[Line2D]) -> None:
+def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
     """The entries below the axes, where they cover nothing, in as many even columns as fit."""
     if not handles:
         return

@@ -22,8 +22,31 @@ LISTED: Final = 12
 
 def key_results(data: ReportData) -> list[Markup]:
     """One sentence for each result that the campaign has."""
-    found = [_hardness(data), _unloading(data), _stress(data), _displacement(data), _law(data), _relations(data)]
+    found = [_hardness(data), _stress(data), _unloading(data), _displacement(data), _law(data), _relations(data)]
     return [sentence for sentence in found if sentence is not None]
+
+
+def headline(data: ReportData) -> Markup:
+    """The one number that people ask for first: H_V, or S_f where no hardness was measured; empty without either."""
+    for key, begins, unit in (
+        ("H_V_N_per_mm3", "Snow hardness H_V", "N/mm³"),
+        ("S_f_N_per_mm2", "Failure shear stress S_f", "N/mm²"),
+    ):
+        row = own_value(data, key)
+        if row is not None:
+            ends = row["own_interval"]
+            return prose(
+                "{begins} {value}, {known}, over {sites}.",
+                begins=html(begins),
+                value=Markup("<strong>{} {}</strong>").format(significant(row["own"]), unit),
+                known="without an interval" if ends is None else f"95 % interval {interval(ends)} {unit}",
+                sites=counted(len(_sites(data, key)), "site"),
+            )
+    return Markup("")
+
+
+def _sites(data: ReportData, key: str) -> set[str]:
+    return {row["site"] for row in data.results["site_means"] if row["quantity"] == key}
 
 
 def own_value(data: ReportData, quantity: str) -> Json | None:

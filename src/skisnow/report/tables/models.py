@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ...snow.published.moessner_2013 import PRINTED_RMSE_N
-from ..table import Column, Table
+from ..table import ROWS_IN_HTML, Column, Table
 
 if TYPE_CHECKING:
     from ..report_data import Json, ReportData
@@ -90,7 +90,13 @@ def models_table(data: ReportData) -> Table:
         rows,
         note=_UNIT_NOTE + " b = 1 is fixed, not fitted. The paper's own data are not "
         "public: its rmse are for its snow and its loads, not a target for others.",
+        rows_in_html=_rows_in_html(data),
     )
+
+
+def _rows_in_html(data: ReportData) -> int:
+    """None where no law is selected: the rows are in the table's file, and say nothing to a reader."""
+    return ROWS_IN_HTML if data.results["penetration"]["selected"] else 0
 
 
 def _coefficients(row: Json) -> list[tuple[float | None, Any]]:
@@ -131,6 +137,7 @@ def nested_table(data: ReportData) -> Table:
             Column("valid_classically", "F distribution valid", "yes"),
         ),
         rows,
+        rows_in_html=_rows_in_html(data),
     )
 
 
@@ -167,6 +174,7 @@ def errors_in_depth_table(data: ReportData) -> Table:
         "whole experiments says too little of b; in simulated campaigns it covered b in 7 to 90 %. Both rmse are "
         "unweighted and in force. The second procedure minimises weighted squares and does "
         "not pass through each series' last reading: the two columns of rmse are no race between procedures.",
+        rows_in_html=_rows_in_html(data),
     )
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from itertools import chain
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from nicegui import background_tasks, run, ui
 
 from ...errors import FieldDataError, StoreError
 from ..error_pages import error_sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
-from ..words import displacement_words, hardness_words, label, stress_words, unloading_words
+from ..worded import Words, named
+from ..words import displacement_words, hardness_words, in_words, label, stress_words, unloading_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -21,26 +22,40 @@ if TYPE_CHECKING:
 
     _Values: TypeAlias = list[float | None]
 
+PRESSED: Final = "penetration.csv"
+MISSING_YET: Final = frozenset({"too_few_loads"})
+"""Flags of a series that is still being read."""
+
 
 class Beside:
     """Follows one test of a site."""
 
     def __init__(self, view: TableView) -> None:
         self._view = view
-        self._wanted: tuple[str, str] | None = None
+        self._wanted: tuple[str, str, frozenset[str]] | None = None
         self._working = False
-        with ui.element("section").classes("beside").props('aria-label="Results of the readings"'):
-            self._name = ui.label("").classes("quiet")
-            self._value = ui.label("").classes("value").props("role=status")
+        is_pressed = view.file == PRESSED
+        classes = "beside" if is_pressed else "beside above"
+        with named(ui.element("section").classes(classes), "Results of the readings"):
+            self._name = Words("").classes("quiet")
+            self._value = Words("").classes("value").props("role=status")
             self._marks = ui.element("ul").classes("marks")
             self._chart: LineChart | None = None
-            if view.file == "penetration.csv":
+            if is_pressed:
                 words = "Load against depth of this series and the others of its site, load in N"
                 self._chart = LineChart(label("depth_mm"), label("load_N"), words, height=340)
 
-    def follow(self, name: str, site: str) -> None:
-        """Show this test; what is computed meanwhile for an older state is dropped."""
-        self._wanted = (name, site)
+    def follow(self, name: str, site: str, *, in_progress: bool = False) -> None:
+        """Show this test; what is computed meanwhile for an older state is dropped.
+
+        Parameters
+        ----------
+        name, site
+            Of the test.
+        in_progress
+            Whether readings are still to come: what only says that some are missing is not said yet.
+        """
+        self._wanted = (name, site, MISSING_YET if in_progress else frozenset())
         if not self._working:
             self._working = True
             background_tasks.create(self._work(), name="beside")
@@ -48,7 +63,7 @@ class Beside:
     async def _work(self) -> None:
         try:
             while self._wanted is not None:
-                (name, site), self._wanted = self._wanted, None
+                (name, site, unsaid), self._wanted = self._wanted, None
                 try:
                     found = await run.io_bound(self._view.session.quick_results, site)
                 except (FieldDataError, StoreError) as error:
@@ -56,20 +71,21 @@ class Beside:
                     continue
                 # another may have been wanted while this one was waited for
                 if self._wanted is None and found is not None:  # type: ignore[redundant-expr]
-                    self._show(name, found)
+                    self._show(name, found, unsaid)
         finally:
             self._working = False
 
-    def _show(self, name: str, found: QuickResults) -> None:
-        pressed = self._view.file == "penetration.csv"
+    def _show(self, name: str, found: QuickResults, unsaid: frozenset[str]) -> None:
+        pressed = self._view.file == PRESSED
         row = (found.penetration if pressed else found.shear).get(name)
         self._name.set_text(f"Test {name}" if row else "")
         self._value.set_text(_value(row, pressed=pressed))
         self._marks.clear()
         with self._marks:
-            for sentence in found.flags.get(f"{self._view.file}/{name}", ()):
-                with ui.element("li"):
-                    ui.label(sentence)
+            for code, sentence in found.flags.get(f"{self._view.file}/{name}", {}).items():
+                if code not in unsaid:
+                    with ui.element("li"):
+                        Words(in_words(sentence))
         if self._chart is not None:
             self._chart.show(list(_lines(name, found.curves)), from_zero="xy")
 

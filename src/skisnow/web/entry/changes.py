@@ -13,6 +13,8 @@ from ...field.store.stored_tables import cell_of
 from ..answering import asking_button, form
 from ..fields import button, field
 from ..layout import sentence
+from ..local_time import minute_words
+from ..worded import Words
 from ..words import label
 
 if TYPE_CHECKING:
@@ -138,13 +140,13 @@ def _history(test: ReplayedTest) -> None:
         return
     with ui.element("details"):
         with ui.element("summary"):
-            ui.label(f"History of {test.name}")
+            Words(f"History of {test.name}")
         with ui.element("ol"):
             for entry in test.history:
                 with ui.element("li"):
                     undone = " (undone)" if entry.sequence in test.undone else ""
                     who = f" · {entry.who}" if entry.who else ""
-                    ui.label(f"{entry.at}{who} · {_done(entry)}{undone}")
+                    Words(f"{minute_words(entry.at)}{who} · {_done(entry)}{undone}")
 
 
 def _cell_words(key: str, text: str) -> str:

@@ -8,6 +8,7 @@ from nicegui import ui
 
 from ...errors import ParameterError
 from ...field.store.cells import checked_cell
+from ..words import in_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -25,7 +26,7 @@ def checked_fields(form: TableForm, fields: Mapping[str, Field]) -> dict[str, st
         try:
             cells[column] = checked_cell(form, column, str(each.value or ""))
         except ParameterError as error:
-            each.error = str(error)
+            each.error = in_words(str(error))
     return cells if len(cells) == len(fields) else None
 
 

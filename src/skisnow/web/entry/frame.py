@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from nicegui import ui
 
 from ..fields import choice, field
+from ..worded import Words, named
 from ..words import TABLES
 from .beside import Beside
 from .changes import Places
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 def table_links(tables: Mapping[str, str], here: str, further: Mapping[str, str]) -> None:
     """Links to the tables, addresses by file, and behind them what else there is of the campaign, by name."""
-    with ui.element("nav").classes("tables").props('aria-label="Kind of test"'):
+    with named(ui.element("nav").classes("tables"), "Kind of test"):
         for file, address in tables.items():
             made = ui.link(TABLES[file], address)
             if file == here:
@@ -44,12 +45,12 @@ def table_view_of(
         What the sections of the form and of the changes are called, for who cannot see them.
     """
     who = _who(session)
-    status = ui.label("").classes("status").props("role=status aria-live=polite")
+    status = Words("").classes("status").props("role=status aria-live=polite")
     view = TableView(session, file, who, status)
     with ui.element("div").classes("two"):
-        place = ui.element("section").props(f'aria-label="{form}"')
+        place = named(ui.element("section"), form)
         beside = Beside(view)
-        with ui.element("section").classes("below").props(f'aria-label="{below}"'):
+        with named(ui.element("section").classes("below"), below):
             yield view, beside, Places(place, ui.element("div"))
 
 

@@ -11,6 +11,7 @@ from ..answering import asking_button, form
 from ..fields import choice, field, link
 from ..layout import heading, sentence
 from ..names import correcting
+from ..worded import Words
 from ..words import label
 from .changes import USUAL_REASON, Places, ask_reason, changes
 from .checking import Field, checked_fields, faults
@@ -138,7 +139,7 @@ def list_tests(session: CorrectionSession, file: str) -> None:
     for site, names in sites.items():
         with ui.element("details").props("open" if len(sites) == 1 and len(names) <= FEW else ""):
             with ui.element("summary"):
-                ui.label(f"{site or 'No site'}: {len(names)}")
+                Words(f"{site or 'No site'}: {len(names)}")
             with ui.element("div").classes("acts so-far"):
                 for name in names:
                     link(_name(session.test(file, name)), correcting(session.id, table=file, test=name), "small")

@@ -13,6 +13,7 @@ from ..answering import answering, asked, asking_button, form
 from ..fields import choice, field
 from ..layout import heading, sentence
 from ..names import entering
+from ..worded import Words, named
 from ..words import label
 from .changes import USUAL_REASON, Places, ask_reason, changes, focus_button
 from .checking import Field, checked_fields, faults, refuse
@@ -125,7 +126,11 @@ class SeriesForm:
         self._draw(test)
         self._focus_next(test)
         if test.rows:
-            self._beside.follow(name, head["site"])
+            self._beside.follow(name, head["site"], in_progress=self._is_in_progress(name))
+
+    def _is_in_progress(self, name: str) -> bool:
+        """Whether a series is the one that was begun last."""
+        return self._view.tests()[-1].name == name
 
     def _focus_next(self, test: ReplayedTest) -> None:
         back = any(row.cells.get(BRANCH) for row in test.rows)
@@ -144,8 +149,9 @@ class SeriesForm:
         self._readings, self._asking, self._refused = {}, None, {}
         self._places.clear()
         with self._places.form:
-            heading(f"Series {test.name}")
-            sentence(f"{self._head['site']} · {self._head['tool']} · {self._head['edge_angle_deg']}°", "quiet")
+            with ui.element("div").classes("series-head"):
+                heading(f"Series {test.name}")
+                sentence(f"{self._head['site']} · {self._head['tool']} · {self._head['edge_angle_deg']}°", "quiet")
             if test.cancelled:
                 sentence(f"Cancelled: {test.cancelled}", "bad")
             loads = self._loads(test)
@@ -173,7 +179,7 @@ class SeriesForm:
         begun = any(test.row_under(*step) or step in unstored for step in steps)
         with ui.element("details").props("open" if begun else ""):
             with ui.element("summary"):
-                ui.label("Discs taken off one by one")
+                Words("Discs taken off one by one")
             self._fields(test, steps, unstored)
 
     def _unstored(self) -> dict[_Step, str]:
@@ -187,13 +193,17 @@ class SeriesForm:
         if missing:
             loads = ", ".join(step.words for step in missing)
             self._view.say(f"Not stored yet: {loads}. Put it right or empty the field, then go on.", "bad")
-            self._readings[next(iter(missing))].depth.run_method("focus")
+            first = self._readings[next(iter(missing))].depth
+            first.run_method("focus")
+            first.run_method("select")
             return False
         if self._waiting is not None and self._waiting.unstored:
             loads = ", ".join(f"{load} N after waiting" for load in self._waiting.unstored)
             self._view.say(f"Not stored yet: {loads}. Store it or empty the field, then go on.", "bad")
             self._waiting.focus()
             return False
+        if self._test.rows:
+            self._beside.follow(self._shown, self._head["site"])
         self.begin()
         return True
 
@@ -220,11 +230,11 @@ class SeriesForm:
         with ui.element("div").classes("reading") as made:
             made.props["data-load"] = step.load
             made.props["data-branch"] = step.branch
-            ui.label(f"{step.load} N").classes("load")
+            Words(f"{step.load} N").classes("load")
             depth = field(label("depth_mm"), row.cells["depth_mm"] if row else typed, numeric=True)
-            depth.props(f'aria-label="{step.asked}"')
+            named(depth, step.asked)
             depth.props("readonly" if test.cancelled else "")
-            stored = ui.label("stored" if row else "").classes("stored")
+            stored = Words("stored" if row else "").classes("stored")
             if row is not None:
                 made.props["data-stored"] = row.cells["depth_mm"]
             if row is not None and row.cells["depth_mm"] != row.entered.cells["depth_mm"]:
@@ -245,7 +255,7 @@ class SeriesForm:
 
         with ui.element("details"):
             with ui.element("summary"):
-                ui.label("A load that is not in the disc set")
+                Words("A load that is not in the disc set")
             with form(sends=done):
                 load = field("Further load (N)", numeric=True)
                 depth = field("Its depth (mm)", numeric=True)
@@ -280,6 +290,7 @@ class SeriesForm:
             made.depth.set_value(cell)
         elif self._readings.get(step) is made:  # the series was not drawn anew meanwhile
             made.row.classes("refused")
+            made.depth.client.run_javascript(f"lab.refusedLast({made.depth.id})")
         return stored
 
     def _add(self, load: ui.input | _Step, depth: ui.input) -> bool:
@@ -303,7 +314,7 @@ class SeriesForm:
         stored = self._view.add(test.name, cells, position=test.next_position, seen=test.last, said=said)
         if stored:
             self._show_changes()
-            self._beside.follow(test.name, self._head["site"])
+            self._beside.follow(test.name, self._head["site"], in_progress=self._is_in_progress(test.name))
         else:
             self._draw(self._test)
         return stored

@@ -10,6 +10,7 @@ from ...field.reading.turning import TURNING
 from ..answering import asking_button, form
 from ..fields import choice, field
 from ..layout import heading, sentence
+from ..worded import Words, named
 from ..words import label
 from .changes import USUAL_REASON, Places, ask_reason, changes
 from .checking import checked_fields, faults, refuse
@@ -186,12 +187,10 @@ class SingleForm:
 
     def _so_far(self, test: ReplayedTest, row: ReplayedRow) -> None:
         words = [f"{label(column)} {row.cells[column]}" for column in self._columns if row.cells.get(column)]
-        ui.label(" · ".join(words) + (f" · cancelled: {test.cancelled}" if test.cancelled else ""))
+        Words(" · ".join(words) + (f" · cancelled: {test.cancelled}" if test.cancelled else ""))
 
         def look() -> None:
             self._draw(row.cells, (test, row))
             self._beside.follow(test.name, row.cells["site"])
 
-        asking_button("Correct", look, "small").props(
-            f'aria-label="Correct {" ".join(test.name.split())}"'.replace("'", "")
-        )
+        named(asking_button("Correct", look, "small"), f"Correct {' '.join(test.name.split())}")

@@ -10,6 +10,7 @@ from ...errors import ParameterError, StoreError
 from ...field.store import NewEntry, OvertakenError
 from ...field.store.cells import FORMS
 from ..answering import asked
+from ..words import in_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -108,7 +109,7 @@ class TableView:
 
     def say(self, text: str, kind: str = "good") -> None:
         """Say something where a screen reader hears it."""
-        self._status.set_text(text)
+        self._status.set_text(in_words(text))
         self._status.classes(remove="good bad", add=kind)
 
     def _write(self, entry: NewEntry, seen: int, said: str) -> bool:

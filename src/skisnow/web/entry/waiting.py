@@ -8,6 +8,7 @@ from nicegui import ui
 
 from ..answering import asking_button, form
 from ..fields import field
+from ..worded import Words, named
 from ..words import label
 from .changes import USUAL_REASON, WAITED, ask_reason
 from .checking import checked_fields, faults, refuse
@@ -47,7 +48,7 @@ class AfterWaiting:
         stored = {load: _stored(test, load) for load in loads}
         with ui.element("details").props("open" if any(stored.values()) or unstored else ""):
             with ui.element("summary"):
-                ui.label("Depths read once more after waiting")
+                Words("Depths read once more after waiting")
             with form("readings", sends=lambda: self._store(ask)):
                 for load, text in stored.items():
                     self._fields[load] = self._field(load, text, unstored.get(load, text), closed=bool(test.cancelled))
@@ -60,11 +61,11 @@ class AfterWaiting:
 
     def _field(self, load: str, stored: str, text: str, *, closed: bool) -> ui.input:
         with ui.element("div").classes("reading") as made:
-            ui.label(f"{load} N").classes("load")
+            Words(f"{load} N").classes("load")
             depth = field(label(AFTER), text, numeric=True, optional=True)
-            depth.props(f'aria-label="Depth after waiting under {load} N (mm)"')
+            named(depth, f"Depth after waiting under {load} N (mm)")
             depth.props("readonly" if closed else "")
-            ui.label("stored" if stored else "").classes("stored")
+            Words("stored" if stored else "").classes("stored")
             if stored:
                 made.props["data-stored"] = stored
         return depth

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
-from nicegui import ui
+from nicegui import run, ui
 
 from ...errors import StoreError
+from ...field import write_reference
 from ...field.store import Journals
 from ...report.number_formatting import counted
 from ..edit_session import EditSession
-from ..fields import link
+from ..fields import button, link
 from ..layout import framed, heading, sentence
+from ..local_time import minute_words
 from ..names import analysis, correcting, entering, export
 from ..transfer import IMPORT
+from ..worded import Words
 
 if TYPE_CHECKING:
     from ...field.store import StoredCampaign
@@ -21,6 +26,11 @@ if TYPE_CHECKING:
 
 PATH: Final = "/"
 TITLE: Final = "Campaigns"
+WHAT_THIS_IS: Final = (
+    "Here what was measured on a slope becomes snow hardness and shear stress, and these become turns of a ski: enter "
+    "tests, analyse them, carve and simulate."
+)
+SAMPLE_SEED: Final = 1
 
 
 def add_page(lab: Lab) -> None:
@@ -31,7 +41,13 @@ def add_page(lab: Lab) -> None:
         with framed("Campaigns", here=PATH):
             if added:
                 sentence("The campaign is imported, byte for byte.", "good").props("role=status")
-            link("New campaign", "/describe", "main")
+            is_first = not Journals(lab.store).list() and not lab.store.list()
+            if is_first:
+                sentence(WHAT_THIS_IS)
+            with ui.element("div").classes("acts"):
+                link("New campaign", "/describe", "main")
+                if is_first:
+                    button("Look at a sample campaign", lambda: _add_sample(lab), once=True)
             _in_entry(lab)
             _kept(lab)
             _import_form(lab)
@@ -51,7 +67,7 @@ def _in_entry(lab: Lab) -> None:
         tests = [test for test in session.campaign.tests.values() if test.rows]
         with ui.element("section").classes("card"):
             heading(session.described.name or "(no name)", 3)
-            words = [session.described.place, counted(len(tests), "test"), f"last entry {_minute(head.last_at)}"]
+            words = [session.described.place, counted(len(tests), "test"), f"last entry {minute_words(head.last_at)}"]
             sentence(" · ".join(filter(None, words)), "quiet")
             with ui.element("div").classes("acts"):
                 link("Enter tests", entering(head.id), "main")
@@ -73,7 +89,7 @@ def _kept(lab: Lab) -> None:
     for campaign in reversed(stored):
         with ui.element("section").classes("card"):
             heading(campaign.name, 3)
-            sentence(f"{campaign.id} · added {campaign.added_at:%Y-%m-%d %H:%M} UTC · {_checked(campaign)}", "quiet")
+            sentence(f"{campaign.id} · added {minute_words(campaign.added_at)} · {_checked(campaign)}", "quiet")
             with ui.element("div").classes("acts"):
                 link("Correct", correcting(campaign.id))
                 link("Analysis", analysis("kept", campaign.id))
@@ -86,8 +102,18 @@ def _checked(campaign: StoredCampaign) -> str:
     return f"{counted(campaign.n_errors, 'error')}, {counted(campaign.n_warnings, 'warning')}"
 
 
-def _minute(at: str) -> str:
-    return at.replace("T", " ")[:16] + " UTC"
+async def _add_sample(lab: Lab) -> None:
+    """Store a synthetic campaign, and show its analysis."""
+    id_ = await run.io_bound(_stored_sample, lab)
+    if id_ is not None:
+        ui.navigate.to(analysis("kept", id_))
+
+
+def _stored_sample(lab: Lab) -> str:
+    with TemporaryDirectory(prefix="skisnow-sample-") as name:
+        folder = Path(name) / "sample"
+        write_reference(folder, seed=SAMPLE_SEED)
+        return lab.store.add(folder).id
 
 
 def _import_form(lab: Lab) -> None:
@@ -101,7 +127,7 @@ def _import_form(lab: Lab) -> None:
         form = f'method=post action="{IMPORT}" enctype="multipart/form-data"'
         with ui.element("form").props(form).classes("acts"):
             with ui.element("label").props(f"for=import-{id_}"):
-                ui.label(text)
+                Words(text)
             ui.element("input").props(f"type=file name=files multiple required id=import-{id_} {further}")
             with ui.element("button").props("type=submit").classes("act"):
-                ui.label(f"Import {text.lower()}")
+                Words(f"Import {text.lower()}")

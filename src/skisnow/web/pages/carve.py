@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import background_tasks, run, ui
 
-from ...errors import SkisnowError
+from ...errors import ParameterError, SkisnowError
 from ...report.number_formatting import significant
+from ...report.write import RESULTS
 from ..fields import choice
 from ..lab_skis import LabSkis
 from ..layout import framed
 from ..line_chart import STYLES, ChartLine, LineChart
+from ..snow_choice import SnowChoice
+from ..worded import Words, named
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,10 +26,13 @@ if TYPE_CHECKING:
 
     from ...sources import Sources
     from ..settings import Lab
+    from ..snow_choice import ChosenSnow
 
 PATH: Final = "/carve"
 TITLE: Final = "Carve"
-ALONG: Final = "Position along the ski (m), boot = 0"
+ALONG: Final = "Along the ski (m), boot = 0"
+ENDS: Final = ("tail", "tip")
+"""Where the axis leads to: stations count forward from the boot."""
 PANELS: Final = {
     "edge_depth_mm": "Depth of the edge (mm)",
     "force_per_length_N_per_m": "Force per length (N/m)",
@@ -57,14 +63,20 @@ PATIENCE_S: Final = 0.5
 """After which it is said that what is shown belongs to where the sliders stood before (s)."""
 ABOVE_MM: Final = 3.0
 """How much of the edge above the snow the chart of depths shows (mm)."""
+HEADLINE: Final = "turn_radius_boot_m"
+"""The number that a carve is for; the others stand below."""
+OF_SNOW: Final = ("H_V_N_per_mm3", "S_f_N_per_mm2")
+NUMBERS: Final = "the sliders"
+NOTHING: Final = "nothing"
 FACTS: Final = {
-    "turn_radius_boot_m": ("Turn radius at the boot", "m"),
-    "turn_radius_boot_other_spread_m": ("The same, side force spread the other way", "m"),
-    "turn_radius_chord_m": ("Turn radius of the contact", "m"),
+    "forebody_load_N": ("Load on the forebody", "N"),
+    "afterbody_load_N": ("Load on the afterbody", "N"),
     "contact_length_m": ("Contact length", "m"),
     "side_force_N": ("Side force", "N"),
     "side_force_limit_N": ("Shear capacity of the snow", "N"),
     "boot_pitch_moment_Nm": ("Moment at the boot about the cross axis", "N\u00a0m"),
+    "turn_radius_boot_other_spread_m": ("Radius, were the side force spread the other way", "m"),
+    "turn_radius_chord_m": ("Radius through the ends of the contact", "m"),
 }
 
 
@@ -75,7 +87,7 @@ def add_page(lab: Lab) -> None:
     @ui.page(PATH)
     async def carve() -> None:
         with framed("Carve", here=PATH):
-            _Carve(solver, skis).ask()  # answered while the browser builds the page
+            _Carve(lab, solver, skis).ask()  # answered while the browser builds the page
 
 
 class _Solver:
@@ -85,8 +97,11 @@ class _Solver:
         self._lock = threading.Lock()
         self._sources: Sources | None = None
 
-    def answers(self, questions: Sequence[dict[str, object]]) -> list[dict[str, Any]] | str:
-        """The JSON of `skisnow carve` for each question, or why there is none, in a sentence."""
+    def answers(self, questions: Sequence[dict[str, object]], snow: ChosenSnow | None) -> list[dict[str, Any]] | str:
+        """The JSON of `skisnow carve` for each question, or why there is none, in a sentence.
+
+        ``snow`` is that of a campaign, where the questions name its results.
+        """
         from ...carve.answer import answered
         from ...carve.answer_dict import answer_dict
         from ...carve.question import carve_question
@@ -94,6 +109,8 @@ class _Solver:
 
         with self._lock:
             self._sources = self._sources or Sources()
+            if snow is not None and snow.analysis is not None:
+                self._sources.take_snow(snow.snow, results=RESULTS, site=snow.site or None)
             try:
                 return [answer_dict(answered(carve_question(each), sources=self._sources)) for each in questions]
             except SkisnowError as error:
@@ -103,34 +120,42 @@ class _Solver:
 class _Carve:
     """The sliders and what follows them; while one answer is computed only the latest question waits."""
 
-    def __init__(self, solver: _Solver, skis: LabSkis) -> None:
+    def __init__(self, lab: Lab, solver: _Solver, skis: LabSkis) -> None:
         self._solver = solver
         self._skis = skis
         self._values: dict[str, str] = {key: start for key, (_, _, start) in SLIDERS.items()}
         self._waiting = False
         self._working = False
         names = skis.names()
-        with ui.element("div").classes("fields"):
+        self._headline = named(ui.element("section").classes("headline above"), "Carved radius")
+        with ui.element("div").classes("fields large"):
             self._ski = choice("Ski", names, names[0])
-            self._other = choice("Compared with", ["nothing", *names], "nothing")
+            self._other = choice("Compared with", [NOTHING, *names], NOTHING)
             self._ratio = choice("Unloading ratio k_u/H_V", RATIOS, "10")
+            self._snow = SnowChoice(lab, NUMBERS, self._other_snow)
+        self._of_snow: dict[str, ui.element] = {}
         with ui.element("div").classes("sliders"):
             for key in SLIDERS:
                 self._slider(key)
-        self._status = ui.label(COMPUTING).classes("status")
+        self._status = Words(COMPUTING).classes("status")
         self._status.props("role=status")
         self._facts = ui.element("div").classes("table")
         self._named: list[str] = []
+        self._radii: list[Words] = []
         self._cells: dict[str, list[ui.label]] = {}
         with ui.element("div").classes("two"):
-            self._charts = {key: LineChart(ALONG, title, f"{title} along the ski") for key, title in PANELS.items()}
+            self._charts = {
+                key: LineChart(ALONG, title, f"{title} along the ski", ends=ENDS) for key, title in PANELS.items()
+            }
         for each in (self._ski, self._other, self._ratio):
             each.on_value_change(self.ask)
 
     def _slider(self, key: str) -> None:
         words, stops, start = SLIDERS[key]
-        with ui.element("div").classes("slider"):
-            shown = ui.label(f"{words}: {start}")
+        with ui.element("div").classes("slider") as place:
+            if key in OF_SNOW:
+                self._of_snow[key] = place
+            shown = Words(f"{words}: {start}")
 
             def moved(event: GenericEventArguments) -> None:
                 self._values[key] = stops[min(max(int(event.args), 0), len(stops) - 1)]
@@ -138,10 +163,16 @@ class _Carve:
                 self.ask()
 
             # the browser's own slider: arrow keys, touch and screen readers know it
-            made = ui.element("input").props(f'type=range min=0 max={len(stops) - 1} step=1 aria-label="{words}"')
+            made = ui.element("input").props(f"type=range min=0 max={len(stops) - 1} step=1")
+            named(made, words)
             made.props(f'aria-valuetext="{start}"')
             made.props["^value"] = str(stops.index(start))  # as an attribute, which a later drawing does not put back
             made.on("input", moved, js_handler=MOVED.replace("STOPS", json.dumps(stops)))
+
+    async def _other_snow(self) -> None:
+        for key, given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
+            self._of_snow[key].set_visibility(not given)
+        self.ask()
 
     def ask(self) -> None:
         """Ask for the answer to where the sliders stand now."""
@@ -154,7 +185,12 @@ class _Carve:
         try:
             while self._waiting:
                 self._waiting = False
-                answers = asyncio.ensure_future(run.io_bound(self._solver.answers, self._questions()))
+                try:
+                    snow = self._snow.chosen()
+                except ParameterError:  # said where it is chosen
+                    continue
+                questions = self._questions(snow)
+                answers = asyncio.ensure_future(run.io_bound(self._solver.answers, questions, snow))
                 if not (await asyncio.wait((answers,), timeout=PATIENCE_S))[0]:
                     self._status.set_text(COMPUTING)
                 found = await answers
@@ -165,9 +201,13 @@ class _Carve:
         finally:
             self._working = False
 
-    def _questions(self) -> list[dict[str, object]]:
-        numbers = {key: float(value) for key, value in self._values.items()}
-        skis = [str(name) for name in (self._ski.value, self._other.value) if name != "nothing"]
+    def _questions(self, snow: ChosenSnow | None) -> list[dict[str, object]]:
+        numbers: dict[str, object] = {key: float(value) for key, value in self._values.items()}
+        if snow is not None:
+            where = {"published": snow.published} if snow.published else {"results": RESULTS, "site": snow.site or None}
+            given = OF_SNOW if self._snow.gives_stress else OF_SNOW[:1]
+            numbers = {key: value for key, value in numbers.items() if key not in given} | where
+        skis = [str(name) for name in (self._ski.value, self._other.value) if name != NOTHING]
         return [
             {"ski": self._skis.word(name), **numbers, "unloading_ratio": float(str(self._ratio.value))} for name in skis
         ]
@@ -180,12 +220,19 @@ class _Carve:
             self._facts.clear()
             with self._facts:
                 self._cells = _table(names)
+            self._headline.clear()
+            with self._headline:
+                self._radii = [_headline(number) for number in range(len(names))]
+        for words, answer in zip(self._radii, answers, strict=True):
+            words.set_text(_radius(answer))
         for key, (_, unit) in FACTS.items():
             for cell, answer in zip(self._cells[key], answers, strict=True):
                 cell.set_text("–" if answer[key] is None else f"{significant(answer[key])} {unit}")
         for key, each in self._charts.items():
             lines = [
-                ChartLine(a["station_m"], a[key], number) for number, a in enumerate(answers) if a[key] is not None
+                ChartLine(a["station_m"], a[key], number, name=a["ski"]["name"])
+                for number, a in enumerate(answers)
+                if a[key] is not None
             ]
             each.show(lines, range_=_range(key, answers))
 
@@ -194,6 +241,19 @@ def _range(key: str, answers: list[dict[str, Any]]) -> tuple[float, float] | Non
     """Depth counts downwards, and the shovel high above the snow would leave no room for what is in it."""
     depths = [depth for answer in answers for depth in (answer[key] or ()) if depth is not None]
     return (1.1 * max(depths), -ABOVE_MM) if key == "edge_depth_mm" and depths else None
+
+
+def _headline(number: int) -> Words:
+    return Words("").classes("value").style(f"color: {STYLES[number]['colour']}")
+
+
+def _radius(answer: dict[str, Any]) -> str:
+    """The ski, its radius and whether the snow holds it, in a line."""
+    name, radius = answer["ski"]["name"], answer[HEADLINE]
+    if radius is None:
+        return f"{name}: no carved radius"
+    text = f"{name}: carved radius {significant(radius)} m"
+    return text if answer["holds"] else f"{text}, were the snow to hold it"
 
 
 def _in_words(answer: dict[str, Any]) -> str:
@@ -208,17 +268,17 @@ def _table(names: list[str]) -> dict[str, list[ui.label]]:
     cells: dict[str, list[ui.label]] = {}
     with ui.element("table"):
         with ui.element("thead"), ui.element("tr"):
-            ui.element("th").props("scope=col")
+            ui.element("td")
             for number, text in enumerate(names):
                 with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
-                    ui.label(text)
+                    Words(text)
         with ui.element("tbody"):
             for key, (words, _) in FACTS.items():
                 with ui.element("tr"):
                     with ui.element("th").props("scope=row"):
-                        ui.label(words)
+                        Words(words)
                     cells[key] = []
                     for number in range(len(names)):
                         with ui.element("td").classes("n").style(f"color: {STYLES[number]['colour']}"):
-                            cells[key].append(ui.label(""))
+                            cells[key].append(Words(""))
     return cells

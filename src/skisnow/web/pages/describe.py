@@ -18,11 +18,13 @@ from ..fields import choice, field
 from ..layout import framed, heading, sentence
 from ..names import entering, required_id
 from ..typed import typed_number
+from ..worded import Words
 
 if TYPE_CHECKING:
     from nicegui.events import GenericEventArguments
 
     from ..settings import Lab
+    from ..worded import TypedField
 
 HERE: Final = "/"
 NUMBERS: Final = {
@@ -34,6 +36,12 @@ NUMBERS: Final = {
 LENGTHS: Final = {"length_mm": "Length (mm)", "width_mm": "Width (mm)", "diameter_mm": "Diameter (mm)"}
 LENGTHS_OF_SHAPES: Final = LENGTHS | {"radius_mm": "Radius (mm)"}
 _SHAPE: Final = "Shape of tool {}"
+USUAL: Final[dict[str, Any]] = {
+    "load_steps_N": (12, 92, 172, 252, 332, 412, 492),
+    "tool": ({"name": "ski piece", "shape": "ski", "length_mm": 200, "width_mm": 62},),
+    "plate": ({"name": "plate", "length_mm": 100},),
+}
+"""What stands in the form of a new campaign: discs and tool of the published method."""
 MOST_ROWS: Final = 200
 """That come back when a page is loaded anew."""
 SHAPE_WORDS: Final = {"ski": "piece of ski", "disc": "disc", "cylinder": "cylinder on its side"}
@@ -46,9 +54,9 @@ def add_page(lab: Lab) -> None:
     def describe(entry: str = "") -> None:
         session = EditSession(lab, required_id(entry)) if entry else None
         with framed("Campaign" if session else "New campaign", here=HERE, ahead=True):
-            status = ui.label("").classes("status").props("role=status")
+            status = Words("").classes("status").props("role=status")
             with form(""):
-                described = DescriptionForm(toml_values(session.campaign.description) if session else {})
+                described = DescriptionForm(toml_values(session.campaign.description) if session else None)
 
             def done() -> bool:
                 try:
@@ -103,13 +111,14 @@ def _require_used_names(session: EditSession, described: dict[str, Any]) -> None
 class DescriptionForm:
     """The fields of campaign.toml; a key that the form does not know, such as the screening's, is kept."""
 
-    def __init__(self, given: dict[str, Any]) -> None:
+    def __init__(self, described: dict[str, Any] | None) -> None:
+        given = USUAL if described is None else described
         self._given = given
         with ui.element("div").classes("fields"):
             self._name = field("Name of the campaign", given.get("name", ""), wide=True)
             self._place = field("Place", given.get("place", ""), wide=True)
             self._observers = field("Observers, with commas between", ", ".join(given.get("observers", ())), wide=True)
-        if not given:
+        if described is None:
             self._name.run_method("focus")
         heading("Discs and gauges")
         sentence("What is left empty counts as 0, and the report says so.", "quiet")
@@ -147,7 +156,7 @@ class _Entries:
 
     def __init__(self, title: str, kind: str, given: Any) -> None:
         self.kind = kind
-        self._rows: list[tuple[ui.input, ui.select | None, dict[str, ui.input]]] = []
+        self._rows: list[tuple[TypedField, ui.select | None, dict[str, TypedField]]] = []
         heading(title)
         self._place = ui.element("div").props(f"data-rows={kind}")
         for entry in list(given) or [dict[str, Any]()]:
@@ -206,7 +215,7 @@ class _Entries:
         return found
 
 
-def _show_lengths(shape: ui.select, lengths: dict[str, ui.input]) -> None:
+def _show_lengths(shape: ui.select, lengths: dict[str, TypedField]) -> None:
     for key, each in lengths.items():
         each.set_visibility(key in SHAPES[shape.value].argument_of_key)
 

@@ -13,6 +13,7 @@ from ..layout import framed, heading, sentence
 from ..replay.addresses import LIST, SHOW, RunFolders, add_addresses, show_address
 from ..replay.tracks import LARGEST_BYTES, MOST_POINTS, TrackFolders
 from ..replay.uploads import UPLOAD, add_uploads
+from ..worded import Words, named
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -53,7 +54,7 @@ def _run(place: Path, name: str) -> None:
         heading(name, 2)
         sentence(_in_words(place), "quiet")
         with ui.element("div").classes("acts"):
-            link("Watch", show_address(name), "main").props(f'aria-label="Watch {_quoted(name)}"')
+            named(link("Watch", show_address(name), "main"), f"Watch {name}")
 
 
 def _in_words(place: Path) -> str:
@@ -77,12 +78,12 @@ def _together(names: list[str], tracks: list[str], track: str) -> None:
         _select("ghost", "Laid over it, translucent", [NONE, *names], other)
         _select("track", "Measured track beside it", [NONE, *tracks], track or NONE)
         with ui.element("button").props("type=submit").classes("act main"):
-            ui.label("Watch together")
+            Words("Watch together")
 
 
 def _select(key: str, text: str, names: list[str], chosen: str) -> None:
     with ui.element("label").props(f"for=replay-{key}"):
-        ui.label(text)
+        Words(text)
     with ui.element("select").props(f"id=replay-{key} name={key}").classes("act"):
         for name in names:
             said = f'value="{_quoted("" if name == NONE else name)}" label="{_quoted(name)}"'
@@ -93,7 +94,7 @@ def _upload() -> None:
     """A form that takes a measured track in."""
     with ui.element("details"):
         with ui.element("summary"):
-            ui.label("Add a measured track")
+            Words("Add a measured track")
         sentence(
             f"CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {LARGEST_BYTES // 1_000_000} MB and {MOST_POINTS} points. A "
             "track in latitude and longitude needs the compass direction in which the slope falls; it begins where the "
@@ -107,12 +108,12 @@ def _upload() -> None:
             _input("azimuth", "Direction of the fall line (°), clockwise from north", "inputmode=decimal")
             _input("start", "Time of the run at its first point (s)", "inputmode=decimal value=0")
             with ui.element("button").props("type=submit").classes("act"):
-                ui.label("Add the track")
+                Words("Add the track")
 
 
 def _input(key: str, text: str, further: str) -> None:
     with ui.element("label").props(f"for=track-{key}"):
-        ui.label(text)
+        Words(text)
     ui.element("input").props(f"id=track-{key} name={key} {further}").classes("" if "file" in further else "act plain")
 
 

@@ -1,37 +1,69 @@
-"""Simulations: a form made from the scenario's keys, snow from a campaign, the queue with progress, the history."""
+"""Simulations: a form made from the table of inputs, a snow, a ski, the queue with progress, the history."""
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import app, background_tasks, run, ui
 
 from ...errors import ParameterError, SkisnowError
-from ...field.store import Journals
 from ...replay.of_file import RUN_FILE
-from ..edit_session import EditSession
 from ..error_pages import error_sentence
-from ..fields import button, choice, field, link
+from ..fields import button, choice, link
 from ..lab_skis import LabSkis
 from ..layout import framed, heading, sentence
 from ..replay.addresses import show_address
+from ..run_estimate import estimated_s
 from ..runs import Job, Runs
-from ..snow_of_campaign import require_scenario, snow_of_campaign
+from ..scenario_fields import ScenarioField, called, in_labels
+from ..snow_choice import SnowChoice
+from ..snow_of_campaign import require_scenario, results_with
+from ..worded import Words, named
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ..settings import Lab
+    from ..snow_choice import ChosenSnow
 
 PATH: Final = "/simulate"
 TITLE: Final = "Simulate"
 GIVEN: Final = "as in the scenario"
+NUMBERS: Final = "the numbers below"
 GIVEN_BY_NAME: Final = ("ski.file", "snow.results")
 SNOW_FILE: Final = "snow.json"
 EVERY_S: Final = 1.0
-OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.published")
-_COMMA: Final = re.compile(r"[-+]?\d*,\d+")
+OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
+CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name", "ski.file")
+"""Keys that the menus of snow and ski give."""
+WITH_FILES: Final = ("slope.kind", "slope.profile_gap")
+"""Keys that go with files of the machine that the lab runs on: those are for the command line."""
+BASIC: Final = (
+    *OF_SNOW,
+    "snow.unloading_ratio",
+    "slope.angle_deg",
+    "sledge.edge_angle_deg",
+    "sledge.mass_kg",
+    "start.speed_m_per_s",
+    "start.heading_deg",
+    "friction.mu_0",
+    "drag.drag_area_m2",
+    "run.duration_s",
+    "run.length_m",
+)
+"""What a first run is asked about; all else has a value that most runs keep."""
+SECTION_WORDS: Final = {
+    "slope": "Slope",
+    "snow": "Snow",
+    "friction": "Friction",
+    "drag": "Air drag",
+    "sledge": "Sledge",
+    "ski": "Ski",
+    "start": "Start",
+    "run": "End and output",
+    "shear": "Shear",
+    "solver": "Solver",
+}
 
 
 def add_page(lab: Lab) -> None:
@@ -43,33 +75,32 @@ def add_page(lab: Lab) -> None:
     @ui.page(PATH)
     def simulate() -> None:
         with framed("Simulate", here=PATH):
-            status = ui.label("").classes("status").props("role=status")
-            form = _Form(lab, runs, status)
-            button("Simulate", form.ask, "main", once=True)
+            _Form(lab, runs)
             history = _History(runs)
         ui.timer(EVERY_S, history.show)
 
 
 class _Form:
-    """The keys of a scenario by their sections; what differs from the scenario's own value is handed on."""
+    """The inputs of a scenario; what differs from the scenario's own value is handed on."""
 
-    def __init__(self, lab: Lab, runs: Runs, status: ui.label) -> None:
+    def __init__(self, lab: Lab, runs: Runs) -> None:
         from ...scenario import scenario_names
 
-        self._lab, self._runs, self._status = lab, runs, status
+        self._runs = runs
         self._skis = LabSkis(lab.runs)
+        self._fields: dict[str, ScenarioField] = {}
         names = list(scenario_names())
         with ui.element("div").classes("fields"):
             self._scenario = choice("Scenario", names, names[0])
-            self._names = _snows(lab)
-            self._snow = choice("Snow", {GIVEN: GIVEN, **self._names}, GIVEN)
             self._ski = choice("Ski", [GIVEN, *self._skis.names()], GIVEN)
-        self._known = sentence("").props("role=status")
-        self._place = ui.element("div")
-        self._fields: dict[str, ui.input] = {}
-        self._before: dict[str, str] = {}
+            self._snow = SnowChoice(lab, NUMBERS, self._other_snow)
+        self._basic = ui.element("div").classes("inputs")
+        with ui.element("div").classes("acts"):
+            button("Simulate", self.ask, "main", once=True)
+            self._estimate = Words("").classes("quiet").props("role=status")
+        self._status = Words("").classes("status").props("role=status")
+        self._expert = ui.element("div")
         self._scenario.on_value_change(self._draw)
-        self._snow.on_value_change(self._tell_snow)
         self._draw()
 
     def _draw(self) -> None:
@@ -78,104 +109,127 @@ class _Form:
 
         values = scenario_file(str(self._scenario.value)).values
         kept = self._changed()
-        self._place.clear()
-        self._fields, self._before = {}, {}
-        with self._place:
-            for section in SECTIONS:
-                is_kept = any(name.startswith(f"{section}.") for name in kept)
-                with ui.element("details").props("open" if is_kept else ""):
-                    with ui.element("summary"):
-                        ui.label(section.capitalize())
-                    with ui.element("div").classes("keys"):
-                        for name, key in SCENARIO_KEYS.items():
-                            if name.startswith(f"{section}."):
-                                self._key(name, values.get(name), f"{key.meaning}; {key.allowed}", kept.get(name))
+        self._fields = {}
+        self._basic.clear()
+        self._expert.clear()
 
-    def _key(self, name: str, value: Any, words: str, kept: str | None) -> None:
-        self._before[name] = before = _written(value)
-        self._fields[name] = field(name.split(".", 1)[1], before if kept is None else kept)
-        self._fields[name].props(f'aria-label="{name}"')
-        sentence(words, "quiet")
+        def add(name: str) -> None:
+            made = self._fields[name] = ScenarioField(SCENARIO_KEYS[name], values.get(name), kept.get(name))
+            made.element.on_value_change(self._tell_estimate)
+
+        with self._basic:
+            for name in BASIC:
+                add(name)
+        with self._expert, ui.element("details").classes("expert").props("open" if kept.keys() - set(BASIC) else ""):
+            with ui.element("summary"):
+                Words("Expert inputs")
+            for section in SECTIONS:
+                names = [name for name in SCENARIO_KEYS if name.startswith(f"{section}.") and name in _expert()]
+                if names:
+                    heading(SECTION_WORDS[section], 3)
+                    with ui.element("div").classes("inputs"):
+                        for name in names:
+                            add(name)
+        self._show_numbers()
+        self._tell_estimate()
 
     def _changed(self) -> dict[str, str]:
-        """What was typed in place of the scenario's own values."""
-        typed = {name: str(each.value or "").strip() for name, each in self._fields.items()}
-        return {name: _with_point(text) for name, text in typed.items() if text != self._before[name]}
+        """What stands in place of the scenario's own values."""
+        return {name: each.text for name, each in self._fields.items() if each.is_changed and each.place.visible}
+
+    async def _other_snow(self) -> None:
+        self._show_numbers()
+
+    def _show_numbers(self) -> None:
+        for name, given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
+            self._fields[name].place.set_visibility(not given)
+
+    def _tell_estimate(self) -> None:
+        from ...scenario import scenario_file
+
+        values: dict[str, Any] = dict(scenario_file(str(self._scenario.value)).values)
+        for name in ("run.duration_s", "run.length_m", "start.speed_m_per_s"):
+            try:
+                values[name] = float(self._fields[name].text or 0.0)
+            except ValueError:
+                values[name] = None
+        values["solver.method"] = self._fields["solver.method"].text
+        seconds = estimated_s(self._runs.folder, self._runs.jobs(), values)
+        self._estimate.set_text("" if seconds is None else f"Will take about {_duration(seconds)}.")
 
     async def ask(self) -> None:
         """Put the simulation into the queue, when its values can be read."""
         try:
             job = await self._asked(str(self._scenario.value), self._changed())
         except SkisnowError as error:
-            self._status.set_text(f"Not begun: {error_sentence(error)}")
-            self._status.classes(add="bad")
+            self._refuse(error)
             return
         self._status.set_text(f"{job.name} is in the queue.")
         self._status.classes(remove="bad")
 
+    def _refuse(self, error: SkisnowError) -> None:
+        """Say what is wrong at the button and at the field that has it, and put the focus there."""
+        said = error_sentence(error)
+        faulty = next((each for name, each in self._fields.items() if name in said), None)
+        told = in_labels(said, *(each.key for each in self._fields.values()))
+        if faulty is not None:
+            faulty.refuse(told)
+            faulty.focus()
+        self._status.set_text(f"Not begun: {told}")
+        self._status.classes(add="bad")
+
     async def _asked(self, scenario: str, changes: dict[str, str]) -> Job:
-        ski, snow = str(self._ski.value), str(self._snow.value)
-        given = []
-        for name, text in changes.items():
-            if not text:
-                raise ParameterError(f"{name} is empty; the scenario has {self._before[name]}")
-            if snow != GIVEN and name in OF_SNOW:
-                raise ParameterError(
-                    f"{name} was changed, and the snow is that of a campaign. Put {self._before[name] or 'nothing'} "
-                    f"back, or choose Snow: {GIVEN}"
-                )
+        for each in self._fields.values():
+            each.refuse("")
+        for name in changes:
+            self._fields[name].check()
+        ski, snow, given = str(self._ski.value), self._snow.chosen(), list[str]()
         if ski != GIVEN:
             word = self._skis.word(ski)
             changes["ski.name" if word == ski else "ski.file"] = word
             given.append(f"ski: {ski}")
-        if snow == GIVEN:
+        files: dict[str, tuple[str, bytes]] = {}
+        if snow is not None and snow.analysis is not None:
+            results, words = await self._results(snow, scenario, changes)
+            files = {"snow.results": (SNOW_FILE, results)}
+            given.append(f"snow: {snow.words}, {words}")
+        else:
+            if snow is not None:
+                changes["snow.published"] = snow.published
             await run.io_bound(require_scenario, scenario, changes)
-            return self._runs.ask(scenario, changes, given="; ".join(given))
-        found = await run.io_bound(snow_of_campaign, self._lab, snow, scenario, changes)
-        if found is None:
-            raise ParameterError("the lab is about to end")
-        results, words = found
-        given.append(f"snow: {self._names[snow]}, {words}")
-        files = {"snow.results": (SNOW_FILE, results)}
         return self._runs.ask(scenario, changes, files=files, given="; ".join(given))
 
-    async def _tell_snow(self) -> None:
-        """Say at once what snow a campaign gives, and how well it is known."""
-        self._known.set_text("")
-        snow = str(self._snow.value)
-        if snow == GIVEN:
-            return
-        try:
-            found = await run.io_bound(snow_of_campaign, self._lab, snow, str(self._scenario.value), {})
-        except SkisnowError as error:
-            self._known.set_text(error_sentence(error))
-            return
-        if found is not None and snow == self._snow.value:
-            self._known.set_text(f"Snow: {found[1]}")
+    async def _results(self, snow: ChosenSnow, scenario: str, changes: dict[str, str]) -> tuple[bytes, str]:
+        """Let the changes name site and stress of a campaign's snow; the file of its results, and it in words."""
+        if snow.site:
+            changes["snow.site"] = snow.site
+        if not self._snow.gives_stress:
+            changes[OF_SNOW[1]] = self._fields[OF_SNOW[1]].text
+        assert snow.analysis is not None
+        found = await run.io_bound(results_with, snow.analysis, scenario, changes)
+        if found is None:
+            raise ParameterError("the lab is about to end")
+        return found
 
 
-def _snows(lab: Lab) -> dict[str, str]:
-    """Campaigns that can give the snow, by kind and id."""
-    entered = {
-        f"entry-{head.id}": EditSession(lab, head.id).described.name or head.id for head in Journals(lab.store).list()
-    }
-    return entered | {f"kept-{stored.id}": f"{stored.name} ({stored.id})" for stored in lab.store.list()}
+def _expert() -> list[str]:
+    from ...scenario.given import PATH_KEYS
+    from ...scenario.keys import SCENARIO_KEYS
+
+    return [name for name in SCENARIO_KEYS if name not in (*BASIC, *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS)]
 
 
-def _with_point(text: str) -> str:
-    """A number with a decimal comma as the command line takes it; anything else as it is."""
-    return text.replace(",", ".") if _COMMA.fullmatch(text) else text
+def _duration(seconds: float) -> str:
+    """In words, as exact as it is known."""
+    if seconds < 90.0:
+        return f"{max(5, 5 * round(seconds / 5))} s"
+    return f"{round(seconds / 60)} min"
 
 
-def _written(value: Any) -> str:
-    """A value as the command line takes it."""
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, tuple | list):
-        return f"[{', '.join(_written(each) for each in value)}]"
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
+def _in_labels(changes: dict[str, str]) -> str:
+    from ...scenario.keys import SCENARIO_KEYS
+
+    return ", ".join(f"{called(SCENARIO_KEYS[key])}: {value}" for key, value in changes.items())
 
 
 class _History:
@@ -206,7 +260,7 @@ class _History:
         try:
             self._runs.cancel(name)
         except ParameterError as error:
-            ui.notify(str(error))
+            ui.notify(error_sentence(error))
         self.show()
 
 
@@ -220,11 +274,11 @@ class _Card:
             self._words = sentence("", "quiet").props("aria-live=polite")
             self._progress = sentence("", "quiet progress")  # a number that rises each second is not read aloud
             with ui.element("div").classes("acts"):
-                self._cancel = button("Cancel", lambda: cancel(job.name)).props(f'aria-label="Cancel {job.name}"')
-                self._watch = link("Watch", show_address(job.name), "main").props(f'aria-label="Watch {job.name}"')
+                self._cancel = named(button("Cancel", lambda: cancel(job.name)), f"Cancel {job.name}")
+                self._watch = named(link("Watch", show_address(job.name), "main"), f"Watch {job.name}")
 
     def show(self, job: Job) -> None:
-        changed = ", ".join(f"{key} = {value}" for key, value in job.changes.items() if key not in GIVEN_BY_NAME)
+        changed = _in_labels({key: value for key, value in job.changes.items() if key not in GIVEN_BY_NAME})
         self._words.set_text(" · ".join(filter(None, (job.scenario, changed, job.given, job.state, job.said))))
         self._progress.set_text(self._runs.progress if job.state == "running" else "")
         self._progress.set_visibility(bool(self._progress.text))

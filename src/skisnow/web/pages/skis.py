@@ -17,6 +17,7 @@ from ..line_chart import STYLES, ChartLine, LineChart
 from ..patience import BUILD_S
 from ..ski_asked import SkiAsked, SkiFound, ski_found
 from ..ski_editor import SkiEditor
+from ..worded import Words, named
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -62,14 +63,14 @@ class _Skis:
         with ui.element("div").classes("fields"):
             self._first = choice("Ski", names, names[0])
             self._second = choice("Compared with", [NOTHING, EDITED, *names], NOTHING)
-        self._status = ui.label("").classes("status").props("role=status")
+        self._status = Words("").classes("status").props("role=status")
         self._facts = ui.element("div").classes("table")
         with ui.element("div").classes("two"):
-            with ui.element("section").classes("drawing").props('aria-label="Drawing"'):
+            with named(ui.element("section").classes("drawing"), "Drawing"):
                 self._charts = {
                     key: LineChart(ALONG, title, f"{title} along the ski", height=190) for key, title in PANELS.items()
                 }
-            with ui.element("section").props('aria-label="Editor"'):
+            with named(ui.element("section"), "Editor"):
                 self._editor = SkiEditor(skis, names[0], self._follow)
                 self._checked = skis.texts(names[0])
                 self._saving()
@@ -85,7 +86,7 @@ class _Skis:
         with ui.element("div").classes("acts"):
             button("Save in the lab", self._save, "main", once=True)
             button("Download the file", self._download)
-        self._saved = ui.label("").classes("status").props("role=status")
+        self._saved = Words("").classes("status").props("role=status")
 
     async def _begin(self) -> None:
         await self._editor.begin(str(self._first.value))
@@ -191,17 +192,17 @@ def _lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
 def _table(drawn: list[SkiDrawing]) -> None:
     with ui.element("table"):
         with ui.element("thead"), ui.element("tr"):
-            ui.element("th").props("scope=col")
+            ui.element("td")
             for number, each in enumerate(drawn):
                 with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
-                    ui.label(each.name)
+                    Words(each.name)
         with ui.element("tbody"):
             for key in drawn[0].facts:
                 with ui.element("tr"):
                     with ui.element("th").props("scope=row"):
-                        ui.label(key)
+                        Words(key)
                     for number, each in enumerate(drawn):
                         with ui.element("td").style(f"color: {STYLES[number]['colour']}"):
-                            ui.label(each.facts[key])
+                            Words(each.facts[key])
     for each in drawn:
         sentence(f"{each.name}: {each.source}", "quiet")

@@ -1,0 +1,81 @@
+"""Laws in Python as the compiled core asks them: arrays over places in, finite numbers back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+
+if TYPE_CHECKING:
+    from ..forces.friction import FrictionLaw
+    from ..forces.penetration import PointLaw
+    from ..forces.shear import ShearLaw
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+class AskedFriction:
+    """μ of a law, for arrays of speeds (m/s)."""
+
+    def __init__(self, law: FrictionLaw) -> None:
+        self.law = law
+
+    def __call__(self, speed: FloatArray, /) -> FloatArray:
+        """The coefficients."""
+        return np.ascontiguousarray(np.broadcast_to(self.law.coefficient(speed), speed.shape), float)
+
+
+class AskedStrength:
+    """Strength and thrust (N/m²) of a law, (2, n), for depths (m) and edge angles (rad); 0 where no snow is met.
+
+    Where they are not finite ``refused`` says so: a step that is tried may look at a pose that no ski comes to.
+    """
+
+    def __init__(self, law: ShearLaw) -> None:
+        self.law = law
+        self.refused = ""
+
+    def __call__(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
+        """Both, or what is not finite."""
+        meets = depth > 0.0
+        found = np.zeros((2, len(depth)))
+        found[:, meets] = self.law.stress_and_thrust(depth[meets], edge_angle[meets])
+        bad = ~np.isfinite(found).all(axis=0)
+        self.refused = ""
+        if bad.any():
+            worst = float(np.degrees(edge_angle[bad][0]))
+            self.refused = f"{self.law!r} gives no finite strength at an edge angle of {worst:.3g} degrees"
+        return found
+
+
+class AskedPressure:
+    """What a penetration law gives back and bears, for arrays over places; a law without finite answers is refused."""
+
+    def __init__(self, law: PointLaw) -> None:
+        self.law = law
+
+    def residual(self, deepest: FloatArray, /) -> FloatArray:
+        """Depth (m) at which places that were at deepest depths (m) bear nothing any more."""
+        return self._sound(self.law.residual_depth(deepest), deepest.shape, deepest)
+
+    def bear(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
+        """Stress (N/m²) and energy (J/m²), (2, n), at depths (m), of places once at deepest depths, at edge angles."""
+        return self._sound(self.law.stress_and_energy(depth, deepest, edge_angle), (2, len(depth)), depth)
+
+    def lost(self, deepest: FloatArray, /) -> FloatArray:
+        """Energy (J/m²) that stays in places that were at deepest depths (m)."""
+        return self._sound(self.law.lost_energy(deepest), deepest.shape, deepest)
+
+    def refuse(self, reason: str) -> None:
+        """Act on an answer that is not finite."""
+        raise ParameterError(reason)
+
+    def _sound(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
+        found = np.ascontiguousarray(np.broadcast_to(found, shape), float)
+        bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
+        if bad.any():
+            self.refuse(f"{self.law!r} gives no finite answer at a depth of {1e3 * depth[bad][0]:.4g} mm")
+        return found

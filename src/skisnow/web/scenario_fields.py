@@ -1,0 +1,158 @@
+"""The inputs of a scenario as fields of a form, made from the table of inputs: each with its name, unit and range."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import ui
+
+from ..errors import ParameterError
+from .fields import choice, field
+from .language import said
+from .layout import sentence
+from .worded import named
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    from ..inputs import Quantity
+    from .worded import TypedField
+
+    InputField: TypeAlias = TypedField | ui.select | ui.switch
+
+ON: Final = "true"
+OFF: Final = "false"
+_OF_FILES: Final = re.compile(r'"|\b[a-z]+_[a-z]+\b|left out')
+"""A clause about the keys of a file says nothing in a form."""
+_COMMA: Final = re.compile(r"[-+]?\d*,\d+")
+_DIGITS: Final = 6
+"""Of a value that a scenario has computed, such as one in another unit."""
+
+
+def called(key: Quantity) -> str:
+    """What an input is called in front of its field: label, symbol and unit.
+
+    >>> from skisnow.scenario.keys import SCENARIO_KEYS
+    >>> called(SCENARIO_KEYS["slope.angle_deg"]), called(SCENARIO_KEYS["snow.H_V_N_per_mm3"])
+    ('Slope angle α (°)', 'Snow hardness H_V (N/mm³)')
+    """
+    label = key.label or key.name
+    words = f"{label[0].upper()}{label[1:]} {key.symbol.replace('$', '')}".rstrip()
+    return f"{words} ({key.unit})" if key.unit else words
+
+
+def range_words(key: Quantity) -> str:
+    """What it means, as far as the name does not say it, and what is allowed.
+
+    >>> from skisnow.scenario.keys import SCENARIO_KEYS
+    >>> range_words(SCENARIO_KEYS["slope.angle_deg"]), range_words(SCENARIO_KEYS["snow.S_f_N_per_mm2"])
+    ('Inclination of the plane. Allowed: from 0 to 75.', 'Allowed: above 0.')
+    """
+    clauses = [each for each in key.meaning.split("; ") if not _OF_FILES.search(each)]
+    meaning = "; ".join(clauses)
+    words = [] if not meaning or meaning.startswith(key.label) else [_as_sentence(meaning)]
+    if not (key.choices or key.kind == "switch"):
+        words.append(f"Allowed: {key.allowed}.")
+    return " ".join(words)
+
+
+def _as_sentence(words: str) -> str:
+    """With a large letter in front, unless that is a symbol's."""
+    return f"{words[0].upper()}{words[1:]}." if words[:2].isalpha() and words.isascii() else f"{words}."
+
+
+def written(value: Any) -> str:
+    """A value as the command line takes it, rounded to what a field shows.
+
+    >>> written([6.0, 8.0]), written(True), written(0.20669325758298024)
+    ('[6, 8]', 'true', '0.206693')
+    """
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return ON if value else OFF
+    if isinstance(value, tuple | list):
+        return f"[{', '.join(written(each) for each in value)}]"
+    return f"{value:.{_DIGITS}g}" if isinstance(value, float) else str(value)
+
+
+def with_point(text: str) -> str:
+    """A number with a decimal comma as the command line takes it; anything else as it is."""
+    return text.replace(",", ".") if _COMMA.fullmatch(text) else text
+
+
+class ScenarioField:
+    """One input: a field, a menu or a switch, with its range below."""
+
+    def __init__(self, key: Quantity, value: Any, typed: str | None) -> None:
+        self.key = key
+        self.before = written(value)
+        with ui.element("div").classes("input") as self.place:
+            self.element = self._drawn(self.before if typed is None else typed)
+            named(self.element, called(key))
+            self._range = sentence(range_words(key), "quiet range")
+
+    def _drawn(self, text: str) -> InputField:
+        if self.key.kind == "switch":
+            return ui.switch(said(called(self.key)), value=text == ON).classes("field")
+        if self.key.choices:
+            return choice(called(self.key), list(self.key.choices), text or None)
+        return field(called(self.key), text, numeric=self.key.kind in ("number", "whole number"))
+
+    @property
+    def text(self) -> str:
+        """What stands there now, as the command line takes it."""
+        value = self.element.value
+        if isinstance(value, bool):
+            return ON if value else OFF
+        return with_point(str(value or "").strip())
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether something else stands there than the scenario has."""
+        return self.text != self.before
+
+    def check(self) -> None:
+        """Refuse what cannot be, as far as the field alone tells; it is said at the field.
+
+        Raises
+        ------
+        ParameterError
+            What stands there is no value of this input.
+        """
+        from ..scenario.given import change_of
+
+        self.refuse("")
+        try:
+            if not self.text:
+                raise ParameterError(f"{self.key.name} is empty; the scenario has {self.before}")
+            self.key.in_range(change_of(f"{self.key.name}={self.text}")[1])
+        except ParameterError as error:
+            self.refuse(in_labels(str(error), self.key))
+            raise
+
+    def refuse(self, fault: str) -> None:
+        """Say at the field why it is refused; nothing: it is not."""
+        if isinstance(self.element, ui.input):
+            self.element.error = fault or None
+        else:
+            self._range.set_text(fault or range_words(self.key))
+            self._range.classes(add="bad" if fault else "", remove="" if fault else "bad")
+
+    def focus(self) -> None:
+        """Put the focus here, with all that stands there marked."""
+        client, id_ = self.element.client, self.element.id
+        client.run_javascript(f"lab.goTo({id_})")
+
+
+def in_labels(message: str, *keys: Quantity) -> str:
+    """A message of the library with the names of inputs as their fields call them.
+
+    >>> from skisnow.scenario.keys import SCENARIO_KEYS
+    >>> in_labels("sledge.mass_kg is -5.0; allowed is above 0 to 1000 kg", SCENARIO_KEYS["sledge.mass_kg"])
+    'Mass of the sledge m (kg) is -5.0; allowed is above 0 to 1000 kg'
+    """
+    for key in sorted(keys, key=lambda each: -len(each.name)):
+        message = message.replace(key.name, called(key))
+    return message

@@ -1,0 +1,74 @@
+"""Reports on a telephone and on paper: nothing is cut, nothing scrolls sideways."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from skisnow.estimate import analyse
+from skisnow.field.reference import reference_campaign
+from skisnow.report import write_report
+from skisnow.report.run_folder import write_run
+
+from ..report.runs import circle_run
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from playwright.sync_api import Browser, Page
+
+WIDER_THAN_THEIR_BOX = """() =>
+    [...document.querySelectorAll("table, td, tbody th, caption, figure, img, dd, .key li, p")]
+    .filter((each) => each.getBoundingClientRect().width > 0)
+    .filter((each) => each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).display !== "inline"
+        || each.getBoundingClientRect().right > document.documentElement.clientWidth + 1)
+    .map((each) => `${each.tagName} ${each.textContent.slice(0, 60)}`)"""
+A4_PX = 680
+"""180 mm of text at 96 pixels an inch."""
+
+
+@pytest.fixture(scope="module")
+def reports(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    folder = tmp_path_factory.mktemp("reports")
+    analysis = analyse(reference_campaign(1).campaign(), n_resamples=100)
+    return write_report(analysis, folder / "campaign"), write_run(circle_run(), folder / "run")
+
+
+@pytest.fixture
+def page(chromium: Browser) -> Iterator[Page]:
+    """Of a file, not of a server."""
+    made = chromium.new_page()
+    yield made
+    made.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("which", [0, 1], ids=["campaign", "run"])
+def test_a_telephone_shows_figures_and_tables_whole(page: Page, reports: tuple[Path, Path], which: int) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.goto(reports[which].as_uri())
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    assert page.evaluate(WIDER_THAN_THEIR_BOX) == []
+    wide = page.locator("figure.wide img").first
+    drawn = wide.evaluate("(each) => [each.naturalWidth, each.clientWidth]")
+    assert drawn[1] > 0.9 * drawn[0]  # the words of the figure have their own size, within a tenth
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("which", [0, 1], ids=["campaign", "run"])
+def test_a_report_prints_as_one_pdf(page: Page, reports: tuple[Path, Path], which: int, tmp_path: Path) -> None:
+    """What a person has after Print, Save as PDF: pages of A4, no table wider than the paper."""
+    page.set_viewport_size({"width": A4_PX, "height": 1000})
+    page.emulate_media(media="print")
+    page.goto(reports[which].as_uri())
+    assert page.evaluate("document.documentElement.scrollWidth") <= A4_PX
+    wide = page.evaluate(
+        """() => [...document.querySelectorAll("table")].filter((each) => each.getBoundingClientRect().right > 682)
+            .map((each) => each.textContent.slice(0, 60))"""
+    )
+    assert wide == []
+    content = page.pdf(path=tmp_path / "report.pdf", prefer_css_page_size=True)
+    assert content.startswith(b"%PDF")
+    assert 2 <= content.count(b"/Type /Page\n") + content.count(b"/Type /Page ") + content.count(b"/Type /Page/") < 60
