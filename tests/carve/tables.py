@@ -9,13 +9,13 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from openbench.entries.numpy_reference import slow_carve as reference
+from openbench.entries.numpy_reference.slow_carve import Case
 
 from skisnow.carve.equilibrium import carve, rest
 from skisnow.carve.result import Equilibrium
 from skisnow.ski import read_ski
 
-from . import reference
-from .reference import Case
 from .synthetic import FloatArray, boot_pose, circular_sidecut, plain_ski, race_profile, snow
 
 MESHES = (40, 80, 160, 320, 640)
@@ -99,15 +99,16 @@ def radii() -> None:
 def against_reference() -> None:
     rows = []
     for angle_deg, ratio, clamp in ((30, 1, 0.0), (30, 10, 0.3), (60, 1, 0.3), (60, 10, 0.3)):
-        case = Case(read_ski("slalom"), 0.2e9, math.radians(angle_deg), 800.0)
+        ski = read_ski("slalom")
+        case = Case(ski, 0.2e9, math.radians(angle_deg), 800.0)
         theirs = reference.solved(replace(case, unloading_ratio=float(ratio), clamp_length=clamp))
         ours = turned("slalom", 0.2, float(ratio), angle_deg=float(angle_deg), clamp=clamp)
         front, rear = theirs.contact_ends()
-        corner = float(case.ski.at(0.0).width) / 2.0 * math.sin(case.edge_angle)
+        corner = float(ski.at(0.0).width) / 2.0 * math.sin(case.edge_angle)
         pairs = (
             (ours.turn_radius_boot, theirs.radius_at_boot()),
             (ours.turn_radius_chord, theirs.radius_through(front, rear)),
-            (boot_pose(ours, case.ski, case.edge_angle)[0] + corner, theirs.boot_depth + corner),
+            (boot_pose(ours, ski, case.edge_angle)[0] + corner, theirs.boot_depth + corner),
             (ours.contact_length, front - rear),
         )
         off = [f"{100.0 * (float(mine or 0.0) / other - 1.0):+.3f}" for mine, other in pairs]

@@ -1,4 +1,4 @@
-"""`carve` against the equilibrium written down again without elements, `reference.py`.
+"""`carve` against the equilibrium written down again without elements, `openbench.entries.numpy_reference.slow_carve`.
 
 With 320 elements: what the default 160 add is in `test_mesh.py`.
 """
@@ -10,15 +10,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from openbench.entries.numpy_reference import slow_carve as reference
+from openbench.entries.numpy_reference.slow_carve import Case
 
 from skisnow.carve.equilibrium import carve
-from skisnow.forces.penetration import MeanPressurePoint, VolumeWithAnglePoint
-from skisnow.forces.shear import AngleShear
+from skisnow.forces.penetration import MeanPressurePoint, PointLaw, VolumeWithAnglePoint
+from skisnow.forces.shear import AngleShear, ShearLaw
 from skisnow.ski import Ski, read_ski
 
-from . import reference
 from .laws import Deepening, Power
-from .reference import Case
 from .synthetic import boot_pose, circular_sidecut, plain_ski, shovel, snow
 
 AGREE = 1e-3
@@ -27,15 +27,19 @@ AGREE = 1e-3
 
 def compare(case: Case) -> None:
     theirs = reference.solved(case)
+    ski, shear, penetration = case.ski, case.shear, case.penetration
+    assert isinstance(ski, Ski)
+    assert shear is None or isinstance(shear, ShearLaw)
+    assert penetration is None or isinstance(penetration, PointLaw)
     ours = carve(
-        case.ski,
+        ski,
         snow(case.hardness / 1e9),
         edge_angle=case.edge_angle,
         load=case.load,
         moment=case.moment,
         unloading_ratio=case.unloading_ratio if case.penetration is None else None,
-        shear=case.shear,
-        penetration=case.penetration,
+        shear=shear,
+        penetration=penetration,
         clamp_length=case.clamp_length,
         side_force_bending=case.side_force_bending,
         side_force_spread="base-reaction" if case.by_reaction else "depth",
@@ -49,8 +53,8 @@ def compare(case: Case) -> None:
     assert ours.contact_length == pytest.approx(front - rear, rel=AGREE)
     # the chord's end moves with the contact's, where the sidecut is no circle any more
     assert ours.turn_radius_chord == pytest.approx(theirs.radius_through(front, rear), rel=2.0 * AGREE)
-    waist = float(case.ski.at(0.0).width) / 2.0 * math.sin(case.edge_angle)
-    depth = boot_pose(ours, case.ski, case.edge_angle)[0] + waist
+    waist = float(ski.at(0.0).width) / 2.0 * math.sin(case.edge_angle)
+    depth = boot_pose(ours, ski, case.edge_angle)[0] + waist
     assert depth == pytest.approx(theirs.boot_depth + waist, abs=2.0 * AGREE * float(ours.edge_depth.max()))
 
     def at_ours(values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> object:

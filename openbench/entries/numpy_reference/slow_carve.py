@@ -1,6 +1,6 @@
-"""The equilibrium written down again in plain NumPy, slow and otherwise: the examiner of `skisnow.simulate`.
+"""The equilibrium of a carve in plain NumPy, slow and otherwise than programs do it: their examiner.
 
-Nothing is shared with the package but the ski's tables. No elements: each end of the ski is a cantilever whose bending
+Nothing is shared with any program but the ski's tables. No elements: each end of the ski is a cantilever whose bending
 moment M(s) = ∫ q (t - s) dt and torque T(s) = ∫ m dt follow from the snow's load by quadrature, and whose deflection
 follows from w″ = M/EI, φ′ = T/GJ by quadrature. The unknowns are curvature and rate of twist at knots, straight between
 them. Across the ski the pressure is summed over many points, and the groove is a running maximum from tip to tail on
@@ -11,15 +11,48 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from skisnow.forces.penetration import PointLaw
-from skisnow.forces.shear import ShearLaw
-from skisnow.ski import Ski
-
 FloatArray = npt.NDArray[np.float64]
+
+
+class Sections(Protocol):
+    """Of a ski at some stations (m, N m²)."""
+
+    @property
+    def width(self) -> FloatArray: ...
+    @property
+    def base_height(self) -> FloatArray: ...
+    @property
+    def bending_stiffness(self) -> FloatArray: ...
+    @property
+    def torsional_stiffness(self) -> FloatArray: ...
+
+
+class Ski(Protocol):
+    """Tables from tip to tail."""
+
+    @property
+    def station(self) -> FloatArray: ...
+    def at(self, station: npt.ArrayLike, /) -> Sections:
+        """Sections anywhere between tip and tail."""
+
+
+class Penetration(Protocol):
+    """A law for the pressure."""
+
+    def stress_and_energy(self, depth: FloatArray, deepest: FloatArray, angle: FloatArray, /) -> FloatArray:
+        """Stress (N/m²) first."""
+
+
+class Strength(Protocol):
+    """A law for the strength of the snow at the edge."""
+
+    def failure_stress(self, depth: FloatArray | float, angle: FloatArray | float, /) -> FloatArray:
+        """S_f (N/m²)."""
 
 
 ROOM = 1.6
@@ -41,9 +74,9 @@ class Case:
     twist: bool = True
     by_reaction: bool = False  # the side force goes along the edge as the snow's force, not as the depth
     boot_is_free: bool = False  # the moment is all that the boot takes about the ski's cross axis
-    penetration: PointLaw | None = None  # in place of hardness and unloading ratio, from which the search comes to it
+    penetration: Penetration | None = None  # in place of hardness and ratio, from which the search comes to it
     law_share: float = 0.0  # of the pressure, on the way
-    shear: ShearLaw | None = None  # of whose strength the edge draws the same share everywhere
+    shear: Strength | None = None  # of whose strength the edge draws the same share everywhere
     knots: int = 30  # of each end
     along: int = 8  # intervals between knots
     across: int = 160
@@ -51,6 +84,8 @@ class Case:
 
 @dataclass(frozen=True)
 class Answer:
+    """What came out, along the ski (m, N/m, rad)."""
+
     station: FloatArray  # tip to tail
     edge_depth: FloatArray
     force_per_length: FloatArray
@@ -64,6 +99,7 @@ class Answer:
         return self.radius_through(0.4, -0.4)
 
     def radius_through(self, front: float, rear: float) -> float:
+        """Circle through the edge line there and at the boot."""
         points = np.array([front, 0.0, rear])
         y = np.interp(points, self.station[::-1], self.edge_line[::-1])
         # (x - a)² + (y - b)² = r²: three equations, linear in a, b and r² - a² - b²
@@ -71,6 +107,7 @@ class Answer:
         return float(math.sqrt(c + a**2 + b**2) * math.copysign(1.0, b - y[1]))
 
     def contact_ends(self) -> tuple[float, float]:
+        """Front and rear place where the edge comes through the surface (m)."""
         below = np.flatnonzero(self.edge_depth > 0.0)
         ends = []
         for inner, step in ((below[0], -1), (below[-1], 1)):
