@@ -19,8 +19,9 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     A ski in snow under a load, carving steadily or at rest.
 ``scenario``, ``scenario_names``, ``Scenario``
     What a run is: a built-in scenario by its name or any other from its file; `Scenario.with_` makes another of it.
-``Plane``, ``Profile``, ``Contact``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
-    The parts of a scenario: slope, how snow and skis meet, drag, sledge, where it begins and ends, how it is computed.
+``Plane``, ``Profile``, ``Terrain``, ``Contact``, ``SnowMap``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
+    The parts of a scenario: slope, how snow and skis meet, snow over the place, drag, sledge, where it begins and ends,
+    how it is computed.
 ``Boots``, ``BootPose``, ``BootMoment``
     Boots that move: a table over time or distance; what a function that moves them knows, and gives.
 ``simulate``, ``Run``, ``verify``, ``Refinement``
@@ -68,9 +69,11 @@ if TYPE_CHECKING:
         Profile,
         RigidSledge,
         Scenario,
+        SnowMap,
         Solver,
         Start,
         Stop,
+        Terrain,
         scenario_names,
     )
     from .scenario import read_scenario as scenario
@@ -113,6 +116,7 @@ __all__ = [
     "Ski",
     "SnowContact",
     "SnowField",
+    "SnowMap",
     "SnowProperties",
     "Solver",
     "Start",
@@ -120,6 +124,7 @@ __all__ = [
     "Store",
     "Study",
     "StudyTable",
+    "Terrain",
     "Track",
     "TrackSummary",
     "TurnChain",
@@ -170,9 +175,11 @@ _PACKAGES = {
         "Profile",
         "RigidSledge",
         "Scenario",
+        "SnowMap",
         "Solver",
         "Start",
         "Stop",
+        "Terrain",
         "scenario_names",
     ),
     "simulate": ("Run",),

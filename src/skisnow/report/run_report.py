@@ -24,6 +24,7 @@ from .tables.run import energies_table, scenario_table, verification_table
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from ..geometry.surfaces import Grid
     from ..simulate.run import Run
     from .figures.drawing import Picture
 
@@ -113,8 +114,8 @@ def _headline(run: Run) -> Markup:
 def _middle(name: str, unit: str, found: Sequence[float]) -> Markup:
     low, middle, high = map(significant, found)
     return prose(
-        "{name} {value} (median; nine tenths of the time from {low} to {high} {unit}).",
-        name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=high, unit=unit,
+        "{name} {value} (median; nine tenths of the time from {low} to {high}).",
+        name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=f"{high}\u00a0{unit}",
     )  # fmt: skip
 
 
@@ -130,12 +131,23 @@ def _title(run: Run) -> str:
 
 
 def _hardness(run: Run) -> str:
-    return f"{_number(run.scenario.contact.snow.snow_hardness / N_PER_MM3)} N/mm³"
+    contact = run.scenario.contact
+    over_place = None if contact.snow_map is None else contact.snow_map.hardness
+    return _value(contact.snow.snow_hardness, over_place, N_PER_MM3, "N/mm³")
 
 
 def _strength(run: Run) -> str:
-    stress = run.scenario.contact.snow.failure_shear_stress
-    return f"{_number(None if stress is None else stress / N_PER_MM2)} N/mm²"
+    contact = run.scenario.contact
+    over_place = None if contact.snow_map is None else contact.snow_map.failure_shear_stress
+    return _value(contact.snow.failure_shear_stress, over_place, N_PER_MM2, "N/mm²")
+
+
+def _value(value: float | None, over_place: Grid | None, size: float, unit: str) -> str:
+    """A number, or where it varies over the place the ends of its range."""
+    if over_place is None:
+        return f"{_number(None if value is None else value / size)} {unit}"
+    low, high = float(over_place.values.min()), float(over_place.values.max())
+    return f"{_number(low / size)} to {_number(high / size)} {unit} over the place"
 
 
 def outcome_sentences(run: Run) -> list[Markup]:

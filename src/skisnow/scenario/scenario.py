@@ -23,12 +23,16 @@ from .contact import Contact
 from .shear import Shear
 from .sledge import RigidSledge
 from .slope import Plane, Profile
+from .slope_surface import Slope
 from .solver import Solver
 from .start import Start, Stop
+from .terrain import Terrain
 
 
-def _slope_kind(slope: Plane | Profile) -> str:
-    return "plane" if isinstance(slope, Plane) else "profile"
+def _slope_kind(slope: Slope) -> str:
+    if isinstance(slope, Plane):
+        return "plane"
+    return "profile" if isinstance(slope, Profile) else "grid"
 
 
 def _ski_name(ski: Ski) -> str | None:
@@ -50,7 +54,7 @@ class Scenario(Shown):
     Attributes
     ----------
     slope
-        A plane or a measured profile.
+        A plane, a measured profile or measured terrain.
     contact, shear, air
         Snow with friction; the law of its shear strength; drag.
     sledge
@@ -72,12 +76,12 @@ class Scenario(Shown):
     """
 
     slope: Annotated[
-        Plane | Profile,
+        Plane | Profile | Terrain,
         Word(
             "slope.kind",
-            "a plane, or a measured profile of heights",
+            "a plane, a measured profile of heights, or a grid of them",
             label="shape of the slope",
-            choices=("plane", "profile"),
+            choices=("plane", "profile", "grid"),
             default="plane",
             origin="choice: the simpler one",
             word_of=_slope_kind,

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..former_names import warn_of_former_name
 from ..from_above import from_above
-from ..scenario import Plane, Scenario
+from ..scenario import Plane, Scenario, Terrain
 from ..shown import Facts, Shown, amount, field_facts, name_with_values, span
 from ..track.track import Track
 from ..units import DEGREE, MM
@@ -194,6 +194,8 @@ class Run(Shown):
         axes = ("x down the fall line", "z out of the snow")
         if not isinstance(self.scenario.slope, Plane):
             axes = ("x horizontal distance down the fall line", "z height")
+        if isinstance(self.scenario.slope, Terrain):
+            axes = ("x horizontal, along that of the grid", "z height")
         return Track(
             name="simulated run",
             time=self.time,

@@ -39,7 +39,8 @@ _REACHED: Final = 1e-6
 REMEDIES: Final[dict[Outcome, str]] = {
     "finished": "Completed: the whole duration was simulated.",
     "distance_reached": "The run length was reached.",
-    "end_of_slope": "The tips reached the end of the profile. Give a longer profile, or a shorter run.",
+    "end_of_slope": "The tips reached the end of the profile, or a border of the grid. Give a longer or wider slope, "
+    "or a shorter run.",
     "tipped_over": "The sledge leant more than 60° from the snow's normal: it has tipped over. Lower its centre of "
     "mass, widen the stance, or take less edge or speed.",
     "airborne": "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a "
@@ -80,7 +81,8 @@ def simulate(
         with their numbers.
     boots
         Moves the boots against the sledge, in place of the scenario's boots.file: called with a `BootMoment` before
-        each output interval, it gives the `BootPose` of the left and the right boot at its end.
+        each output interval, it gives the `BootPose` of the left and the right boot at its end. Its method
+        ``push``, if it has one, gives a force besides, and where on the sledge it acts.
 
     Returns
     -------

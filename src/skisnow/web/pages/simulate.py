@@ -36,7 +36,7 @@ EVERY_S: Final = 1.0
 OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name", "ski.file")
 """Keys that the menus of snow and ski give."""
-WITH_FILES: Final = ("slope.kind", "slope.profile_gap")
+WITH_FILES: Final = ("slope.kind", "slope.profile_gap", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m")
 """Keys that go with files of the machine that the lab runs on: those are for the command line."""
 BASIC: Final = (
     *OF_SNOW,
