@@ -128,8 +128,8 @@ def _headline(run: Run) -> Markup:
 def _middle(name: str, unit: str, found: Sequence[float]) -> Markup:
     low, middle, high = map(significant, found)
     return prose(
-        "{name} {value} (median; nine tenths of the time from {low} to {high} {unit}).",
-        name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=high, unit=unit,
+        "{name} {value} (median; nine tenths of the time from {low} to {high}).",
+        name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=f"{high}\u00a0{unit}",
     )  # fmt: skip
 
 

@@ -87,7 +87,8 @@ def simulate(
         with their numbers.
     boots
         Moves the boots against the sledge, in place of the scenario's boots.file: called with a `BootMoment` before
-        each output interval, it gives the `BootPose` of the left and the right boot at its end.
+        each output interval, it gives the `BootPose` of the left and the right boot at its end. Its method
+        ``push``, if it has one, gives a force besides, and where on the sledge it acts.
 
     Returns
     -------
