@@ -31,6 +31,7 @@ INSIDE = {
     "sources": "named skis, snows",
     "contact": "history-dependent snow, any runners",
     "field": "campaign files, records, store",
+    "course": "gates, passed or missed",
     "parallel": "processes, stored rows",
     "ski": "shape, stiffness, beam",
     "track": "readers, curvature, turns, comparison of two tracks",

@@ -62,6 +62,27 @@ def test_a_line_is_cut_to_the_terminal(
     assert capsys.readouterr().err == f"\r{'y' * 18}…\r{' ' * 19}\r"
 
 
+def test_what_is_counted_says_how_long_it_takes(
+    clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two runs in four seconds: the eight that are left take sixteen."""
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", "80")
+    with Progress() as progress:
+        for moment, done in ((1.0, 0), (3.0, 1), (5.0, 2)):
+            clock[0] = 100.0 + moment
+            progress(f"run {done} of 10")
+        clock[0] += 1.0
+        progress("writing report.html")
+    texts = [text.strip() for text in capsys.readouterr().err.split("\r") if text.strip()]
+    assert texts == [
+        "run 0 of 10",
+        "run 1 of 10, about 18 s left",
+        "run 2 of 10, about 16 s left",
+        "writing report.html",
+    ]
+
+
 def test_what_tells_nothing_of_itself_is_announced(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

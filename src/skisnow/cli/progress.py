@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 import time
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 PAUSE_S: Final = 0.5
+_COUNTED: Final = re.compile(r"(\d+) of (\d+)\b")
 PAUSE_OF_LINES_S: Final = 10.0
 """Where no line can be rewritten, such as in a log."""
 
@@ -50,6 +52,7 @@ class Progress:
     def __init__(self, *, patience_s: float = 1.0, pause_s: float | None = None) -> None:
         self._line = MovingLine()
         self._next = time.monotonic() + patience_s
+        self._begun: tuple[tuple[str, int], float, int] | None = None
         self._pause = pause_s if pause_s is not None else PAUSE_S if self._line.moves else PAUSE_OF_LINES_S
 
     def __call__(self, text: str) -> None:
@@ -58,7 +61,21 @@ class Progress:
         if now < self._next:
             return
         self._next = now + self._pause
-        self._line.show(text)
+        self._line.show(text + self._left(text, now))
+
+    def _left(self, text: str, now: float) -> str:
+        """The time left of work that is counted, "3 of 15", from the second text of its kind on."""
+        counted = _COUNTED.search(text)
+        if counted is None or "left" in text:
+            return ""
+        done, total = int(counted[1]), int(counted[2])
+        kind = (text[: counted.start()], total)
+        if self._begun is None or self._begun[0] != kind:
+            self._begun = (kind, now, done)
+        _, begun, before = self._begun
+        if done <= before:
+            return ""
+        return f", about {(now - begun) * (total - done) / (done - before):.0f} s left"
 
     def __enter__(self) -> Self:
         """Start."""

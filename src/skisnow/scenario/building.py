@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from ..course import Course, course_names, on_slope, read_course
 from ..errors import ParameterError
 from ..inputs import made, meant
 from ..ski import Ski, ski_names
@@ -50,7 +51,11 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
     if "run.duration_s" not in values and "run.length_m" not in values:
         raise ParameterError("the run has no end: give run.duration_s or run.length_m")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
-    return made(Scenario, values, slope=slope, contact=contact, ski=ski, boots=_boots(given, values)), warned
+    course = _course(given, slope)
+    told = () if course is None else course.warnings
+    boots = _boots(given, values)
+    scenario = made(Scenario, values, slope=slope, contact=contact, ski=ski, course=course, boots=boots)
+    return scenario, (*warned, *told)
 
 
 def _boots(given: GivenScenario, values: Mapping[str, Any]) -> Boots | None:
@@ -88,6 +93,26 @@ def _slope(given: GivenScenario, values: Mapping[str, Any]) -> Slope:
         return read_terrain(given.path("slope.grid"), smoothing=smoothing, origin_x=origin[0], origin_y=origin[1])
     _require(values, "slope.profile", 'or a plane: slope.kind = "plane" and slope.angle_deg')
     return read_profile(given.path("slope.profile"), gap=values.get("slope.profile_gap", _default("slope.profile_gap")))
+
+
+def _course(given: GivenScenario, slope: Slope) -> Course | None:
+    said: dict[str, Any] = {
+        name.partition(".")[2]: value for name, value in given.values.items() if name.startswith("course.")
+    }
+    name, file = said.pop("name", None), said.pop("file", None)
+    if name is not None and file is not None:
+        raise ParameterError("a course has either course.name, of the catalogue, or course.file; both are there")
+    if name is None and file is None:
+        if said:
+            raise ParameterError(
+                f"course.{next(iter(said))} is there without a course; give course.file, or leave it out"
+            )
+        return None
+    if name is not None and name not in course_names():
+        known = f"{meant(str(name), course_names())}There are {', '.join(course_names())}"
+        raise ParameterError(f"course.name is {name!r}, no course of the catalogue. {known}. A path is course.file")
+    course = read_course(name or given.path("course.file"), **said)
+    return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
 
 
 def _default(name: str) -> Any:

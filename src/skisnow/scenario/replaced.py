@@ -9,7 +9,13 @@ _SNOW_WAYS: Final = {
     "snow.results": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.published", "snow.map_file"),
     "snow.published": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.results", "snow.site", "snow.map_file"),
 }
-_REPLACED: Final = {**_SNOW_WAYS, "ski.name": ("ski.file",), "ski.file": ("ski.name",)}
+_REPLACED: Final = {
+    **_SNOW_WAYS,
+    "ski.name": ("ski.file",),
+    "ski.file": ("ski.name",),
+    "course.name": ("course.file",),
+    "course.file": ("course.name",),
+}
 KEYS_OF_KIND: Final = {
     "plane": ("slope.angle_deg",),
     "profile": ("slope.profile", "slope.profile_gap"),

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 from ..constants import STANDARD_GRAVITY
+from ..course import Course
 from ..errors import ParameterError
 from ..from_above import from_above
 from ..inputs import Quantity, Search, Word, require_declared
@@ -68,6 +69,8 @@ class Scenario(Shown):
         Where it begins, when it ends, how it is computed.
     gravity
         (m/s²), > 0.
+    course
+        Gates in the slope's x and y, whose passing a run tells; None: there are none.
 
     See Also
     --------
@@ -172,6 +175,7 @@ class Scenario(Shown):
             origin="the value that the skiing literature computes with",
         ),
     ] = STANDARD_GRAVITY
+    course: Course | None = None
 
     def __post_init__(self) -> None:
         if self.contact.snow.failure_shear_stress is None:
@@ -238,6 +242,7 @@ class Scenario(Shown):
             ("ski", repr(self.ski).strip("<>")),
             *([("boots", repr(self.boots).strip("<>"))] if self.boots is not None else []),
             ("start", f"{amount(start.speed, 'm/s')}, heading {amount(start.heading / DEGREE, '°')}"),
+            *([("course", repr(self.course).strip("<>"))] if self.course is not None else []),
             ("end", " or ".join(amount(value, unit) for value, unit in end if value is not None)),
             ("solver", f"{solver.method}, {'fixed steps of' if solver.fixed else 'from'} {solver.step * 1e3:.4g} ms"),
         )

@@ -30,6 +30,8 @@ Outcome: TypeAlias = Literal[
     "tipped_over",
     "airborne",
     "sunk",
+    "missed_gate",
+    "straddled",
     "energy_open",
     "step_too_small",
     "not_finite",
@@ -215,7 +217,8 @@ class Run(Shown):
         ----------
         what
             "track": from above, with the grooves; "motion": speed, heading and turn radius; "along_ski": depth and
-            force along both skis over time; "grip": the share of the shear strength in use; "energies".
+            force along both skis over time; "grip": the share of the shear strength in use; "energies";
+            "course": the line over the gates, with the edge angle as colour.
 
         Returns
         -------

@@ -16,6 +16,7 @@ from ..former_names import formerly
 from ..scenario import Scenario
 from .moving_boots import BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
+from .run_gates import GatesAhead, run_gates
 from .run_record import Record
 from .run_setup import AT_REST, Setup, set_up
 from .standing import why_no_start
@@ -31,6 +32,8 @@ SINKING_DEPTH: Final = 0.5
 """Depth (m) of the boots below the surface at which the sledge has sunk (modelling assumption)."""
 OUTPUTS_AT_ONCE: Final = 5
 """Outputs between which no progress is reported."""
+CLEAR: Final = 1.0
+"""Distance (m) of the boots behind the last gate at which a course is over: whatever counts has crossed its line."""
 _COMPUTED_WRONG: Final = ("step_too_small", "not_finite", "interrupted")
 """Outcomes that an open balance does not take the place of."""
 _REACHED: Final = 1e-6
@@ -47,6 +50,9 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "smoother slope.",
     "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
     "Take harder snow, less mass or a wider ski.",
+    "missed_gate": "Change line or start, or the course; gates.csv says of each gate what became of it.",
+    "straddled": "By the rules that is no passage. Change line or start, or the course; gates.csv says of each gate "
+    "what became of it.",
     "energy_open": "The energy residual is more than a tenth of the energy exchanged: these numbers are not "
     "those of a sledge on snow. Take smaller steps, or the error control (solver.fixed false); on "
     "very hard snow, or at more than 50° of edge angle, a smaller tolerance.",
@@ -135,8 +141,11 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
     duration = math.inf if stop.duration is None else stop.duration
     length = math.inf if stop.length is None else stop.length
     flying, number, nearing = 0.0, 0, False
+    ahead = GatesAhead(setup.scenario.course)
     while True:
         now = setup.time
+        if ahead.is_over(setup.place, CLEAR):
+            return "finished"
         if now >= duration:
             return "finished"
         left = length - record.run_length
@@ -189,9 +198,21 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
         numbers=setup.numbers,
         boots_by=None if setup.drive is None else setup.drive.described,
     )
-    if outcome in _COMPUTED_WRONG or not run.has_residual_above(OPEN_SHARE):
+    if outcome in _COMPUTED_WRONG:
         return run
-    return replace(run, outcome="energy_open", remedy=REMEDIES["energy_open"])
+    if run.has_residual_above(OPEN_SHARE):
+        return replace(run, outcome="energy_open", remedy=REMEDIES["energy_open"])
+    return _through_gates(run) if outcome in ("finished", "distance_reached") else run
+
+
+def _through_gates(run: Run) -> Run:
+    """A run that ends well, but not through all gates of its course, missed or straddled one."""
+    result = run_gates(run)
+    fault = None if result is None else result.fault
+    if fault is None:
+        return run
+    outcome: Outcome = "straddled" if fault.outcome == "straddled" else "missed_gate"
+    return replace(run, outcome=outcome, remedy=f"{fault.words[0].upper()}{fault.words[1:]}. {REMEDIES[outcome]}")
 
 
 def _groove(setup: Setup) -> Groove:

@@ -81,7 +81,7 @@ def test_sheets_beside_files_and_problems_by_sheet_and_row(
     assert campaign.penetration.further["time"][0] == "2026-11-23T09:10:00"
     (flag,) = quality_flags(campaign)
     assert (flag.code, flag.file) == ("too_few_loads", "Hang.xlsx, sheet Penetration")
-    assert campaign.unread_files == ("~$Hang.xlsx", "Hang.xlsx, sheet Diagramm")
+    assert campaign.unread_files == ("Hang.xlsx, sheet Diagramm",)
 
 
 def test_what_is_there_twice_is_refused(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:

@@ -178,9 +178,9 @@ def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
 
 
 def _unread(there: Mapping[str, bool]) -> tuple[str, ...]:
-    """Files that are no part of a campaign; hidden ones are not spoken of."""
+    """Files that are no part of a campaign; hidden ones, and what Excel puts beside an open one, are not spoken of."""
     files = sorted(name for name, is_file in there.items() if is_file)
-    return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith("."))
+    return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith((".", "~$")))
 
 
 def _misnamed(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
