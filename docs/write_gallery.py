@@ -43,7 +43,10 @@ THEMES: Final = {
         *("edge_lets_go", "two_angles", "own_force_law"),
     ),
     "A ski in snow": ("beam_on_snow", "more_waist", "sidecut_and_angle", "does_it_hold", "many_carved_turns"),
-    "Turns": ("straight_glide", "over_a_roll", "energy_of_a_turn", "skid_to_carve", "one_leg_drawn_up"),
+    "Turns": (
+        *("straight_glide", "over_a_roll", "across_a_pipe", "energy_of_a_turn", "skid_to_carve"),
+        "one_leg_drawn_up",
+    ),
     "Measured tracks": ("radius_of_a_track", "two_tracks", "track_on_a_slope", "friction_from_photo_cells"),
 }
 STYLE: Final[dict[str, Any]] = {

@@ -46,7 +46,8 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def empty(drawing: Drawing) -> Picture:
         svg = f'<svg xmlns="http://www.w3.org/2000/svg"><!-- {next(number)} --></svg>'
-        return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, svg.encode())
+        each = svg.encode()
+        return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, each, each, each)
 
     for place in ("figures", "pictures"):
         monkeypatch.setattr(f"skisnow.report.{place}.pictured", empty)

@@ -10,13 +10,23 @@ import pytest
 
 import skisnow
 from skisnow import SnowProperties, Track
+from skisnow.course import MovingPoint, passages
 from skisnow.field.reference import reference_campaign
+from skisnow.geometry.surfaces import Grid
 from skisnow.identify import Identified, Parameter
 from skisnow.report.figures.track_band import TimedTrack
 from skisnow.report.turn_chain import EnsembleRun
 from skisnow.shown import Shown
 
 from .report.runs import circle_run
+
+
+def course_and_result() -> tuple[object, ...]:
+    time = np.arange(0.0, 3.0, 0.1)
+    gates = tuple(skisnow.Gate(name=str(i), turning=(8.0 * i, 1.0), side="right") for i in (1, 2))
+    course = skisnow.Course(gates=gates)
+    line = MovingPoint(time, np.column_stack([10.0 * time, np.zeros(len(time))]))
+    return gates[0], course, passages(course, line, {})
 
 
 def identified() -> skisnow.Identification:
@@ -54,6 +64,9 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
         campaign, analysis, snow, scenario.ski, scenario, scenario.slope, scenario.contact, scenario.air,
         scenario.sledge, scenario.start, scenario.stop, scenario.solver, run,
         skisnow.Profile(np.arange(60.0), -0.2 * np.arange(60.0)),
+        skisnow.Terrain(np.arange(9.0), np.arange(3.0), np.zeros((9, 3)), smoothing=2.0),
+        *course_and_result(),
+        skisnow.SnowMap(hardness=Grid.along([0.0, 9.0], [1e8, 2e8])),
         skisnow.Refinement("solver.step_ms", 1.0, 2.0, 0.1, "finished"), run.track, skisnow.GeodeticPoint(47.5, 11.25),
         skisnow.TurnChain(campaign="mine", site="site C", synthetic=True, snow=snow, runs={"one": run, "two": run},
                           ensemble=ensemble, seed=1),

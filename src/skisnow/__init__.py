@@ -19,10 +19,13 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     A ski in snow under a load, carving steadily or at rest.
 ``scenario``, ``scenario_names``, ``Scenario``
     What a run is: a built-in scenario by its name or any other from its file; `Scenario.with_` makes another of it.
-``Plane``, ``Profile``, ``Contact``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
-    The parts of a scenario: slope, how snow and skis meet, drag, sledge, where it begins and ends, how it is computed.
+``Plane``, ``Profile``, ``Terrain``, ``Contact``, ``SnowMap``, ``Air``, ``RigidSledge``, ``Start``, ``Stop``, ``Solver``
+    The parts of a scenario: slope, how snow and skis meet, snow over the place, drag, sledge, where it begins and ends,
+    how it is computed.
 ``Boots``, ``BootPose``, ``BootMoment``
     Boots that move: a table over time or distance; what a function that moves them knows, and gives.
+``read_course``, ``course_names``, ``Course``, ``Gate``, ``time_gates``, ``CourseResult``
+    Gates from a file, and who passed them when: a run or a measured track.
 ``simulate``, ``Run``, ``verify``, ``Refinement``
     A sledge on two flexible skis: the run that comes out of a scenario, and how exact it is.
 ``chain``, ``TurnChain``
@@ -52,6 +55,7 @@ if TYPE_CHECKING:
     from .carve.equilibrium import carve
     from .chain.chaining import chain
     from .contact import ContactForces, Runner, SnowContact, SnowField
+    from .course import Course, CourseResult, Gate, course_names, read_course
     from .dynamics import BootPose
     from .estimate import Analysis, analyse, results_dict
     from .field import Campaign, check_campaign, read_campaign, write_reference
@@ -68,14 +72,17 @@ if TYPE_CHECKING:
         Profile,
         RigidSledge,
         Scenario,
+        SnowMap,
         Solver,
         Start,
         Stop,
+        Terrain,
         scenario_names,
     )
     from .scenario import read_scenario as scenario
     from .simulate import Run
     from .simulate.moving_boots import BootMoment
+    from .simulate.run_gates import time_gates
     from .simulate.simulated_run import simulate
     from .simulate.verification import Refinement, verify
     from .ski import Ski, read_ski, ski_names
@@ -100,7 +107,10 @@ __all__ = [
     "Comparison",
     "Contact",
     "ContactForces",
+    "Course",
+    "CourseResult",
     "Equilibrium",
+    "Gate",
     "GeodeticPoint",
     "Identification",
     "Plane",
@@ -113,6 +123,7 @@ __all__ = [
     "Ski",
     "SnowContact",
     "SnowField",
+    "SnowMap",
     "SnowProperties",
     "Solver",
     "Start",
@@ -120,6 +131,7 @@ __all__ = [
     "Store",
     "Study",
     "StudyTable",
+    "Terrain",
     "Track",
     "TrackSummary",
     "TurnChain",
@@ -128,11 +140,13 @@ __all__ = [
     "chain",
     "check_campaign",
     "compare_tracks",
+    "course_names",
     "identify",
     "in_slope_frame",
     "published_names",
     "published_snow",
     "read_campaign",
+    "read_course",
     "read_ski",
     "read_study",
     "read_track",
@@ -146,6 +160,7 @@ __all__ = [
     "ski_names",
     "snow_from_results",
     "study",
+    "time_gates",
     "track_summary",
     "verify",
     "write_reference",
@@ -155,6 +170,7 @@ __all__ = [
 _PACKAGES = {
     "carve": ("Equilibrium", "rest"),
     "contact": ("ContactForces", "Runner", "SnowContact", "SnowField"),
+    "course": ("Course", "CourseResult", "Gate", "course_names", "read_course"),
     "dynamics": ("BootPose",),
     "estimate": ("Analysis", "analyse", "results_dict"),
     "field": ("Campaign", "check_campaign", "read_campaign", "write_reference"),
@@ -170,13 +186,16 @@ _PACKAGES = {
         "Profile",
         "RigidSledge",
         "Scenario",
+        "SnowMap",
         "Solver",
         "Start",
         "Stop",
+        "Terrain",
         "scenario_names",
     ),
     "simulate": ("Run",),
     "simulate.moving_boots": ("BootMoment",),
+    "simulate.run_gates": ("time_gates",),
     "simulate.verification": ("Refinement", "verify"),
     "ski": ("Ski", "read_ski", "ski_names"),
     "snow": ("SnowProperties", "published_names", "published_snow", "snow_from_results"),

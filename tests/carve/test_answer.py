@@ -49,6 +49,14 @@ def test_every_input_reaches_the_turn() -> None:
     assert not is_same(chosen, plain)
 
 
+def test_numbers_of_numpy_are_numbers() -> None:
+    """As `np.radians` gives them."""
+    asked: dict[str, Any] = {"unloading_ratio": 10.0, "elements": 80}
+    plain = carve(read_ski("slalom"), SNOW, edge_angle=math.radians(45), load=800.0, **asked)
+    other = carve(read_ski("slalom"), SNOW, edge_angle=np.radians(45), load=np.float64(800.0), **asked)
+    assert other.turn_radius_boot == plain.turn_radius_boot
+
+
 def test_the_unloading_ratio_of_the_snow_is_taken_where_none_is_given() -> None:
     ski = read_ski("slalom")
     asked: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "elements": 80}

@@ -212,6 +212,7 @@ def test_the_command_s_own_values_come_before_what_was_measured(
 ) -> None:
     measured = with_measured(analysis, **MEASURED_HERE)
     monkeypatch.setattr(chaining, "analyse", lambda *_, **__: measured)
+    monkeypatch.setattr(chaining, "read_campaign", lambda *_, **__: measured.campaign)
     words = ["turn", str(tmp_path), "--site", "C", "--runs", "3", "--workers", "1", "--json"]
     sets = ["--set", "shear_displacement_mm=0.4", "--set", "unloading_ratio=5"]
     for more, ratio, way in (([], 9.0, 0.25), (sets, 5.0, 0.4), ([*sets, "--unloading-ratio", "4"], 4.0, 0.4)):
@@ -355,3 +356,11 @@ def test_the_command_refuses_in_words(tmp_path: Path, capsys: Printed) -> None:
 def test_defaults_of_the_command_are_those_of_the_call() -> None:
     defaults = {name: each.default for name, each in inspect.signature(skisnow.chain).parameters.items()}
     assert (defaults["runs"], defaults["unloading_ratio"], defaults["scenario"]) == (64, None, "carved-46m")
+
+
+def test_a_site_that_is_not_there_is_told_before_the_analysis(
+    analysis: Analysis, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(chaining, "analyse", lambda *_, **__: pytest.fail("analysed for nothing"))
+    with pytest.raises(ParameterError, match="no used penetration experiment of site 'Z'; it has some of 'site A'"):
+        skisnow.chain(analysis.campaign, "Z")

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -132,6 +133,39 @@ def test_latitude_and_longitude_come_into_the_slopes_frame(azimuth: int, tmp_pat
     assert found["nearest"]["max_m"] < 1e-4
     assert found["arc_length"]["max_m"] < 1e-4
     assert found["measured"]["length_m"] == pytest.approx(30.0 / math.cos(math.radians(10.0)), rel=1e-6)
+
+
+def test_a_gpx_beside_a_run_names_what_is_missing_and_has_no_digits_that_nobody_measured(
+    tmp_path: Path, capsys: Printed
+) -> None:
+    """A watch's places are known to metres: 12.3 m to the side is 12 m, 0.02 m is below a metre."""
+    north = np.linspace(47.0, 47.0004, 21)  # 44.5 m
+    rows = "".join(
+        f'<trkpt lat="{lat!r}" lon="11.0"><time>2026-01-01T10:00:{t:02}Z</time></trkpt>'
+        for t, lat in enumerate(north.tolist())
+    )
+    head = '<gpx xmlns="http://www.topografix.com/GPX/1/1" version="1.1" creator="x"><trk><trkseg>'
+    gpx = f"{head}{rows}</trkseg></trk></gpx>"
+    (tmp_path / "watch.gpx").write_text(gpx, encoding="utf-8")
+    along = np.linspace(0.0, 44.5, 50)
+    run = write(tmp_path / "run.csv", np.column_stack([along, np.full(50, 12.34)]))
+    words = ["compare", str(run), str(tmp_path / "watch.gpx")]
+    assert main(words) == 0
+    told = capsys.readouterr()
+    assert all(
+        word in told.out for word in ("--fall-line-azimuth-deg", "--slope-angle-deg", "--fit-offset start,heading")
+    )
+    assert "largest" not in told.out
+    assert "not in one frame" in told.err
+    assert main([*words, "--fall-line-azimuth-deg", "0"]) == 0
+    told = capsys.readouterr()
+    assert re.search(r"  largest 12 m, 28 % of the measured track's length, \d+ m along it\n", told.out)
+    assert "A place is known to 3 m: no further digits are printed." in told.out
+    assert main([*words, "--fit-offset", "start,heading"]) == 0
+    assert "  mean    below 1 m, below 1 % of the measured" in capsys.readouterr().out
+    found = answer([*words[1:], "--fall-line-azimuth-deg", "0"], capsys)
+    assert (found["in_one_frame"], found["known_to_m"]) == (True, 3.0)
+    assert found["nearest"]["max_m"] == pytest.approx(12.34, abs=1e-3)
 
 
 def test_two_tracks_in_degrees_are_put_on_one_plane(tmp_path: Path, capsys: Printed) -> None:

@@ -102,12 +102,35 @@ def test_reference_never_overwrites(campaign: Path, capsys: pytest.CaptureFixtur
     assert (campaign / "penetration.csv").read_bytes() == before
 
 
-@pytest.mark.parametrize("words", [[], ["no-such-command"], ["analyse"], ["analyse", "x", "--geometry", "flat"]])
+@pytest.mark.parametrize("words", [["store"], ["no-such-command"], ["analyse"], ["analyse", "x", "--geometry", "flat"]])
 def test_wrong_words_exit_2(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stop:
         main(words)
     assert stop.value.code == 2
     assert "usage" in capsys.readouterr().err
+
+
+def test_no_words_print_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("usage: skisnow")
+    assert "simulate" in printed
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["simlate", "carved-46m"], "there is no command simlate. Is simulate meant?"),
+        (["store", "vrify"], "there is no command vrify. Is verify meant? skisnow store --help names all"),
+        (["new", "campain", "x"], "Is campaign meant?"),
+        (["xxxxxxx"], "there is no command xxxxxxx. skisnow --help names all"),
+    ],
+)
+def test_a_misspelt_command(words: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(words)
+    assert stop.value.code == 2
+    assert told in capsys.readouterr().err
 
 
 def test_help_imports_nothing_heavy() -> None:
@@ -265,3 +288,11 @@ def test_an_interrupted_rewrite_leaves_the_earlier_report_whole(
     words = ["analyse", str(campaign), "--out", str(out), "--resamples", "100", "--geometry", "paper", "--seed", "9"]
     assert main(words) == 130
     assert {name: (out / name).read_bytes() for name in files_below(out)} == before
+
+
+def test_the_reference_campaign_has_a_seed_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["reference", str(tmp_path / "a")]) == 0
+    assert "seed 1" in capsys.readouterr().out
+    assert main(["reference", str(tmp_path / "b"), "--seed", "1"]) == 0
+    same = [(tmp_path / name / "penetration.csv").read_bytes() for name in ("a", "b")]
+    assert same[0] == same[1]

@@ -1,9 +1,12 @@
-"""Progress: nothing for a second, then at most twice a second; one line on a terminal, a line each elsewhere."""
+"""Progress: nothing for a second; then one line that is written over, or in a log a line every ten seconds."""
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
+from skisnow.cli.announced import announced
 from skisnow.cli.progress import Progress
 
 
@@ -26,16 +29,70 @@ def said(clock: list[float], *moments: float) -> None:
             progress("x" * (10 - int(moment)))
 
 
-def test_a_second_of_patience_and_half_a_second_between(clock: list[float], capsys: pytest.CaptureFixture[str]) -> None:
-    said(clock, 0.0, 0.99, 1.0, 1.49, 2.0, 2.25, 2.5)
-    assert capsys.readouterr().err == f"{'x' * 9}\n{'x' * 8}\n{'x' * 8}\n"
+def test_a_second_of_patience_and_ten_seconds_between(clock: list[float], capsys: pytest.CaptureFixture[str]) -> None:
+    said(clock, 0.0, 0.99, 1.0, 5.0, 10.9, 9.0)
+    assert capsys.readouterr().err == f"{'x' * 9}\n"
+    clock[0] = 200.0
+    with Progress() as progress:
+        for moment in (0.0, 1.0, 10.9, 11.0, 20.9, 21.0):
+            clock[0] = 200.0 + moment
+            progress(f"{moment:g}")
+    assert capsys.readouterr().err == "1\n11\n21\n"
 
 
 def test_on_a_terminal_one_line_is_written_over(
     clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    said(clock, 1.0, 2.0, 3.0)
-    assert capsys.readouterr().err == f"\r{'x' * 9}\r{'x' * 8} \r{'x' * 7} \n"
+    said(clock, 0.9, 1.0, 1.4, 2.0, 3.0)
+    assert capsys.readouterr().err == f"\r{'x' * 9}\r{'x' * 8} \r{'x' * 7} \r{' ' * 7}\r"
     said(clock, 0.5)
     assert capsys.readouterr().err == ""
+
+
+def test_a_line_is_cut_to_the_terminal(
+    clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A line of its whole width would wrap, and the next would leave it standing."""
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", "20")
+    with Progress() as progress:
+        clock[0] += 1.0
+        progress("y" * 40)
+    assert capsys.readouterr().err == f"\r{'y' * 18}…\r{' ' * 19}\r"
+
+
+def test_what_is_counted_says_how_long_it_takes(
+    clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two runs in four seconds: the eight that are left take sixteen."""
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    monkeypatch.setenv("COLUMNS", "80")
+    with Progress() as progress:
+        for moment, done in ((1.0, 0), (3.0, 1), (5.0, 2)):
+            clock[0] = 100.0 + moment
+            progress(f"run {done} of 10")
+        clock[0] += 1.0
+        progress("writing report.html")
+    texts = [text.strip() for text in capsys.readouterr().err.split("\r") if text.strip()]
+    assert texts == [
+        "run 0 of 10",
+        "run 1 of 10, about 18 s left",
+        "run 2 of 10, about 16 s left",
+        "writing report.html",
+    ]
+
+
+def test_what_tells_nothing_of_itself_is_announced(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with announced("quick"):
+        pass
+    with announced("slow", patience_s=0.0, usual_s=10.0):
+        time.sleep(0.05)
+    assert capsys.readouterr().err == "slow … about 10 s\n"
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    with announced("slow", patience_s=0.0, usual_s=10.0):
+        time.sleep(0.05)
+    text = "slow … 0 s of about 10 s"
+    assert capsys.readouterr().err == f"\r{text}\r{' ' * len(text)}\r"

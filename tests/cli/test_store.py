@@ -174,3 +174,15 @@ def test_help_needs_no_database() -> None:
     )
     done = subprocess.run([sys.executable, "-c", check], check=False, capture_output=True)
     assert done.returncode == 0, done.stderr
+
+
+def test_store_and_json_stand_before_the_action_or_behind_it(
+    folder: Path, place: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["store", "--store", str(place), "--json", "add", str(folder)]) == 0
+    added = json.loads(capsys.readouterr().out)
+    for words in (["--store", str(place), "list", "--json"], ["--json", "list", "--store", str(place)]):
+        assert main(["store", *words]) == 0
+        assert json.loads(capsys.readouterr().out)["campaigns"][0]["id"] == added["id"]
+    assert main(["store", "--store", str(place.with_name("other")), "list", "--store", str(place)]) == 0
+    assert added["id"] in capsys.readouterr().out

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from skisnow.compiled import core
 from skisnow.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 
@@ -52,3 +53,20 @@ def test_steps_may_differ_by_rounding_alone() -> None:
     Grid.along(tenths, tenths)
     with pytest.raises(ParameterError, match="rise evenly"):
         Grid.along([0.0, 1.0, 2.000001], np.zeros(3))
+
+
+def test_patches_are_those_of_the_compiled_core() -> None:
+    """Inside, on places, and beyond each border."""
+    rng = np.random.default_rng(5)
+    for n, m in ((9, 6), (1, 6), (2, 3), (3, 1)):
+        grid = Grid(
+            np.linspace(-1.0, 3.0, n) if n > 1 else np.zeros(1), np.linspace(0.0, 2.0, m), rng.normal(size=(n, m))
+        )
+        step_x, step_y = grid.steps
+        for goes_on in (True, False):
+            there = core.grid(grid.x[0], step_x, grid.y[0], step_y, grid.values.copy(), goes_on)
+            for x, y in [*rng.uniform(-2.0, 4.0, (40, 2)).tolist(), (-1.0, 0.0), (3.0, 2.0)]:
+                value, along_x, along_y = there.at(x, y)
+                found = grid.heights(x, y) if goes_on else grid.values_at(x, y)
+                assert float(found) == pytest.approx(value, abs=1e-12)
+                assert [float(each) for each in grid.gradients(x, y)] == pytest.approx([along_x, along_y], abs=1e-12)

@@ -67,7 +67,7 @@ FIRST = "xl/worksheets/sheet1.xml"
 @pytest.mark.parametrize(
     ("part", "content", "told"),
     [
-        ("xl/bomb.bin", b"\0" * (workbook.MOST_UNPACKED_BYTES + 1), "holds more than 64 MiB"),
+        ("xl/bomb.bin", b"\0" * ((1 << 20) + 1), "holds more than 1 MiB"),
         (
             FIRST,
             b'<!DOCTYPE a [<!ENTITY b "bb"><!ENTITY c "&b;&b;">]>' + SHEET % b"",
@@ -75,14 +75,18 @@ FIRST = "xl/worksheets/sheet1.xml"
         ),
         (FIRST, "<!DOCTYPE a>".encode("utf-16") + SHEET[:0], "a document type"),
         (FIRST, b"<a>" * 65, "larger than any table"),
-        (FIRST, SHEET % b'<row r="99999999"><c r="A1"><v>1</v></c></row>', "more than 1048576 rows"),
+        (FIRST, SHEET % b'<row r="99999999"><c r="A1"><v>1</v></c></row>', "more than 1000 rows"),
         (FIRST, SHEET % b'<row r="1"><c r="ALM1"><v>1</v></c></row>', "1001 cells in row 1"),
         (FIRST, SHEET % b'<row r="7"><c r="C7"><f>1+1</f></c></row>', "formula without its value in the cell C7"),
         (FIRST, SHEET % b'<row r="7"><c r="C7"><v>', "no workbook that can be read"),
         ("xl/workbook.xml", None, "no workbook that can be read"),
     ],
 )
-def test_what_a_table_has_no_need_of_is_refused(part: str, content: bytes | None, told: str) -> None:
+def test_what_a_table_has_no_need_of_is_refused(
+    part: str, content: bytes | None, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workbook, "MOST_ROWS", 1000)
+    monkeypatch.setattr(workbook, "MOST_UNPACKED_BYTES", 1 << 20)
     with pytest.raises(GivenError, match=told):
         read(with_part(packed(A=[["x"]]), part, content))
 

@@ -103,7 +103,7 @@ def test_outcome_and_numbers_are_those_of_the_run(html: str) -> None:
 def test_the_headline_is_one_number_and_how_far_it_goes(html: str) -> None:
     """On a circle the radius is 12 m all the time."""
     (headline,) = re.findall(r'<p class="headline">(.*?)</p>', html)
-    assert headline == "Turn radius <strong>12.0 m</strong> (median; nine tenths of the time from 12.0 to 12.0 m)."
+    assert headline == "Turn radius <strong>12.0 m</strong> (median; nine tenths of the time from 12.0 to 12.0\u00a0m)."
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -113,7 +113,7 @@ def test_the_headline_of_a_straight_run_is_its_speed(run: Run, tmp_path: Path) -
     straight = replace(run, velocity=velocity, turn_radius=np.full(len(run.time), np.inf))
     page = write_run_report(straight, summary_of(run), tmp_path).read_text(encoding="utf-8")
     (headline,) = re.findall(r'<p class="headline">(.*?)</p>', page)
-    assert headline == "Speed <strong>6.00 m/s</strong> (median; nine tenths of the time from 4.20 to 7.80 m/s)."
+    assert headline == "Speed <strong>6.00 m/s</strong> (median; nine tenths of the time from 4.20 to 7.80\u00a0m/s)."
 
 
 def test_energies_add_up(run: Run) -> None:

@@ -47,7 +47,7 @@ def test_part_out_of_its_limits_is_refused(part: str, values: dict[str, Any], to
         ({"damping_ratio": 2.0}, "damping_ratio is 2"),
         ({"clamp_length": -0.1}, "clamp_length_m is -0.1"),
         ({"clamp_length": 1.8}, "allows less than 1.71 m"),
-        ({"slope": Profile(np.arange(1.0, 5.0), np.zeros(4))}, "x = 0 m, is off the profile"),
+        ({"slope": Profile(np.arange(1.0, 5.0), np.zeros(4))}, "x = 0 m, is off the slope"),
     ],
 )
 def test_scenario_out_of_its_limits_is_refused(values: dict[str, Any], told: str) -> None:

@@ -23,7 +23,8 @@ def test_snow_that_does_not_bear_a_ski_a_decimetre_deep(load: float, sinks: bool
     ski = SimpleNamespace(
         station=np.array([0.9, 0.2, -0.8]), at=lambda station: SimpleNamespace(width=np.full_like(station, 0.1))
     )
-    snow = SimpleNamespace(contact=SimpleNamespace(snow=SimpleNamespace(snow_hardness=1e5)), ski=ski)
+    contact = SimpleNamespace(hardness_at=lambda x, y: 1e5 + x + y)
+    snow = SimpleNamespace(contact=contact, start=SimpleNamespace(x=0.0, y=0.0), ski=ski)
     stub = cast("Any", SimpleNamespace(scenario=snow, numbers={"load_N": load}))
     assert cast("Any", Setup.sinks).fget(stub) is sinks
 

@@ -25,7 +25,8 @@ def stood(hardness: float, edge_angle_deg: float) -> Any:
             width=np.array([0.06, 0.07]), station=np.array([0.9, 0.0, -0.8]), contact_points=(0.8, -0.7)
         ),
         sledge=SimpleNamespace(edge_angle=math.radians(edge_angle_deg), stance_width=0.5),
-        contact=SimpleNamespace(snow=SimpleNamespace(snow_hardness=hardness)),
+        contact=SimpleNamespace(hardness_at=lambda x, y: hardness + x + y),
+        start=SimpleNamespace(x=0.0, y=0.0),
     )
     return SimpleNamespace(scenario=scenario, numbers={"load_N": 425.0})
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -92,7 +92,9 @@ def solved(
         border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
         from_there = (near.u, border, near.edge_depth)
     laws = None if conditions.laws is None else conditions.laws.compiled
-    numbers = core.CarveConditions(*conditions[:-1])
+    # numbers of NumPy, too, which the core does not know
+    given: list[Any] = [each.item() if isinstance(each, np.generic) else each for each in conditions[:-1]]
+    numbers = core.CarveConditions(*given)
     found = core.find_carve(_core_ski(model), numbers, offset, from_there, laws)
     converged, iterations, u, (depth, slope, stress), edge_depth, force = found
     return Solution(converged, iterations, u, depth, slope, stress, edge_depth, force)

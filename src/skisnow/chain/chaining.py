@@ -10,7 +10,7 @@ from typing import Final
 from ..errors import ParameterError
 from ..estimate import Analysis, analyse
 from ..estimate.site_snow import site_of_campaign
-from ..field import Campaign
+from ..field import Campaign, read_campaign
 from ..parallel.pool import workers_in_force
 from ..report.figures.track_band import FEWEST
 from ..report.report_data import is_synthetic
@@ -23,7 +23,7 @@ from ..simulate import Run
 from ..simulate.simulated_run import simulate
 from ..ski import Ski
 from ..snow.drawn import measured_intervals
-from ..snow.mean_snow import site_in_words
+from ..snow.mean_snow import known_sites, site_in_words
 from .ensemble import drawn_scenarios, ensemble_of
 from .priors import MEASURED, inputs_with
 
@@ -110,7 +110,7 @@ def chain(
     _require(unloading_ratio, shear_displacement, runs)
     workers = workers_in_force(workers)
     say = progress or _silent
-    found = campaign if isinstance(campaign, Analysis) else analyse(campaign, progress=progress)
+    found = campaign if isinstance(campaign, Analysis) else _analysed(campaign, site, progress)
     snow = found.snow(site, unloading_ratio=unloading_ratio)
     if snow.unloading_ratio is None:
         snow = replace(snow, unloading_ratio=UNLOADING_RATIO)
@@ -142,6 +142,15 @@ def chain(
         warnings=warnings,
         analysis=found,
     )
+
+
+def _analysed(campaign: Campaign | str | Path, site: str | None, progress: Callable[[str], None] | None) -> Analysis:
+    """The analysis of a campaign that has the site: a slip of the pen is told before the estimates."""
+    read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
+    pressed = set(read.penetration.site) if read.penetration is not None else set()
+    if site is not None and pressed and site_of_campaign(read, site) not in pressed:
+        raise ParameterError(f"{read.name} has no used penetration experiment{known_sites(site, sorted(pressed))}")
+    return analyse(read, progress=progress)
 
 
 def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:

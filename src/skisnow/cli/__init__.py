@@ -26,7 +26,9 @@ def build_parser() -> argparse.ArgumentParser:
         carve,
         check,
         compare,
+        completion,
         identify,
+        man,
         new,
         reference,
         replay,
@@ -39,14 +41,16 @@ def build_parser() -> argparse.ArgumentParser:
     )
     from .words import Parser
 
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="skisnow",
         description="From field tests of a ski slope to snow parameters, and from those to what a ski does on it.",
     )
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=Parser)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
+    parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
     every = (
         new, check, analyse, store, reference, carve, simulate, replay, turn, study, track, compare, identify, serve,
+        completion, man,
     )  # fmt: skip
     for command in every:
         command.add_parser(commands)
@@ -64,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
     try:  # from here on: an interrupt may come while commands are still being loaded
         options = build_parser().parse_args(arguments)
-        status: int = options.run(options)
+        status: int = options.run(options) or 0
         sys.stdout.flush()
     except (Exception, KeyboardInterrupt) as error:
         return _ended(error)

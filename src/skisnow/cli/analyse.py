@@ -14,7 +14,7 @@ from .words import MOST_RESAMPLES, seed_number, whole_number
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the program's."""
     parser = commands.add_parser("analyse", help="estimate snow hardness and failure shear stress of a campaign")
-    parser.add_argument("campaign", type=Path, help="folder of the campaign")
+    parser.add_argument("campaign", type=Path, help="folder of the campaign, or a workbook (.xlsx)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write results.json, report, figures and tables here")
     parser.add_argument(
         "--geometry",

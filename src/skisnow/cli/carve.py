@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .announced import announced
+from .first_figure import fonts_listed
 from .words import number, whole_number
 
 if TYPE_CHECKING:
@@ -79,13 +80,14 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Answer for each ski, print, draw; 0 with every outcome, which is said in words."""
+    """Answer for each ski, print, draw; 1 where an equilibrium was not found, 0 with every other outcome."""
     from ..carve.answer_dict import answers_dict
 
     if options.figure is not None:
         from ..report.figures.figure_file import require_drawable
 
         require_drawable(options.figure)
+        fonts_listed()
     answers = _answers(options)
     _warn(answers)
     found = answers_dict(answers)
@@ -101,7 +103,17 @@ def run(options: argparse.Namespace) -> int:
         from ..report.carve_summary import carve_summary
 
         print(carve_summary(found))
-    return 0
+    return _status(answers)
+
+
+def _status(answers: list[CarveAnswer]) -> int:
+    lost = [answer.question.ski for answer in answers if answer.equilibrium.outcome == "not_converged"]
+    if lost:
+        print(
+            f"skisnow: no equilibrium was found for {', '.join(map(str, lost))}: these numbers are no answer.",
+            file=sys.stderr,
+        )
+    return 1 if lost else 0
 
 
 def _answers(options: argparse.Namespace) -> list[CarveAnswer]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the program's."""
     parser = commands.add_parser("check", help="list every problem of a campaign")
-    parser.add_argument("campaign", type=Path, help="folder of the campaign")
+    parser.add_argument("campaign", type=Path, help="folder of the campaign, or a workbook (.xlsx)")
     parser.add_argument("--json", action="store_true", help="print the problems as JSON")
     parser.set_defaults(run=run)
 

@@ -73,7 +73,7 @@ def _add_ways(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Identify, print, write; 0 with every answer, 1 with too few points, 130 when interrupted."""
+    """Identify, print, write; 0 with an answer, 1 with too few points or without convergence, 130 when interrupted."""
     if options.resume and options.out is None:
         options.parser.error("--resume goes on with what is kept in --out DIR; name it")
     asked = _prepared(options)
@@ -159,4 +159,4 @@ def _tell(options: argparse.Namespace, found: Identification, asked: ScenarioFil
 def _status(found: Identification, ending: Ending) -> int:
     if ending.asked or found.outcome == "interrupted":
         return ending.status()
-    return 1 if found.outcome == "too_few_points" else 0
+    return 1 if found.outcome in ("too_few_points", "not_converged") else 0

@@ -19,9 +19,11 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "campaign",
         help="tables with headers, units and a row as an example",
         description="Write campaign.toml and four tables with headers, units and a row as an example; the examples are "
-        "in no estimate.",
+        "in no estimate. In a folder that has tables already, campaign.toml alone is written.",
     )
-    campaign.add_argument("folder", type=Path, metavar="DIR", help="folder to write; it must not hold a campaign yet")
+    campaign.add_argument(
+        "folder", type=Path, metavar="DIR", help="folder to write; it must not hold a campaign.toml yet"
+    )
     campaign.add_argument(
         "--xlsx", action="store_true", help="one workbook (.xlsx) with a sheet for each table instead"
     )

@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from .first_figure import fonts_listed
+
 
 def ready(folder: Path) -> None:
-    """See that a folder can be written, tidy up what killed processes left in it, and say so.
+    """See that a folder can be written and figures drawn, tidy up what killed processes left in it, and say so.
 
     Raises
     ------
@@ -18,3 +20,4 @@ def ready(folder: Path) -> None:
 
     for sentence in tidied(folder):
         print(sentence, file=sys.stderr)
+    fonts_listed()

@@ -2,24 +2,58 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 import sys
 import time
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Final, Self
 
 if TYPE_CHECKING:
     from types import TracebackType
 
+PAUSE_S: Final = 0.5
+_COUNTED: Final = re.compile(r"(\d+) of (\d+)\b")
+PAUSE_OF_LINES_S: Final = 10.0
+"""Where no line can be rewritten, such as in a log."""
+
+
+class MovingLine:
+    """One line of stderr that is written over and at last wiped; elsewhere than on a terminal each text is a line."""
+
+    def __init__(self) -> None:
+        self.moves = sys.stderr.isatty()
+        self._width = 0
+
+    def show(self, text: str) -> None:
+        """Write a text over the one before; what a line does not hold is cut off, for a second line would stay."""
+        if self.moves:
+            room = max(shutil.get_terminal_size().columns - 1, 10)
+            shown = text if len(text) <= room else f"{text[: room - 1]}…"
+            sys.stderr.write("\r" + shown.ljust(self._width))
+            self._width = len(shown)
+        else:
+            sys.stderr.write(text + "\n")
+        sys.stderr.flush()
+
+    def wipe(self) -> None:
+        """Leave an empty line, with the next text at its beginning."""
+        if self._width:
+            sys.stderr.write("\r" + " " * self._width + "\r")
+            sys.stderr.flush()
+            self._width = 0
+
 
 class Progress:
-    """A callable that says what is being done, once the work has taken a second and then at most twice a second.
+    """A callable that says what is being done, once the work has taken a second and then now and then.
 
-    On a terminal one line is rewritten; elsewhere each message is a line of its own.
+    On a terminal one line is rewritten at most twice a second; elsewhere a line is written at most every ten seconds.
     """
 
-    def __init__(self, *, patience_s: float = 1.0, pause_s: float = 0.5) -> None:
+    def __init__(self, *, patience_s: float = 1.0, pause_s: float | None = None) -> None:
+        self._line = MovingLine()
         self._next = time.monotonic() + patience_s
-        self._pause = pause_s
-        self._width = 0
+        self._begun: tuple[tuple[str, int], float, int] | None = None
+        self._pause = pause_s if pause_s is not None else PAUSE_S if self._line.moves else PAUSE_OF_LINES_S
 
     def __call__(self, text: str) -> None:
         """Take note of what is being done."""
@@ -27,12 +61,21 @@ class Progress:
         if now < self._next:
             return
         self._next = now + self._pause
-        if sys.stderr.isatty():
-            sys.stderr.write("\r" + text.ljust(self._width))
-            self._width = len(text)
-        else:
-            sys.stderr.write(text + "\n")
-        sys.stderr.flush()
+        self._line.show(text + self._left(text, now))
+
+    def _left(self, text: str, now: float) -> str:
+        """The time left of work that is counted, "3 of 15", from the second text of its kind on."""
+        counted = _COUNTED.search(text)
+        if counted is None or "left" in text:
+            return ""
+        done, total = int(counted[1]), int(counted[2])
+        kind = (text[: counted.start()], total)
+        if self._begun is None or self._begun[0] != kind:
+            self._begun = (kind, now, done)
+        _, begun, before = self._begun
+        if done <= before:
+            return ""
+        return f", about {(now - begun) * (total - done) / (done - before):.0f} s left"
 
     def __enter__(self) -> Self:
         """Start."""
@@ -41,7 +84,5 @@ class Progress:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Leave the terminal on a fresh line."""
-        if self._width:
-            sys.stderr.write("\n")
-            sys.stderr.flush()
+        """Take the line away."""
+        self._line.wipe()

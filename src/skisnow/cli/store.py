@@ -8,7 +8,7 @@ import sys
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from .progress import Progress
 
@@ -25,10 +25,14 @@ Answer: TypeAlias = tuple[Json, str, int]
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add ``store`` and its actions to the command line."""
     every = argparse.ArgumentParser(add_help=False)
-    every.add_argument("--store", type=Path, metavar="PATH", help="file of the store (default: the user's own)")
-    every.add_argument("--json", action="store_true", help="print JSON alone to standard output")
+    place: dict[str, Any] = {"type": Path, "metavar": "PATH", "help": "file of the store (default: the user's own)"}
+    alone: dict[str, Any] = {"action": "store_true", "help": "print JSON alone to standard output"}
+    every.add_argument("--store", default=argparse.SUPPRESS, **place)  # what stands before the action stays
+    every.add_argument("--json", default=argparse.SUPPRESS, **alone)
     about = "Keep campaigns byte for byte, and give them back."
     parser = subparsers.add_parser("store", help="keep campaigns byte for byte", description=about)
+    parser.add_argument("--store", **place)
+    parser.add_argument("--json", **alone)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     add = actions.add_parser("add", parents=[every], help="keep all files of a campaign's folder")
     add.add_argument("folder", type=Path, metavar="DIR", help="the campaign's folder")

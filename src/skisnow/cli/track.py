@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .announced import announced
 from .out_folder import ready
@@ -14,6 +14,10 @@ from .words import number
 
 if TYPE_CHECKING:
     import argparse
+
+    from ..course import Course, CourseResult
+    from ..track.projection import GeodeticPoint
+    from ..track.track import Track
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -36,24 +40,41 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="M",
         help="standard deviation of a coordinate; left out, from the scatter about the smoothed track",
     )
+    parser.add_argument(
+        "--course",
+        type=Path,
+        metavar="FILE",
+        help="gates, CSV or GPX: says which were passed, and when",
+    )
+    parser.add_argument(
+        "--discipline",
+        choices=("slalom", "giant-slalom"),
+        help="with --course: check the course against the rules of this discipline",
+    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="write figures (PNG, SVG) and track.json")
     parser.add_argument("--json", action="store_true", help="print track.json alone to standard output")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, parser=parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Read, look, print, draw."""
+    if options.discipline is not None and options.course is None:
+        options.parser.error("--discipline needs --course: name the file of the gates")
     if options.out is not None:
         ready(options.out)
+    course = None if options.course is None else _course(options)
     with announced(f"reading {options.file}"):
         from ..track.read import read_track
 
-        track = read_track(options.file)
+        track = read_track(options.file, origin=None if course is None else _origin(course))
     with announced(f"smoothing {len(track)} points"):
         from ..track.summary import summary_dict, track_summary
 
         summary = track_summary(track, window=options.window_s, place_noise=options.noise_m)
         values = summary_dict(summary)
+        result = None if course is None else _timed(course, track)
+    if result is not None:
+        values |= _told(result)
     if options.json:
         print(json.dumps(values, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
     else:
@@ -61,10 +82,46 @@ def run(options: argparse.Namespace) -> int:
         from ..track.flags import FLAGS
 
         print(track_text(values, flag_sentences={code: flag.sentence for code, flag in FLAGS.items()}), flush=True)
+        if result is not None:
+            from ..report.gates_text import gates_text
+
+            print(f"\n{gates_text(result)}", flush=True)
     if options.out is not None:
         from ..report.track_report import write_track_report
 
         with Progress() as progress:
-            written = write_track_report(summary, options.out, values=values, progress=progress)
+            written = write_track_report(summary, options.out, values=values, gates=result, progress=progress)
         print(f"Figures: {written.parent / 'figures'}", file=sys.stderr)
     return 0
+
+
+def _course(options: argparse.Namespace) -> Course:
+    from ..course import course_warnings, read_course
+
+    course = read_course(options.course, discipline=options.discipline)
+    for text in (*course.warnings, *course_warnings(course)):
+        print(f"warning: {text}", file=sys.stderr)
+    return course
+
+
+def _origin(course: Course) -> GeodeticPoint | None:
+    """One plane for the track and a course in degrees."""
+    from ..track.projection import GeodeticPoint
+
+    if course.latitude_deg is None or course.longitude_deg is None:
+        return None
+    return GeodeticPoint(course.latitude_deg, course.longitude_deg)
+
+
+def _timed(course: Course, track: Track) -> CourseResult:
+    from ..simulate.run_gates import time_gates
+
+    return time_gates(course, track)
+
+
+def _told(result: CourseResult) -> dict[str, Any]:
+    from ..course.gates_table import gates_dict, time_warnings
+
+    for text in time_warnings(result):
+        print(f"warning: {text}", file=sys.stderr)
+    return gates_dict(result)

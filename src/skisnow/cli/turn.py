@@ -29,7 +29,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Analyse a campaign and simulate a turn on the snow of a site, with hypoplastic and with "
         "elastic contact, and over what is not known of snow, friction and ski.",
     )
-    parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of the campaign")
+    parser.add_argument("campaign", type=Path, metavar="CAMPAIGN", help="folder of the campaign, or a workbook (.xlsx)")
     parser.add_argument("--site", metavar="SITE", help='whose snow it is, "C" or "site C"; left out: all sites')
     parser.add_argument(
         "--scenario",

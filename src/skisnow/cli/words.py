@@ -32,6 +32,12 @@ class Parser(argparse.ArgumentParser):
             self._require_known(list(args))
         return super().parse_known_args(args, namespace)
 
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Name the command that a misspelt one is most like; anything else as usual."""
+        if isinstance(action, argparse._SubParsersAction) and value not in action.choices:
+            self.error(f"there is no command {value}.{_meant(value, action.choices)} {self.prog} --help names all")
+        super()._check_value(action, value)
+
     def _require_known(self, words: list[str]) -> None:
         options = set(re.findall(r"--[\w-]+", self.format_help()))
         for word in words[: words.index("--")] if "--" in words else words:

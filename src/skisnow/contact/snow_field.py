@@ -52,6 +52,8 @@ class SnowField(Shown):
         A law for μ(v), or a constant μ ≥ 0.
     shear
         A law for the strength over depth and edge angle, with the thrust that comes with it; ``None``: S_f.
+    strength_share
+        What the strength, by S_f or by a law, is multiplied with: a number > 0 or a `Grid` over the place.
     friction_acts_on
         What μ is multiplied with: the pressure along the snow's normal, or what presses square on the base, side force
         included.
@@ -90,6 +92,7 @@ class SnowField(Shown):
     friction: FrictionLaw | float = 0.0
     friction_acts_on: ActsOn = "snow-normal"
     shear: ShearLaw | None = None
+    strength_share: float | Grid = 1.0
     residual_ratio: float = RESIDUAL_RATIO
     slip_weakening: float = SLIP_WEAKENING
     penetration: PointLaw | None = None
@@ -124,6 +127,7 @@ class SnowField(Shown):
         _require("failure_shear_stress", _minimum(self.failure_shear_stress), minimum=0.0)
         _require("unloading_ratio", self.unloading_ratio, minimum=1.0)
         self._require_one_side_force()
+        self._require_one_place()
         _require("residual_ratio", self.residual_ratio, minimum=0.0)
         if self.residual_ratio > 1.0:
             raise ParameterError(f"SnowField: residual_ratio is {self.residual_ratio!r}; it must be at most 1")
@@ -155,6 +159,17 @@ class SnowField(Shown):
             raise ParameterError(
                 f"SnowField: {type(law).__name__} acts along the base's normal and so carries the side force "
                 "by itself; give it failure_shear_stress 0 and no shear law"
+            )
+
+    def _require_one_place(self) -> None:
+        _require("strength_share", _minimum(self.strength_share), above=0.0)
+        shared = isinstance(self.strength_share, Grid) or self.strength_share != 1.0
+        if shared and isinstance(self.failure_shear_stress, Grid) and self.shear is None:
+            raise ParameterError("SnowField: failure_shear_stress varies over the place itself; leave strength_share 1")
+        if shared and self.shear_in_python is not None:
+            raise ParameterError(
+                f"SnowField: strength_share does not act on {type(self.shear).__name__}, which the core does not know; "
+                "leave it 1"
             )
 
     def _require_own_law_for_rate(self) -> None:
@@ -202,12 +217,19 @@ class SnowField(Shown):
 
     def _strength(self) -> float | Grid:
         """S_f, or the strength that the core multiplies by a share over the edge angle."""
-        law = self.shear
+        law, share = self.shear, self.strength_share
+        strength = self.failure_shear_stress
         if isinstance(law, ConstantShear | DensityShear | NaturalDensityShear):
-            return law.failure_shear_stress
-        if isinstance(law, AngleShear):
-            return law.flat_shear_stress
-        return law.dynamic_shear_strength if isinstance(law, MachiningShear) else self.failure_shear_stress
+            strength = law.failure_shear_stress
+        elif isinstance(law, AngleShear):
+            strength = law.flat_shear_stress
+        elif isinstance(law, MachiningShear):
+            strength = law.dynamic_shear_strength
+        if isinstance(share, Grid) and not isinstance(strength, Grid):
+            return Grid(share.x, share.y, strength * share.values)
+        if isinstance(share, Grid) or isinstance(strength, Grid):
+            return strength
+        return strength * share
 
     def _shear(self) -> core.ShearLaw:
         law, out = self.shear, core.ShearLaw()

@@ -9,7 +9,7 @@ import numpy as np
 from ..units import MM
 from .creep import creeping
 from .largest_load import maximum_depths, reading_at_largest_load
-from .problems import Problem
+from .problems import Problem, placed
 from .quality_flags import CREEP_SHARE, CREEP_STEPS, FEWEST_LOADS, QUALITY_FLAGS, RESOLUTIONS
 from .reading.table_forms import PENETRATION, SHEAR
 from .wrong_unloading import wrong_unloading
@@ -56,7 +56,7 @@ def flag_problems(
         problems += [flagged.problem(index, code) for index, code in _flagged(masks_penetration)]
     if campaign.shear is not None:
         problems += [_shear_problem(campaign, index, code) for index, code in _flagged(masks_shear)]
-    return problems
+    return [placed(problem, campaign.places) for problem in problems]
 
 
 def _flagged(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, str]]:

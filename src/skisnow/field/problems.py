@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass
-from typing import Literal, TypeAlias
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Final, Literal, TypeAlias
 
 Severity: TypeAlias = Literal["error", "warning", "mark"]
 
@@ -105,6 +106,30 @@ def warning(
     return Problem("warning", code, file, row, column, experiment, value, allowed, action, needs_action)
 
 
+def placed(problem: Problem, places: Mapping[str, str]) -> Problem:
+    """A problem of a table that is a sheet of a workbook, under the sheet's name."""
+    place = places.get(problem.file)
+    return problem if place is None else replace(problem, file=place)
+
+
+MOST_ALIKE: Final = 10
+"""Problems of one kind in one column that a terminal shows one by one."""
+
+
+def _several(problems: Sequence[Problem]) -> Iterator[str]:
+    """A line each; of more than some of one kind in one column the first, and how many more there are."""
+    kinds = [(problem.severity, problem.code, problem.file, problem.column) for problem in problems]
+    counts, shown = Counter(kinds), Counter[tuple[object, ...]]()
+    for kind, problem in zip(kinds, problems, strict=True):
+        shown[kind] += 1
+        if shown[kind] <= MOST_ALIKE or counts[kind] == MOST_ALIKE + 1:
+            yield str(problem)
+        elif shown[kind] == counts[kind]:
+            where = f"{problem.file}{f', column {problem.column}' if problem.column else ''}"
+            more = f"{counts[kind] - MOST_ALIKE} more like these, up to row {problem.row}; --json lists all"
+            yield f"{_SHOWN.get(problem.severity, problem.severity)} {problem.code}: {where}: {more}"
+
+
 def lines_of(problems: Iterable[Problem]) -> list[str]:
     """A line for each problem, and one for all together that need no action.
 
@@ -120,5 +145,5 @@ def lines_of(problems: Iterable[Problem]) -> list[str]:
             kept = f"column {problem.value!r} kept as text" if problem.code == "unknown_column" else problem.value
             files.setdefault(kept or problem.code, []).append(problem.file)
     notes = "; ".join(f"{what} in {', '.join(dict.fromkeys(where))}" for what, where in files.items())
-    lines = [str(problem) for problem in every if problem.needs_action]
+    lines = list(_several([problem for problem in every if problem.needs_action]))
     return [*lines, f"note: nothing need be done: {notes}."] if notes else lines

@@ -349,6 +349,8 @@ class Campaign(Shown):
         Names of files in the folder that are no part of a campaign.
     pole_stiffness
         Moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
+    places
+        What people know a table as that is a sheet of a workbook, by the file's name.
 
     See Also
     --------
@@ -376,6 +378,7 @@ class Campaign(Shown):
     corrections: tuple[AppliedCorrection, ...] = ()
     unread_files: tuple[str, ...] = ()
     pole_stiffness: float | None = None
+    places: Mapping[str, str] = field(default_factory=dict)
 
     def _facts(self) -> Facts:
         tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}

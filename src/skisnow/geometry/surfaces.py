@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..shown import ShownFields
+from .patches import patched
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -62,6 +63,42 @@ class Grid(ShownFields):
                 f"Grid: values have shape {self.values.shape}; for {len(self.x)} places in x and {len(self.y)} in y it "
                 f"must be {(len(self.x), len(self.y))}"
             )
+
+    @property
+    def steps(self) -> tuple[float, float]:
+        """Between places in x and in y (m); 1 where there is but one place."""
+        x, y = (float(np.ptp(places)) / (len(places) - 1) if len(places) > 1 else 1.0 for places in (self.x, self.y))
+        return x, y
+
+    def heights(self, x: npt.ArrayLike, y: npt.ArrayLike) -> FloatArray:
+        """Heights (m) at places x, y (m, of shapes that go together); beyond the border along its slope."""
+        return self._going_on(x, y)[0]
+
+    def gradients(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """dz/dx and dz/dy at places x, y (m); beyond the border those of the border."""
+        _, along_x, along_y = self._going_on(x, y)
+        return along_x, along_y
+
+    def values_at(self, x: npt.ArrayLike, y: npt.ArrayLike) -> FloatArray:
+        """What varies over the place, at places x, y (m); beyond the border its last value."""
+        return self._patched(x, y)[0]
+
+    def _patched(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Value, slopes (1/m), and how far beyond the border along those slopes (in the value's unit)."""
+        at = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        steps, first = self.steps, (self.x[0], self.y[0])
+        counts = self.values.shape
+        where = [(each.ravel() - start) / step for each, start, step in zip(at, first, steps, strict=True)]
+        inside = [np.clip(each, 0.0, count - 1.0) for each, count in zip(where, counts, strict=True)]
+        value, per_x, per_y = patched(self.values, *inside)
+        beyond = (where[0] - inside[0]) * per_x + (where[1] - inside[1]) * per_y
+        shape = at[0].shape
+        slopes = (per_x / steps[0], per_y / steps[1])
+        return value.reshape(shape), slopes[0].reshape(shape), slopes[1].reshape(shape), beyond.reshape(shape)
+
+    def _going_on(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        value, along_x, along_y, beyond = self._patched(x, y)
+        return value + beyond, along_x, along_y
 
     @classmethod
     def along(cls, x: npt.ArrayLike, values: npt.ArrayLike) -> Grid:

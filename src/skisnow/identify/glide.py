@@ -15,7 +15,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from ..scenario import Plane, Profile
+from ..errors import ParameterError
+from ..scenario import Plane, Slope, Terrain
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -68,8 +69,13 @@ class SlopeLine:
         return -gradient / stretch, 1.0 / stretch, bend / stretch**3
 
 
-def slope_line(slope: Plane | Profile, start: float) -> SlopeLine:
+def slope_line(slope: Slope, start: float) -> SlopeLine:
     """The slope along the fall line from x = `start` (m) on.
+
+    Raises
+    ------
+    ParameterError
+        The slope is a grid, whose fall line is no straight one.
 
     >>> line = slope_line(Plane(math.radians(30.0)), 0.0)
     >>> sine, _, curvature = line.at(np.zeros(1, int), np.zeros(1))
@@ -78,6 +84,11 @@ def slope_line(slope: Plane | Profile, start: float) -> SlopeLine:
     """
     if isinstance(slope, Plane):
         return planes(np.array([slope.angle]))
+    if isinstance(slope, Terrain):
+        raise ParameterError(
+            'photo-cell times are computed along one line; slope.kind = "grid" has none. Give the heights along it: '
+            'slope.kind = "profile"'
+        )
     middle = 0.5 * (slope.x[1:] + slope.x[:-1])
     of_segment = np.diff(slope.height) / np.diff(slope.x)
     ahead = middle > start

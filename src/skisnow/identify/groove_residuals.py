@@ -22,6 +22,7 @@ from ..carve.equilibrium import carve
 from ..carve.result import Equilibrium
 from ..errors import ParameterError, SkisnowError
 from ..scenario import Plane, ScenarioFile
+from ..scenario.slope_surface import normals_of
 from ..ski import Ski
 from ..snow import SnowProperties
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
@@ -221,7 +222,9 @@ def _inclination(asked: ScenarioFile, of: Mapping[str, Any]) -> float:
     slope = asked.scenario.slope
     if isinstance(slope, Plane):
         return float(of["slope.angle_deg"]) * DEGREE
-    return -math.atan(float(slope.gradients(asked.scenario.start.x)))
+    start = asked.scenario.start
+    normal = normals_of(slope, start.x, start.y)
+    return math.atan2(float(normal[0]), float(normal[2]))
 
 
 def _angle(asked: ScenarioFile, of: Mapping[str, Any]) -> float:

@@ -14,7 +14,7 @@ from ..given import GivenError, json_value
 from ..scenario import Plane, Profile, read_profile
 from ..ski import read_ski, ski_named
 from ..units import DEGREE
-from .of_run import Setting, assembled, facts_of, require_still
+from .of_run import Setting, assembled, facts_of, no_replay_on_grid, require_still
 
 if TYPE_CHECKING:
     from ..ski import Ski
@@ -126,6 +126,8 @@ def _ski(path: Path, values: dict[str, Any]) -> Ski:
 def _slope(path: Path, values: dict[str, Any]) -> Plane | Profile:
     if values["slope.kind"] == "plane":
         return Plane(values["slope.angle_deg"] * DEGREE)
+    if values["slope.kind"] == "grid":
+        raise no_replay_on_grid()
     return read_profile(_found(path, values["slope.profile"], "profile"), gap=values["slope.profile_gap"] or "error")
 
 

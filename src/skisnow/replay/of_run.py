@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..scenario import Plane
+from ..scenario import Plane, Terrain
 from ..units import DEGREE, N_PER_MM2, N_PER_MM3
 from .groove_times import groove_times
 from .quaternions import quaternions
@@ -73,11 +73,13 @@ def replay_of_run(
     Raises
     ------
     ParameterError
-        The run has not even a first moment, its boots move, or the gates are no pairs of finite numbers.
+        The run has not even a first moment, its boots move, the gates are no pairs of finite numbers, or it went over
+        a grid, whose surface a replay cannot show.
     """
     require_still(run.boots_by)
-    found = assembled(_arrays(run), _setting(run), title=title, track=track)
-    return found if gates is None else replace(found, gates=_gates(gates, run.scenario.slope))
+    setting = _setting(run)
+    found = assembled(_arrays(run), setting, title=title, track=track)
+    return found if gates is None else replace(found, gates=_gates(gates, setting.slope))
 
 
 def require_still(boots_by: str | None) -> None:
@@ -103,6 +105,8 @@ def _arrays(run: Run) -> dict[str, FloatArray]:
 
 def _setting(run: Run) -> Setting:
     scenario = run.scenario
+    if isinstance(scenario.slope, Terrain):
+        raise no_replay_on_grid()
     contact, sledge = scenario.contact, scenario.sledge
     stress = contact.snow.failure_shear_stress
     facts = facts_of(
@@ -121,6 +125,14 @@ def _setting(run: Run) -> Setting:
         centre_of_mass_height=sledge.centre_of_mass[1],
         line_spacing=run.numbers["line_spacing_m"],
         facts=facts,
+    )
+
+
+def no_replay_on_grid() -> ParameterError:
+    """Why a run over a grid has no replay."""
+    return ParameterError(
+        'a replay shows planes and profiles; this run went over a grid (slope.kind = "grid"). Its track from above, '
+        "depths and forces stand in the run's report"
     )
 
 

@@ -9,6 +9,7 @@ from ..inputs import nearest
 from ..units import DEGREE
 from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
+from .figures.run_course import run_course
 from .figures.run_energies import run_energies
 from .figures.run_grip import run_grip
 from .figures.run_motion import run_motion
@@ -41,6 +42,18 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         run_track(run),
         wide=True,
     )
+    if run.scenario.course is not None:
+        yield Drawing(
+            "course",
+            prose(
+                "The line of the middle between the boots over the course, from above; colour: edge angle at the "
+                "boots. A cross: the gate was not passed. Gates to which no outer pole is known are drawn with a piece "
+                "of their line."
+            ),
+            "Line over the gates of the course, coloured by edge angle.",
+            run_course(run),
+            wide=True,
+        )
     yield Drawing(
         "motion",
         prose(
@@ -101,6 +114,7 @@ def _other_strength(run: Run) -> Markup:
 
 _FIGURES: Final = {
     "track": run_track,
+    "course": run_course,
     "motion": run_motion,
     "along_ski": run_along_ski,
     "grip": run_grip,

@@ -6,21 +6,23 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from ..course.gates_table import gates_csv
 from ..files import write_file
 from ..scenario.plausibility import implausible_values
+from ..simulate.run_gates import run_gates
 from ..simulate.run_summary import summary_dict
 from ..simulate.track_table import write_track
 from ..staging import staged, tidied
 from .pictures import picture_files
-from .run_report import FIGURES, write_run_report
+from .run_report import FIGURES, OF_COURSE, write_run_report
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from ..simulate.run import Run
 
-SUMMARY, REPLAY = "summary.json", "replay.html"
-_STALE: Final = (*picture_files(FIGURES), REPLAY, "replay.glb")
+SUMMARY, REPLAY, GATES = "summary.json", "replay.html", "gates.csv"
+_STALE: Final = (*picture_files((*FIGURES, OF_COURSE)), GATES, REPLAY, "replay.glb")
 _MOMENTS: Final = "replay-*s.glb"
 
 
@@ -66,10 +68,17 @@ def write_run(
         text = json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
         write_file(stage.path / SUMMARY, f"{text}\n")
         write_track(run, stage.path / "track.csv")
+        _write_gates(run, stage.path)
         page = write_run_report(run, contents, stage.path, progress=report)
         if beside is not None:
             beside(stage.path)
     return folder / page.name
+
+
+def _write_gates(run: Run, folder: Path) -> None:
+    result = run_gates(run)
+    if result is not None:
+        write_file(folder / GATES, gates_csv(result))
 
 
 def _silent(_text: str) -> None:

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
+from ..course.gates_table import time_warnings
 from ..files import require_writable, write_file
 from ..json_number import json_number
+from ..simulate.run_gates import run_gates
 from ..simulate.run_summary import run_warnings
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .number_formatting import counted, significant, whole
@@ -19,17 +21,21 @@ from .run_drawings import run_drawings
 from .run_file import write_run_file
 from .sheet import Header, Section, sheet
 from .symbols import html, prose
+from .tables.gates import gates_table
 from .tables.run import energies_table, scenario_table, verification_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from ..geometry.surfaces import Grid
     from ..simulate.run import Run
     from .figures.drawing import Picture
 
 Json = dict[str, Any]
 FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
+OF_COURSE: Final = "course"
+"""The one that a run with a course has beside them."""
 
 
 def write_run_report(
@@ -63,7 +69,7 @@ def write_run_report(
     report = progress or _silent
     report("run.nc")
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
-    pictures = write_pictures(run_drawings(run), folder / "figures", every=FIGURES, progress=report)
+    pictures = write_pictures(run_drawings(run), folder / "figures", every=(*FIGURES, OF_COURSE), progress=report)
     report("report.html")
     write_file(folder / "report.html", run_page(run, summary, pictures))
     return folder / "report.html"
@@ -74,6 +80,7 @@ def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture]) 
     by_name = {picture.name: [picture] for picture in pictures}
     sections = [
         Section("outcome", "Outcome", key=outcome_sentences(run), pictures=by_name.get("track", ())),
+        *_course_section(run, by_name),
         Section("motion", "Speed, heading, turn radius", pictures=by_name.get("motion", ())),
         Section("along-skis", "Along the skis", pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())]),
         Section("energies", "Energies", pictures=by_name.get("energies", ()), tables=[energies_table(dict(summary))]),
@@ -85,6 +92,14 @@ def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture]) 
     sections.append(Section("scenario", "Scenario", tables=[scenario_table(summary["scenario"])]))
     sections.append(Section("provenance", "Provenance", words=provenance_sentences(run, summary)))
     return sheet(_header(run), sections)
+
+
+def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
+    result = run_gates(run)
+    if result is None:
+        return []
+    words = [prose("{text}.", text=each) for each in time_warnings(result)]
+    return [Section("gates", "Gates", words=words, pictures=by_name.get("course", ()), tables=[gates_table(result)])]
 
 
 def _header(run: Run) -> Header:
@@ -113,8 +128,8 @@ def _headline(run: Run) -> Markup:
 def _middle(name: str, unit: str, found: Sequence[float]) -> Markup:
     low, middle, high = map(significant, found)
     return prose(
-        "{name} {value} (median; nine tenths of the time from {low} to {high} {unit}).",
-        name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=high, unit=unit,
+        "{name} {value} (median; nine tenths of the time from {low} to {high}).",
+        name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=f"{high}\u00a0{unit}",
     )  # fmt: skip
 
 
@@ -130,12 +145,23 @@ def _title(run: Run) -> str:
 
 
 def _hardness(run: Run) -> str:
-    return f"{_number(run.scenario.contact.snow.snow_hardness / N_PER_MM3)} N/mm³"
+    contact = run.scenario.contact
+    over_place = None if contact.snow_map is None else contact.snow_map.hardness
+    return _value(contact.snow.snow_hardness, over_place, N_PER_MM3, "N/mm³")
 
 
 def _strength(run: Run) -> str:
-    stress = run.scenario.contact.snow.failure_shear_stress
-    return f"{_number(None if stress is None else stress / N_PER_MM2)} N/mm²"
+    contact = run.scenario.contact
+    over_place = None if contact.snow_map is None else contact.snow_map.failure_shear_stress
+    return _value(contact.snow.failure_shear_stress, over_place, N_PER_MM2, "N/mm²")
+
+
+def _value(value: float | None, over_place: Grid | None, size: float, unit: str) -> str:
+    """A number, or where it varies over the place the ends of its range."""
+    if over_place is None:
+        return f"{_number(None if value is None else value / size)} {unit}"
+    low, high = float(over_place.values.min()), float(over_place.values.max())
+    return f"{_number(low / size)} to {_number(high / size)} {unit} over the place"
 
 
 def outcome_sentences(run: Run) -> list[Markup]:

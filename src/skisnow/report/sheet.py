@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -54,6 +54,16 @@ class Section:
     after: Sequence[Markup] = ()
 
 
+CITED: Final = (
+    "The skisnow developers, skisnow {version}; Mössner, Innerhofer, Schindelwig, Kaps, Schretter, Nachbauer (2013), "
+    "Measurement of mechanical properties of snow for simulation of skiing, Journal of Glaciology; Mössner, Heinrich, "
+    "Schindelwig, Kaps, Schretter, Nachbauer (2013), Modeling the ski-snow contact in skiing turns using a hypoplastic "
+    "vs an elastic force-penetration relation, Scandinavian Journal of Medicine & Science in Sports, "
+    "doi 10.1111/sms.12035."
+)
+"""What a reader cites of such a page: the program and the papers whose methods it has, as CITATION.cff has them."""
+
+
 def sheet(header: Header, sections: Sequence[Section]) -> str:
     """The HTML."""
     environment = Environment(
@@ -65,6 +75,7 @@ def sheet(header: Header, sections: Sequence[Section]) -> str:
         header=header,
         sections=sections,
         version=version("skisnow"),
+        cited=CITED.format(version=version("skisnow")),
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         tables={table.name: table_html(table, number=number) for number, table in enumerate(every, start=1)},
         css=Markup(files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")),

@@ -47,9 +47,20 @@ def _rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         (f"{_plain(end['speed_m_per_s'])} m/s at the end, maximum {_plain(summary['greatest_speed_m_per_s'])} m/s"),
     )
     yield "turn radius", _radius(summary)
+    if summary.get("gates_passed") is not None:
+        yield "gates", _gates(summary)
     yield "energy residual", _residual(summary["energy_balance_error"])
     yield "steps", f"{summary['steps']}, {summary['rejected_steps']} rejected"
     yield "computed in", _computed(summary)
+
+
+def _gates(summary: Mapping[str, Any]) -> str:
+    """How many were passed, and the time from the first to the last."""
+    times = [time for time in summary["gate_times_s"] if time is not None]
+    passed = f"{summary['gates_passed']} of {len(summary['gate_times_s'])} passed"
+    if len(times) < 2:
+        return passed
+    return f"{passed}, {times[-1] - times[0]:.2f} s between the first and the last that was reached"
 
 
 def _radius(summary: Mapping[str, Any]) -> str:

@@ -6,9 +6,11 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from ..course.gates_table import gates_csv
 from ..files import require_writable, write_file
 from ..staging import staged
 from ..track.summary import summary_dict
+from .figures.course_line import course_line
 from .figures.drawing import Drawing
 from .figures.track_along import track_along
 from .figures.track_map import track_map
@@ -18,10 +20,13 @@ from .symbols import prose
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from ..course import CourseResult
     from ..track.summary import TrackSummary
 
 FIGURES: Final = ("map", "along")
 """Names of a track's figures, in figures/ as .png and .svg."""
+OF_COURSE: Final = "course"
+"""The one that is there beside them where gates were given."""
 
 
 def write_track_report(
@@ -29,6 +34,7 @@ def write_track_report(
     folder: str | Path,
     *,
     values: Mapping[str, Any] | None = None,
+    gates: CourseResult | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Path:
     """Write figures/map, figures/along (each .png and .svg) and track.json.
@@ -41,6 +47,8 @@ def write_track_report(
         Made where it is missing. Other files in it stay.
     values
         What goes into track.json; left out, what `summary_dict` gives.
+    gates
+        Of a course: then gates.csv and figures/course, the line over the gates with the speed as colour, too.
     progress
         Called with a line of text now and then.
 
@@ -60,13 +68,16 @@ def write_track_report(
         summary_dict(summary) if values is None else values, ensure_ascii=False, allow_nan=False, indent=1
     )
     with staged(folder, last="track.json") as stage:
-        stage.stale += picture_files(FIGURES)
-        write_pictures(track_drawings(summary), stage.path / "figures", every=FIGURES, progress=progress)
+        stage.stale += [*picture_files((*FIGURES, OF_COURSE)), "gates.csv"]
+        if gates is not None:
+            write_file(stage.path / "gates.csv", gates_csv(gates))
+        drawings, every = track_drawings(summary, gates), (*FIGURES, OF_COURSE)
+        write_pictures(drawings, stage.path / "figures", every=every, progress=progress)
         write_file(stage.path / "track.json", f"{text}\n")
     return folder / "track.json"
 
 
-def track_drawings(summary: TrackSummary) -> Iterator[Drawing]:
+def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> Iterator[Drawing]:
     """Draw one after the other, inside the house style."""
     name = summary.track.name
     yield Drawing(
@@ -88,3 +99,14 @@ def track_drawings(summary: TrackSummary) -> Iterator[Drawing]:
         track_along(summary),
         wide=True,
     )
+    if gates is not None:
+        usable = summary.track.usable
+        yield Drawing(
+            "course",
+            prose("The line of {name} over the course, from above; colour: speed.", name=name),
+            f"Line of {name} over the gates, coloured by speed.",
+            course_line(
+                gates, summary.track.place[usable], summary.motion.speed[usable], label="speed (m/s)", diverging=False
+            ),
+            wide=True,
+        )

@@ -15,8 +15,13 @@ from .reading import ScenarioFile, read_scenario, scenario_file
 from .scenario import Scenario
 from .sledge import RigidSledge
 from .slope import Plane, Profile
+from .slope_surface import Slope
+from .snow_map import SnowMap
+from .snow_map_file import read_snow_map
 from .solver import Solver
 from .start import Start, Stop
+from .terrain import Terrain
+from .terrain_file import read_terrain
 from .values import scenario_values
 
 __all__ = [
@@ -28,11 +33,16 @@ __all__ = [
     "RigidSledge",
     "Scenario",
     "ScenarioFile",
+    "Slope",
+    "SnowMap",
     "Solver",
     "Start",
     "Stop",
+    "Terrain",
     "read_profile",
     "read_scenario",
+    "read_snow_map",
+    "read_terrain",
     "scenario_file",
     "scenario_names",
     "scenario_text",

@@ -65,7 +65,8 @@ def scenario_text(name: str) -> str:
     head, *parts = _SECTION.split(text)
     written = dict(zip(parts[::2], parts[1::2], strict=True))
     defaults = _defaults(text)
-    sections = (f"[{each}]\n{written.get(each, '').rstrip()}\n{defaults[each]}" for each in SECTIONS)
+    there = (each for each in SECTIONS if each in written or defaults[each])
+    sections = (f"[{each}]\n{written.get(each, '').rstrip()}\n{defaults[each]}" for each in there)
     return head + "\n".join(section.replace("]\n\n", "]\n") for section in sections)
 
 

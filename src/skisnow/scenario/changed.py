@@ -16,11 +16,12 @@ from .contact import Contact
 from .given import full_name
 from .keys import SCENARIO_KEYS
 from .scenario import Scenario
+from .snow_map import SnowMap
 
 
 def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scenario:
     """See `Scenario.with_`."""
-    own = {field.name for field in fields(scenario)} | {"snow"}
+    own = {field.name for field in fields(scenario)} | {"snow", "snow_map"}
     parts: dict[str, Any] = {name: value for name, value in changes.items() if name in own}
     values = {full_name(name): value for name, value in changes.items() if name not in own}
     for name in values:
@@ -29,6 +30,8 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
         parts["ski"] = read_ski(parts["ski"])
     if "snow" in parts:
         parts["contact"] = _on_snow(parts.get("contact", scenario.contact), parts.pop("snow"))
+    if "snow_map" in parts:
+        parts["contact"] = _on_map(parts.get("contact", scenario.contact), parts.pop("snow_map"))
     made = replace(scenario, **parts)
     _require_part_of(made, values)
     return changed(_with_numbers(made, values), values)
@@ -39,6 +42,7 @@ def _with_numbers(scenario: Scenario, values: Mapping[str, object]) -> Scenario:
 
     What was measured of k_u/H_V and u_y goes as well where they do.
     """
+    _require_not_mapped(scenario.contact.snow_map, values)
     snow = without_measured(
         scenario.contact.snow,
         unloading="snow.unloading_ratio" in values,
@@ -62,7 +66,26 @@ def _on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
         )
     ratio = contact.unloading_ratio if found.unloading_ratio is None else found.unloading_ratio
     way = contact.shear_displacement if found.shear_displacement is None else found.shear_displacement
-    return replace(contact, snow=found, unloading_ratio=ratio, shear_displacement=way)
+    return replace(contact, snow=found, snow_map=None, unloading_ratio=ratio, shear_displacement=way)
+
+
+def _on_map(contact: Contact, snow_map: SnowMap | None) -> Contact:
+    """On snow that varies over the place; None: that does not."""
+    snow = contact.snow if snow_map is None else snow_map.means_of(contact.snow)
+    return replace(contact, snow=snow, snow_map=snow_map)
+
+
+def _require_not_mapped(snow_map: SnowMap | None, values: Mapping[str, object]) -> None:
+    if snow_map is None:
+        return
+    for name, over_place in (
+        ("snow.H_V_N_per_mm3", snow_map.hardness),
+        ("snow.S_f_N_per_mm2", snow_map.failure_shear_stress),
+    ):
+        if name in values and over_place is not None:
+            raise ParameterError(
+                f"{name} is given over the place by snow.map_file, {snow_map.source}. snow_map=None takes the map away"
+            )
 
 
 def _require_part_of(scenario: Scenario, values: Mapping[str, object]) -> None:

@@ -7,19 +7,19 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ..errors import ParameterError
-from .slope import Profile
+from .slope_surface import reach_of
 
 if TYPE_CHECKING:
     from ..ski import Ski
     from .contact import Contact
     from .shear import Shear
     from .sledge import RigidSledge
-    from .slope import Plane
+    from .slope_surface import Slope
     from .start import Start
 
 
 def require_sound(
-    slope: Plane | Profile,
+    slope: Slope,
     contact: Contact,
     sledge: RigidSledge,
     ski: Ski,
@@ -40,7 +40,7 @@ def require_sound(
 
 
 def _together(
-    slope: Plane | Profile,
+    slope: Slope,
     contact: Contact,
     sledge: RigidSledge,
     ski: Ski,
@@ -69,7 +69,6 @@ def _together(
             f"the edge angle is {math.degrees(abs(sledge.edge_angle)):.3g}°; machining needs {least:.3g}° or more, "
             "β + 2 shear.least_shear_plane_deg: edge more, or take another shear.law"
         )
-    if isinstance(slope, Profile):
-        first, last = slope.ends
-        if not first <= start.x <= last:
-            yield f"the start, x = {start.x:g} m, is off the profile, which reaches from {first:g} to {last:g} m"
+    for name, place, (first, last) in zip("xy", (start.x, start.y), reach_of(slope), strict=True):
+        if not first <= place <= last:
+            yield f"the start, {name} = {place:g} m, is off the slope, which reaches from {first:g} to {last:g} m there"

@@ -10,6 +10,7 @@ from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..inputs import Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
+from .snow_map import SnowMap
 
 Penetration: TypeAlias = Literal["hypoplastic", "elastic"]
 
@@ -21,6 +22,10 @@ def _penetration(unloading_ratio: float) -> Penetration:
     return "elastic" if unloading_ratio == ELASTIC else "hypoplastic"
 
 
+def _map_source(snow_map: SnowMap | None) -> str | None:
+    return None if snow_map is None else snow_map.source
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Contact:
     """How snow and skis meet.
@@ -28,7 +33,9 @@ class Contact:
     Attributes
     ----------
     snow
-        With H_V and S_f.
+        With H_V and S_f; where these vary over the place, with their means.
+    snow_map
+        H_V and S_f where they vary over the place; None: they do not.
     unloading_ratio
         k_u/H_V ≥ 1; 1: elastic.
     compaction_resistance
@@ -166,8 +173,30 @@ class Contact:
             origin="choice: it does not hang on how the side force spreads along the edge, which nobody measured",
         ),
     ] = "snow-normal"
+    snow_map: Annotated[
+        SnowMap | None,
+        Word(
+            "snow.map_file",
+            "CSV file of H_V, S_f or both over the place, in place of these: x_m, y_m or not, H_V_N_per_mm3, "
+            "S_f_N_per_mm2",
+            word_of=_map_source,
+            names_file=True,
+            label="file of the snow over the place",
+        ),
+    ] = None
 
     __repr__ = declared_text
+
+    @property
+    def greatest_hardness(self) -> float:
+        """The largest H_V (N/m³) over the place."""
+        over_place = None if self.snow_map is None else self.snow_map.hardness
+        return self.snow.snow_hardness if over_place is None else float(over_place.values.max())
+
+    def hardness_at(self, x: float, y: float) -> float:
+        """H_V (N/m³) at a place (m)."""
+        over_place = None if self.snow_map is None else self.snow_map.hardness
+        return self.snow.snow_hardness if over_place is None else float(over_place.values_at(x, y))
 
     def __post_init__(self) -> None:
         require_declared(self)

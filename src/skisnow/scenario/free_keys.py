@@ -10,7 +10,7 @@ from ..errors import ParameterError
 from ..units import without_unit
 from .keys import SCENARIO_KEYS
 
-_HOW_IT_IS_COMPUTED: Final = ("run.", "solver.")
+_HOW_IT_IS_COMPUTED: Final = ("run.", "solver.", "course.")
 
 EACH: Final = "each"
 """Behind an ``@``: a value of its own for each run."""

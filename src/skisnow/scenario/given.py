@@ -25,6 +25,9 @@ PATH_KEYS: Final = tuple(name for name, key in SCENARIO_KEYS.items() if isinstan
 MEASURED_TOO: Final = ("snow.unloading_ratio", "snow.shear_displacement_mm")
 """Keys that a campaign may have measured beside H_V and S_f: then snow.results gives them."""
 
+MAPPED_TOO: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
+"""Keys that a snow map may give over the place."""
+
 IDENTIFY: Final = "identify"
 """The section that says what is looked for."""
 
@@ -52,6 +55,8 @@ class GivenScenario(ShownFields):
     before_results
         Those of `MEASURED_TOO` that stood there before a change gave snow.results: what the campaign measured of them
         comes before them.
+    before_map
+        Those of `MAPPED_TOO` that stood there before a change gave snow.map_file, which comes before them.
     """
 
     title: str
@@ -61,6 +66,7 @@ class GivenScenario(ShownFields):
     identify: Mapping[str, Any] = field(default_factory=dict)
     base: Scenario | None = None
     before_results: frozenset[str] = frozenset()
+    before_map: frozenset[str] = frozenset()
 
     def path(self, name: str) -> Path:
         """The place of the file that a key names."""
@@ -90,7 +96,9 @@ class GivenScenario(ShownFields):
         folders.update((name, folder or Path()) for name in PATH_KEYS if name in new)
         before = MEASURED_TOO if "snow.results" in new else self.before_results
         kept = frozenset(name for name in before if name in values and name not in new)
-        return replace(self, values=values, folders=folders, before_results=kept)
+        before = MAPPED_TOO if "snow.map_file" in new else self.before_map
+        mapped = frozenset(name for name in before if name in values and name not in new)
+        return replace(self, values=values, folders=folders, before_results=kept, before_map=mapped)
 
 
 def given_scenario(name_or_path: str | Path | Scenario) -> GivenScenario:

@@ -6,6 +6,7 @@ import math
 import warnings
 from typing import Final
 
+from ..course import course_warnings
 from ..errors import RangeWarning
 from ..forces.measured_ranges import (
     DRAG_AREA,
@@ -18,11 +19,17 @@ from ..snow.properties import GREATEST_LIKELY_HARDNESS
 from ..units import N_PER_MM3, in_degrees_if_radians
 from .scenario import Scenario
 from .slope import Plane
+from .slope_surface import heights_of
 
 
 def implausible_values(scenario: Scenario) -> tuple[str, ...]:
     """Warnings about a scenario, none of which stops it."""
-    return (*_like_radians(scenario), *_like_another_unit(scenario), *_outside_ranges(scenario))
+    return (
+        *_like_radians(scenario),
+        *_like_another_unit(scenario),
+        *_outside_ranges(scenario),
+        *_beside_rules(scenario),
+    )
 
 
 def _like_radians(scenario: Scenario) -> list[str]:
@@ -44,6 +51,18 @@ def _like_another_unit(scenario: Scenario) -> list[str]:
     if hardness <= GREATEST_LIKELY_HARDNESS:
         return []
     return [f"snow.H_V_N_per_mm3 is {hardness:.4g}: is it in N/m³? If it is, write {hardness / N_PER_MM3:.4g}"]
+
+
+def _beside_rules(scenario: Scenario) -> tuple[str, ...]:
+    course = scenario.course
+    if course is None:
+        return ()
+    (first_x, first_y), (last_x, last_y) = course.gates[0].turning, course.gates[-1].turning
+    if isinstance(scenario.slope, Plane):
+        drop = math.sin(scenario.slope.angle) * (last_x - first_x)
+    else:
+        drop = float(heights_of(scenario.slope, first_x, first_y) - heights_of(scenario.slope, last_x, last_y))
+    return course_warnings(course, drop=drop)
 
 
 ABOUT: Final = "a simulated run"

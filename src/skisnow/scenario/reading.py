@@ -144,7 +144,7 @@ def _built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str,
 
 def _in_force(given: GivenScenario, scenario: Scenario) -> dict[str, Any]:
     """As given where it was: there and back over the unit could change a last digit."""
-    gone = outdone(given, scenario.contact.snow)
+    gone = outdone(given, scenario.contact.snow, scenario.contact.snow_map)
     left = {name: value for name, value in given.values.items() if name not in gone}
     words = {name: list(value) if isinstance(value, tuple) else value for name, value in left.items()}
     if given.base is not None:

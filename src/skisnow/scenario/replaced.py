@@ -6,13 +6,26 @@ from typing import Final
 
 _SNOW_WAYS: Final = {
     "snow.H_V_N_per_mm3": ("snow.results", "snow.site", "snow.published"),
-    "snow.results": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.published"),
-    "snow.published": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.results", "snow.site"),
+    "snow.results": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.published", "snow.map_file"),
+    "snow.published": ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.results", "snow.site", "snow.map_file"),
 }
-_REPLACED: Final = {**_SNOW_WAYS, "ski.name": ("ski.file",), "ski.file": ("ski.name",)}
+_REPLACED: Final = {
+    **_SNOW_WAYS,
+    "ski.name": ("ski.file",),
+    "ski.file": ("ski.name",),
+    "course.name": ("course.file",),
+    "course.file": ("course.name",),
+}
+KEYS_OF_KIND: Final = {
+    "plane": ("slope.angle_deg",),
+    "profile": ("slope.profile", "slope.profile_gap"),
+    "grid": ("slope.grid", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m"),
+}
+"""By the kind of a slope, the keys that no other kind has."""
 _REPLACED_BY_VALUE: Final = {
-    ("slope.kind", "plane"): ("slope.profile", "slope.profile_gap"),
-    ("slope.kind", "profile"): ("slope.angle_deg",),
+    ("slope.kind", kind): tuple(name for other, names in KEYS_OF_KIND.items() if other != kind for name in names)
+    for kind in KEYS_OF_KIND
+} | {
     ("snow.penetration", "elastic"): ("snow.unloading_ratio",),
 }
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 from ..constants import STANDARD_GRAVITY
+from ..course import Course
 from ..errors import ParameterError
 from ..from_above import from_above
 from ..inputs import Quantity, Search, Word, require_declared
@@ -23,12 +24,16 @@ from .contact import Contact
 from .shear import Shear
 from .sledge import RigidSledge
 from .slope import Plane, Profile
+from .slope_surface import Slope
 from .solver import Solver
 from .start import Start, Stop
+from .terrain import Terrain
 
 
-def _slope_kind(slope: Plane | Profile) -> str:
-    return "plane" if isinstance(slope, Plane) else "profile"
+def _slope_kind(slope: Slope) -> str:
+    if isinstance(slope, Plane):
+        return "plane"
+    return "profile" if isinstance(slope, Profile) else "grid"
 
 
 def _ski_name(ski: Ski) -> str | None:
@@ -50,7 +55,7 @@ class Scenario(Shown):
     Attributes
     ----------
     slope
-        A plane or a measured profile.
+        A plane, a measured profile or measured terrain.
     contact, shear, air
         Snow with friction; the law of its shear strength; drag.
     sledge
@@ -64,6 +69,8 @@ class Scenario(Shown):
         Where it begins, when it ends, how it is computed.
     gravity
         (m/s²), > 0.
+    course
+        Gates in the slope's x and y, whose passing a run tells; None: there are none.
 
     See Also
     --------
@@ -72,12 +79,12 @@ class Scenario(Shown):
     """
 
     slope: Annotated[
-        Plane | Profile,
+        Plane | Profile | Terrain,
         Word(
             "slope.kind",
-            "a plane, or a measured profile of heights",
+            "a plane, a measured profile of heights, or a grid of them",
             label="shape of the slope",
-            choices=("plane", "profile"),
+            choices=("plane", "profile", "grid"),
             default="plane",
             origin="choice: the simpler one",
             word_of=_slope_kind,
@@ -168,6 +175,7 @@ class Scenario(Shown):
             origin="the value that the skiing literature computes with",
         ),
     ] = STANDARD_GRAVITY
+    course: Course | None = None
 
     def __post_init__(self) -> None:
         if self.contact.snow.failure_shear_stress is None:
@@ -234,6 +242,7 @@ class Scenario(Shown):
             ("ski", repr(self.ski).strip("<>")),
             *([("boots", repr(self.boots).strip("<>"))] if self.boots is not None else []),
             ("start", f"{amount(start.speed, 'm/s')}, heading {amount(start.heading / DEGREE, '°')}"),
+            *([("course", repr(self.course).strip("<>"))] if self.course is not None else []),
             ("end", " or ".join(amount(value, unit) for value, unit in end if value is not None)),
             ("solver", f"{solver.method}, {'fixed steps of' if solver.fixed else 'from'} {solver.step * 1e3:.4g} ms"),
         )

@@ -60,7 +60,11 @@ class BootMoment(Shown):
 
 
 BootControl: TypeAlias = Callable[[BootMoment], Sequence[BootPose]]
-"""Gives the poses of the left and the right boot against the sledge at `BootMoment.until`, with their rates."""
+"""Gives the poses of the left and the right boot against the sledge at `BootMoment.until`, with their rates.
+
+Where it has a method ``push``, that is called after it with the same moment, and gives a force (N, in space) and where
+it acts in the sledge's frame (m), until the next.
+"""
 
 
 @dataclass(slots=True)
@@ -98,6 +102,9 @@ class BootDrive:
             dynamics.boot_wrench,
         )  # fmt: skip
         poses = self.control(moment)
+        push = getattr(self.control, "push", None)
+        if push is not None:
+            dynamics.push(*push(moment))
         count = len(dynamics.body.skis)
         if len(poses) != count or not all(isinstance(each, BootPose) for each in poses):
             raise ParameterError(f"boots: the control gave {poses!r}; it must give {count} BootPose")

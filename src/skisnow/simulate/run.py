@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..former_names import warn_of_former_name
 from ..from_above import from_above
-from ..scenario import Plane, Scenario
+from ..scenario import Plane, Scenario, Terrain
 from ..shown import Facts, Shown, amount, field_facts, name_with_values, span
 from ..track.track import Track
 from ..units import DEGREE, MM
@@ -30,6 +30,8 @@ Outcome: TypeAlias = Literal[
     "tipped_over",
     "airborne",
     "sunk",
+    "missed_gate",
+    "straddled",
     "energy_open",
     "step_too_small",
     "not_finite",
@@ -194,6 +196,8 @@ class Run(Shown):
         axes = ("x down the fall line", "z out of the snow")
         if not isinstance(self.scenario.slope, Plane):
             axes = ("x horizontal distance down the fall line", "z height")
+        if isinstance(self.scenario.slope, Terrain):
+            axes = ("x horizontal, along that of the grid", "z height")
         return Track(
             name="simulated run",
             time=self.time,
@@ -213,7 +217,8 @@ class Run(Shown):
         ----------
         what
             "track": from above, with the grooves; "motion": speed, heading and turn radius; "along_ski": depth and
-            force along both skis over time; "grip": the share of the shear strength in use; "energies".
+            force along both skis over time; "grip": the share of the shear strength in use; "energies";
+            "course": the line over the gates, with the edge angle as colour.
 
         Returns
         -------

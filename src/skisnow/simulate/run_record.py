@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..dynamics import Ended
-from ..scenario import Plane
+from ..scenario.slope_surface import down_and_left, heights_of, normals_of
 from .boot_history import BootHistory
 from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
 from .run_setup import Setup
@@ -137,7 +137,7 @@ class Record:
         time, place, attitude, velocity, energies, along, dofs = (
             np.array([getattr(each, name) for each in self._moments]) for name in _ARRAYS
         )
-        normal = np.array([self.setup.slope_normal(float(x)) for x in place[:, 0]])
+        normal = normals_of(self.setup.scenario.slope, place[:, 0], place[:, 1])
         bent = at_nodes(dofs, self.setup.dynamics.body.skis[0].unknown)
         skis = dict(zip(_ALONG, (*np.moveaxis(along, 2, 0), bent[..., 0], bent[..., 2]), strict=True))
         node, history = self.setup.node, self._boots()
@@ -171,7 +171,7 @@ class Record:
         left, off = boots.axes[:, :, 1], boots.axes[:, :, 2]
         side = -np.sign(left[..., 2:]) * float(at_boot.width) / 2.0
         out = boots.place + float(at_boot.base_height) * off + side * left
-        out[:, :, 2] = 0.0 if isinstance(scenario.slope, Plane) else scenario.slope.heights(out[:, :, 0])
+        out[:, :, 2] = heights_of(scenario.slope, out[:, :, 0], out[:, :, 1])
         return np.asarray(out)
 
     def _tracks(self, place: FloatArray, attitude: FloatArray) -> FloatArray:
@@ -184,7 +184,7 @@ class Record:
             in_body = ski.boot + float(at_boot.base_height) * ski.axes[2] + side[:, None] * ski.axes[1]
             tracks.append(place + np.einsum("nab,nb->na", attitude, in_body))
         out = np.stack(tracks, axis=1)
-        out[:, :, 2] = 0.0 if isinstance(scenario.slope, Plane) else scenario.slope.heights(out[:, :, 0])
+        out[:, :, 2] = heights_of(scenario.slope, out[:, :, 0], out[:, :, 1])
         return out
 
 
@@ -218,9 +218,9 @@ _ALONG = ("edge_depth", "force_per_length", "shear_per_length", "bending", "twis
 
 def _heading(attitude: FloatArray, normal: FloatArray) -> FloatArray:
     """Angle of the skis to the fall line in the slope's plane, positive left (rad): (n, 3, 3) and (n, 3) to (n,)."""
-    ahead, normal = attitude[:, :, 0], normal.reshape(-1, 3)
-    down = ahead[:, 0] * normal[:, 2] - ahead[:, 2] * normal[:, 0]
-    return np.asarray(np.unwrap(np.arctan2(ahead[:, 1], down)))
+    ahead, (down, left) = attitude[:, :, 0], down_and_left(normal)
+    across, along = (np.einsum("na,na->n", ahead, axis) for axis in (left, down))
+    return np.asarray(np.unwrap(np.arctan2(across, along)))
 
 
 def turn_radius(time: FloatArray, velocity: FloatArray, normal: FloatArray) -> FloatArray:

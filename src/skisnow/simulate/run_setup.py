@@ -16,8 +16,9 @@ from ..dynamics import Dynamics, Ended, StepControl
 from ..dynamics.motion import LONGEST_STEP
 from ..errors import ParameterError, RangeWarning
 from ..forces.friction import LinearFriction
-from ..geometry import surfaces
-from ..scenario import Plane, Scenario
+from ..geometry.surfaces import Grid
+from ..scenario import Plane, Scenario, SnowMap
+from ..scenario.slope_surface import down_and_left, heights_of, normals_of, reach_of, surface_of
 from ..ski.beam.clamped import clamped
 from .moving_boots import BootControl, BootDrive, TableControl
 from .sledge.body import sledge_body
@@ -37,10 +38,10 @@ FAST_PART: Final = 0.02
 lines' spacing)."""
 FLOATING_DEPTH: Final = 0.1
 """Depth (m) by which a flat base must carry the sledge, or it has sunk from the start (modelling assumption)."""
+SET_DOWN: Final = 0.1
+"""Distance (m) of the boots past a border that still counts as on it: a sledge may start there and settle."""
 AT_REST: Final = 1e-6
 """Last step (m) of Newton's method that counts as equilibrium."""
-PROFILE_STEP: Final = 0.02
-"""Spacing (m) of a profile's table."""
 
 
 @dataclass(slots=True)
@@ -53,7 +54,6 @@ class Setup:
     node: FloatArray
     numbers: dict[str, float]
     static_residual: float
-    end: float
     drive: BootDrive | None = None
 
     def advance(self, until: float, distance: float) -> Ended:
@@ -83,7 +83,7 @@ class Setup:
         """Of the sledge, or where nothing carries the boots, of a level between their skis: axes as columns, (3, 3)."""
         if self.drive is None or not self.drive.held:
             return self.dynamics.rotation
-        normal = self.slope_normal(float(self.place[0]))
+        normal = self.slope_normal(*self.place[:2].tolist())
         ahead = self.dynamics.boots[:, 1].mean(axis=0)
         ahead -= (ahead @ normal) * normal
         ahead /= np.linalg.norm(ahead)
@@ -120,13 +120,16 @@ class Setup:
         ski = self.scenario.ski
         length = float(ski.station[0] - ski.station[-1])
         area = length * float(np.mean(ski.at(np.linspace(float(ski.station[-1]), float(ski.station[0]), 101)).width))
-        return self.numbers["load_N"] > self.scenario.contact.snow.snow_hardness * area * FLOATING_DEPTH
+        return self.numbers["load_N"] > hardness_at_start(self.scenario) * area * FLOATING_DEPTH
 
     @property
     def past_end(self) -> bool:
-        """Whether a tip is past the end of the slope."""
-        ahead = max(0.0, float(self.attitude[0, 0])) * float(self.node[0])
-        return bool(self.place[0] + ahead > self.end)
+        """Whether tips or boots are past the end of the slope, or past a side of it."""
+        boots, ahead = self.place[:2], self.attitude[:2, 0]
+        low, high = np.transpose(reach_of(self.scenario.slope))
+        tips = boots + float(self.node[0]) * ahead
+        aside = np.maximum(low - boots, boots - high).max()
+        return bool(np.any(tips < low) or np.any(tips > high) or aside > SET_DOWN)
 
     def residual_depth(self, deepest: FloatArray) -> FloatArray:
         """Depth (m) of the groove that is left where the snow was pressed to a deepest one."""
@@ -134,18 +137,13 @@ class Setup:
         ratio = 1.0 - 1.0 / self.scenario.contact.unloading_ratio
         return deepest * ratio if law is None else law.residual_depth(deepest)
 
-    def slope_normal(self, x: float) -> FloatArray:
-        """Unit normal (3,) of the slope at x."""
-        return _normal(self.scenario, x)
-
-    def surface_height(self, x: float) -> float:
-        """Height of the slope at x (m)."""
-        slope = self.scenario.slope
-        return 0.0 if isinstance(slope, Plane) else float(slope.heights(x))
+    def slope_normal(self, x: float, y: float) -> FloatArray:
+        """Unit normal (3,) of the slope at a place (m)."""
+        return normals_of(self.scenario.slope, x, y)
 
     def _slope_at_boots(self) -> tuple[float, FloatArray]:
-        x = float(self.place[0])
-        return self.surface_height(x), self.slope_normal(x)
+        x, y = self.place[:2].tolist()
+        return float(heights_of(self.scenario.slope, x, y)), self.slope_normal(x, y)
 
 
 def set_up(
@@ -195,10 +193,8 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
     runner = Runner.of(scenario.ski, nodes=ski.node)
     contact = SnowContact(snow, [runner, runner], spacing=spacing)
     dynamics = Dynamics(body, contact, *_start(scenario, depth), _control(scenario))
-    slope = scenario.slope
-    end = math.inf if isinstance(slope, Plane) else slope.ends[1]
     numbers = {"elements": float(elements), "line_spacing_m": spacing, "load_N": load}
-    return Setup(scenario, dynamics, snow, ski.node, numbers, math.inf, end)
+    return Setup(scenario, dynamics, snow, ski.node, numbers, math.inf)
 
 
 def _control(scenario: Scenario) -> StepControl:
@@ -208,6 +204,11 @@ def _control(scenario: Scenario) -> StepControl:
     return StepControl(first=solver.step, fixed=solver.fixed, tolerance=tolerance, longest=longest)
 
 
+def hardness_at_start(scenario: Scenario) -> float:
+    """H_V (N/m³) where the sledge is set down."""
+    return scenario.contact.hardness_at(scenario.start.x, scenario.start.y)
+
+
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
     """Load on a ski along the snow normal (N), depth of its edge (m) as if rigid, and 1/λ of its contact (m)."""
     ski, sledge = scenario.flexing_ski, scenario.sledge
@@ -215,13 +216,13 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
     at = ski.at(np.linspace(float(station[-1]), float(station[0]), 101))
     length = float(station[0] - station[-1])
     mass = sledge.mass / 2.0 + float(np.mean(at.mass_per_length)) * length
-    load = mass * scenario.gravity * abs(_normal(scenario, scenario.start.x)[2])
-    hardness = scenario.contact.snow.snow_hardness
+    load = mass * scenario.gravity * abs(float(normals_of(scenario.slope, scenario.start.x, scenario.start.y)[2]))
+    hardness, hardest = hardness_at_start(scenario), scenario.contact.greatest_hardness
     tangent = math.tan(abs(sledge.edge_angle))
     width = float(np.mean(at.width))
     flat = load / (hardness * 0.8 * length * width)
     depth = max(flat, math.sqrt(2.0 * load * tangent / (hardness * 0.8 * length)))
-    stiffness = hardness * min(depth / max(tangent, 1e-9), width)
+    stiffness = hardest * min(depth * math.sqrt(hardness / hardest) / max(tangent, 1e-9), width)
     wavelength = (4.0 * float(np.mean(at.bending_stiffness)) / stiffness) ** 0.25
     return load, depth, wavelength
 
@@ -231,15 +232,19 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
     with warnings.catch_warnings():  # a scenario has its own words for friction that is unlikely
         warnings.simplefilter("ignore", RangeWarning)
         friction = LinearFriction(friction_at_rest=contact.friction, friction_slope=contact.friction_by_speed)
+    over_place = contact.snow_map
     carries_side_force = laws.penetration is not None and laws.penetration.along_base_normal
     return SnowField(
-        snow_hardness=contact.snow.snow_hardness,
+        snow_hardness=contact.snow.snow_hardness
+        if over_place is None
+        else over_place.hardness or contact.snow.snow_hardness,
         failure_shear_stress=0.0 if carries_side_force else contact.snow.failure_shear_stress or 0.0,
         unloading_ratio=contact.unloading_ratio,
         friction=laws.friction or friction,
         friction_acts_on=contact.friction_acts_on,
         shear=laws.shear
         or (None if carries_side_force else scenario.shear.of(contact.snow.failure_shear_stress or 0.0)),
+        strength_share=_strength_share(over_place),
         residual_ratio=scenario.shear.residual_ratio,
         slip_weakening=scenario.shear.slip_weakening,
         penetration=laws.penetration,
@@ -247,7 +252,7 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
         delayed_share=contact.delayed_share,
         retardation_time=contact.retardation_time,
         delayed_spacing=scenario.solver.delayed_spacing,
-        surface=_surface(scenario),
+        surface=surface_of(scenario.slope),
         compaction_resistance=contact.compaction_resistance,
         shear_displacement=contact.shear_displacement,
         knot_area=scenario.solver.groove_tolerance,
@@ -255,13 +260,12 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
     )
 
 
-def _surface(scenario: Scenario) -> surfaces.Plane | surfaces.Grid:
-    slope = scenario.slope
-    if isinstance(slope, Plane):
-        return surfaces.Plane()
-    start, end = slope.ends
-    x = np.linspace(start, end, math.ceil((end - start) / PROFILE_STEP) + 1)
-    return surfaces.Grid.along(x, slope.heights(x))
+def _strength_share(snow_map: SnowMap | None) -> float | Grid:
+    """S_f over the place over its mean."""
+    if snow_map is None or snow_map.failure_shear_stress is None or snow_map.mean_stress is None:
+        return 1.0
+    grid = snow_map.failure_shear_stress
+    return Grid(grid.x, grid.y, grid.values / snow_map.mean_stress)
 
 
 def _gravity(scenario: Scenario) -> FloatArray:
@@ -271,20 +275,13 @@ def _gravity(scenario: Scenario) -> FloatArray:
     return np.array([0.0, 0.0, -g])
 
 
-def _normal(scenario: Scenario, x: float) -> FloatArray:
-    if isinstance(scenario.slope, Plane):
-        return np.array([0.0, 0.0, 1.0])
-    gradient = float(scenario.slope.gradients(x))
-    return np.array([-gradient, 0.0, 1.0]) / math.hypot(1.0, gradient)
-
-
 def _start(scenario: Scenario, depth: float) -> tuple[FloatArray, FloatArray]:
     """Place and rotation of the sledge on the slope at its start, as deep as rigid skis would be."""
     start = scenario.start
-    normal = _normal(scenario, start.x)
-    down = np.array([normal[2], 0.0, -normal[0]])
-    ahead = math.cos(start.heading) * down + math.sin(start.heading) * np.array([0.0, 1.0, 0.0])
-    height = 0.0 if isinstance(scenario.slope, Plane) else float(scenario.slope.heights(start.x))
+    normal = normals_of(scenario.slope, start.x, start.y)
+    down, left = down_and_left(normal)
+    ahead = math.cos(start.heading) * down + math.sin(start.heading) * left
+    height = float(heights_of(scenario.slope, start.x, start.y))
     half = float(scenario.ski.at(0.0).width) / 2.0
     above = half * math.sin(abs(scenario.sledge.edge_angle)) - depth
     return np.array([start.x, start.y, height]) + above * normal, np.column_stack(

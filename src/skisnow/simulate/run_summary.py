@@ -12,11 +12,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..course.gates_table import gates_dict
 from ..json_number import json_number
 from ..scenario.values import in_sections, scenario_values
 from ..snow.snow_dict import snow_dict
 from ..units import DEGREE
 from .run import GIVEN, LEAST_OPEN, LOST, STORED, WARNED_SHARE, Run
+from .run_gates import run_gates
 
 SCHEMA_VERSION: Final = 1
 
@@ -55,6 +57,7 @@ def summary_dict(
         "steps": int(run.steps),
         "rejected_steps": int(run.rejected_steps),
         **_moments(run),
+        **_gates(run),
         "energies": energies_dict(run),
         "energy_balance_error": json_number(run.energy_balance_error),
         "numbers": {name: json_number(value) for name, value in run.numbers.items()},
@@ -113,6 +116,13 @@ def run_warnings(run: Run) -> tuple[str, ...]:
         f"the energy residual is {share}{run.energy_residual:.3g} J: where and how fast the run ends is less "
         "certain than its digits say. Take smaller steps or a smaller tolerance, and see how far the end moves",
     )
+
+
+def _gates(run: Run) -> dict[str, Any]:
+    result = run_gates(run)
+    if result is None:
+        return {"gates_passed": None, "gates_missed": [], "gate_times_s": []}
+    return gates_dict(result)
 
 
 def _moments(run: Run) -> dict[str, Any]:

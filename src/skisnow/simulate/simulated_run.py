@@ -16,6 +16,7 @@ from ..former_names import formerly
 from ..scenario import Scenario
 from .moving_boots import BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
+from .run_gates import GatesAhead, run_gates
 from .run_record import Record
 from .run_setup import AT_REST, Setup, set_up
 from .standing import why_no_start
@@ -31,6 +32,8 @@ SINKING_DEPTH: Final = 0.5
 """Depth (m) of the boots below the surface at which the sledge has sunk (modelling assumption)."""
 OUTPUTS_AT_ONCE: Final = 5
 """Outputs between which no progress is reported."""
+CLEAR: Final = 1.0
+"""Distance (m) of the boots behind the last gate at which a course is over: whatever counts has crossed its line."""
 _COMPUTED_WRONG: Final = ("step_too_small", "not_finite", "interrupted")
 """Outcomes that an open balance does not take the place of."""
 _REACHED: Final = 1e-6
@@ -39,13 +42,17 @@ _REACHED: Final = 1e-6
 REMEDIES: Final[dict[Outcome, str]] = {
     "finished": "Completed: the whole duration was simulated.",
     "distance_reached": "The run length was reached.",
-    "end_of_slope": "The tips reached the end of the profile. Give a longer profile, or a shorter run.",
+    "end_of_slope": "The tips reached the end of the profile, or a border of the grid. Give a longer or wider slope, "
+    "or a shorter run.",
     "tipped_over": "The sledge leant more than 60° from the snow's normal: it has tipped over. Lower its centre of "
     "mass, widen the stance, or take less edge or speed.",
     "airborne": "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a "
     "smoother slope.",
     "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
     "Take harder snow, less mass or a wider ski.",
+    "missed_gate": "Change line or start, or the course; gates.csv says of each gate what became of it.",
+    "straddled": "By the rules that is no passage. Change line or start, or the course; gates.csv says of each gate "
+    "what became of it.",
     "energy_open": "The energy residual is more than a tenth of the energy exchanged: these numbers are not "
     "those of a sledge on snow. Take smaller steps, or the error control (solver.fixed false); on "
     "very hard snow, or at more than 50° of edge angle, a smaller tolerance.",
@@ -80,7 +87,8 @@ def simulate(
         with their numbers.
     boots
         Moves the boots against the sledge, in place of the scenario's boots.file: called with a `BootMoment` before
-        each output interval, it gives the `BootPose` of the left and the right boot at its end.
+        each output interval, it gives the `BootPose` of the left and the right boot at its end. Its method
+        ``push``, if it has one, gives a force besides, and where on the sledge it acts.
 
     Returns
     -------
@@ -133,8 +141,11 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
     duration = math.inf if stop.duration is None else stop.duration
     length = math.inf if stop.length is None else stop.length
     flying, number, nearing = 0.0, 0, False
+    ahead = GatesAhead(setup.scenario.course)
     while True:
         now = setup.time
+        if ahead.is_over(setup.place, CLEAR):
+            return "finished"
         if now >= duration:
             return "finished"
         left = length - record.run_length
@@ -187,9 +198,21 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
         numbers=setup.numbers,
         boots_by=None if setup.drive is None else setup.drive.described,
     )
-    if outcome in _COMPUTED_WRONG or not run.has_residual_above(OPEN_SHARE):
+    if outcome in _COMPUTED_WRONG:
         return run
-    return replace(run, outcome="energy_open", remedy=REMEDIES["energy_open"])
+    if run.has_residual_above(OPEN_SHARE):
+        return replace(run, outcome="energy_open", remedy=REMEDIES["energy_open"])
+    return _through_gates(run) if outcome in ("finished", "distance_reached") else run
+
+
+def _through_gates(run: Run) -> Run:
+    """A run that ends well, but not through all gates of its course, missed or straddled one."""
+    result = run_gates(run)
+    fault = None if result is None else result.fault
+    if fault is None:
+        return run
+    outcome: Outcome = "straddled" if fault.outcome == "straddled" else "missed_gate"
+    return replace(run, outcome=outcome, remedy=f"{fault.words[0].upper()}{fault.words[1:]}. {REMEDIES[outcome]}")
 
 
 def _groove(setup: Setup) -> Groove:

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from .run_setup import Setup
+from ..scenario.slope_surface import down_and_left
+from .run_setup import Setup, hardness_at_start
 
 
 def why_no_start(setup: Setup) -> str:
@@ -40,9 +41,10 @@ def weight_meets_base(setup: Setup) -> tuple[float, float]:
 
     As the sledge was set down, before it leans.
     """
-    start, normal = setup.scenario.start, setup.slope_normal(setup.scenario.start.x)
-    down = np.array([normal[2], 0.0, -normal[0]])
-    forward = math.cos(start.heading) * down + math.sin(start.heading) * np.array([0.0, 1.0, 0.0])
+    start = setup.scenario.start
+    normal = setup.slope_normal(start.x, start.y)
+    down, aside = down_and_left(normal)
+    forward = math.cos(start.heading) * down + math.sin(start.heading) * aside
     gravity, centre = setup.dynamics.body.gravity, setup.dynamics.body.first_moment / setup.dynamics.body.mass
     pulls = np.array([gravity @ forward, gravity @ np.cross(normal, forward), gravity @ normal])
     ahead, left, _ = centre - pulls * centre[2] / pulls[2]
@@ -55,7 +57,7 @@ def _carried_across(setup: Setup) -> tuple[float, float]:
     width, length = float(ski.width.max()), float(ski.station[0] - ski.station[-1])
     tangent = max(math.tan(abs(angle)), 1e-9)
     # all of the weight on one ski; a sledge that leans may double it
-    hardness = setup.scenario.contact.snow.snow_hardness
+    hardness = hardness_at_start(setup.scenario)
     depth = math.sqrt(4.0 * setup.numbers["load_N"] * tangent / (hardness * 0.8 * length))
     side, wet = setup.scenario.sledge.stance_width / 2.0, min(2.0 * depth / tangent, width)
     beyond = wet - width / 2.0

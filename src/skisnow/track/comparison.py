@@ -15,6 +15,7 @@ from ..units import DEGREE
 from .alignment import OFFSETS, fitted_motion, fitted_time, require_offsets
 from .apart import Apart, Numbers, numbers_of
 from .common_clock import FIRST_POINTS, Clock, TimeFrom, common_clock, lacking_time
+from .known_to import known_to
 from .nearest_place import Path
 from .polyline import Polyline, compared_points, polyline_of
 from .solution import inexact_sentence
@@ -129,6 +130,10 @@ class Comparison(Shown):
         None without a fit.
     warnings
         Sentences.
+    in_one_frame
+        Whether the coordinates of the two mean the same; if not, the distances say nothing.
+    known_to : m
+        How exactly the places of the less exact track are known, see `skisnow.track.known_to`.
 
     See Also
     --------
@@ -146,6 +151,8 @@ class Comparison(Shown):
     axes: Axes = "file"
     fitted: Fitted | None = None
     warnings: tuple[str, ...] = ()
+    in_one_frame: bool = True
+    known_to: float = 0.0
 
     def _facts(self) -> Facts:
         length = amount(self.measured.length, "m")
@@ -221,7 +228,13 @@ def compare_tracks(
     if fit:
         plain = _with_fit(plain, set(fit), clock)
     _require_near(plain.simulated, plain.measured, names)
-    return replace(plain, axes=measured.axes, warnings=(*warnings, *_short(plain)))
+    return replace(
+        plain,
+        axes=measured.axes,
+        warnings=(*warnings, *_short(plain)),
+        in_one_frame=_in_one_frame(simulated, measured) or {"start", "heading"} <= set(fit),
+        known_to=max(known_to(simulated), known_to(measured)),
+    )
 
 
 compared = formerly("compared", compare_tracks)
@@ -313,14 +326,18 @@ def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
         inexact = inexact_sentence(track.name, track.solution)
         if inexact:
             warnings.append(inexact)
-    compass = [track.axes == "east_north_up" for track in (simulated, measured)]
-    origins = {track.origin for track in (simulated, measured)} - {None}
-    if compass[0] != compass[1] or len(origins) > 1:
+    if not _in_one_frame(simulated, measured):
         warnings.append(
             f"the tracks are not in one frame ({simulated.name}: {simulated.frame}; "
             f"{measured.name}: {measured.frame}); their coordinates are compared as they stand"
         )
     return warnings
+
+
+def _in_one_frame(simulated: Track, measured: Track) -> bool:
+    compass = [track.axes == "east_north_up" for track in (simulated, measured)]
+    origins = {track.origin for track in (simulated, measured)} - {None}
+    return compass[0] == compass[1] and len(origins) <= 1
 
 
 def _short(found: Comparison) -> list[str]:

@@ -26,6 +26,8 @@ def comparison_dict(comparison: Comparison) -> Json:
         "means": MEANS,
         "largest_from_simulated_m": comparison.largest_from_simulated,
         "fitted": None if fitted is None else _fitted(fitted),
+        "in_one_frame": comparison.in_one_frame,
+        "known_to_m": comparison.known_to,
         "warnings": list(comparison.warnings),
     }
 

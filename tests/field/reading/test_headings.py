@@ -94,6 +94,30 @@ def test_headings_that_people_write(form: TableForm, headings: list[str], column
     assert list(proposed(form, headings).values()) == columns
 
 
+def test_a_title_above_the_headings_is_passed_over(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    small_campaign["density.csv"] = f"Hang am 23. November;;\n;;\n{small_campaign['density.csv'].replace(',', ';')}"
+    campaign = read_campaign(write_campaign(small_campaign))
+    assert campaign.density is not None
+    assert campaign.density.row.tolist() == [4, 5, 6]
+
+
+def test_many_alike_are_counted(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Merged cells: a name in the first row alone."""
+    rows = [f"{'D1' if row == 2 else ''},Süd,{300 + row}" for row in range(2, 20)]
+    table = "\n".join(["sample,site,snow_density_kg_per_m3", *rows])
+    assert main(["check", str(write_campaign({**small_campaign, "density.csv": table}))]) == 1
+    printed = capsys.readouterr().out.splitlines()
+    assert len([line for line in printed if line.startswith("error out_of_range: density.csv, row")]) == 10
+    assert (
+        "error out_of_range: density.csv, column sample: 7 more like these, up to row 19; --json lists all" in printed
+    )
+    assert printed[-1] == "errors: 17, warnings: 0, flags: 0"
+
+
 def test_another_unit_is_neither_proposed_nor_taken(
     write_campaign: WriteCampaign, german: dict[str, str | bytes], small_campaign: dict[str, str]
 ) -> None:

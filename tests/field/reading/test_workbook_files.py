@@ -9,7 +9,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from skisnow.estimate import analyse
+from skisnow.estimate import analyse, quality_flags
 from skisnow.field import check_campaign, read_campaign
 
 from ...given.test_workbook import packed
@@ -79,7 +79,9 @@ def test_sheets_beside_files_and_problems_by_sheet_and_row(
     assert campaign.penetration is not None
     assert campaign.penetration.row.tolist() == [3, 4]
     assert campaign.penetration.further["time"][0] == "2026-11-23T09:10:00"
-    assert campaign.unread_files == ("~$Hang.xlsx", "Hang.xlsx, sheet Diagramm")
+    (flag,) = quality_flags(campaign)
+    assert (flag.code, flag.file) == ("too_few_loads", "Hang.xlsx, sheet Penetration")
+    assert campaign.unread_files == ("Hang.xlsx, sheet Diagramm",)
 
 
 def test_what_is_there_twice_is_refused(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:

@@ -168,3 +168,63 @@ def test_rates_of_a_table_are_those_of_its_poses() -> None:
     assert (a1[0] - a0[0]) / 1e-6 == pytest.approx(np.cross(w0[0], a0[0]), abs=1e-5)
     assert not boots.poses(2.0)[2].any()
     assert boots.poses(2.0)[0] == pytest.approx(place[-1], abs=1e-15)
+
+
+def level(**changes: float) -> Scenario:
+    """Seen from nothing but snow: no slope, no friction, no air."""
+    flat = dict.fromkeys(("angle_deg", "heading_deg", "edge_angle_deg", "mu_0", "drag_area_m2"), 0.0)
+    return turn().with_(**flat | changes)
+
+
+def curvature_by_speed(place: np.ndarray, time: np.ndarray) -> float:
+    """v²/(R g) of a path, the mean over what is given."""
+    velocity = np.gradient(place, time, axis=0)
+    v, a = velocity[5:-5, :2], np.gradient(velocity, time, axis=0)[5:-5, :2]
+    return float(np.mean((v[:, 0] * a[:, 1] - v[:, 1] * a[:, 0]) / np.linalg.norm(v, axis=1)) / 9.81)
+
+
+def test_lean_of_a_steady_turn() -> None:
+    """A body as tall as a skier, one leg shorter: the line from the centre of pressure to the centre of mass leans by
+    tan Ψ = v²/(R g) with the centre of mass's own v and R; with those of the skis it is a little lower."""
+    stance, height, lean = 0.44, 0.9, np.radians(8.0)
+
+    def legs(_: BootMoment) -> Sequence[BootPose]:
+        places = ([0.0, side * stance, side * stance * np.tan(lean)] for side in (0.5, -0.5))
+        return [BootPose.of(place, np.radians(12.0) - lean) for place in places]
+
+    tall = level(centre_of_mass_height_m=height, stance_width_m=stance, speed_m_per_s=5.5, duration_s=3.0)
+    run = simulate(tall, boots=legs)
+    assert run.outcome == "finished"
+    assert run.boots is not None
+    later = run.time > 1.5
+    centre = (run.place + height * run.attitude[:, :, 2])[later]
+    force, arm = run.boots.force[later], run.boots.place[later] - centre[:, None]
+    moment, total = (np.cross(arm, force) + run.boots.moment[later]).sum(axis=1), force.sum(axis=1)
+    pressure = np.stack([-centre[:, 2] * total[:, 0] - moment[:, 1], moment[:, 0] - centre[:, 2] * total[:, 1]], axis=1)
+    ahead = np.gradient(centre, run.time[later], axis=0)[:, :2]
+    ahead /= np.linalg.norm(ahead, axis=1)[:, None]
+    aside = (pressure[:, 0] * ahead[:, 1] - pressure[:, 1] * ahead[:, 0]) / total[:, 2]  # of the centre of mass, left
+    tangent = float(np.mean(aside / centre[:, 2]))
+    assert tangent > 0.15
+    assert tangent == pytest.approx(curvature_by_speed(centre, run.time[later]), rel=0.01)
+    of_skis = curvature_by_speed(run.place[later], run.time[later])
+    assert 0.002 < 1.0 - tangent / of_skis < 0.02
+
+
+def test_a_control_may_push() -> None:
+    """50 N ahead for 0.2 s at the centre of mass: the momentum, and the energy that stands as given."""
+
+    class Pushed:
+        def __call__(self, _: BootMoment) -> Sequence[BootPose]:
+            return [BootPose.of([0.0, side, 0.0], 0.0) for side in (0.25, -0.25)]
+
+        def push(self, moment: BootMoment) -> tuple[Sequence[float], Sequence[float]]:
+            return ([50.0 if 0.1 <= moment.time < 0.2999 else 0.0, 0.0, 0.0], [0.0, 0.0, 0.12])
+
+    flat = level(duration_s=0.4)
+    run, alone = simulate(flat, boots=Pushed()), simulate(flat)
+    mass = 80.0 + 2.0 * flat.ski.mass
+    assert run.speed[-1] - alone.speed[-1] == pytest.approx(50.0 * 0.2 / mass, rel=0.01)
+    gained = 0.5 * mass * (run.speed[-1] ** 2 - alone.speed[-1] ** 2)
+    assert run.energies["push"][-1] == pytest.approx(gained, rel=0.02)
+    assert run.energy_balance_error == pytest.approx(0.0, abs=1e-4)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ...errors import FieldDataError
-from ..problems import error
+from ..problems import error, placed
 from ..records import Campaign
 from .assembling import density_samples, drop_cone_tests, penetration_tests, shear_tests
 from .campaign_file import CAMPAIGN_FILE, read_campaign_file
@@ -126,6 +126,7 @@ class _Contents:
     problems: tuple[Problem, ...]
     corrections: tuple[AppliedCorrection, ...] = ()
     unread: tuple[str, ...] = ()
+    places: Mapping[str, str] = field(default_factory=dict)
 
 
 def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
@@ -164,16 +165,11 @@ def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Cont
         described,
         tables,
         hashes | campaign.hashes,
-        tuple(_placed(problem, campaign.places) for problem in _in_order(files.found)),
+        tuple(placed(problem, campaign.places) for problem in _in_order(files.found)),
         tuple(each.applied() for each in applied),
         (*_unread(there), *campaign.unread),
+        campaign.places,
     )
-
-
-def _placed(problem: Problem, places: Mapping[str, str]) -> Problem:
-    """A problem of a table that is a sheet of a workbook, under the sheet's name."""
-    place = places.get(problem.file)
-    return problem if place is None else replace(problem, file=place)
 
 
 def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
@@ -182,9 +178,9 @@ def _in_order(problems: list[Problem]) -> tuple[Problem, ...]:
 
 
 def _unread(there: Mapping[str, bool]) -> tuple[str, ...]:
-    """Files that are no part of a campaign; hidden ones are not spoken of."""
+    """Files that are no part of a campaign; hidden ones, and what Excel puts beside an open one, are not spoken of."""
     files = sorted(name for name, is_file in there.items() if is_file)
-    return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith("."))
+    return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith((".", "~$")))
 
 
 def _misnamed(there: Mapping[str, bool], absent: set[str]) -> list[Problem]:
@@ -208,7 +204,7 @@ def _no_measurements() -> Problem:
 def _described(files: RawFiles) -> CampaignFile | None:
     data = files.read(CAMPAIGN_FILE)
     if CAMPAIGN_FILE in files.absent:
-        action = "Write the file, with the tools and plates that the tables name."
+        action = "`skisnow new campaign` writes one into this folder: put your tools and plates there."
         allowed = "a file of this name in the folder"
         files.found.append(error("bad_toml", CAMPAIGN_FILE, allowed=allowed, action=action))
     if data is None:
@@ -279,5 +275,6 @@ def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
         file_hashes=contents.hashes,
         corrections=contents.corrections,
         unread_files=contents.unread,
+        places=contents.places,
         pole_stiffness=described.pole_stiffness,
     )

@@ -7,7 +7,7 @@ import json
 import re
 from collections import Counter
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from ..problems import error, warning
 from .heading_words import other_unit, proposed
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from .headings import Headings
     from .table_forms import TableForm
 
-_LONGEST_SHOWN: Final = 120
+
+_MOST_TITLES = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +54,15 @@ class Header:
     def with_column(self, name: str) -> Header:
         """Append a column."""
         return Header((*self.columns, name), self.row)
+
+
+def header_of(lines: list[int], rows: list[list[str]]) -> Header:
+    """Take the header off the first records, and what stands above it: titles of one cell."""
+    filled = [sum(1 for cell in cells if cell.strip()) for cells in rows[:_MOST_TITLES]]
+    place = next((place for place, count in enumerate(filled) if count > 1), 0)
+    header = Header.from_cells(rows[place], lines[place])
+    del rows[: place + 1], lines[: place + 1]
+    return header
 
 
 def check_header(form: TableForm, header: Header) -> list[Problem]:
@@ -95,7 +105,7 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
     pairs = ", ".join(
         f"{json.dumps(heading, ensure_ascii=False)} = {json.dumps(name)}" for heading, name in meant.items()
     )
-    line = f"Put this line at the top of campaign.toml if it is right: columns.{table} = {{{pairs}}}" if meant else ""
+    line = f"Put this at the top of campaign.toml if it is right: columns.{table} = {{{pairs}}}" if meant else ""
     other = [f"{heading} names {unit}" for heading in header.columns if (unit := _unit_of_none(form, heading))]
     lost = f"{'Nothing' if not meant else 'No heading'} looks like {', '.join(left)}: rename or add it" if left else ""
     action = ". ".join(filter(None, (line, lost, f"Convert first: {', '.join(other)}" if other else "")))
@@ -103,8 +113,7 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
         "missing_column",
         form.file,
         row=header.row,
-        value=", ".join(filter(None, header.columns))[:_LONGEST_SHOWN],
-        allowed=f"the columns {', '.join(form.required)}, or headings that campaign.toml maps to them",
+        allowed=f"{', '.join(form.required)}, or headings that campaign.toml maps to them",
         action=f"{action}.",
     )
 

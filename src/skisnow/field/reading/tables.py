@@ -11,7 +11,7 @@ from ..problems import error, warning
 from .columns import NameCollector, NumberCollector, Rows, TextCollector
 from .corrections import Corrector, header_with_status
 from .dates import DateCollector
-from .header import Header, check_header, check_units
+from .header import Header, check_header, check_units, header_of
 from .headings import Headings
 from .number_cells import decimal_mark
 from .table import Table
@@ -70,7 +70,7 @@ def read_table(
     try:
         for lines, rows in text.records():
             if reading is None and rows:
-                header = Header.from_cells(rows.pop(0), lines.pop(0))
+                header = header_of(lines, rows)
                 files.found.extend(check_units(form, header, headings))
                 reading = _TableReading(form, header.renamed(form, headings), text, corrections, files.found)
             if reading is not None and rows:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..reading.campaign_files import FilesOfFolder
 from ..reading.corrections import Corrector, corrections_by_file, header_with_status
-from ..reading.header import Header
+from ..reading.header import Header, header_of
 from ..reading.headings import Headings
 from ..reading.raw_files import RawFiles
 from ..reading.table_forms import CORRECTIONS, TABLES
@@ -109,7 +109,7 @@ def _stored_table(
     try:
         for lines, rows in text.records():
             if header is None and rows:
-                written = Header.from_cells(rows.pop(0), lines.pop(0)).renamed(form, headings)
+                written = header_of(lines, rows).renamed(form, headings)
                 header = header_with_status(form, written, corrections)
                 mark = decimal_mark_of(form, header, text)
                 corrector = Corrector(form, header, corrections, mark=mark, found=files.found)

@@ -12,6 +12,7 @@ from ...files import write_file
 from ...staging import staged, tidied
 from ..reading.campaign import CAMPAIGN_FILES
 from ..reading.campaign_file import CAMPAIGN_FILE
+from ..reading.workbook_files import is_workbook
 from .description import campaign_toml
 from .tables import TEMPLATES
 
@@ -24,7 +25,7 @@ WORKBOOK: Final = "campaign.xlsx"
 
 
 def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path, ...]:
-    """Write what a campaign is filled into.
+    """Write what a campaign is filled into; where tables lie in the folder already, campaign.toml alone.
 
     Parameters
     ----------
@@ -40,16 +41,16 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
     Raises
     ------
     OutputError
-        The folder holds a campaign, or cannot be written; nothing is left half-written.
+        The folder holds a campaign.toml, or with ``xlsx`` any table, or cannot be written; nothing is half-written.
     """
     folder = Path(folder)
-    there = [name for name in (*CAMPAIGN_FILES, WORKBOOK) if (folder / name).exists()]
-    if there:
+    there = _there(folder)
+    if CAMPAIGN_FILE in there or (there and xlsx):
         raise OutputError(
             f"{folder} holds a campaign already ({', '.join(there)}); nothing was written. Choose another folder."
         )
     name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
-    contents = _workbook(name) if xlsx else _files(name)
+    contents = _workbook(name) if xlsx else _files(name, tables=not there)
     tidied(folder)
     with staged(folder, last=next(iter(contents))) as stage:
         for file, content in contents.items():
@@ -63,8 +64,15 @@ def _workbook(name: str) -> Mapping[str, bytes | str]:
     return {WORKBOOK: workbook_bytes(name)}
 
 
-def _files(name: str) -> Mapping[str, bytes | str]:
-    return {CAMPAIGN_FILE: campaign_toml(name)} | {template.form.file: _csv(template) for template in TEMPLATES}
+def _there(folder: Path) -> list[str]:
+    """What a campaign reads and the folder has: files of tables, workbooks."""
+    names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    return [name for name in names if name in CAMPAIGN_FILES or is_workbook(name)]
+
+
+def _files(name: str, *, tables: bool) -> Mapping[str, bytes | str]:
+    written = {template.form.file: _csv(template) for template in TEMPLATES} if tables else {}
+    return {CAMPAIGN_FILE: campaign_toml(name)} | written
 
 
 def _csv(template: Template) -> str:

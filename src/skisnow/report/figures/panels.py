@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _COLOUR_BAR = "<colorbar>"
-_ABOVE_PT = 11.0
-"""Over what stands at the upper rim of some panels."""
 
 
 def panels_of(figure: Figure) -> list[Axes]:
@@ -35,7 +33,7 @@ def letter_panels(figure: Figure) -> None:
     for letter, axes in zip(ascii_lowercase, panels, strict=False):
         title = left_title(axes)
         if title is None:
-            axes.set_title(f"({letter})", loc="left", pad=_ABOVE_PT)
+            axes.set_title(f"({letter})", loc="left")
         else:
             title.set_text(f"({letter}) {title.get_text()}")
 

@@ -11,7 +11,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from ...scenario import Profile
+from ...scenario import Plane
 from ...units import MM
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
 
@@ -78,10 +78,10 @@ def plan_axes(axes: Axes, limits: tuple[float, float, float, float], *, profile:
     axes.set_ylabel("to the left $y$ (m)")
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
     axes.annotate(
-        "", (0.13, 1.035), (0.0, 1.035), xycoords="axes fraction",
+        "", (0.21, 1.035), (0.08, 1.035), xycoords="axes fraction",  # right of the panel's letter
         arrowprops={"arrowstyle": "-|>", "color": GREY, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0},
     )  # fmt: skip
-    axes.annotate("fall line", (0.14, 1.035), xycoords="axes fraction", va="center", fontsize=7.0, color=GREY)
+    axes.annotate("fall line", (0.22, 1.035), xycoords="axes fraction", va="center", fontsize=7.0, color=GREY)
 
 
 def draw_plan(axes: Axes, run: Run, limits: tuple[float, float, float, float]) -> None:
@@ -89,7 +89,7 @@ def draw_plan(axes: Axes, run: Run, limits: tuple[float, float, float, float]) -
     for ski, colour in enumerate(SKI_COLOURS):
         axes.plot(run.skis.track[:, ski, 0], run.skis.track[:, ski, 1], color=colour, linewidth=0.9)
     _time_marks(axes, run)
-    plan_axes(axes, limits, profile=isinstance(run.scenario.slope, Profile))
+    plan_axes(axes, limits, profile=not isinstance(run.scenario.slope, Plane))
 
 
 def _time_marks(axes: Axes, run: Run) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
-from ...scenario import Profile
+from ...scenario import Plane
 from ...track.nearest_place import distance_beside
 from ...track.polyline import arc_lengths
 from ...units import MM
@@ -49,7 +49,7 @@ def runs_compared(runs: Mapping[str, Run], *, at: float | None = None) -> Figure
     for place, (_, run) in enumerate(named):
         plan.plot(run.place[:, 0], run.place[:, 1], **_line_style(place))
         plan.plot(*run.place[-1, :2], marker="s", markersize=3.0, linestyle="none", color=_line_style(place)["color"])
-    plan_axes(plan, limits, profile=isinstance(named[0][1].scenario.slope, Profile))
+    plan_axes(plan, limits, profile=not isinstance(named[0][1].scenario.slope, Plane))
     _distances(figure.add_subplot(grid[1, 0]), named)
     moment = 0.9 * min(run.simulated_s for run in runs.values()) if at is None else at
     _depths(figure.add_subplot(grid[1, 1]), named, moment)

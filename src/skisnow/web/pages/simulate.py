@@ -37,7 +37,9 @@ EVERY_S: Final = 1.0
 OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name", "ski.file")
 """Keys that the menus of snow and ski give."""
-WITH_FILES: Final = ("slope.kind", "slope.profile_gap")
+OF_COURSE: Final = "course."
+"""Keys of a course: gates are read from files."""
+WITH_FILES: Final = ("slope.kind", "slope.profile_gap", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m")
 """Keys that go with files of the machine that the lab runs on: those are for the command line."""
 BASIC: Final = (
     *OF_SNOW,
@@ -217,7 +219,8 @@ def _expert() -> list[str]:
     from ...scenario.given import PATH_KEYS
     from ...scenario.keys import SCENARIO_KEYS
 
-    return [name for name in SCENARIO_KEYS if name not in (*BASIC, *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS)]
+    elsewhere = (*BASIC, *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS)
+    return [name for name in SCENARIO_KEYS if name not in elsewhere and not name.startswith(OF_COURSE)]
 
 
 def _duration(seconds: float) -> str:

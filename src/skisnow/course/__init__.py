@@ -1,0 +1,25 @@
+"""Courses: gates, whether they were passed, and when."""
+
+from __future__ import annotations
+
+from .built_in import course_names
+from .course import Course, Discipline
+from .course_file import on_slope, read_course
+from .crossings import MovingPoint
+from .gate import Gate
+from .passages import CourseResult, Passage, passages
+from .rules import course_warnings
+
+__all__ = [
+    "Course",
+    "CourseResult",
+    "Discipline",
+    "Gate",
+    "MovingPoint",
+    "Passage",
+    "course_names",
+    "course_warnings",
+    "on_slope",
+    "passages",
+    "read_course",
+]

@@ -1,0 +1,106 @@
+"""Snow that varies over the place: H_V, S_f or both, over a grid or along the slope."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..geometry.surfaces import Grid
+from ..shown import Facts, Shown, span
+from ..snow import SnowProperties
+from ..units import N_PER_MM2, N_PER_MM3
+
+MOST_CHECKED: Final = 400_000
+"""Places between those of a map at which it is looked for values below 0."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SnowMap(Shown):
+    """What varies over the place, in the scenario's coordinates; beyond its border the last value goes on.
+
+    Attributes
+    ----------
+    hardness
+        H_V (N/m³), everywhere > 0; None: that of the scenario's snow.
+    failure_shear_stress
+        S_f (N/m²), everywhere > 0; None: that of the scenario's snow.
+    source
+        Where it comes from, in words.
+
+    Raises
+    ------
+    ParameterError
+        It holds neither, or a value that is not above 0, at its places or between them.
+
+    See Also
+    --------
+    skisnow.SnowProperties
+    skisnow.Scenario
+
+    Examples
+    --------
+    >>> SnowMap(hardness=Grid.along([0.0, 10.0], [1e8, 4e8]))
+    <SnowMap H_V 0.1 to 0.4 N/mm³: given as numbers>
+    """
+
+    hardness: Grid | None = None
+    failure_shear_stress: Grid | None = None
+    source: str = "given as numbers"
+
+    def __post_init__(self) -> None:
+        if self.hardness is None and self.failure_shear_stress is None:
+            raise ParameterError("a snow map holds neither H_V nor S_f; give one of them, or both")
+        for name, grid in (("H_V", self.hardness), ("S_f", self.failure_shear_stress)):
+            if grid is not None:
+                _require_positive(name, grid)
+
+    @property
+    def mean_hardness(self) -> float | None:
+        """Geometric mean of H_V over the map's places (N/m³), where it has it."""
+        return None if self.hardness is None else float(np.exp(np.mean(np.log(self.hardness.values))))
+
+    @property
+    def mean_stress(self) -> float | None:
+        """Mean of S_f over the map's places (N/m²), where it has it."""
+        return None if self.failure_shear_stress is None else float(self.failure_shear_stress.values.mean())
+
+    def means_of(self, snow: SnowProperties) -> SnowProperties:
+        """The snow with the map's means in place of its own numbers."""
+        hardness, stress = self.mean_hardness, self.mean_stress
+        if hardness is not None:
+            snow = replace(snow, snow_hardness=hardness, snow_hardness_interval=None)
+        if stress is not None:
+            snow = replace(snow, failure_shear_stress=stress, failure_shear_stress_interval=None)
+        names = " and ".join(name for name, value in (("H_V", hardness), ("S_f", stress)) if value is not None)
+        return replace(snow, source=f"{snow.source}; {names}: means over the snow map {self.source}")
+
+    def _facts(self) -> Facts:
+        parts = [
+            f"{name} {span(float(grid.values.min()) / size, float(grid.values.max()) / size, unit)}"
+            for name, grid, size, unit in (
+                ("H_V", self.hardness, N_PER_MM3, "N/mm³"),
+                ("S_f", self.failure_shear_stress, N_PER_MM2, "N/mm²"),
+            )
+            if grid is not None
+        ]
+        return Facts(f"{', '.join(parts)}: {self.source}")
+
+
+def _require_positive(name: str, grid: Grid) -> None:
+    """Smooth patches may swing below the values that they join."""
+    fine = 4 if 16 * grid.values.size <= MOST_CHECKED else 1
+    x, y = (np.linspace(places[0], places[-1], fine * (len(places) - 1) + 1) for places in (grid.x, grid.y))
+    values = grid.values_at(x[:, None], y[None, :])
+    if values.min() > 0.0:
+        return
+    i, j = np.unravel_index(int(np.argmin(values)), values.shape)
+    place = f"x = {x[i]:g} m, y = {y[j]:g} m"
+    if grid.values.min() > 0.0:
+        raise ParameterError(
+            f"{name} of the snow map falls from one place to the next so steeply that the curve through its values "
+            f"goes below 0 at {place}; give more places there"
+        )
+    raise ParameterError(f"{name} of the snow map is {values[i, j]:g} at {place}; it must be above 0")

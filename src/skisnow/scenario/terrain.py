@@ -1,0 +1,147 @@
+"""Measured terrain: heights over a grid of places."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Annotated, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from ..geometry.smoothing import smoothed
+from ..geometry.surfaces import Grid
+from ..inputs import Quantity, Word, require_declared
+from ..shown import Facts, Shown, amount, ends
+from .slope import STEEPEST_DEG
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+FEWEST_PLACES: Final = 2
+"""In x and in y."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Terrain(Shown):
+    """Heights over evenly spaced places, joined by smooth patches. The tables are read-only.
+
+    Attributes
+    ----------
+    x, y
+        Places (m), (n,) and (m,), rising evenly, in the coordinates of their source: x east and y north of a map.
+    height
+        (n, m) as measured (m).
+    source
+        Where they come from, in words.
+    smoothing
+        Length λ ≥ 0 (m): waves of this length keep half of their height, longer ones more.
+    origin_x, origin_y
+        The place of the source (m) at which x and y of the scenario are 0.
+    surface
+        What the skis run on, in the scenario's coordinates: smoothed, and counted from the origin.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than two places in x or y, uneven places, a number that is not finite, or a cliff; the place is named.
+
+    See Also
+    --------
+    skisnow.Profile
+    skisnow.Plane
+
+    Notes
+    -----
+    Ferguson's bicubic patches: height and slope are continuous, a plane is exact. Smoothing is the Gaussian filter of
+    ISO 16610-21 along x and y, with straight lines at the borders.
+
+    Examples
+    --------
+    >>> terrain = Terrain([0.0, 1.0, 2.0], [0.0, 1.0], [[0.0, 0.1], [-0.5, -0.4], [-1.0, -0.9]])
+    >>> terrain
+    <Terrain of 3 × 2 places 1 m apart: x 0 to 2 m, y 0 to 1 m, height -1 to 0.1 m; given as numbers>
+    >>> round(float(terrain.surface.heights(1.5, 0.5)), 12)
+    -0.7
+    """
+
+    x: FloatArray
+    y: FloatArray
+    height: FloatArray
+    source: Annotated[
+        str,
+        Word(
+            "slope.grid",
+            "heights over a grid: CSV file with the columns x_m, y_m, z_m, ESRI ASCII grid (.asc), or GeoTIFF (.tif, "
+            'with the extra geotiff); only with kind = "grid"',
+            word_of=str,
+            names_file=True,
+        ),
+    ] = field(default="given as numbers", kw_only=True)
+    smoothing: Annotated[
+        float,
+        Quantity(
+            "slope.smooth_m",
+            'length to which the grid is smoothed: a wave so long keeps half its height; only with kind = "grid"',
+            lowest=0.0,
+            highest=1000.0,
+            origin="choice: the surface as it was measured",
+        ),
+    ] = field(default=0.0, kw_only=True)
+    origin_x: Annotated[
+        float,
+        Quantity(
+            "slope.origin_x_m",
+            "x of the grid's file (east of a map) where the scenario's x is 0; only with kind = \"grid\"",
+            label="x of the grid at the origin",
+            origin="choice: the file's own",
+        ),
+    ] = field(default=0.0, kw_only=True)
+    origin_y: Annotated[
+        float,
+        Quantity(
+            "slope.origin_y_m",
+            "y of the grid's file (north of a map) where the scenario's y is 0; only with kind = \"grid\"",
+            label="y of the grid at the origin",
+            origin="choice: the file's own",
+        ),
+    ] = field(default=0.0, kw_only=True)
+    surface: Grid = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+        measured = Grid(self.x, self.y, self.height)  # checks and copies
+        for name, values in (("x", measured.x), ("y", measured.y), ("height", measured.values)):
+            object.__setattr__(self, name, values)
+        if min(measured.values.shape) < FEWEST_PLACES:
+            raise ParameterError(
+                f"a grid needs {FEWEST_PLACES} places or more in x and in y; it has {len(self.x)} and {len(self.y)}"
+            )
+        height = smoothed(measured.values, measured.steps, cutoff=self.smoothing)
+        object.__setattr__(self, "surface", Grid(self.x - self.origin_x, self.y - self.origin_y, height))
+        _require_no_cliff(self.surface)
+
+    def _facts(self) -> Facts:
+        n, m = self.height.shape
+        step_x, step_y = (amount(step, "m") for step in self.surface.steps)
+        apart = step_x if step_x == step_y else f"{step_x} and {step_y}"
+        over = f"smoothed to {amount(self.smoothing, 'm')}, " if self.smoothing else ""
+        reach = f"x {ends(self.surface.x, 'm')}, y {ends(self.surface.y, 'm')}"
+        height = ends(np.array([self.height.min(), self.height.max()]), "m")
+        return Facts(f"of {n} × {m} places {apart} apart: {reach}, height {height}; {over}{self.source}")
+
+
+def _require_no_cliff(surface: Grid) -> None:
+    """At the places and in the middles between them."""
+    for shift in (0.0, 0.5):
+        x, y = (places + shift * step for places, step in zip((surface.x, surface.y), surface.steps, strict=True))
+        rows = [np.hypot(*surface.gradients(each, y)) for each in x]
+        steepest = np.array([row.max() for row in rows])
+        i = int(np.argmax(steepest))
+        if steepest[i] > math.tan(math.radians(STEEPEST_DEG)):
+            j, degrees = int(np.argmax(rows[i])), math.degrees(math.atan(steepest[i]))
+            raise ParameterError(
+                f"the grid has a cliff of {degrees:.3g} degrees at x = {x[i]:g} m, y = {y[j]:g} m; at most "
+                f"{STEEPEST_DEG:g} degrees are allowed, a ski cannot follow more. Correct its heights, smooth it over "
+                "more metres, or cut out a part without it"
+            )

@@ -1,0 +1,119 @@
+"""Snow that varies over the place: what the file says, what comes before what, and everything that is refused."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.geometry.surfaces import Grid
+from skisnow.scenario import SnowMap, read_scenario, read_snow_map, scenario_file
+from skisnow.simulate.run_setup import laid_out
+from skisnow.units import N_PER_MM2, N_PER_MM3
+
+ALONG = "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n40,0.4,0.4\n"
+OVER = "x_m,y_m,S_f_N_per_mm2\n0,-5,0.2\n0,5,0.4\n20,-5,0.2\n20,5,0.4\n"
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "snow.csv"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_table_along_the_slope_holds_its_values_and_does_not_overshoot(tmp_path: Path) -> None:
+    found = read_snow_map(written(tmp_path, ALONG))
+    assert found.hardness is not None
+    assert found.failure_shear_stress is not None
+    x = np.array([-9.0, 0.0, 10.0, 40.0, 90.0])
+    np.testing.assert_allclose(found.hardness.values_at(x, 7.0) / N_PER_MM3, [0.1, 0.1, 0.4, 0.4, 0.4], rtol=1e-12)
+    np.testing.assert_allclose(found.failure_shear_stress.values_at(x, 0.0) / N_PER_MM2, [0.3, 0.3, 0.5, 0.4, 0.4])
+    between = found.hardness.values_at(np.linspace(10.0, 40.0, 99), 0.0) / N_PER_MM3
+    np.testing.assert_allclose(between, 0.4, atol=2e-4)  # flat, but for the bend at its start
+
+
+def test_grid_holds_its_values(tmp_path: Path) -> None:
+    found = read_snow_map(written(tmp_path, OVER))
+    assert found.hardness is None
+    assert found.failure_shear_stress is not None
+    assert float(found.failure_shear_stress.values_at(3.0, 0.0)) == pytest.approx(0.3 * N_PER_MM2)
+    assert repr(found).startswith("<SnowMap S_f 0.2 to 0.4 N/mm²")
+
+
+def test_means_stand_for_the_snow(tmp_path: Path) -> None:
+    path = written(tmp_path, "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n")
+    given = scenario_file("carved-46m", changes={"snow.map_file": str(path)})
+    snow = given.scenario.contact.snow
+    grid = read_snow_map(path)
+    assert snow.snow_hardness == grid.mean_hardness
+    assert grid.mean_hardness == pytest.approx(0.2336 * N_PER_MM3, rel=0.02)  # exp of the mean of ln over 0.1 to 0.4
+    assert snow.failure_shear_stress == grid.mean_stress == pytest.approx(0.4 * N_PER_MM2)
+    assert given.values["snow.H_V_N_per_mm3"] == pytest.approx(snow.snow_hardness / N_PER_MM3)
+    assert given.values["snow.map_file"] == str(path)
+    assert path in given.files
+
+
+def test_what_the_map_has_not_comes_from_the_snow(tmp_path: Path) -> None:
+    path = written(tmp_path, OVER)
+    contact = read_scenario("carved-46m", changes={"snow.map_file": str(path)}).contact
+    assert contact.snow.snow_hardness == 0.2 * N_PER_MM3
+    assert contact.snow.failure_shear_stress == pytest.approx(0.3 * N_PER_MM2)
+    assert contact.hardness_at(0.0, 0.0) == contact.greatest_hardness == 0.2 * N_PER_MM3
+    named = read_scenario("carved-46m", changes={"snow.published": "race-piste"})
+    named = named.with_(snow_map=read_snow_map(path))
+    assert named.contact.snow.failure_shear_stress == pytest.approx(0.3 * N_PER_MM2)
+    assert named.with_(snow="race-piste").contact.snow_map is None
+
+
+def test_hardness_where_it_matters(tmp_path: Path) -> None:
+    path = written(tmp_path, ALONG)
+    changed = {"snow.map_file": str(path), "start.x_m": 10}
+    soft, hard = (
+        laid_out(read_scenario("carved-46m", changes=each)) for each in ({"snow.map_file": str(path)}, changed)
+    )
+    assert soft.scenario.contact.hardness_at(0.0, 0.0) == pytest.approx(0.1 * N_PER_MM3)
+    assert soft.scenario.contact.greatest_hardness == pytest.approx(0.4 * N_PER_MM3, rel=1e-3)
+    above = [setup.dynamics.position[2] for setup in (soft, hard)]
+    # set down as a rigid ski would lie: e ~ 1/√H_V, four times as hard is half as deep
+    edge = 0.5 * float(soft.scenario.ski.at(0.0).width) * math.sin(soft.scenario.sledge.edge_angle)
+    assert (edge - above[0]) / (edge - above[1]) == pytest.approx(2.0, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("y_m,H_V_N_per_mm3\n0,1\n", "row 1: there is no column x_m"),
+        ("x_m,y_m\n0,0\n", "there is no column H_V_N_per_mm3 and none S_f_N_per_mm2, or no row"),
+        ("x_m,H_V_N_per_mm3\n0,1\n1,-2\n", "row 3, column H_V_N_per_mm3: '-2' is not above 0"),
+        ("x_m,H_V_N_per_mm3\n0,1\n1,soft\n", "row 3, column H_V_N_per_mm3: 'soft' is no finite number"),
+        ("x_m,H_V_N_per_mm3\n0,1\n0,2\n", "row 3, column x_m: '0' does not rise"),
+        ("x_m,H_V_N_per_mm3\n0,1\n", "there are 1 rows"),
+        (OVER + "20,5,0.3\n", "row 6: x_m = 20, y_m = 5 stand in row 5, too"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: str) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(ParameterError, match=said) as error:
+        read_snow_map(path)
+    assert str(error.value).startswith(str(path))
+
+
+def test_curve_that_falls_below_zero_is_refused() -> None:
+    """From 4 to 0.01 and on as flat: central differences let the curve swing 0.3 below."""
+    with pytest.raises(ParameterError, match="goes below 0 at x = "):
+        SnowMap(hardness=Grid.along(np.arange(4.0), np.array([4.0, 4.0, 0.01, 0.01]) * N_PER_MM3))
+    with pytest.raises(ParameterError, match="holds neither H_V nor S_f"):
+        SnowMap()
+
+
+def test_given_twice_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path, ALONG)
+    with pytest.raises(ParameterError, match=r"snow\.H_V_N_per_mm3 is given twice, as a number and over the place"):
+        read_scenario("carved-46m", changes={"snow.map_file": str(path), "snow.H_V_N_per_mm3": 0.3})
+    turn = read_scenario("carved-46m", changes={"snow.map_file": str(path)})
+    with pytest.raises(ParameterError, match=r"S_f_N_per_mm2 is given over the place by snow\.map_file"):
+        turn.with_(S_f_N_per_mm2=0.3)
+    assert turn.with_(snow_map=None, S_f_N_per_mm2=0.3).contact.snow.failure_shear_stress == 0.3 * N_PER_MM2

@@ -1,0 +1,209 @@
+"""Grids of heights: what the files say, smoothing, the origin, and everything that is refused with its place."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.scenario import Plane, Terrain, read_scenario, read_terrain
+from skisnow.scenario.slope_surface import down_and_left, normals_of
+
+ASC = """ncols 3
+nrows 2
+xllcorner 100.0
+yllcorner 50.0
+cellsize 2.0
+NODATA_value -9999
+5 6 7
+1 2 3
+"""
+CSV = "x_m,y_m,z_m\n0,0,1\n1,0,2\n0,2,3\n1,2,4\n"
+
+
+def written(folder: Path, text: str, name: str = "heights.csv") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_table_is_a_grid_whatever_the_order_of_its_rows(tmp_path: Path) -> None:
+    head, *rows = CSV.splitlines()
+    for each in (rows, rows[::-1], [rows[2], rows[0], rows[3], rows[1]]):
+        terrain = read_terrain(written(tmp_path, "\n".join([head, *each])))
+        assert (terrain.x.tolist(), terrain.y.tolist()) == ([0.0, 1.0], [0.0, 2.0])
+        assert terrain.height.tolist() == [[1.0, 3.0], [2.0, 4.0]]
+
+
+def test_places_that_were_rounded_are_even(tmp_path: Path) -> None:
+    rows = [f"{x},{y},{float(x) + float(y)}" for x in ("0", "0.333", "0.667", "1") for y in ("0", "1")]
+    terrain = read_terrain(written(tmp_path, "\n".join(["x_m,y_m,z_m", *rows])))
+    np.testing.assert_allclose(terrain.x, np.arange(4.0) / 3.0, atol=1e-15)
+
+
+def test_esri_grid_begins_in_the_north_and_its_places_are_the_middles_of_the_cells(tmp_path: Path) -> None:
+    terrain = read_terrain(written(tmp_path, ASC, "heights.asc"))
+    assert terrain.x.tolist() == [101.0, 103.0, 105.0]
+    assert terrain.y.tolist() == [51.0, 53.0]
+    assert terrain.height.tolist() == [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]]  # north is y = 53
+    middles = ASC.replace("xllcorner 100", "XLLCENTER 101").replace("yllcorner 50", "yllcenter 51")
+    again = read_terrain(written(tmp_path, middles, "other.asc"))
+    assert (again.x.tolist(), again.y.tolist()) == (terrain.x.tolist(), terrain.y.tolist())
+
+
+def test_origin_is_where_the_scenario_begins(tmp_path: Path) -> None:
+    terrain = read_terrain(written(tmp_path, ASC, "heights.asc"), origin_x=102.0, origin_y=51.0)
+    assert terrain.surface.x.tolist() == [-1.0, 1.0, 3.0]
+    assert float(terrain.surface.heights(0.0, 0.0)) == pytest.approx(1.5, abs=1e-14)
+    assert terrain.x.tolist() == [101.0, 103.0, 105.0]
+
+
+def test_smoothing_halves_a_wave_of_its_length_and_leaves_a_plane_alone() -> None:
+    """ISO 16610-21: of a wave λ long 2^-(λ_c/λ)² is left: 1/2 at the cut-off, 0.84 at twice, 1/16 at half of it."""
+    x, y, length = np.arange(0.0, 60.0, 0.25), np.arange(0.0, 8.0, 0.25), 6.0
+    inside = (x > 12.0) & (x < 48.0)
+    for wave in (3.0, 6.0, 12.0):
+        bumps = np.repeat(np.sin(2.0 * np.pi * x / wave)[:, None], len(y), axis=1)
+        kept = Terrain(x, y, 0.01 * bumps, smoothing=length).surface.values / 0.01
+        share = 2.0 ** -((length / wave) ** 2)
+        np.testing.assert_allclose(kept[inside], share * bumps[inside], atol=2e-3)  # the weights end at one length
+    plane = np.add.outer(-0.3 * x, 0.1 * y)
+    np.testing.assert_allclose(Terrain(x, y, plane, smoothing=length).surface.values, plane, atol=1e-11)
+
+
+def test_surface_has_the_slope_of_its_plane_in_every_direction() -> None:
+    terrain = Terrain(
+        np.array([-1.0, 1.0]), np.array([0.0, 3.0]), np.add.outer([0.6, -0.6], [0.0, 2.4])
+    )  # z = -0.6 x + 0.8 y
+    normal = normals_of(terrain, np.zeros(2), np.array([0.0, 9.0]))
+    np.testing.assert_allclose(normal, np.array([[0.6, -0.8, 1.0]] * 2) / math.sqrt(2.0), atol=1e-15)
+    down, left = down_and_left(normal[0])
+    np.testing.assert_allclose(down, np.array([1.0, 0.0, -0.6]) / math.hypot(1.0, 0.6), atol=1e-15)
+    assert left[1] > 0.0
+    np.testing.assert_allclose([left @ down, left @ normal[0], left @ left], [0.0, 0.0, 1.0], atol=1e-15)
+
+
+def test_scenario_reads_its_grid_from_its_folder_and_shows_its_keys(tmp_path: Path) -> None:
+    written(tmp_path, ASC, "heights.asc")
+    text = '[slope]\nkind = "grid"\ngrid = "heights.asc"\norigin_x_m = 103\norigin_y_m = 52\nsmooth_m = 4\n'
+    rest = read_scenario("carved-46m")
+    file = written(tmp_path, text + _without_slope(), "turn.toml")
+    terrain = read_scenario(file).slope
+    assert isinstance(terrain, Terrain)
+    assert (terrain.smoothing, terrain.origin_x, terrain.origin_y) == (4.0, 103.0, 52.0)
+    smoother = read_scenario(file, changes={"slope.smooth_m": 0}).slope
+    assert isinstance(smoother, Terrain)
+    assert smoother.surface.values.tolist() == smoother.height.tolist()
+    assert read_scenario(file).with_(smooth_m=0.0).slope.surface.values.tolist() == smoother.height.tolist()  # type: ignore[union-attr]
+    assert isinstance(read_scenario(file, changes={"slope.kind": "plane", "slope.angle_deg": 9}).slope, Plane)
+    changed = {"slope.kind": "grid", "slope.grid": str(tmp_path / "heights.asc"), "start.x_m": 102, "start.y_m": 52}
+    assert isinstance(read_scenario("carved-46m", changes=changed).slope, Terrain)
+    assert isinstance(rest.slope, Plane)
+    with pytest.raises(ParameterError, match=r'slope\.smooth_m goes with slope.kind = "grid"; it is "plane"'):
+        read_scenario("carved-46m", changes={"slope.smooth_m": 3})
+    with pytest.raises(ParameterError, match=r"slope\.grid is missing"):
+        read_scenario("carved-46m", changes={"slope.kind": "grid"})
+    with pytest.raises(ParameterError, match="the start, y = 9 m, is off the slope, which reaches from -1 to 1 m"):
+        read_scenario(file, changes={"start.y_m": 9})
+
+
+def _without_slope() -> str:
+    from skisnow.scenario import scenario_text
+
+    _, _, rest = scenario_text("carved-46m").partition("[slope]")
+    return "[" + rest.partition("\n[")[2]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x_m,y_m\n0,0\n", "row 1: there is no column z_m among x_m, y_m"),
+        (CSV.replace("2,3\n", "2,low\n"), "row 4, column z_m: 'low' is no finite number"),
+        (CSV.replace("0,2,3\n", "0,2,inf\n"), "row 4, column z_m: 'inf' is no finite number"),
+        (CSV + "1,2,4\n", "row 6: x_m = 1, y_m = 2 stand in row 5, too"),
+        (CSV.replace("0,2,3\n", ""), "no row has x_m = 0 and y_m = 2, of 2 places in x and 2 in y"),
+        ("x_m,y_m,z_m\n0,0,1\n0,1,1\n", "column x_m: there is only 0 m; a grid needs two or more"),
+        ("x_m,y_m,z_m\n", "column x_m: there is only nothing"),
+        (
+            CSV + "1.5,0,4\n1.5,2,5\n",
+            r"row 3, column x_m: '1' is off the even places from 0 to 1.5 m, which are 0.75 m apart",
+        ),
+        (CSV.replace("0,2,3\n", "0,2,30\n"), r"a cliff of .* degrees at x = .* m, y = .* m"),
+        (CSV.replace("0,2,3", '0,2,"3,5"'), "'3,5' is no finite number"),
+        (CSV.replace("0,2,3", "0,2,3,5"), "row 4: 4 cells stand under 3 names of columns, as a decimal comma"),
+        ("".join(["x_m,y_m,z_m\n", *(f"{0.1 * i * i},{0.3 * i * i},0\n" for i in range(30))]), "column x_m"),
+    ],
+)
+def test_what_is_wrong_in_a_table_is_told_with_its_place(tmp_path: Path, text: str, said: str) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(ParameterError, match=said) as error:
+        read_terrain(path)
+    assert str(error.value).startswith(str(path))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("5 6 7", "5 6", "line 7: 2 values where ncols is 3"),
+        ("5 6 7", "5 six 7", "line 7, column 2: 'six' is no finite number"),
+        ("5 6 7", "5 6 nan", "line 7, column 3: 'nan' is no finite number"),
+        ("5 6 7", "5 -9999 7", "line 7, column 2: -9999 is NODATA_value: nobody measured a height there"),
+        ("1 2 3\n", "", "there are 1 rows of values where nrows is 2"),
+        ("ncols 3", "ncols 3.5", "ncols is 3.5; a surface needs a whole number of 2 or more"),
+        ("nrows 2", "nrows two", "line 2: 'nrows two' must be nrows and one number"),
+        ("cellsize 2.0\n", "", "the header has no cellsize"),
+        ("cellsize 2.0", "cellsize 0", "cellsize is 0; it must be above 0"),
+        ("xllcorner 100.0\n", "", "neither xllcorner nor xllcenter"),
+        ("yllcorner 50.0", "yllcorner inf", "y of the lower left is inf"),
+        ("ncols 3\nnrows 2", "ncols 99999\nnrows 99999", "are too many: at most"),
+    ],
+)
+def test_what_is_wrong_in_an_esri_grid_is_told_with_its_place(tmp_path: Path, old: str, new: str, said: str) -> None:
+    path = written(tmp_path, ASC.replace(old, new), "heights.asc")
+    with pytest.raises(ParameterError, match=said) as error:
+        read_terrain(path)
+    assert str(error.value).startswith(str(path))
+
+
+def test_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+    for name in ("none.csv", "none.asc", "none.tif"):
+        with pytest.raises(ParameterError, match=rf"{name} cannot be read"):
+            read_terrain(tmp_path / name)
+
+
+def test_geotiff_lies_as_on_its_map(tmp_path: Path) -> None:
+    rasterio = pytest.importorskip("rasterio", reason="the extra geotiff is not installed")
+    path = tmp_path / "heights.tif"
+    heights = np.array([[5.0, 6.0, 7.0], [1.0, 2.0, 3.0]])
+
+    def write(data: object, transform: object, system: str) -> None:
+        form = {"driver": "GTiff", "width": 3, "height": 2, "count": 1, "dtype": "float64", "nodata": -9999.0}
+        with rasterio.open(path, "w", crs=system, transform=transform, **form) as file:
+            file.write(data, 1)
+
+    north_up = rasterio.Affine(2.0, 0.0, 100.0, 0.0, -2.0, 54.0)
+    write(heights, north_up, "EPSG:32632")
+    terrain = read_terrain(path)
+    assert (terrain.x.tolist(), terrain.y.tolist()) == ([101.0, 103.0, 105.0], [51.0, 53.0])
+    assert terrain.height.tolist() == [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]]
+    write(np.where(heights == 2.0, -9999.0, heights), north_up, "EPSG:32632")
+    with pytest.raises(ParameterError, match="row 2, column 2: no height, and 1 cells like it"):
+        read_terrain(path)
+    write(heights, north_up, "EPSG:4326")
+    with pytest.raises(ParameterError, match="its coordinates are degrees"):
+        read_terrain(path)
+    write(heights, rasterio.Affine(2.0, 0.5, 100.0, 0.5, -2.0, 54.0), "EPSG:32632")
+    with pytest.raises(ParameterError, match="its rows do not run east"):
+        read_terrain(path)
+    path.write_bytes(b"no picture")
+    with pytest.raises(ParameterError, match="is no GeoTIFF"):
+        read_terrain(path)
+
+
+def test_geotiff_without_its_package_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "rasterio", None)
+    with pytest.raises(ParameterError, match=r'pip install "skisnow\[geotiff\]"'):
+        read_terrain(written(tmp_path, "", "heights.tif"))
