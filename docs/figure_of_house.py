@@ -23,6 +23,7 @@ INSIDE = {
     "identify": "friction, drag and snow from tracks",
     "study": "grids and samples of carves and runs",
     "simulate": "the run of a sledge on two skis, and how exact it is",
+    "skier": "plans of turns, balance",
     "carve": "a ski in equilibrium",
     "scenario": "what a run is",
     "dynamics": "bodies, steps, static start",
@@ -45,7 +46,9 @@ INSIDE = {
 MEASURED, COMPUTED, BOTH = "#dcebf7", "#fde8d3", "#eef0ee"
 COLOURS = {
     **dict.fromkeys(("field", "estimate", "statistics"), MEASURED),
-    **dict.fromkeys(("carve", "contact", "dynamics", "forces", "scenario", "simulate", "ski", "compiled"), COMPUTED),
+    **dict.fromkeys(
+        ("carve", "contact", "dynamics", "forces", "scenario", "simulate", "ski", "skier", "compiled"), COMPUTED
+    ),
 }
 READING = ("cli", "field", "estimate", "snow", "report")
 TURN = ("cli", "scenario", "sources", "simulate", "contact", "dynamics", "compiled", "track", "report", "replay")

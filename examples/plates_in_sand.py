@@ -66,7 +66,7 @@ def main() -> None:
         print(
             f"{row['id']:<26} rmse {row['rmse_N']:5.2f} N over {row['n']} readings of {row['n_series']} series{bound}"
         )
-    print(f"selected: {penetration['selected']['id']}")
+    print(penetration["warnings"][0])  # the plates lie flat, and one edge angle does not tell a from b
 
 
 if __name__ == "__main__":

@@ -15,12 +15,12 @@ def shear(name: str, site: str) -> tuple[object, ...]:
 def test_sites_named_nearly_alike_and_densities_of_no_site(make_campaign: MakeCampaign) -> None:
     campaign = make_campaign(
         shear=[shear("s1", "oben"), shear("s2", "Oben"), shear("s3", "unten")],
-        further={"density.csv": DENSITY, "Tests.xlsx": "not a table"},
+        further={"density.csv": DENSITY, "Tests.ods": "not a table"},
     )
     alike, lost, unread = campaign_notes(campaign)
     assert alike.startswith("The sites 'Oben', 'oben' differ")
     assert "density.csv describes 'untem'" in lost
-    assert unread.endswith("Tests.xlsx.")
+    assert unread.endswith("Tests.ods.")
     assert skisnow.results_dict(skisnow.analyse(campaign))["campaign"]["remarks"] == [alike, lost, unread]
 
 

@@ -36,7 +36,7 @@ def test_plates_become_a_campaign(
     run("plates_in_sand.py", str(DATA), "--out", str(folder), monkeypatch=monkeypatch)
     printed = capsys.readouterr().out
     assert printed.count("63 readings of 9 series") == 9
-    assert "selected: H_V:a=none,b=constant" in printed
+    assert "4 series at 2 edge angles, and used are 9 at 1" in printed
     campaign = read_campaign(folder)
     tests = campaign.penetration
     assert tests is not None
