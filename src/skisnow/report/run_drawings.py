@@ -47,8 +47,8 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
             "course",
             prose(
                 "The line of the middle between the boots over the course, from above; colour: edge angle at the "
-                "boots. A cross: the gate was not passed. Gates to which no outer pole is known are drawn with a piece "
-                "of their line."
+                "boots, positive with the left edges down. A cross: the gate was not passed. Gates to "
+                "which no outer pole is known are drawn with a piece of their line."
             ),
             "Line over the gates of the course, coloured by edge angle.",
             run_course(run),

@@ -29,7 +29,7 @@ def run_course(run: Run) -> Figure:
         raise ParameterError("the run has no course, or ended before its first step; give the scenario course.file")
     level = isinstance(run.scenario.slope, Plane)
     words = "distance down the fall line $x$" if level else "horizontal distance $x$"
-    label = "edge angle (°), left edges down: above 0"
+    label = "edge angle (°)"
     return course_line(result, run.place, edge_angles(run) / DEGREE, label=label, diverging=True, axes_words=words)
 
 
