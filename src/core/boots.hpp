@@ -1,8 +1,8 @@
 // Boots that move against the body as they are told to, and what each ski does to its boot.
 //
 // Each ski is a body of its own, whose origin is its boot. Its velocities follow from those of the body that carries it
-// and from the boot's own motion, which is given over time; what is left over of its equations of motion is what it does
-// to its boot.
+// and from the boot's own motion, which is given over time; what is left over of its equations of motion is what it
+// does to its boot.
 #pragma once
 
 #include "body.hpp"

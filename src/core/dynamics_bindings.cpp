@@ -145,9 +145,7 @@ void bind_motion(nb::class_<Dynamics>& bound) {
            [](Dynamics& self, const Array& rate) { std::copy_n(rate.data(), 6, self.state.rate.begin()); })
       .def_prop_ro(
           "position",
-          [](const Dynamics& self) {
-            return array({self.state.position.begin(), self.state.position.end()}, {3});
-          },
+          [](const Dynamics& self) { return array({self.state.position.begin(), self.state.position.end()}, {3}); },
           nb::rv_policy::automatic)
       .def_prop_ro(
           "rotation",
@@ -157,9 +155,7 @@ void bind_motion(nb::class_<Dynamics>& bound) {
           nb::rv_policy::automatic)
       .def_prop_ro(
           "velocity",
-          [](const Dynamics& self) {
-            return array({self.state.rate.begin(), self.state.rate.begin() + BODY}, {BODY});
-          },
+          [](const Dynamics& self) { return array({self.state.rate.begin(), self.state.rate.begin() + BODY}, {BODY}); },
           nb::rv_policy::automatic);
 }
 
