@@ -80,10 +80,11 @@ def _bars(_app: Sphinx, _what: str, _name: str, _object: Any, _options: Any, lin
 
 
 def _levels(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: object) -> None:  # noqa: ARG001
-    """Say of the captions of lists of pages which level of heading they are: screen readers ask for it."""
+    """Say which level of heading the captions of lists of pages have, and let wide tables be scrolled by keyboard."""
     for part in ("body", "furo_navigation_tree"):
         if isinstance(context.get(part), str):
-            context[part] = context[part].replace('role="heading"', 'role="heading" aria-level="2"')
+            found = context[part].replace('role="heading"', 'role="heading" aria-level="2"')
+            context[part] = found.replace('<div class="table-wrapper', '<div tabindex="0" class="table-wrapper')
 
 
 def setup(app: Sphinx) -> None:

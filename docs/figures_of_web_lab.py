@@ -140,9 +140,8 @@ def take(page: Page, address: str) -> None:
     both_sizes(page, "carve")
     page.goto(f"{address}simulate")
     page.get_by_label("Snow", exact=True).click()
-    page.get_by_role("option").nth(1).click()
+    page.get_by_role("option", name="A morning").first.click()
     page.get_by_text("Snow: H_V").wait_for(timeout=60_000)
-    page.locator("summary", has_text="Start").click()
     picture(page, "simulate")
 
 
