@@ -96,3 +96,11 @@ def test_what_tells_nothing_of_itself_is_announced(
         time.sleep(0.05)
     text = "slow … 0 s of about 10 s"
     assert capsys.readouterr().err == f"\r{text}\r{' ' * len(text)}\r"
+
+
+def test_a_program_that_reads_the_lines_has_them_at_once(
+    clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SKISNOW_PROGRESS_LINES", "1")
+    said(clock, 1.0, 1.25, 1.5)
+    assert len(capsys.readouterr().err.splitlines()) == 2

@@ -131,8 +131,11 @@ def pressed_while_it_goes_on(page: Page, button: Locator) -> None:
 
 def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> None:
     page.goto(f"{served.address}simulate")
-    page.get_by_label("Ends after (s)", exact=True).fill("600")
-    page.get_by_label("Ends after a way of (m)", exact=True).fill("9000")
+    page.get_by_label("Ends after (s)", exact=True).fill("60")
+    page.get_by_label("Ends after a way of (m)", exact=True).fill("900")
+    page.get_by_text("Expert inputs").click()  # long to compute, and few rows to write
+    page.get_by_label("Distance of the snow lines (mm)", exact=True).fill("2")
+    page.get_by_label("Time between outputs (ms)", exact=True).fill("100")
     for _ in range(2):
         page.get_by_role("button", name="Simulate").click()
         page.get_by_text("is in the queue.").wait_for()
@@ -145,10 +148,10 @@ def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> 
     (place,) = (served.store.parent / "lab").glob("*/summary.json")
     summary = json.loads(place.read_text(encoding="utf-8"))
     assert summary["outcome"] == "interrupted"
-    assert 0.0 < summary["simulated_s"] < 600.0
+    assert 0.0 < summary["simulated_s"] < 60.0
     assert {"run.nc", "track.csv", "report.html"} <= {each.name for each in place.parent.iterdir()}
     page.get_by_role("link", name="Watch").click()
     page.wait_for_function("window.skisnowReplay")
     assert page.evaluate("skisnowReplay.run.arrays.time.values.at(-1)") == pytest.approx(
-        summary["simulated_s"], abs=0.011
+        summary["simulated_s"], abs=0.11
     )

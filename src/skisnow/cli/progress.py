@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import sys
@@ -15,6 +16,8 @@ PAUSE_S: Final = 0.5
 _COUNTED: Final = re.compile(r"(\d+) of (\d+)\b")
 PAUSE_OF_LINES_S: Final = 10.0
 """Where no line can be rewritten, such as in a log."""
+LINES_AT_ONCE: Final = "SKISNOW_PROGRESS_LINES"
+"""Environment variable: for a program that reads them, lines come as often as a terminal's."""
 
 
 class MovingLine:
@@ -53,7 +56,8 @@ class Progress:
         self._line = MovingLine()
         self._next = time.monotonic() + patience_s
         self._begun: tuple[tuple[str, int], float, int] | None = None
-        self._pause = pause_s if pause_s is not None else PAUSE_S if self._line.moves else PAUSE_OF_LINES_S
+        often = self._line.moves or LINES_AT_ONCE in os.environ
+        self._pause = pause_s if pause_s is not None else PAUSE_S if often else PAUSE_OF_LINES_S
 
     def __call__(self, text: str) -> None:
         """Take note of what is being done."""

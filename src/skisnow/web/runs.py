@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import os
 import re
 import secrets
 import sys
@@ -154,6 +155,7 @@ class Runs:
             str(self.folder / job.name),
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.PIPE,
+            env={**os.environ, "SKISNOW_PROGRESS_LINES": "1"},
         )
         if self._cancelling:  # in the moment before
             self._process.terminate()
