@@ -63,6 +63,9 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     pages_app.on_startup(use_heartbeat)
     answer_quietly()
     pages_app.config.socket_io_js_transports = ["websocket"]
+    pages_app.config.quasar_config["loadingBar"] = {
+        "skipHijack": True
+    }  # a bar without a name, where the page says more
     return Guard(outer, Access(host, token, lab.limits.upload_bytes))
 
 
