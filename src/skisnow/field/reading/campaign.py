@@ -33,7 +33,16 @@ if TYPE_CHECKING:
     from .table_forms import TableForm
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
-"""Names of the files that a campaign reads, in their order."""
+"""Names of the files that a campaign reads, in their order; workbooks may stand for them."""
+
+
+def is_read(path: str) -> bool:
+    """Whether a campaign reads a file, by its path in the campaign's folder.
+
+    >>> is_read("shear.csv"), is_read("Hang.xlsx"), is_read("photos/Hang.xlsx"), is_read("photo.jpg")
+    (True, True, False, False)
+    """
+    return "/" not in path and (path in CAMPAIGN_FILES or is_workbook(path))
 
 
 def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None = None) -> Campaign:
