@@ -17,6 +17,7 @@ from .language import COOKIE, languages
 from .layout import KEEPING, LANGUAGE, SCRIPT, STYLES
 from .pages import INNER, PAGES
 from .patience import RECONNECT_S, use_heartbeat
+from .ski_uploads import add_ski_uploads
 from .socket_events import answer_quietly
 from .transfer import add_transfer
 
@@ -49,6 +50,7 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     outer.add_api_route(KEEPING, lambda: _own("kept.js", "text/javascript"), include_in_schema=False)
     outer.add_api_route(LANGUAGE + "/{code}", _chosen, include_in_schema=False, response_model=None)
     add_transfer(outer, lab)
+    add_ski_uploads(outer, lab)
     for name in (*PAGES, *INNER):
         import_module(f".pages.{name}", __package__).add_page(lab)
     add_error_pages(outer)
