@@ -19,6 +19,8 @@ CAMPAIGN, RESULTS, COMMANDS = (
     (ROOT / "docs" / "files" / f"{name}.md").read_text(encoding="utf-8")
     for name in ("campaign", "results", "command-line")
 )
+CAMPAIGN += (ROOT / "docs" / "files" / "snow-micro-pen.md").read_text(encoding="utf-8")
+RESULTS += (ROOT / "docs" / "files" / "snow-micro-pen.md").read_text(encoding="utf-8")
 PACKAGE = Path(skisnow.__file__).parent
 
 
