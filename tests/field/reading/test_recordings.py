@@ -47,16 +47,18 @@ def test_recordings_are_read_in_the_order_of_the_table(small_campaign: dict[str,
 def test_wrong_cells(
     small_campaign: dict[str, str], write_campaign: Write, rows: str, row: int, column: str, words: str
 ) -> None:
-    further = {"snow_micro_pen.csv": HEAD + rows, "one.pnt": SOUND, "two.pnt": SOUND}
-    problems = check_campaign(write_campaign(small_campaign | further))
+    further: dict[str, str | bytes] = {"snow_micro_pen.csv": HEAD + rows, "one.pnt": SOUND, "two.pnt": SOUND}
+    problems = check_campaign(write_campaign({**small_campaign, **further}))
     (problem,) = [each for each in problems if each.severity == "error"]
     assert (problem.file, problem.row, problem.column) == ("snow_micro_pen.csv", row, column)
     assert words in problem.allowed
 
 
 def test_a_damaged_recording_is_told_with_its_name(small_campaign: dict[str, str], write_campaign: Write) -> None:
-    further = {"snow_micro_pen.csv": HEAD + "r7,Süd,one.pnt\n", "one.pnt": SOUND[:5000]}
-    (problem,) = [each for each in check_campaign(write_campaign(small_campaign | further)) if each.severity == "error"]
+    further: dict[str, str | bytes] = {"snow_micro_pen.csv": HEAD + "r7,Süd,one.pnt\n", "one.pnt": SOUND[:5000]}
+    (problem,) = [
+        each for each in check_campaign(write_campaign({**small_campaign, **further})) if each.severity == "error"
+    ]
     assert (problem.file, problem.experiment, problem.code) == ("one.pnt", "r7", "unreadable_file")
     assert "cut off" in problem.action
 
