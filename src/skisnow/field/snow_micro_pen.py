@@ -12,16 +12,16 @@ import struct
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NoReturn
+from typing import Any, Final, NoReturn
 
 import numpy as np
+import numpy.typing as npt
 
 from ..errors import FieldDataError
 from ..units import CM, MM
 from .problems import error
 
-if TYPE_CHECKING:
-    from .records import FloatArray
+FloatArray = npt.NDArray[np.float64]
 
 HEADER_BYTES: Final = 512
 _SAMPLE_BYTES: Final = 2

@@ -12,7 +12,11 @@ from ..units import MM
 from .snow_micro_pen import SnowMicroPenProfile, snow_micro_pen_profile
 
 if TYPE_CHECKING:
-    from .records import FloatArray, IntArray
+    import numpy as np
+    import numpy.typing as npt
+
+    FloatArray: TypeAlias = npt.NDArray[np.float64]
+    IntArray: TypeAlias = npt.NDArray[np.int64]
 
 Relation: TypeAlias = Literal["proksch-2015", "calonne-2020", "king-2020a", "king-2020b"]
 

@@ -7,14 +7,14 @@ where the force rises above what it was in the air just before, and stays there.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from ..units import MM
 
-if TYPE_CHECKING:
-    from .records import FloatArray
+FloatArray = npt.NDArray[np.float64]
 
 BLOCK: Final = 0.5 * MM
 """The force is averaged over it, and the surface is found to it (modelling assumption)."""
