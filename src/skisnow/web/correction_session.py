@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from ..errors import FieldDataError, StoreError
 from ..field import campaign_of_files
-from ..field.reading import FilesInMemory, is_read, unfolded
+from ..field.reading import READ_FILES, FilesInMemory, unfolded
 from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..field.reading.table_forms import CORRECTIONS
 from ..field.reading.text import UnreadableTextError, decode
@@ -15,6 +15,7 @@ from ..field.store.journal_entry import JournalEntry
 from ..field.store.replayed import ReplayedRow, ReplayedTest
 from ..field.store.stored_tables import cell_key
 from .edit_session import EditSession, QuickResults, quick_results
+from .words import TABLES
 
 if TYPE_CHECKING:
     from ..field.problems import Problem
@@ -32,10 +33,11 @@ class CorrectionSession(EditSession):
     """A kept campaign as one page sees it."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
-        self.stored, self._files = lab.store.contents(id_, is_read)
+        self.stored, self._files = lab.store.contents(id_, READ_FILES)
         self._tables = unfolded(FilesInMemory(self._files))
         self._entries: tuple[JournalEntry, ...] = ()
-        self.tables: dict[str, StoredTable] = stored_tables(self._tables)
+        stored = stored_tables(self._tables)
+        self.tables: dict[str, StoredTable] = {file: table for file, table in stored.items() if file in TABLES}
         super().__init__(lab, self.stored.id)
 
     @property

@@ -44,7 +44,7 @@ from .schema import CHUNK_BYTES
 from .verification import findings
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Container, Mapping
     from types import TracebackType
 
     from sqlalchemy import Engine
@@ -250,9 +250,9 @@ class Store(Shown):
     def contents(
         self,
         id: str,  # noqa: A002
-        wanted: Callable[[str], bool],
+        names: Container[str],
     ) -> tuple[StoredCampaign, dict[str, bytes]]:
-        """Give those of a campaign's files whose paths are wanted, as they came in.
+        """Give some of a campaign's files as they came in, by their paths; those that it does not have are left out.
 
         Raises
         ------
@@ -262,7 +262,7 @@ class Store(Shown):
         with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             stored = one_campaign(connection, id)
             require_whole(stored)
-            chosen = [file for file in stored.files if wanted(file.path)]
+            chosen = [file for file in stored.files if file.path in names]
             return stored, {file.path: whole(file, stored_chunks(connection, file.sha256)) for file in chosen}
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:
