@@ -1,0 +1,150 @@
+"""How the body of a run leant over its skis, and what would have been in balance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from ..scenario import Plane
+from ..scenario.slope_surface import down_and_left, normals_of
+from ..shown import Facts, Shown, field_facts
+
+if TYPE_CHECKING:
+    from .run import Run
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
+class BalanceHistory(Shown):
+    """Over time, (n,) each, in axes along the skis, to their left and out of the snow; leans are positive to the left.
+
+    Attributes
+    ----------
+    lean
+        Of the line from the middle of the boots to the centre of mass, from the snow's normal (rad).
+    pressure_lean
+        Of the line from the centre of pressure to it (rad); NaN where the skis do not bear.
+    balanced_lean
+        Of a body in balance with speed v and path radius R of the centre of mass:
+        tan Ψ = v²/(R g cos α) - tan α cos χ, χ from the horizontal (rad); NaN at both ends of a run.
+    rolling_lean
+        The same with what the body's roll and the rise of its centre of mass take: tan Ψ = (a_l + I φ''/(m z))/(a_n),
+        a_l and a_n the accelerations to the left and off the snow without gravity's share, φ the body's roll, z the
+        height of the centre of mass (rad); NaN at both ends.
+    angulation
+        Mean edge angle less the lean (rad).
+    leg
+        From the middle of the boots to the centre of mass (m).
+    pressure
+        Centre of pressure from the middle of the boots, to the left (m); NaN where the skis do not bear.
+    load
+        (n, 2) of each ski along the snow's normal (N).
+
+    See Also
+    --------
+    skisnow.simulate
+    """
+
+    lean: FloatArray
+    pressure_lean: FloatArray
+    balanced_lean: FloatArray
+    rolling_lean: FloatArray
+    angulation: FloatArray
+    leg: FloatArray
+    pressure: FloatArray
+    load: FloatArray
+
+    def _facts(self) -> Facts:
+        units = dict.fromkeys(("lean", "pressure_lean", "balanced_lean", "rolling_lean", "angulation"), "rad")
+        return field_facts(self, units | {"leg": "m", "pressure": "m", "load": "N"})
+
+
+LEAST_LOAD = 50.0
+"""Load (N) of both skis from which on there is a centre of pressure (modelling assumption)."""
+
+
+def balance_of(run: Run) -> BalanceHistory:
+    """How the body leant.
+
+    Parameters
+    ----------
+    run
+        What `skisnow.simulate` gave.
+
+    Raises
+    ------
+    ParameterError
+        The run knows nothing of its boots.
+    """
+    boots = run.boots
+    if boots is None:
+        raise ParameterError("this run knows nothing of its boots: it was not made by skisnow.simulate")
+    normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
+    ahead = boots.axes[:, :, 0].mean(axis=1)
+    ahead = ahead - np.einsum("na,na->n", ahead, normal)[:, None] * normal
+    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    left = np.cross(normal, ahead)
+    centre = boots.centre_of_mass - boots.place.mean(axis=1)
+    aside, up = (np.einsum("na,na->n", centre, axis) for axis in (left, normal))
+    load = np.einsum("nka,na->nk", boots.force, normal)
+    pressure = _pressure(run, ahead, load.sum(axis=1))
+    lean = np.arctan2(aside, up)
+    balanced, rolling = _balanced(run, normal, up)
+    return BalanceHistory(
+        lean=lean,
+        pressure_lean=np.arctan2(aside - pressure, up),
+        balanced_lean=balanced,
+        rolling_lean=rolling,
+        angulation=boots.angles[:, :, 0].mean(axis=1) - lean,
+        leg=np.linalg.norm(centre, axis=1),
+        pressure=pressure,
+        load=load,
+    )
+
+
+def _pressure(run: Run, ahead: FloatArray, load: FloatArray) -> FloatArray:
+    """Centre of pressure from the middle of the boots, to the left (m)."""
+    boots = run.boots
+    assert boots is not None
+    arm = boots.place - boots.place.mean(axis=1, keepdims=True)
+    moment = (np.cross(arm, boots.force) + boots.moment).sum(axis=1)
+    roll = np.einsum("na,na->n", moment, ahead)
+    bears = load > LEAST_LOAD
+    return np.where(bears, roll / np.where(bears, load, 1.0), np.nan)
+
+
+def _balanced(run: Run, normal: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Leans in balance by the path of the centre of mass, so high, without and with roll and rise (rad)."""
+    boots, slope, gravity = run.boots, run.scenario.slope, run.scenario.gravity
+    assert boots is not None
+    if len(run.time) < 5:
+        return np.full(len(run.time), np.nan), np.full(len(run.time), np.nan)
+    velocity = np.gradient(boots.centre_of_mass, run.time, axis=0)
+    acceleration = np.gradient(velocity, run.time, axis=0)
+    down = down_and_left(normal)[0]
+    if isinstance(slope, Plane):
+        across, fall = gravity * np.cos(slope.angle), np.full(len(run.time), gravity * np.sin(slope.angle))
+    else:
+        across, fall = gravity * normal[:, 2], -gravity * down[:, 2]
+    along = velocity - np.einsum("na,na->n", velocity, normal)[:, None] * normal
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    left = np.cross(normal, along)
+    turning = np.einsum("na,na->n", acceleration, left) - fall * np.einsum("na,na->n", down, left)
+    rising = across + np.einsum("na,na->n", acceleration, normal)
+    sledge = run.scenario.sledge
+    by_roll = sledge.inertia[0] * _rolling(run) / (sledge.mass * np.maximum(up, 1e-3))
+    out = np.array([np.arctan2(turning, across), np.arctan2(turning + by_roll, np.maximum(rising, 1e-3))])
+    out[:, [0, 1, -2, -1]] = np.nan
+    return out[0], out[1]
+
+
+def _rolling(run: Run) -> FloatArray:
+    """Angular acceleration of the body about its own axis ahead, to the left (rad/s²)."""
+    axis = run.attitude[:, :, 2]
+    spin = np.cross(axis, np.gradient(axis, run.time, axis=0))
+    return np.asarray(np.gradient(-np.einsum("na,na->n", spin, run.attitude[:, :, 0]), run.time))
