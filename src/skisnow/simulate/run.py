@@ -195,9 +195,8 @@ class Run(Shown):
     @property
     def balance(self) -> BalanceHistory:
         """How the body leant over its skis, and what would have been in balance; needs `boots`."""
-        from .balance_history import balance_of
-
-        return balance_of(self)
+        found: BalanceHistory = from_above("simulate.run_balance", "balance_of")(self)
+        return found
 
     @property
     def track(self) -> Track:
