@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from ..errors import ParameterError, SkisnowError
 from ..given import read_toml
 from ..inputs import nearest
 from .chunk import PointFunction
 from .crews import Crew, GivenCrew
-
-if TYPE_CHECKING:
-    from types import ModuleType
 
 BATCH_SYSTEMS: Final = {
     "slurm": "SLURMCluster",
@@ -72,9 +68,9 @@ def require_scheduler(scheduler: str | Path) -> None:
         Dask is not installed, or the address or the file cannot be read.
     """
     asked = scheduler_of(scheduler)
-    _required("distributed")
+    _distributed()
     if asked.system is not None:
-        _required("dask_jobqueue")
+        _jobqueue()
 
 
 def is_plain(scheduler: str | Path) -> bool:
@@ -164,7 +160,7 @@ def crew_of_scheduler(scheduler: str | Path, function: PointFunction) -> Crew:
     """
     require_scheduler(scheduler)
     asked = scheduler_of(scheduler)
-    distributed = _required("distributed")
+    distributed = _distributed()
     if asked.system is not None:
         cluster = batch_cluster(asked)
         cluster.scale(jobs=asked.jobs)
@@ -188,7 +184,7 @@ def batch_cluster(asked: SchedulerFile) -> Any:
     ParameterError
         An option is none of its class.
     """
-    jobqueue = _required("dask_jobqueue")
+    jobqueue = _jobqueue()
     security = _security(asked.tls)
     options = {**(asked.options or {}), **({} if security is None else {"security": security, "protocol": "tls://"})}
     try:
@@ -239,14 +235,24 @@ def _security(tls: Mapping[str, str] | None) -> Any:
     for part in ("client", "scheduler", "worker"):
         named |= {f"tls_{part}_cert": tls.get("cert"), f"tls_{part}_key": tls.get("key")}
     given = {name: value for name, value in named.items() if value is not None}
-    return _required("distributed").Security(require_encryption=True, **given)
+    return _distributed().Security(require_encryption=True, **given)
 
 
-def _required(name: str) -> ModuleType:
+def _distributed() -> Any:
     try:
-        __import__(name)
+        import distributed
     except ImportError as error:
-        raise ParameterError(
-            f"a scheduler needs {name.replace('_', '-')}, which cannot be loaded ({error}): pip install 'skisnow[dask]'"
-        ) from error
-    return sys.modules[name]
+        raise _missing("distributed", error) from error
+    return distributed
+
+
+def _jobqueue() -> Any:
+    try:
+        import dask_jobqueue
+    except ImportError as error:
+        raise _missing("dask-jobqueue", error) from error
+    return dask_jobqueue
+
+
+def _missing(name: str, error: ImportError) -> ParameterError:
+    return ParameterError(f"a scheduler needs {name}, which cannot be loaded ({error}): pip install 'skisnow[dask]'")
