@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import FieldDataError, StoreError
 from ..field import campaign_of_files
-from ..field.reading import CAMPAIGN_FILES, FilesInMemory
+from ..field.reading import READ_FILES, FilesInMemory
 from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..field.reading.text import UnreadableTextError, decode
 from ..field.store import corrected_files, stored_tables
@@ -14,6 +14,7 @@ from ..field.store.journal_entry import JournalEntry
 from ..field.store.replayed import ReplayedRow, ReplayedTest
 from ..field.store.stored_tables import cell_key
 from .edit_session import EditSession, QuickResults, quick_results
+from .words import TABLES
 
 if TYPE_CHECKING:
     from ..field.problems import Problem
@@ -26,9 +27,10 @@ class CorrectionSession(EditSession):
     """A kept campaign as one page sees it."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
-        self.stored, self._files = lab.store.contents(id_, CAMPAIGN_FILES)
+        self.stored, self._files = lab.store.contents(id_, READ_FILES)
         self._entries: tuple[JournalEntry, ...] = ()
-        self.tables: dict[str, StoredTable] = stored_tables(FilesInMemory(self._files))
+        stored = stored_tables(FilesInMemory(self._files))
+        self.tables: dict[str, StoredTable] = {file: table for file, table in stored.items() if file in TABLES}
         super().__init__(lab, self.stored.id)
 
     @property

@@ -45,7 +45,7 @@ from .schema import CHUNK_BYTES
 from .verification import findings
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
+    from collections.abc import Callable, Container, Mapping
     from types import TracebackType
 
     from sqlalchemy import Engine
@@ -258,7 +258,7 @@ class Store(Shown):
     def contents(
         self,
         id: str,  # noqa: A002
-        names: Collection[str],
+        names: Container[str],
     ) -> tuple[StoredCampaign, dict[str, bytes]]:
         """Give some of a campaign's files as they came in, by their paths; those that it does not have are left out.
 
