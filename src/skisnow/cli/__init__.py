@@ -27,6 +27,7 @@ def build_parser() -> argparse.ArgumentParser:
         check,
         compare,
         completion,
+        convert,
         identify,
         man,
         new,
@@ -50,7 +51,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
     every = (
         new, check, analyse, store, reference, carve, simulate, replay, turn, study, track, compare, identify, serve,
-        completion, man,
+        convert, completion, man,
     )  # fmt: skip
     for command in every:
         command.add_parser(commands)

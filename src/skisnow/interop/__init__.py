@@ -1,0 +1,1 @@
+"""skisnow in other people's programs: what is written for them, and what is read of theirs."""
