@@ -298,6 +298,7 @@ void bind_contact(nb::module_& m) {
 
 namespace skisnow {
 void bind_carve(nb::module_& m);
+void bind_data(nb::module_& m);
 void bind_dynamics(nb::module_& m);
 }  // namespace skisnow
 
@@ -317,4 +318,5 @@ NB_MODULE(_core, m) {
   bind_contact(m);
   bind_carve(m);
   bind_dynamics(m);
+  bind_data(m);
 }
