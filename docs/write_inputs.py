@@ -19,6 +19,8 @@ from skisnow.carve.keys import CARVE_KEYS
 from skisnow.field.reading import campaign_schema
 from skisnow.field.reading.campaign_file import CAMPAIGN_KEYS
 from skisnow.field.reading.table_forms import PENETRATION, SHEAR
+from skisnow.field.snow_micro_pen_records import SnowMicroPenSettings
+from skisnow.inputs import own_quantities
 from skisnow.inputs.json_schema import Schema, output_schema, schema_text
 from skisnow.inputs.page_table import page_table
 from skisnow.scenario import schema as scenario
@@ -61,6 +63,7 @@ TABLES = {
     "carve": page_table(CARVE_KEYS.values()),
     "ski": page_table(SKI_KEYS.values(), ("key", "meaning", "unit", "range", "usual", "left out")),
     "campaign": page_table(CAMPAIGN_KEYS.values(), ("key", "unit", "range", "meaning")),
+    "snow_micro_pen": page_table(own_quantities(SnowMicroPenSettings), ("key", "unit", "range", "default", "meaning")),
     "penetration": page_table(PENETRATION.numbers, _OF_CSV),
     "shear": page_table(SHEAR.numbers[:4], _OF_CSV),
     "search": page_table(

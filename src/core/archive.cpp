@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 namespace skisnow {
 
@@ -183,6 +184,7 @@ void Archive::add(const Track& track, double energy) {
   energy_ += energy;
   if (track.count < 2 || !(track.width() > THIN)) return;
   tracks_.push_back(track);
+  numbers_.push_back(++added_);
   enter_squares(int(tracks_.size()) - 1);
 }
 
@@ -226,11 +228,15 @@ void Archive::recall(const Vector3& origin, const Vector3& lateral, double from,
 }
 
 void Archive::forget_since(const Mark& mark) {
+  if (mark.tracks > tracks_.size() || mark.last != last(mark.tracks))
+    throw std::invalid_argument(
+        "tracks of this state were forgotten when an earlier state was restored; go on from there");
   strips_ = mark.strips;
   energy_ = mark.energy;
   time = mark.time;
   if (mark.tracks == tracks_.size()) return;
   tracks_.resize(mark.tracks);
+  numbers_.resize(mark.tracks);
   for (auto& [square, tracks] : squares_)
     tracks.erase(std::remove_if(tracks.begin(), tracks.end(), [&](int t) { return t >= int(mark.tracks); }),
                  tracks.end());

@@ -54,13 +54,15 @@ class Archive {
   const std::vector<Track>& tracks() const { return tracks_; }
   double energy() const { return energy_; }
 
-  // Forget what was added since (for a contact that goes back to a state).
+  // Forget what was added since (for a contact that goes back to a state). Throws std::invalid_argument, and changes
+  // nothing, where tracks of that time were forgotten themselves.
   struct Mark {
     std::size_t tracks;
     int strips;
     double energy, time;
+    std::int64_t last;  // number of the last track
   };
-  Mark mark() const { return {tracks_.size(), strips_, energy_, time}; }
+  Mark mark() const { return {tracks_.size(), strips_, energy_, time, last(tracks_.size())}; }
   void forget_since(const Mark& mark);
 
  private:
@@ -69,9 +71,12 @@ class Archive {
   std::vector<Track> tracks_;
   std::unordered_map<std::uint64_t, std::vector<int>> squares_;  // later track of each pair, by square
   std::unordered_set<std::uint64_t> regions_;
+  std::vector<std::int64_t> numbers_;  // of the tracks, in the order in which any were ever added, from 1
+  std::int64_t added_ = 0;
   int strips_ = 0;
   double energy_ = 0.0;
 
+  std::int64_t last(std::size_t count) const { return count == 0 ? 0 : numbers_[count - 1]; }
   void enter_squares(int later);
   const Track* before(int later) const;
 };

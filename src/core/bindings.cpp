@@ -240,7 +240,8 @@ void bind_snow(nb::module_& m) {
 void make_contact(SnowContact* at, std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
                   const std::optional<std::string>& set) {
   const Kernels* chosen = set ? kernels_named(set->c_str()) : &kernels();
-  if (chosen == nullptr) throw std::invalid_argument("this processor or library lacks the instruction set " + *set);
+  if (set && chosen == nullptr)
+    throw std::invalid_argument("this processor or library lacks the instruction set " + *set);
   new (at) SnowContact(std::move(snow), std::move(runners), spacing, *chosen);
 }
 
@@ -297,6 +298,7 @@ void bind_contact(nb::module_& m) {
 
 namespace skisnow {
 void bind_carve(nb::module_& m);
+void bind_data(nb::module_& m);
 void bind_dynamics(nb::module_& m);
 }  // namespace skisnow
 
@@ -316,4 +318,5 @@ NB_MODULE(_core, m) {
   bind_contact(m);
   bind_carve(m);
   bind_dynamics(m);
+  bind_data(m);
 }

@@ -334,8 +334,8 @@ SnowContact::State SnowContact::state() const {
 }
 
 void SnowContact::restore(const State& state) {
-  state_ = state;
   snow_->archive.forget_since(state.tracks);
+  state_ = state;
 }
 
 }  // namespace skisnow

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "bearing.hpp"
@@ -46,6 +47,7 @@ class SnowContact {
   int strip(int k) const { return state_.strips[std::size_t(k)]; }
   const Kernels& kernels() const { return *kernels_; }
   Laws laws;
+  void set_snow(std::shared_ptr<Snow> snow) { snow_ = std::move(snow); }  // a copy of its own, tracks and all
   void set_penetration(PenetrationLaw law);  // in place of H_V and k_u, before any snow is touched
 
   // Forces at a situation: the history advances from the last accepted pose on copies; the snow stays as it is.
@@ -86,7 +88,7 @@ class SnowContact {
     std::vector<Pose> accepted;  // empty before the first update
     std::vector<int> strips;
     double time = 0.0, delayed_energy = 0.0;  // (s); (J)
-    Archive::Mark tracks{0, 0, 0.0, 0.0};
+    Archive::Mark tracks{0, 0, 0.0, 0.0, 0};
   };
   State state() const;
   void restore(const State& state);

@@ -39,6 +39,8 @@ class Dynamics {
   double time = 0.0;
 
   const Body& body() const { return body_; }
+  const StepRule& rule() const { return rule_; }
+  void set_contact(SnowContact& contact) { contact_ = &contact; }  // a copy of the same
   const Layout& layout() const { return layout_; }
   const Counts& counts() const { return counts_; }
   const Work& work() const { return work_; }

@@ -96,7 +96,8 @@ SKISNOW_API int skisnow_contact_update(skisnow_contact* contact, const double* p
                                        double dt, const double* beams);
 
 /* What a contact remembers, and back to it: what follows has the same bits. A state serves the contact that it is of;
- * tracks of others in its snow that came later are forgotten with it. */
+ * tracks in its snow that came later are forgotten with it. Refused where tracks of the state itself were forgotten
+ * since, because an earlier one was loaded. */
 SKISNOW_API int skisnow_contact_save(skisnow_contact* contact, skisnow_state** state);
 SKISNOW_API int skisnow_contact_load(skisnow_contact* contact, const skisnow_state* state);
 SKISNOW_API void skisnow_state_free(skisnow_state* state);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace skisnow {
@@ -33,6 +34,21 @@ double sum(const double (&weight)[4], double a, double b, double slope_a, double
 
 Grid::Grid(double x0, double dx, int nx, double y0, double dy, int ny, std::vector<double> values, bool goes_on)
     : x0_(x0), dx_(dx), y0_(y0), dy_(dy), nx_(nx), ny_(ny), values_(std::move(values)), goes_on_(goes_on) {}
+
+std::vector<double> Grid::numbers() const {
+  std::vector<double> out{constant_, x0_, dx_, double(nx_), y0_, dy_, double(ny_), goes_on_ ? 1.0 : 0.0};
+  out.insert(out.end(), values_.begin(), values_.end());
+  return out;
+}
+
+Grid Grid::of(const std::vector<double>& numbers) {
+  constexpr std::size_t HEAD = 8;
+  if (numbers.size() == HEAD) return Grid(numbers[0]);
+  if (numbers.size() < HEAD || double(numbers.size() - HEAD) != numbers[3] * numbers[6])
+    throw std::invalid_argument("a grid of the model's data has not as many numbers as it says");
+  return Grid(numbers[1], numbers[2], int(numbers[3]), numbers[4], numbers[5], int(numbers[6]),
+              {numbers.begin() + HEAD, numbers.end()}, numbers[7] != 0.0);
+}
 
 double Grid::node(int i, int j) const { return values_[std::size_t(i) * std::size_t(ny_) + std::size_t(j)]; }
 

@@ -19,6 +19,11 @@ class Grid {
   };
   Value at(double x, double y) const;
   bool is_constant() const { return values_.empty(); }
+  double constant() const { return constant_; }
+
+  // All of it as numbers, and back.
+  std::vector<double> numbers() const;
+  static Grid of(const std::vector<double>& numbers);
 
  private:
   double node(int i, int j) const;

@@ -18,6 +18,7 @@ import pytest
 from skisnow import Run, Scenario
 from skisnow.cli import main
 from skisnow.cli.progress import Progress
+from skisnow.simulate.track_table import write_track
 
 from ..simulate.straight_run import STRAIGHT, straight_run
 
@@ -206,6 +207,39 @@ def test_run_that_the_system_ends_is_kept_and_says_so(tmp_path: Path, replaced: 
     replaced(ended)
     assert main(["simulate", *ASKED, "--json", "--out", str(tmp_path)]) == 143
     assert (tmp_path / "track.csv").is_file()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+@pytest.mark.usefixtures("undrawn", "replaced")
+@pytest.mark.parametrize(
+    ("signals", "status", "is_kept"),
+    [
+        ((signal.SIGTERM,), 143, True),
+        ((signal.SIGINT,), 130, True),
+        ((signal.SIGINT, signal.SIGTERM), 143, False),
+        ((signal.SIGTERM, signal.SIGINT), 130, False),
+    ],
+)
+def test_asked_to_end_while_it_writes_it_writes_first(
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    signals: tuple[signal.Signals, ...],
+    status: int,
+    is_kept: bool,
+) -> None:
+    def written(run: Run, place: Path) -> None:
+        for each in signals:
+            signal.raise_signal(each)
+        write_track(run, place)
+
+    monkeypatch.setattr("skisnow.report.run_folder.write_track", written)
+    assert main(["simulate", *ASKED, "--out", str(tmp_path)]) == status
+    assert (tmp_path / "summary.json").is_file() is is_kept
+    assert (tmp_path / "track.csv").is_file() is is_kept
+    assert "being written first" in capfd.readouterr().err
+    assert [each.name for each in tmp_path.iterdir() if each.name.startswith(".")] == []
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 @pytest.mark.parametrize("outcome", ["tipped_over", "airborne", "sunk", "energy_open", "not_finite"])

@@ -61,6 +61,29 @@ def test_a_look_leaves_the_snow_as_it_is() -> None:
     assert np.array_equal(first, np.array(second))
 
 
+def test_a_state_whose_tracks_are_forgotten_is_refused() -> None:
+    """A later state after an earlier one: the tracks in between are no more."""
+    contact = SnowContact(SnowField(2e8, 3e5, 10.0), [Runner(np.array([0.4, -0.4]), np.full(2, 0.03), np.zeros(2))])
+
+    def go(start: float, end: float) -> None:
+        for x in np.arange(start, end, 0.05):
+            contact.update([[x, 0.0, -1e-3]], [np.eye(3)], 1e-3)
+
+    go(0.0, 1.0)
+    early = contact.state()
+    go(1.0, 3.0)
+    late = contact.state()
+    contact.restore(early)
+    with pytest.raises(ParameterError, match="tracks of this state were forgotten"):
+        contact.restore(late)
+    go(1.0, 3.5)
+    before = contact.tracks()
+    with pytest.raises(ParameterError, match="tracks of this state were forgotten"):
+        contact.restore(late)  # as many tracks, and more, but others
+    assert np.array_equal(contact.tracks(), before)
+    contact.restore(early)
+
+
 def test_a_restored_state_goes_on_with_the_same_bits() -> None:
     contact = SnowContact(SnowField(H, S, 10.0), [SKI])
     history(contact, range(600))  # 2.4 m: lines have been left behind

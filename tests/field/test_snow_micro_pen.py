@@ -14,32 +14,9 @@ import pytest
 from skisnow.errors import FieldDataError
 from skisnow.field.snow_micro_pen import read_snow_micro_pen
 
-RECORDINGS = Path(__file__).resolve().parents[3] / "shared" / "data" / "smp"
-LONG = "SNEX20_SMP_S19M1260_2S16_20200208.PNT"
-SHORT = "SNEX20_SMP_S19M1285_1S17_20200208.PNT"
+from .recordings import LONG, SHORT, built, recording
+
 PITS = {LONG: "DB_SSA_2S16.csv", SHORT: "DB_SSA_1S17.csv"}
-
-
-def recording(name: str) -> Path:
-    path = RECORDINGS / name
-    if not path.exists():
-        pytest.skip(f"{name}: the shared recordings are not beside this repository")
-    return path
-
-
-def built(counts: list[int], *, north_east: bytes = b"SE", clock: tuple[int, ...] = (2019, 3, 2, 11, 30, 59)) -> bytes:
-    """Write a recording field by field, at the offsets of the format."""
-    data = bytearray(512)
-    struct.pack_into(">hi3fh", data, 0, 301, len(counts) + 5, 0.004, 0.0025, 0.0, 7)
-    struct.pack_into(">6h", data, 20, *clock)
-    struct.pack_into(">f", data, 64, 20.0)
-    struct.pack_into(">h102s", data, 152, 9, b"near hut!and filling")
-    struct.pack_into(">8s4f2s2h", data, 256, b"S31M0067", 45.5, 170.25, 212000.0, 1.5, north_east, 8, 3)
-    struct.pack_into(">2i", data, 358, len(counts), 0)
-    struct.pack_into(">ih2s2h", data, 376, 5000, 40, b"??", 31, 1236)
-    struct.pack_into(">20s20s", data, 392, b"1234 SN5\0>>>>>", b"AMP 6\0?????")
-    body = struct.pack(f">{len(counts)}h", *counts)
-    return bytes(data) + body + b"\xff" * (512 - len(body))
 
 
 def test_a_recording_built_by_hand(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from skisnow.carve.question import carve_question
 from skisnow.report.number_formatting import significant
 from skisnow.web.pages.carve import RATIOS, SLIDERS
 
-from .conftest import Served
+from .conftest import Served, ready
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -43,6 +43,7 @@ def test_the_radius_follows_the_slider(page: Page, served: Served) -> None:
     headline = page.get_by_role("region", name="Carved radius")
     headline.get_by_text("carved radius").wait_for(timeout=ANSWERED_MS)
     assert headline.inner_text() == radius(45.0)
+    ready(page)
     slider = page.get_by_role("slider", name="Edge angle (°)")
     slider.focus()
     for _ in range(3):

@@ -127,6 +127,7 @@ def carve(page: Page, served: Served) -> None:
     page.goto(f"{served.address}carve")
     headline = page.get_by_role("region", name="Carved radius")
     headline.get_by_text("carved radius").wait_for(timeout=ANSWERED_MS)
+    ready(page)
     slider = page.get_by_role("slider", name="Edge angle (°)")
     slider.focus()
     page.keyboard.press("ArrowRight")
@@ -141,7 +142,7 @@ def simulate(page: Page, served: Served) -> dict[str, Any]:
     ready(page)
     page.get_by_label("Snow", exact=True).press("Space")
     page.get_by_role("option", name='The day <b>"of" & tests</b>').click()
-    page.get_by_text("Snow: H_V = ").wait_for()  # the form is drawn anew with it
+    page.get_by_text("Snow: H_V = ").wait_for()  # until then it is being analysed, and nothing begins
     page.get_by_label("Ends after (s)", exact=True).fill("0.1")
     page.get_by_role("button", name="Simulate").press("Enter")
     page.get_by_role("link", name="Watch").wait_for(timeout=ANSWERED_MS)

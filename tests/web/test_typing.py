@@ -10,6 +10,7 @@ from skisnow.field.store import Journals, Store, replayed
 from skisnow.field.store.description import Description, description_text
 
 from .conftest import Served, has_text, ready
+from .held_answers import HeldAnswers
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, WebSocketRoute
@@ -69,33 +70,6 @@ def test_shear_tests_without_a_pause(page: Page, served: Served) -> None:
     assert found == [["6", "250", "30"], ["8", "250", "36"], ["7", "250", "33"]]
 
 
-class HeldAnswers:
-    """What the lab says to a page, which may be held back for a while."""
-
-    def __init__(self, page: Page) -> None:
-        self._held: list[tuple[WebSocketRoute, str | bytes]] | None = None
-        page.route_web_socket("**/*", self._pass_on)
-
-    def _pass_on(self, socket: WebSocketRoute) -> None:
-        def answer(message: str | bytes) -> None:
-            if self._held is None:
-                socket.send(message)
-            else:
-                self._held.append((socket, message))
-
-        lab = socket.connect_to_server()
-        socket.on_message(lab.send)
-        lab.on_message(answer)
-
-    def hold(self) -> None:
-        self._held = []
-
-    def let_go(self) -> None:
-        held, self._held = self._held or [], None
-        for socket, message in held:
-            socket.send(message)
-
-
 @pytest.mark.parametrize("is_busy", [False, True])
 def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, served: Served, is_busy: bool) -> None:
     if is_busy:
@@ -112,7 +86,9 @@ def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, s
     has_text(angle, "95")
     ready(page)
     angle.select_text()
+    answers.hold()  # a refusal that comes before the last Enter has the focus already
     page.keyboard.type("30\n1.5\n2.1.5\n2.6\n\n")
+    answers.let_go()
     page.get_by_text("Not stored yet: 40 N.").wait_for()  # the last Enter asked for the next series
     field = page.get_by_label("Depth under 40 N (mm)").and_(page.locator(":focus"))
     field.wait_for()
@@ -125,6 +101,28 @@ def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, s
     page.get_by_text("Stored: 2.15 mm under 40 N.").wait_for()
     page.locator(".reading.refused").wait_for(state="detached")
     assert depths(served) == {"1": ["1.5", "2.15", "2.6"]}
+
+
+def test_what_is_typed_while_another_scenario_is_drawn_finds_its_field(page: Page, served: Served) -> None:
+    answers = HeldAnswers(page)
+    page.goto(f"{served.address}simulate")
+    ready(page)
+    menu = page.get_by_label("Scenario", exact=True)
+    before = menu.input_value()
+    menu.press("Space")
+    page.get_by_role("option").first.wait_for()
+    answers.hold()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    page.locator("fieldset.redrawn:disabled").first.wait_for()  # nothing can be pressed or filled by another way
+    for _ in range(3):
+        page.keyboard.press("Tab")
+    page.keyboard.type("12.5")
+    answers.let_go()
+    has_text(page.get_by_label("Snow hardness H_V (N/mm³)", exact=True), "12.5")
+    assert menu.input_value() != before
+    page.get_by_role("button", name="Simulate").press("Enter")
+    page.get_by_text("Snow hardness H_V (N/mm³): 12.5").wait_for()  # it goes with the stress that stands beside it
 
 
 def test_fields_are_open_while_the_lab_answers_and_only_then(page: Page, served: Served) -> None:

@@ -27,6 +27,8 @@ def build_parser() -> argparse.ArgumentParser:
         check,
         compare,
         completion,
+        convert,
+        export,
         identify,
         man,
         new,
@@ -49,8 +51,8 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
     every = (
-        new, check, analyse, store, reference, carve, simulate, replay, turn, study, track, compare, identify, serve,
-        completion, man,
+        new, check, analyse, store, reference, carve, simulate, replay, turn, study, track, compare, identify, export,
+        convert, serve, completion, man,
     )  # fmt: skip
     for command in every:
         command.add_parser(commands)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import signal
 import threading
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+
+LATER: Final = "what was computed is being written first; asked again it is given up"
 
 
 class Ended(KeyboardInterrupt):
@@ -18,17 +23,52 @@ class Ended(KeyboardInterrupt):
 
 @dataclass(slots=True)
 class Ending:
-    """Whether the system asked this process to end: also where the interrupt was caught on its way."""
+    """Whether this process was asked to end, also where the interrupt was caught on its way.
+
+    Attributes
+    ----------
+    asked
+        By the system.
+    pressed
+        By Ctrl-C while `finishing`.
+    """
 
     asked: bool = False
+    pressed: bool = False
 
     def status(self) -> int:
         """The exit status of an interrupted command: 143 where the system asked, else 130."""
         return 143 if self.asked else 130
 
+    @contextmanager
+    def finishing(self) -> Iterator[None]:
+        """Go on to the end of a block that takes seconds, such as the writing of a run; asked twice it is given up."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        before = {number: signal.signal(number, self._ask_later) for number in (signal.SIGINT, signal.SIGTERM)}
+        already, self._later = self._later, False
+        try:
+            yield
+        finally:
+            self._later = already
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    _later: bool = False
+
     def _ask(self, *_: Any) -> None:
         self.asked = True
         raise Ended
+
+    def _ask_later(self, number: int, _: Any) -> None:
+        by_system = number == signal.SIGTERM
+        self.asked, self.pressed = self.asked or by_system, self.pressed or not by_system
+        if self._later:
+            raise Ended if by_system else KeyboardInterrupt
+        self._later = True
+        with contextlib.suppress(OSError):  # past Python's own buffer, which may be in use at this very moment
+            os.write(2, f"{LATER}\n".encode())
 
 
 @contextmanager

@@ -79,7 +79,8 @@ def run(options: argparse.Namespace) -> int:
     asked = _prepared(options)
     with ending_is_an_interrupt() as ending:
         found = _identified(options)
-        _tell(options, found, asked)
+        with ending.finishing():
+            _tell(options, found, asked)
     return _status(found, ending)
 
 
@@ -157,6 +158,6 @@ def _tell(options: argparse.Namespace, found: Identification, asked: ScenarioFil
 
 
 def _status(found: Identification, ending: Ending) -> int:
-    if ending.asked or found.outcome == "interrupted":
+    if ending.asked or ending.pressed or found.outcome == "interrupted":
         return ending.status()
     return 1 if found.outcome in ("too_few_points", "not_converged") else 0

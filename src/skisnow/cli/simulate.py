@@ -71,12 +71,13 @@ def run(options: argparse.Namespace) -> int:
     _prepare(options, asked)
     with ending_is_an_interrupt() as ending:
         found, refinements = _computed(asked, verify=options.verify)
-        _tell(options, asked, found, refinements)
+        with ending.finishing():
+            _tell(options, asked, found, refinements)
     return _status(found, ending)
 
 
 def _status(found: Run, ending: Ending) -> int:
-    return ending.status() if ending.asked or found.outcome == "interrupted" else 0
+    return ending.status() if ending.asked or ending.pressed or found.outcome == "interrupted" else 0
 
 
 def _list(name: str | None) -> int:

@@ -232,8 +232,17 @@ class SnowContact(Shown):
         return self.compiled.state()
 
     def restore(self, state: State) -> None:
-        """Go back to a state: what follows has the same bits as it had from there."""
-        self.compiled.restore(state)
+        """Go back to a state: what follows has the same bits as it had from there.
+
+        Raises
+        ------
+        ParameterError
+            Tracks of the state were forgotten when an earlier one was restored.
+        """
+        try:
+            self.compiled.restore(state)
+        except ValueError as error:
+            raise ParameterError(f"SnowContact: {error}") from error
 
     def _asked(
         self,

@@ -131,6 +131,11 @@ class Dynamics:
         if self.feels_boots:
             self._core.set_skis(np.ascontiguousarray(inertia, float))
 
+    @property
+    def compiled(self) -> core.Dynamics:
+        """What the core has of it."""
+        return self._core
+
     def move_boots(self, motions: Sequence[BootMotion]) -> None:
         """Let the boots move against the body from now on, each as one of these says; to be given anew before its end.
 

@@ -42,6 +42,7 @@ from .shear_displacement import shear_displacement, site_displacement
 from .shear_stress import shear_stress
 from .site_snow import site_snow
 from .sites import SiteComparison, SiteMean, compare_sites, site_means
+from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
 from .unloading import NOT_FALLING, site_unloading, unloading
 
 if TYPE_CHECKING:
@@ -77,6 +78,8 @@ class Analysis(Shown):
         The used experiments with the snow that they were made on.
     time
         When it was made.
+    snow_micro_pen
+        What the recordings of a SnowMicroPen say; None where the campaign has none.
 
     See Also
     --------
@@ -97,6 +100,7 @@ class Analysis(Shown):
     own_stress: OwnValue
     observations: Mapping[Source, Observations]
     time: datetime = field(default_factory=lambda: datetime.now(UTC))
+    snow_micro_pen: SnowMicroPenAnalysis | None = None
 
     @cached_property
     def results(self) -> dict[str, Any]:
@@ -208,7 +212,11 @@ def _analysis(
     rng = np.random.default_rng(seed)
     penetration = _penetration(campaign, geometry, rng, n_resamples, progress)
     shear = _shear(campaign)
-    observations = _observations(campaign, penetration, shear)
+    recordings = campaign.snow_micro_pen
+    if recordings is not None:
+        _report(progress, f"{len(recordings)} recordings of the SnowMicroPen")
+    pen = None if recordings is None else evaluate_recordings(recordings)
+    observations = _observations(campaign, penetration, shear, pen)
     pressed, sheared = observations["penetration"].known(HARDNESS_KEY), observations["shear"].known(STRESS_KEY)
     own_hardness, own_stress = own_mean(*pressed, geometric=True), own_mean(*sheared, geometric=False)
     return Analysis(
@@ -233,6 +241,7 @@ def _analysis(
         own_hardness=own_hardness,
         own_stress=own_stress,
         observations=observations,
+        snow_micro_pen=pen,
     )
 
 
@@ -297,12 +306,16 @@ def _shear(campaign: Campaign) -> ShearAnalysis | None:
 
 
 def _observations(
-    campaign: Campaign, penetration: PenetrationAnalysis | None, shear: ShearAnalysis | None
+    campaign: Campaign,
+    penetration: PenetrationAnalysis | None,
+    shear: ShearAnalysis | None,
+    pen: SnowMicroPenAnalysis | None,
 ) -> dict[Source, Observations]:
     nothing = np.zeros(0), np.zeros(0, dtype=bool)
-    pressed = (penetration.hardness["H_V"].value, penetration.screened.used) if penetration else nothing
+    hardness, used = (penetration.hardness["H_V"].value, penetration.screened.used) if penetration else nothing
     sheared = (shear.stress.value, shear.screened.used) if shear else nothing
-    first, second = penetration_observations(campaign, *pressed), shear_observations(campaign, *sheared)
+    first = penetration_observations(campaign, hardness, used, pen)
+    second = shear_observations(campaign, *sheared)
     return {"penetration": first, "shear": second, "spots": spot_observations(first, second)}
 
 

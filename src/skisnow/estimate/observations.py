@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ..field.records import Campaign, PenetrationTests, ShearTests
+    from .snow_micro_pen import SnowMicroPenAnalysis
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -27,6 +28,8 @@ STRESS_KEY = "S_f_N_per_mm2"
 ANGLE_KEY = "edge_angle_rad"
 DENSITY_KEY = "snow_density_kg_per_m3"
 DROP_CONE_KEY = "drop_cone_depth_mm"
+PEN_FORCE_KEY = "smp_mean_force_N"
+PEN_DENSITY_KEY = "smp_snow_density_kg_per_m3"
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,11 +46,19 @@ class Observations(ShownFields):
         return self.columns[key][finite], tuple(self.site[i] for i in np.flatnonzero(finite).tolist())
 
 
-def penetration_observations(campaign: Campaign, hardness: FloatArray, used: BoolArray) -> Observations:
-    """The used penetration experiments; ``hardness`` is H_V of all of them in N/m³."""
-    if campaign.penetration is None:
-        return _nothing(HARDNESS_KEY, ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY)
-    return _observations(campaign, campaign.penetration, {HARDNESS_KEY: hardness / N_PER_MM3}, used)
+def penetration_observations(
+    campaign: Campaign, hardness: FloatArray, used: BoolArray, pen: SnowMicroPenAnalysis | None = None
+) -> Observations:
+    """The used penetration experiments; ``hardness`` is H_V of all of them in N/m³, ``pen`` what recordings say."""
+    keys = (HARDNESS_KEY, ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY)
+    tests = campaign.penetration
+    if tests is None:
+        return _nothing(*keys, *((PEN_FORCE_KEY, PEN_DENSITY_KEY) if pen else ()))
+    own = {HARDNESS_KEY: hardness / N_PER_MM3}
+    if pen is not None:
+        own[PEN_FORCE_KEY] = pen.at(tests.site, tests.spot, pen.mean_force)
+        own[PEN_DENSITY_KEY] = pen.at(tests.site, tests.spot, pen.snow_density)
+    return _observations(campaign, tests, own, used)
 
 
 def shear_observations(campaign: Campaign, stress: FloatArray, used: BoolArray) -> Observations:

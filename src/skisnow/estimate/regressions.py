@@ -17,7 +17,15 @@ from ..names import numbered
 from ..shown import ShownFields
 from ..statistics.clusters import cluster_intervals
 from ..statistics.linear import LinearFit, linear_fit
-from .observations import ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY, HARDNESS_KEY, STRESS_KEY
+from .observations import (
+    ANGLE_KEY,
+    DENSITY_KEY,
+    DROP_CONE_KEY,
+    HARDNESS_KEY,
+    PEN_DENSITY_KEY,
+    PEN_FORCE_KEY,
+    STRESS_KEY,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -51,6 +59,11 @@ PLANS: Final = (
     RegressionPlan("penetration", HARDNESS_KEY, DROP_CONE_KEY),
     RegressionPlan("spots", STRESS_KEY, HARDNESS_KEY),
 )
+RECORDING_PLANS: Final = (
+    RegressionPlan("penetration", HARDNESS_KEY, PEN_FORCE_KEY),
+    RegressionPlan("penetration", HARDNESS_KEY, PEN_DENSITY_KEY),
+)
+"""Planned where the campaign has recordings of a SnowMicroPen."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -82,7 +95,8 @@ class Regression(ShownFields):
 def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression, ...]:
     """All planned regressions: sites first where planned, then all together."""
     found: list[Regression] = []
-    for plan in PLANS:
+    of_recordings = [plan for plan in RECORDING_PLANS if plan.predictor in observations[plan.source].columns]
+    for plan in (*PLANS, *of_recordings):
         data = observations[plan.source]
         x, y = data.columns[plan.predictor], data.columns[plan.response]
         known = np.isfinite(x) & np.isfinite(y)

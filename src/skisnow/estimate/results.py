@@ -19,6 +19,7 @@ from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .campaign_notes import campaign_notes
 from .hardness import DEFINITIONS
 from .model_rows import model_rows, nested_row, selected_model
+from .snow_micro_pen_results import snow_micro_pen_results
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -84,6 +85,8 @@ def results_dict(analysis: Analysis) -> Json:
         "comparisons": [row.as_dict() for row in analysis.comparisons],
         "provenance": _provenance(analysis),
     }
+    if analysis.snow_micro_pen is not None:
+        results["snow_micro_pen"] = snow_micro_pen_results(analysis.snow_micro_pen)
     cleaned: Json = without_nan(results)
     return cleaned
 

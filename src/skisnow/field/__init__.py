@@ -1,12 +1,12 @@
 """Field campaigns: records, files, screening, store, reference campaign."""
 
 from ..former_names import former_attributes
+from .applied_correction import AppliedCorrection
 from .density_records import DensityLayers, read_density_layers
 from .problems import Problem
 from .quality_flags import QUALITY_FLAGS, QualityFlag
 from .reading import campaign_of_files, check_campaign, read_campaign
 from .records import (
-    AppliedCorrection,
     Campaign,
     DensitySamples,
     DropConeTests,

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from ..shown import Facts, Shown, amount, ends
 from ..units import DEGREE, MM
+from .applied_correction import AppliedCorrection
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping, Sequence
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from ..geometry import Tool
     from .problems import Problem
+    from .snow_micro_pen_records import SnowMicroPenRecordings
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -302,21 +304,6 @@ def _means(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) ->
     return {key: math.fsum(found) / len(found) for key, found in collected.items()}
 
 
-@dataclass(frozen=True, slots=True)
-class AppliedCorrection:
-    """A cell that was read otherwise than the raw file has it; ``row`` is the line of that file."""
-
-    file: str
-    experiment: str
-    row: int
-    column: str
-    old: str
-    new: str
-    who: str
-    when: str
-    why: str
-
-
 @dataclass(frozen=True, slots=True, repr=False)
 class Campaign(Shown):
     """A checked campaign, corrections applied.
@@ -337,7 +324,7 @@ class Campaign(Shown):
         Tools by name; plate lengths L (m) by name.
     excluding
         Codes of the quality flags that keep an experiment out of the estimates.
-    penetration, shear, density, drop_cone
+    penetration, shear, density, drop_cone, snow_micro_pen
         The tables; None where the campaign has no such file.
     problems
         Warnings of reading the files (errors would have refused the campaign).
@@ -379,6 +366,7 @@ class Campaign(Shown):
     unread_files: tuple[str, ...] = ()
     pole_stiffness: float | None = None
     places: Mapping[str, str] = field(default_factory=dict)
+    snow_micro_pen: SnowMicroPenRecordings | None = None
 
     def _facts(self) -> Facts:
         tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}

@@ -12,16 +12,16 @@ import struct
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NoReturn
+from typing import Any, Final, NoReturn
 
 import numpy as np
+import numpy.typing as npt
 
 from ..errors import FieldDataError
 from ..units import CM, MM
 from .problems import error
 
-if TYPE_CHECKING:
-    from .records import FloatArray
+FloatArray = npt.NDArray[np.float64]
 
 HEADER_BYTES: Final = 512
 _SAMPLE_BYTES: Final = 2
@@ -157,16 +157,27 @@ def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
     try:
         data = path.read_bytes()
     except OSError as failure:
-        _refuse(path, failure.strerror or str(failure), "a readable file", "Check its name and permissions.")
+        _refuse(path.name, failure.strerror or str(failure), "a readable file", "Check its name and permissions.")
+    return snow_micro_pen_profile(path.name, data)
+
+
+def snow_micro_pen_profile(name: str, data: bytes) -> SnowMicroPenProfile:
+    """Take the bytes of a ``.PNT`` file of this name.
+
+    Raises
+    ------
+    FieldDataError
+        As `read_snow_micro_pen`.
+    """
     if not data:
-        _refuse(path, "0 bytes", "a recording of a SnowMicroPen", "Copy it from the instrument again.", "empty_file")
+        _refuse(name, "0 bytes", "a recording of a SnowMicroPen", "Copy it from the instrument again.", "empty_file")
     if len(data) < HEADER_BYTES:
         allowed = f"at least {HEADER_BYTES} bytes, the header of a SnowMicroPen recording"
-        _refuse(path, f"{len(data)} bytes", allowed, "Copy the file from the instrument again.")
-    header = {name: _value(data, offset, form) for name, offset, form in _FIELDS}
-    _check(path, header, len(data))
+        _refuse(name, f"{len(data)} bytes", allowed, "Copy the file from the instrument again.")
+    header = {key: _value(data, offset, form) for key, offset, form in _FIELDS}
+    _check(name, header, len(data))
     counts = np.frombuffer(data, dtype=">i2", count=header["samples"], offset=HEADER_BYTES)
-    return _profile(path, header, counts.astype(np.float64))
+    return _profile(name, header, counts.astype(np.float64))
 
 
 def _value(data: bytes, offset: int, form: str) -> Any:
@@ -174,11 +185,11 @@ def _value(data: bytes, offset: int, form: str) -> Any:
     return values[0] if len(values) == 1 else values
 
 
-def _refuse(path: Path, found: str, allowed: str, action: str, code: str = "unreadable_file") -> NoReturn:
-    raise FieldDataError([error(code, path.name, value=found, allowed=allowed, action=action)])
+def _refuse(name: str, found: str, allowed: str, action: str, code: str = "unreadable_file") -> NoReturn:
+    raise FieldDataError([error(code, name, value=found, allowed=allowed, action=action)])
 
 
-def _check(path: Path, header: dict[str, Any], size: int) -> None:
+def _check(file: str, header: dict[str, Any], size: int) -> None:
     """Refuse what is no such recording; the format has no signature, so that plausible numbers must do."""
     limits = {
         "sample_distance_mm": (1e-4, 1.0),
@@ -191,18 +202,18 @@ def _check(path: Path, header: dict[str, Any], size: int) -> None:
     for name, (low, high) in limits.items():
         if not low <= header[name] <= high:  # NaN too
             allowed = f"a SnowMicroPen recording, whose header has {name} from {low:g} to {high:g}"
-            _refuse(path, f"{name} {header[name]:g}", allowed, "This is another kind of file, or a damaged one.")
+            _refuse(file, f"{name} {header[name]:g}", allowed, "This is another kind of file, or a damaged one.")
     needed = HEADER_BYTES + _SAMPLE_BYTES * header["samples"]
     if size < needed:
         allowed = f"{needed} bytes or more for the {header['samples']} samples that the header counts"
-        _refuse(path, f"{size} bytes", allowed, "The file is cut off; copy it from the instrument again.")
+        _refuse(file, f"{size} bytes", allowed, "The file is cut off; copy it from the instrument again.")
 
 
-def _profile(path: Path, header: dict[str, Any], counts: FloatArray) -> SnowMicroPenProfile:
+def _profile(file: str, header: dict[str, Any], counts: FloatArray) -> SnowMicroPenProfile:
     distance = header["sample_distance_mm"] * MM
     latitude, longitude = _position(header)
     return SnowMicroPenProfile(
-        file=path.name,
+        file=file,
         name=_text(header["name"]),
         comment=_text(header["comment"][: max(header["comment_length"], 0)]),
         depth=np.arange(counts.size) * distance,
@@ -212,7 +223,7 @@ def _profile(path: Path, header: dict[str, Any], counts: FloatArray) -> SnowMicr
         force_offset=header["force_offset"],
         announced_samples=header["announced_samples"],
         clock=_clock(header["clock"]),
-        date_in_file_name=_date_in(path.stem),
+        date_in_file_name=_date_in(file),
         latitude_deg=latitude,
         longitude_deg=longitude,
         height=_height(header["height_cm"]),

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 ASK: Final = "() => lab.ask(emit)"
 ASK_FOR_ROW: Final = "() => lab.ask(emit, 'row')"
 ENTER: Final = "(event) => lab.enter(event, emit)"
+DRAW_ANEW: Final = "() => lab.drawAnew(emit)"
 ONWARD: Final = "(event) => lab.onward(event)"
 LONGEST: Final = 200
 """Of a number that the browser gives to what it sends."""
@@ -116,6 +117,13 @@ def asking_button(text: str, act: Act, kind: str = "") -> ui.button:
 def row_button(text: str, act: Act) -> ui.button:
     """A button that adds a row to a form, stores nothing, and puts the focus into the row."""
     return button(text, None, "adds").on("click", answering(act), js_handler=ASK_FOR_ROW)
+
+
+def redrawn_by(menu: ui.select) -> ui.element:
+    """A group of fields that another choice in a menu draws anew; it is closed from the choice until that is done."""
+    client = ui.context.client
+    menu.on("update:model-value", lambda: client.run_javascript("lab.drawn()"), js_handler=DRAW_ANEW)
+    return ui.element("fieldset").classes("redrawn")
 
 
 def go_on(address: str) -> None:

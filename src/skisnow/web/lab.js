@@ -22,6 +22,7 @@
   let again = null; // asks once more what was asked last
   let resuming = false; // readings or rows of before are being told to the lab
   let goingTo = ""; // the address that the page goes on to
+  let drawings = 0; // menus chosen from whose fields the lab has not drawn anew yet
   const telling = new Map(); // readings that the lab has not answered yet, by their numbers
 
   const fieldsets = () => document.querySelectorAll("fieldset.lab");
@@ -63,6 +64,7 @@
     telling.forEach((emit) => emit());
     if (resuming && !tellKept()) grown();
     if (waiting) again?.();
+    if (drawings) open();
   }
 
   function lost() {
@@ -121,7 +123,7 @@
   // What is typed on while an answer is on its way
 
   function isHeld(event) {
-    return (waiting || writing || isLost || goingTo) && event.isTrusted && !event.target.closest?.("a, summary");
+    return (waiting || writing || isLost || goingTo || drawings) && event.isTrusted && !event.target.closest?.("a, summary");
   }
 
   function keyPressed(event) {
@@ -174,6 +176,28 @@
     if (!writing) writeHeld();
   }
 
+  // Another choice in a menu draws the fields below anew: they are closed until that is done, and keys wait.
+  function drawAnew(emit) {
+    drawings += 1;
+    close(true);
+    tellHolding();
+    emit();
+  }
+
+  function drawn() {
+    drawings = Math.max(0, drawings - 1);
+    if (!drawings) open();
+  }
+
+  function open() {
+    drawings = 0;
+    close(false);
+    tellHolding();
+    if (held.length && !writing) writeHeld();
+  }
+
+  const close = (is) => document.querySelectorAll("fieldset.redrawn").forEach((each) => (each.disabled = is));
+
   // All is stored, and the page goes on to another one: what is typed meanwhile goes there.
   function leave(address) {
     kept.over();
@@ -190,7 +214,7 @@
 
   async function writeHeld() {
     writing = true;
-    while (held.length && !waiting && !refused && !isLost && !goingTo) {
+    while (held.length && !waiting && !refused && !isLost && !goingTo && !drawings) {
       refused = !write(held[0]);
       if (!refused) held.shift();
       await pause(0); // the field tells its text before the next key comes
@@ -202,7 +226,7 @@
   }
 
   const tellHolding = () =>
-    document.documentElement.classList.toggle("holding", waiting || writing || Boolean(goingTo));
+    document.documentElement.classList.toggle("holding", waiting || writing || Boolean(goingTo || drawings));
 
   // What was meant for after a thing that was refused must not go into the field that is to be put right.
   async function letRunOut() {
@@ -240,7 +264,9 @@
     const places = [...document.querySelectorAll("a[href], button, input, textarea, summary")];
     const isReached = (each) => each.tabIndex >= 0 && !each.matches(":disabled") && each.checkVisibility();
     const reached = places.filter((each) => each === here || isReached(each));
-    reached[reached.indexOf(here) + by]?.focus();
+    const next = reached[reached.indexOf(here) + by];
+    next?.focus();
+    if (next?.matches("input")) next.select(); // as the browser's own way with this key
     return true;
   }
 
@@ -334,5 +360,7 @@
   document.documentElement.style.setProperty("--not-stored", JSON.stringify(SAID.refused));
   document.documentElement.classList.add("not-connected");
   tellHolding();
-  window.lab = { ask, answered, connected, enter, goTo, grown, leave, leaving, onward, reading, refusedLast, resent, told };
+  window.lab = {
+    ask, answered, connected, drawAnew, drawn, enter, goTo, grown, leave, leaving, onward, reading, refusedLast, resent, told,
+  };
 })();

@@ -15,7 +15,7 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from ..errors import ParameterError, SkisnowError, StoreError
-from ..field.reading import CAMPAIGN_FILES, FilesInMemory
+from ..field.reading import READ_FILES, FilesInMemory
 from ..field.store import Journals, campaign_files, corrected_files, export_corrected, replayed, write_campaign
 from .confined import BOUNDS, confined
 from .error_pages import error_sentence, plain_page
@@ -101,13 +101,13 @@ def replayed_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest]
 
 def kept_files(lab: Lab, id_: str) -> FilesInMemory:
     """What a kept campaign is read from: its own files, and what was corrected since."""
-    stored, files = lab.store.contents(required_id(id_), CAMPAIGN_FILES)
+    stored, files = lab.store.contents(required_id(id_), READ_FILES)
     corrected = corrected_files(files, Journals(lab.store).corrections(stored.id))
     return FilesInMemory(corrected, tuple(file.path for file in stored.files if _is_other(file.path)))
 
 
 def _is_other(path: str) -> bool:
-    return "/" not in path and path not in CAMPAIGN_FILES
+    return "/" not in path and path not in READ_FILES
 
 
 def write_entry(lab: Lab, id_: str, folder: Path) -> None:

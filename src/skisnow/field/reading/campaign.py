@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -15,7 +16,8 @@ from .campaign_files import FilesInMemory, FilesOfFolder
 from .corrections import corrections_by_file, refuse_without_file
 from .headings import Headings
 from .raw_files import RawFiles
-from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, TABLES
+from .recordings import ENDING, recording_contents, snow_micro_pen_recordings
+from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES
 from .tables import read_table
 from .text import UnreadableTextError, decode, inspect_csv
 from .together import check_together
@@ -24,8 +26,8 @@ from .workbook_files import is_workbook, unfolded
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from ..applied_correction import AppliedCorrection
     from ..problems import Problem
-    from ..records import AppliedCorrection
     from .campaign_file import CampaignFile
     from .campaign_files import CampaignFiles
     from .corrections import RowCorrections
@@ -33,7 +35,24 @@ if TYPE_CHECKING:
     from .table_forms import TableForm
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
-"""Names of the files that a campaign reads, in their order."""
+"""Names of the files that a campaign reads, in their order; workbooks may stand for them."""
+
+
+class _ReadFiles(Container[str]):
+    """Those, and in the campaign's folder workbooks and the files that its tables may name."""
+
+    def __contains__(self, name: object) -> bool:
+        if not isinstance(name, str) or "/" in name:
+            return False
+        return name in CAMPAIGN_FILES or name.lower().endswith(ENDING) or is_workbook(name)
+
+
+READ_FILES: Final = _ReadFiles()
+"""Names of files that a campaign may read.
+
+>>> ["shear.csv" in READ_FILES, "Hang.xlsx" in READ_FILES, "photos/Hang.xlsx" in READ_FILES, "photo.jpg" in READ_FILES]
+[True, True, False, False]
+"""
 
 
 def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None = None) -> Campaign:
@@ -127,6 +146,7 @@ class _Contents:
     corrections: tuple[AppliedCorrection, ...] = ()
     unread: tuple[str, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
+    recordings: Mapping[str, bytes] = field(default_factory=dict)
 
 
 def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
@@ -152,6 +172,7 @@ def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Cont
         if table is not None:
             tables[form.file] = table
             files.found.extend(check_together(table, described))
+    recordings = recording_contents(tables.get(SNOW_MICRO_PEN.file), files)
     there = campaign.names()
     files.found.extend(_misnamed(there, files.absent))
     if {PENETRATION.file, SHEAR.file} <= files.absent:
@@ -167,8 +188,9 @@ def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Cont
         hashes | campaign.hashes,
         tuple(placed(problem, campaign.places) for problem in _in_order(files.found)),
         tuple(each.applied() for each in applied),
-        (*_unread(there), *campaign.unread),
+        (*(name for name in _unread(there) if name not in recordings), *campaign.unread),
         campaign.places,
+        recordings,
     )
 
 
@@ -277,4 +299,9 @@ def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
         unread_files=contents.unread,
         places=contents.places,
         pole_stiffness=described.pole_stiffness,
+        snow_micro_pen=snow_micro_pen_recordings(
+            tables[SNOW_MICRO_PEN.file], contents.recordings, described.snow_micro_pen
+        )
+        if SNOW_MICRO_PEN.file in tables
+        else None,
     )

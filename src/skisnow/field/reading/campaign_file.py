@@ -11,8 +11,10 @@ from ...geometry import Tool
 from ...geometry.tools import LIKELY_LENGTH_MM
 from ...given import GivenError, toml_values
 from ...inputs import Quantity, own_quantities
+from ...units import MM
 from ..problems import error, warning
 from ..quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
+from ..snow_micro_pen_records import SnowMicroPenSettings
 from .headings import KEY as COLUMNS_KEY
 from .headings import Headings, headings_of
 from .toml_values import TomlValues
@@ -89,12 +91,14 @@ class CampaignFile:
     flat_tools: frozenset[str]
     excluding: frozenset[str]
     headings: Headings
+    snow_micro_pen: SnowMicroPenSettings
 
 
 CAMPAIGN_KEYS: Final = {key.name: key for key in own_quantities(CampaignFile)}
 """Keys with one value or a list of numbers."""
 (PLATE_LENGTH,) = own_quantities(Plate)
-_TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], "tool", "plate", "screening", COLUMNS_KEY)
+_SECTIONS: Final = ("tool", "plate", "screening", COLUMNS_KEY, "snow_micro_pen")
+_TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], *_SECTIONS)
 
 
 def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
@@ -135,6 +139,7 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
         flat_tools=flat_tools,
         excluding=_excluding(top),
         headings=headings_of(top),
+        snow_micro_pen=_recordings(top.table("snow_micro_pen")),
     )
 
 
@@ -146,6 +151,14 @@ def _parsed(text: str, found: list[Problem]) -> dict[str, Any] | None:
     action = "Correct the line: texts stand in quotes, numbers have a decimal point, lists stand in brackets."
     found.append(error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed="TOML (toml.io)", action=action))
     return None
+
+
+def _recordings(section: TomlValues) -> SnowMicroPenSettings:
+    settings = section.declared(SnowMicroPenSettings)
+    if settings.from_depth >= settings.to_depth:
+        allowed = f"a depth above from_depth_mm, {settings.from_depth / MM:g}"
+        section.refuse("to_depth_mm", allowed, "Correct one of the two.", value=f"{settings.to_depth / MM:g}")
+    return settings
 
 
 def _tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[str]]:

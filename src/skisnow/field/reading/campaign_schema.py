@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
+from ...inputs import own_quantities
 from ...inputs.json_schema import DRAFT, Schema, table_schema
 from ..quality_flags import QUALITY_FLAGS
+from ..snow_micro_pen_records import SnowMicroPenSettings
 from .campaign_file import CAMPAIGN_KEYS, PLATE_LENGTH
 from .tool_shapes import SHAPES, Shape
 
@@ -28,6 +30,7 @@ def campaign_schema() -> Schema:
             "tool": {"type": "array", "items": {"$ref": "#/$defs/tool"}},
             "plate": {"type": "array", "items": {"$ref": "#/$defs/plate"}},
             "columns": _columns(),
+            "snow_micro_pen": _recordings(),
             "screening": {"type": "object", "properties": {"exclude": _exclude()}},
         },
         "$defs": {"mark": {"enum": list(QUALITY_FLAGS)}, "tool": _tool(), "plate": _plate()},
@@ -49,6 +52,12 @@ def _columns() -> Schema:
     either: Schema = {"anyOf": [{"type": "string"}, pairs]}
     words = "Column by the heading that stands for it; in a table of a table's name, such as penetration, for that one."
     return {"description": words, "type": "object", "additionalProperties": either}
+
+
+def _recordings() -> Schema:
+    """How recordings of a SnowMicroPen are evaluated."""
+    words = "How the recordings that snow_micro_pen.csv names are evaluated."
+    return {"description": words, **table_schema(own_quantities(SnowMicroPenSettings))}
 
 
 def _tool() -> Schema:

@@ -10,8 +10,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
+from ..applied_correction import AppliedCorrection
 from ..problems import error
-from ..records import AppliedCorrection
 from .number_cells import is_number, number
 from .table_forms import CORRECTIONS, TABLES
 

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 WORDS: Final = {
     "experiment": "experiment versuch versuchsnummer messung messreihe serie reihe test nummer nr essai prova",
+    "recording": "recording aufzeichnung messung profil enregistrement registrazione",
+    "file": "file datei dateiname fichier",
+    "surface_mm": "surface oberflaeche schneeoberflaeche",
     "sample": "sample probe proben nr nummer nr dichteprobe messung echantillon campione",
     "test": "test versuch messung nummer nr essai prova",
     "site": "site ort messort standort stelle messstelle platz hang piste feld lieu luogo",

@@ -138,6 +138,16 @@ class DropConeRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingRow:
+    """The numbers of a row of snow_micro_pen.csv."""
+
+    surface: Annotated[
+        float | None,
+        Quantity("surface_mm", "where the snow begins, from the first sample; blank: it is looked for", lowest=0.0),
+    ] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CorrectionRow:
     """The number of a row of corrections.csv."""
 
@@ -185,6 +195,14 @@ DROP_CONE: Final = TableForm(
     optional=("status",),
     further=("spot", "snow_density_kg_per_m3", *_NOTES),
 )
+SNOW_MICRO_PEN: Final = TableForm(
+    file="snow_micro_pen.csv",
+    key="recording",
+    names=("recording", "site", "file"),
+    numbers=own_quantities(RecordingRow),
+    optional=("spot", "status"),
+    further=_NOTES,
+)
 CORRECTIONS: Final = TableForm(
     file="corrections.csv",
     key="experiment",
@@ -194,5 +212,5 @@ CORRECTIONS: Final = TableForm(
     may_be_empty=True,
 )
 
-TABLES: Final = (PENETRATION, SHEAR, DENSITY, DROP_CONE)
-"""The four tables of measurements, in the order in which they are read."""
+TABLES: Final = (PENETRATION, SHEAR, DENSITY, DROP_CONE, SNOW_MICRO_PEN)
+"""The five tables of measurements, in the order in which they are read."""

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import difflib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from ...errors import ParameterError
+from ...inputs import made, own_quantities
 from ..problems import error, warning
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ _SIMILAR = 0.8  # from here a key is taken for a misspelt one
 _MISSING = object()
 
 TomlTable: TypeAlias = "Mapping[str, Any]"
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +121,18 @@ class TomlValues:
             return []
         paths = (f"{self.path_of(key)}[{place}]" for place in range(1, len(values) + 1))
         return [TomlValues(self.file, value, path, self.found) for value, path in zip(values, paths, strict=True)]
+
+    def declared(self, owner: type[T]) -> T:
+        """Give a dataclass of what this table says of its quantities; what is absent or refused has its default."""
+        known = {each.name: each for each in own_quantities(owner)}
+        self.refuse_misspelt(known)
+        values: dict[str, object] = {}
+        for key in known.keys() & self.values.keys():
+            try:
+                values[key] = known[key].in_range(self.values[key])
+            except ParameterError:
+                self.refuse(key, known[key].allowed, f"Correct {key}.", code="bad_toml")
+        return made(owner, values)
 
     def refuse_misspelt(self, known: Iterable[str]) -> None:
         """Report keys that nobody knows: an error where one is nearly a known key, else a warning."""

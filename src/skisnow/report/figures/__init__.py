@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from .drawing import Drawing, LeftOut, Picture, pictured
 from .force_depth import force_depth
 from .hardness_density import hardness_density
+from .hardness_mean_force import hardness_mean_force
 from .machining import machining
 from .model_rmse import model_rmse
 from .residuals import residuals
@@ -39,6 +40,8 @@ DRAWERS = (
     stress_hardness,
 )
 """In the order of the report. A further figure is one more file and its function here."""
+RECORDING_DRAWERS = (hardness_mean_force,)
+"""Where the campaign has recordings of a SnowMicroPen."""
 
 
 def figures_of(
@@ -49,7 +52,7 @@ def figures_of(
     missing: list[LeftOut] = []
     with journal_style():
         styles = site_styles(data)
-        for draw in DRAWERS:
+        for draw in (*DRAWERS, *RECORDING_DRAWERS) if data.campaign.snow_micro_pen else DRAWERS:
             drawn = draw(data, styles)
             if isinstance(drawn, Drawing):
                 if progress:

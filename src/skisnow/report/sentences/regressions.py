@@ -19,6 +19,8 @@ _STEP: Final = {
     "edge_angle_rad": (math.pi / 2.0, "from 0° to 90°"),
     "snow_density_kg_per_m3": (100.0, "per 100 kg/m³"),
     "drop_cone_depth_mm": (10.0, "per 10 mm"),
+    "smp_mean_force_N": (1.0, "per 1 N"),
+    "smp_snow_density_kg_per_m3": (100.0, "per 100 kg/m³"),
     "H_V_N_per_mm3": (1.0, "per 1 N/mm³"),
 }
 """A step of each predictor that a person can picture, in its unit."""

@@ -15,6 +15,7 @@ from .regressions import regressions_table
 from .seating import seating_largest_table, seating_quantiles_table, seating_table
 from .shear_displacement import displacement_sites_table, displacement_table
 from .sites import sites_table
+from .snow_micro_pen import snow_micro_pen_table
 from .unloading import unloading_sites_table, unloading_table
 
 if TYPE_CHECKING:
@@ -49,7 +50,12 @@ BUILDERS = (
 """In the order of the report. A further table is one more function here."""
 
 
+RECORDING_BUILDERS = (snow_micro_pen_table,)
+"""Where the campaign has recordings of a SnowMicroPen."""
+
+
 def tables_of(data: ReportData) -> dict[str, Table]:
     """All tables by name, those without a row too."""
-    built = (replace(build(data), synthetic=data.synthetic) for build in BUILDERS)
+    builders = (*BUILDERS, *RECORDING_BUILDERS) if data.campaign.snow_micro_pen else BUILDERS
+    built = (replace(build(data), synthetic=data.synthetic) for build in builders)
     return {table.name: table for table in built}

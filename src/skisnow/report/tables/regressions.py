@@ -15,6 +15,8 @@ QUANTITY: Final = {
     "edge_angle_rad": ("edge angle ϑ", "rad"),
     "snow_density_kg_per_m3": ("snow density ρ", "kg/m³"),
     "drop_cone_depth_mm": ("drop-cone depth H_p", "mm"),
+    "smp_mean_force_N": ("SnowMicroPen mean force", "N"),
+    "smp_snow_density_kg_per_m3": ("SnowMicroPen density", "kg/m³"),
 }
 """Symbol and unit of each key that a regression knows."""
 

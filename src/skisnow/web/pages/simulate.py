@@ -8,6 +8,7 @@ from nicegui import app, background_tasks, run, ui
 
 from ...errors import ParameterError, SkisnowError
 from ...replay.of_file import RUN_FILE
+from ..answering import redrawn_by
 from ..error_pages import error_sentence
 from ..fields import button, choice, link
 from ..lab_skis import LabSkis
@@ -97,13 +98,15 @@ class _Form:
             self._scenario = choice("Scenario", names, names[0])
             self._ski = choice("Ski", [GIVEN, *self._skis.names()], GIVEN)
             self._snow = SnowChoice(lab, NUMBERS, self._other_snow)
-        self._basic = ui.element("div").classes("inputs")
+        self._scenario.on_value_change(self._draw)
+        with redrawn_by(self._scenario):
+            self._basic = ui.element("div").classes("inputs")
         with ui.element("div").classes("acts"):
             button("Simulate", self.ask, "main", once=True)
             self._estimate = Words("").classes("quiet").props("role=status")
         self._status = Words("").classes("status").props("role=status")
-        self._expert = ui.element("div")
-        self._scenario.on_value_change(self._draw)
+        with ui.element("fieldset").classes("redrawn"):
+            self._expert = ui.element("div")
         self._draw()
 
     def _draw(self) -> None:
@@ -111,7 +114,7 @@ class _Form:
         from ...scenario.keys import SCENARIO_KEYS, SECTIONS
 
         values = scenario_file(str(self._scenario.value)).values
-        kept = self._changed()
+        kept = self._typed()
         self._fields = {}
         self._basic.clear()
         self._expert.clear()
@@ -136,9 +139,16 @@ class _Form:
         self._show_numbers()
         self._tell_estimate()
 
-    def _changed(self) -> dict[str, str]:
+    def _typed(self) -> dict[str, str]:
         """What stands in place of the scenario's own values."""
         return {name: each.text for name, each in self._fields.items() if each.is_changed and each.place.visible}
+
+    def _changed(self) -> dict[str, str]:
+        """What is typed; one number of the snow goes with the other one that stands beside it."""
+        typed = self._typed()
+        if self._snow.is_numbers and not typed.keys().isdisjoint(OF_SNOW):
+            typed = {name: self._fields[name].text for name in OF_SNOW if self._fields[name].text} | typed
+        return typed
 
     async def _other_snow(self) -> None:
         self._show_numbers()

@@ -1,0 +1,58 @@
+"""``skisnow export``: models for other programs."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .announced import announced
+from .words import Parser
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "export", help="models for other programs: FMUs", description="Write a model for another program."
+    )
+    kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
+    fmu = kinds.add_parser(
+        "fmu",
+        help="a functional mock-up unit for co-simulation",
+        description="Write the sledge of a scenario, or with --contact its skis in its snow alone, as an FMU for "
+        "co-simulation. It holds a library for Linux on x86-64, and no Python.",
+    )
+    fmu.add_argument("scenario", metavar="SCENARIO", help="a built-in one by its name, or a TOML file")
+    fmu.add_argument("--out", type=Path, metavar="FILE", required=True, help="the file to write, ending in .fmu")
+    fmu.add_argument(
+        "--fmi", type=int, choices=(2, 3), default=2, help="version of the standard, 2.0 or 3.0; left out: 2"
+    )
+    fmu.add_argument(
+        "--contact", action="store_true", help="the contact of rigid skis: poses in, forces and moments out"
+    )
+    fmu.add_argument("--skis", type=int, choices=(1, 2), help="with --contact: one ski, or a pair; left out: 2")
+    fmu.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        dest="changes",
+        metavar="section.key=value",
+        help="another value for one key, several times for several; the section may be left out",
+    )
+    fmu.set_defaults(run=_fmu, parser=fmu)
+
+
+def _fmu(options: argparse.Namespace) -> int:
+    if options.skis is not None and not options.contact:
+        options.parser.error("--skis goes with --contact: a sledge has two")
+    with announced("writing"):
+        from ..interop import write_contact_fmu, write_sledge_fmu
+        from ..scenario import scenario_file
+        from ..scenario.given import change_of
+
+        asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes)).scenario
+        if options.contact:
+            written = write_contact_fmu(asked, options.out, fmi=options.fmi, skis=options.skis or 2)
+        else:
+            written = write_sledge_fmu(asked, options.out, fmi=options.fmi)
+    print(written)
+    return 0

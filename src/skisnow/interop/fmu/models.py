@@ -1,0 +1,151 @@
+"""What an FMU computes: its variables, and the data from which the core builds it again without Python."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial.transform import Rotation
+
+from ...compiled import core
+from ...contact import Runner, SnowContact, SnowField
+from ...errors import ParameterError
+from ...geometry.surfaces import Grid
+from ...scenario import Plane, Scenario
+from ...simulate.run_setup import AT_REST, Setup, laid_out
+from .variables import TIME, Variable, vector
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+SIDES: Final = ("left", "right")
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A model before it is packed.
+
+    Attributes
+    ----------
+    name, about
+        As the importing program shows them.
+    variables
+        In the order of their references.
+    data
+        Of the core.
+    step
+        That an importer may begin with (s).
+    """
+
+    name: str
+    about: str
+    variables: tuple[Variable, ...]
+    data: str
+    step: float
+
+
+def axes_of(scenario: Scenario) -> str:
+    """The axes of places and forces, in words."""
+    if isinstance(scenario.slope, Plane):
+        return "Axes of the slope: x down the fall line, y to the left, z out of the snow."
+    return "Axes: x horizontal down the slope, y to the left, z upwards."
+
+
+def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
+    """Rigid skis in the snow of a scenario, at first where its sledge would be set down."""
+    setup = laid_out(scenario)
+    _require_own_laws(setup.snow)
+    sides = SIDES if skis == len(SIDES) else ("ski",)
+    runner = Runner.of(scenario.ski)
+    contact = SnowContact(setup.snow, [runner] * skis, spacing=setup.numbers["line_spacing_m"])
+    inputs = [each for k, side in enumerate(sides) for each in _pose(side, setup, k)]
+    outputs = [
+        each
+        for side in sides
+        for name, unit, about in (
+            ("force", "N", "of the snow on the ski"),
+            ("moment", "N.m", "of the snow on the ski, about its boot"),
+        )
+        for each in vector(f"{side}.{name}", "output", unit, about, np.zeros(3))
+    ]
+    variables = (TIME, *_snow_parameters(setup.snow), *inputs, *outputs)
+    data = core.contact_data(setup.snow.compiled, contact.compiled, _starts(variables))
+    about = (
+        f"Snow on {'a rigid ski' if skis == 1 else 'two rigid skis'}: poses and motions at a step's beginning in, "
+        f"forces and moments there out. {axes_of(scenario)}"
+    )
+    return Model("skisnow contact", about, variables, data, step)
+
+
+def sledge_model(scenario: Scenario, *, step: float) -> Model:
+    """The sledge of a scenario on its flexible skis."""
+    if scenario.boots is not None:
+        raise ParameterError("boots.file: an FMU's boots stay where the sledge has them; leave boots.file out")
+    setup = laid_out(scenario)
+    _require_own_laws(setup.snow)
+    dynamics, outputs = setup.dynamics, list[Variable]()
+    for name, unit, about, start in (
+        ("position", "m", "of the middle between the boots", dynamics.position),
+        ("quaternion", "1", "w, x, y, z of the sledge's axes ahead, left, up", _quaternion(dynamics.rotation)),
+        ("velocity", "m/s", "of the middle between the boots", np.zeros(3)),
+        ("angular_velocity", "rad/s", "of the sledge", np.zeros(3)),
+    ):
+        outputs += vector(name, "output", unit, about, start)
+    for side in SIDES:
+        about = "of the ski on its boot: ahead, left across the base, off the base"
+        outputs += vector(f"{side}.boot_force", "output", "N", about, np.zeros(3))
+        outputs += vector(f"{side}.boot_moment", "output", "N.m", about, np.zeros(3))
+    inputs = (
+        *vector("push.force", "input", "N", "a force besides on the sledge", np.zeros(3)),
+        *vector("push.place", "input", "m", "where it acts, from the boots' middle in the sledge's axes", np.zeros(3)),
+    )
+    speed = Variable("start.speed", "parameter", "m/s", "ahead, at the start", scenario.start.speed)
+    variables = (TIME, speed, *inputs, *outputs)
+    inertia = np.array([ski.inertia for ski in dynamics.body.skis])
+    data = core.sledge_data(
+        setup.snow.compiled, dynamics.contact.compiled, dynamics.compiled, inertia, AT_REST, _starts(variables)
+    )
+    about = f"A sledge on two flexible skis over snow. {axes_of(scenario)}"
+    return Model("skisnow sledge", about, variables, data, step)
+
+
+def _starts(variables: tuple[Variable, ...]) -> FloatArray:
+    return np.array([each.start for each in variables])
+
+
+def _require_own_laws(snow: SnowField) -> None:
+    if snow.penetration is not None or snow.friction_in_python is not None or snow.shear_in_python is not None:
+        raise ParameterError("an FMU has no Python in it: it takes the laws that the core knows, not one of your own")
+
+
+def _quaternion(rotation: FloatArray) -> FloatArray:
+    """W, x, y, z of axes as columns."""
+    return np.roll(Rotation.from_matrix(rotation).as_quat(canonical=True), 1)
+
+
+def _snow_parameters(snow: SnowField) -> tuple[Variable, ...]:
+    """What may be set before the start; what varies over the place stays as it is, and is not offered."""
+    hardness, stress = (float(grid.at(0.0, 0.0)[0]) for grid in (snow.compiled.hardness, snow.compiled.strength))
+    one_hardness = not isinstance(snow.snow_hardness, Grid)
+    one_stress = not isinstance(snow.failure_shear_stress, Grid) and not isinstance(snow.strength_share, Grid)
+    friction = snow.compiled.friction.constant
+    return (
+        Variable("snow.hardness", "parameter", "N/m3", "H_V", hardness, one_hardness),
+        Variable("snow.failure_shear_stress", "parameter", "N/m2", "S_f", stress, one_stress),
+        Variable("snow.unloading_ratio", "parameter", "1", "k_u/H_V", snow.unloading_ratio),
+        Variable("snow.friction", "parameter", "1", "coefficient of friction at rest", friction),
+    )
+
+
+def _pose(side: str, setup: Setup, ski: int) -> list[Variable]:
+    dynamics = setup.dynamics
+    place = dynamics.position + dynamics.rotation @ dynamics.body.skis[ski].boot
+    axes = dynamics.rotation @ dynamics.body.skis[ski].axes.T
+    return [
+        *vector(f"{side}.position", "input", "m", "of the boot", place),
+        *vector(
+            f"{side}.quaternion", "input", "1", "w, x, y, z: ahead, left across the base, off it", _quaternion(axes)
+        ),
+        *vector(f"{side}.velocity", "input", "m/s", "of the boot", np.zeros(3)),
+        *vector(f"{side}.angular_velocity", "input", "rad/s", "of the ski", np.zeros(3)),
+    ]

@@ -1,0 +1,133 @@
+"""An FMU as a file: model description, the core as a library, and the model's data beside it."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import platform
+import sys
+import zipfile
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from typing import Final
+
+from ...contact import c_library
+from ...errors import ParameterError
+from ...files import write_file
+from ...scenario import Scenario
+from .description import IDENTIFIER, Version, description
+from .models import Model, contact_model, sledge_model
+
+ENDING: Final = ".fmu"
+DATA: Final = "skisnow.txt"
+"""The model's data, in the folder of resources; its first word is the token that the model description has, too."""
+FOLDERS: Final[dict[Version, str]] = {2: "linux64", 3: "x86_64-linux"}
+"""Of the library within the FMU, by the version of the standard."""
+STEP: Final = {"contact": 2e-4, "sledge": 1e-2}
+"""Step (s) that the model description proposes (modelling assumption: see the page docs/how-to/fmu.md)."""
+_DATE: Final = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip knows: the same FMU has the same bytes
+
+
+def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2, skis: int = 2) -> Path:
+    """Write an FMU of rigid skis in the snow of a scenario: pose and motion in, force and moment out.
+
+    Parameters
+    ----------
+    scenario
+        Its ski, snow, laws and slope; its sledge tells where the skis are at first.
+    path
+        The file, whose name ends in .fmu.
+    fmi
+        Version of the standard, 2 (2.0) or 3 (3.0).
+    skis
+        1, or 2: the left and the right one.
+
+    Returns
+    -------
+    Path
+        Of the file.
+
+    Raises
+    ------
+    ParameterError
+        The file's name has another ending, there is no library for this machine, or the number is not allowed.
+    OutputError
+        The file cannot be written.
+
+    References
+    ----------
+    * The page docs/how-to/fmu.md.
+    """
+    _require(path, fmi)
+    if skis not in (1, 2):
+        raise ParameterError(f"skis is {skis!r}; an FMU of the contact has 1 or 2")
+    return _write(contact_model(scenario, skis=skis, step=STEP["contact"]), Path(path), fmi)
+
+
+def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) -> Path:
+    """Write an FMU of the sledge of a scenario on its flexible skis: a push in, motion and forces on the boots out.
+
+    Parameters
+    ----------
+    scenario
+        What moves, without boots that move.
+    path
+        The file, whose name ends in .fmu.
+    fmi
+        Version of the standard, 2 (2.0) or 3 (3.0).
+
+    Returns
+    -------
+    Path
+        Of the file.
+
+    Raises
+    ------
+    ParameterError
+        The file's name has another ending, there is no library for this machine, or the boots move.
+    OutputError
+        The file cannot be written.
+
+    References
+    ----------
+    * The page docs/how-to/fmu.md.
+    """
+    _require(path, fmi)
+    return _write(sledge_model(scenario, step=STEP["sledge"]), Path(path), fmi)
+
+
+def _require(path: str | Path, fmi: int) -> None:
+    """Refuse before the work what cannot be."""
+    if Path(path).suffix.lower() != ENDING:
+        raise ParameterError(f"{path} does not end in {ENDING}, by which programs know an FMU; name it so")
+    if fmi not in FOLDERS:
+        raise ParameterError(f"fmi is {fmi!r}; FMUs are written for version 2 or 3 of the standard")
+    if not sys.platform.startswith("linux") or platform.machine() != "x86_64":
+        raise ParameterError("FMUs are written on Linux on x86-64, for which alone their library is built")
+
+
+def _write(model: Model, path: Path, fmi: Version) -> Path:
+    library = c_library().read_bytes()
+    digest = hashlib.sha256(library + model.data.encode() + repr(model).encode()).hexdigest()
+    token = "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32]))
+    files = {
+        "modelDescription.xml": description(model, f"{{{token}}}", fmi=fmi),
+        f"binaries/{FOLDERS[fmi]}/{IDENTIFIER}.so": library,
+        f"resources/{DATA}": f"{{{token}}}\n{model.data}".encode(),
+        "documentation/licenses/license.txt": _licence().encode(),
+    }
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(zipfile.ZipInfo(name, _DATE), content, zipfile.ZIP_DEFLATED)
+    write_file(path, packed.getvalue())
+    return path
+
+
+def _licence() -> str:
+    """Of skisnow, whose library the FMU holds."""
+    try:
+        text = distribution("skisnow").read_text("licenses/LICENSE")
+    except PackageNotFoundError:
+        text = None
+    return text or "skisnow: BSD-3-Clause\n"

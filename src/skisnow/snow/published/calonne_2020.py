@@ -1,0 +1,47 @@
+"""Calonne, Richter, Löwe and others (2020): density and specific surface area of snow from a micro-penetrometer.
+
+The Cryosphere 14, 1829-1848, doi 10.5194/tc-14-1829-2020: regressions on an alpine snowpack through one winter (RHOSSA,
+Weissfluhjoch), with windows of 1 mm and the fourth make of the instrument.
+
+Notes
+-----
+Arguments are in N and m; L stands in the equations in mm.
+
+The snow was not groomed. The SSA becomes negative for L above about 1 mm.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from ...units import MM
+
+FloatArray = npt.NDArray[np.float64]
+
+SOURCE: Final = "Calonne and others 2020"
+WINDOW: Final = 1.0 * MM
+"""Length of a window (m)."""
+
+
+def snow_density(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
+    """ρ = 295.8 + 65.1 ln F - 43.2 L ln F + 47.1 L in kg/m³; F median force (N), L element size (mm).
+
+    >>> round(float(snow_density(np.array(1.0), np.array(0.5e-3))), 2)
+    319.35
+    """
+    log_force, size_mm = np.log(median_force), element_size / MM
+    density: FloatArray = 295.8 + 65.1 * log_force - 43.2 * size_mm * log_force + 47.1 * size_mm
+    return density
+
+
+def specific_surface_area(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
+    """SSA = 0.57 - 18.56 ln L - 3.66 ln F in m²/kg; F median force (N), L element size (mm).
+
+    >>> round(float(specific_surface_area(np.array(1.0), np.array(0.5e-3))), 2)
+    13.43
+    """
+    area: FloatArray = 0.57 - 18.56 * np.log(element_size / MM) - 3.66 * np.log(median_force)
+    return area

@@ -1,0 +1,23 @@
+"""The tables of the method's page are what the program prints today."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from pathlib import Path
+from typing import Any
+
+from skisnow.field import read_snow_micro_pen
+
+from ..field.recordings import LONG, SHORT, recording
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+def test_tables_of_the_page() -> None:
+    sys.path.insert(0, str(DOCS))
+    printed: Any = importlib.import_module("tables_of_snow_micro_pen")
+    profiles = [read_snow_micro_pen(recording(name)) for name in (LONG, SHORT)]
+    page = (DOCS / "methods" / "snow-micro-pen.md").read_text(encoding="utf-8")
+    for table in (printed.by_relation(profiles), printed.by_setting(profiles)):
+        assert "\n".join(table) in page

@@ -1,0 +1,211 @@
+"""FMUs through their C functions: the bits of the library and of a run, states, instances, refusals."""
+
+from __future__ import annotations
+
+import ctypes
+import platform
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow import scenario, simulate
+from skisnow.contact import Runner, SnowContact
+from skisnow.errors import ParameterError
+from skisnow.interop import write_contact_fmu, write_sledge_fmu
+from skisnow.interop.fmu.description import Version
+from skisnow.simulate.run_setup import laid_out
+from skisnow.simulate.sledge.frames import rotation
+
+from .fmi import Fmu, Instance
+
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux") or platform.machine() != "x86_64",
+    reason="FMUs hold a library for Linux on x86-64 alone",
+)
+
+SCENARIO = scenario("carved-46m").with_(duration_s=0.1)
+STEP = 0.01
+SLEDGE_OUTPUTS = tuple(
+    f"{name}[{i}]"
+    for name, count in (
+        ("position", 3),
+        ("quaternion", 4),
+        ("velocity", 3),
+        *((f"{side}.boot_{what}", 3) for side in ("left", "right") for what in ("force", "moment")),
+    )
+    for i in range(1, count + 1)
+)
+
+
+@pytest.fixture(scope="module", params=[2, 3])
+def sledge(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Fmu:
+    folder = tmp_path_factory.mktemp("sledge")
+    return Fmu(write_sledge_fmu(SCENARIO, folder / "sledge.fmu", fmi=request.param), folder)
+
+
+@pytest.fixture(scope="module", params=[2, 3])
+def pair(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Fmu:
+    folder = tmp_path_factory.mktemp("contact")
+    return Fmu(write_contact_fmu(SCENARIO, folder / "pair.fmu", fmi=request.param), folder)
+
+
+def steps(instance: Instance, first: int, last: int) -> None:
+    for number in range(first, last):
+        instance.step(number * STEP, (number + 1) * STEP - number * STEP)
+
+
+def test_a_sledge_goes_as_the_run_does(sledge: Fmu) -> None:
+    run = simulate(SCENARIO)
+    assert run.boots is not None
+    instance = sledge.instance()
+    instance.begin()
+    for number in range(len(run.time)):
+        found = instance.get(SLEDGE_OUTPUTS)
+        assert np.array_equal(found[:3], run.place[number])
+        assert rotation(found[3:7]) == pytest.approx(run.attitude[number], abs=1e-13)
+        assert found[7:10] == pytest.approx(run.velocity[number], abs=1e-12)
+        own = np.concatenate([run.boots.own_force[number], run.boots.own_moment[number]], axis=1)
+        assert np.array_equal(found[10:], own.ravel())
+        if number + 1 < len(run.time):
+            steps(instance, number, number + 1)
+
+
+def test_a_sledge_is_pushed_and_begins_when_and_as_fast_as_it_is_told(sledge: Fmu) -> None:
+    one, pushed = sledge.instance(), sledge.instance()
+    one.begin(5.0, {"start.speed": 3.0})
+    pushed.begin(5.0, {"start.speed": 3.0, "push.force[1]": 800.0})
+    assert one.get(["velocity[1]", "time"]) == pytest.approx([3.0 * np.cos(np.radians(30.0)), 5.0], abs=1e-4)
+    for instance in (one, pushed):
+        instance.step(5.0, 0.1)
+    gained = pushed.get(["velocity[1]"]) - one.get(["velocity[1]"])
+    along = np.cos(np.radians(30.0)) ** 2  # the skis take what is across them
+    assert gained == pytest.approx(along * 800.0 * 0.1 / 88.0, rel=0.1)  # about 88 kg
+
+
+def test_states_go_back_and_forth_and_instances_share_nothing(sledge: Fmu) -> None:
+    """The later state is taken after an earlier one, and by another instance."""
+    instance, other = sledge.instance(), sledge.instance()
+    instance.begin()
+    other.begin(values={"start.speed": 2.0})
+    early = instance.state()
+    steps(instance, 0, 2)
+    late = instance.state()
+    steps(instance, 2, 4)
+    end = instance.get(SLEDGE_OUTPUTS)
+    instance.restore(early)
+    steps(instance, 0, 4)
+    assert np.array_equal(instance.get(SLEDGE_OUTPUTS), end)
+    instance.restore(late)
+    steps(instance, 2, 4)
+    assert np.array_equal(instance.get(SLEDGE_OUTPUTS), end)
+    assert other.get(["velocity[1]"]) == pytest.approx([2.0 * np.cos(np.radians(30.0))], abs=1e-4)
+    other.restore(late)
+    steps(other, 2, 4)
+    assert np.array_equal(other.get(SLEDGE_OUTPUTS), end)
+    instance.forget(early)
+    instance.forget(late)
+
+
+def poses(fmu: Fmu, number: int) -> dict[str, float]:
+    """Both skis ahead by 2 mm a step in a slight curve, deeper and deeper, from where they are at first."""
+    values = {name: start for name, start in fmu.starts.items() if name.startswith(("left", "right"))}
+    for side in ("left", "right"):
+        values[f"{side}.position[1]"] += 2e-3 * number
+        values[f"{side}.position[3]"] -= 2e-6 * number
+        values[f"{side}.quaternion[1]"] += 1e-5 * number  # not quite a unit: it is made one
+        values[f"{side}.velocity[1]"] = 8.0
+    return {name: value for name, value in values.items() if not np.isnan(value)}
+
+
+def test_a_contact_has_the_bits_of_the_library(pair: Fmu) -> None:
+    setup = laid_out(SCENARIO)
+    runner = Runner.of(SCENARIO.ski)
+    contact = SnowContact(setup.snow, [runner, runner], spacing=setup.numbers["line_spacing_m"])
+    outputs = [f"{side}.{what}[{i}]" for side in ("left", "right") for what in ("force", "moment") for i in (1, 2, 3)]
+    instance = pair.instance()
+    dt, accepted = 2.5e-4, 0.0
+    instance.begin(values=poses(pair, 0))
+    for number in range(400):
+        values = poses(pair, number)
+        instance.set(values)
+        instance.step(number * dt, dt)
+        rows = np.array(list(values.values())).reshape(2, 13)
+        turned = np.array([rotation(q / np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]))
+                           for q in rows[:, 3:7]])  # fmt: skip
+        if number == 0:
+            contact.force(rows[:, :3], turned, rows[:, 7:], 0.0)
+            contact.update(rows[:, :3], turned, 0.0)
+        since = number * dt - accepted
+        expected = contact.force(rows[:, :3], turned, rows[:, 7:], since).wrench
+        contact.update(rows[:, :3], turned, since)
+        accepted = number * dt
+        assert np.array_equal(instance.get(outputs), expected.ravel()), number
+    assert expected[0, 2] > 1000.0
+
+
+def test_one_ski_in_snow_that_is_set(tmp_path: Path) -> None:
+    fmu = Fmu(write_contact_fmu(SCENARIO, tmp_path / "ski.fmu", skis=1), tmp_path)
+    forces = []
+    for factor in (1.0, 2.0):
+        instance = fmu.instance()
+        instance.begin(values={"snow.hardness": factor * fmu.starts["snow.hardness"]})
+        forces.append(instance.get(["ski.force[3]"])[0])
+    assert fmu.starts["snow.hardness"] == 2e8
+    assert forces[1] == pytest.approx(2.0 * forces[0], rel=0.01)  # but for the compaction resistance, which S_f has
+
+
+def test_what_cannot_be_is_refused_in_words(pair: Fmu, sledge: Fmu) -> None:
+    assert pair.instance("{another}").at.value is None
+    instance = pair.instance()
+    with pytest.raises(AssertionError, match="a step is not allowed now"):
+        instance.step(0.0, 1e-3)
+    with pytest.raises(AssertionError, match="cannot be set now"):
+        instance.set({"left.force[1]": 1.0})
+    with pytest.raises(AssertionError, match="not finite"):
+        instance.set({"left.position[1]": float("nan")})
+    with pytest.raises(AssertionError, match=r"snow\.hardness must be above 0"):
+        instance.begin(values={"snow.hardness": -1.0})
+    instance.call("Reset")
+    instance.begin()
+    with pytest.raises(AssertionError, match="cannot be set now"):
+        instance.set({"snow.hardness": 1e8})
+    instance.set({"left.quaternion[1]": 3.0})
+    with pytest.raises(AssertionError, match="a quaternion has the length"):
+        instance.step(0.0, 1e-3)
+    runs = sledge.instance()
+    runs.begin()
+    with pytest.raises(AssertionError, match=r"a step begins at 1\.0+ s; the sledge is at 0\.0+ s"):
+        runs.step(1.0, 0.1)
+
+
+def test_of_other_kinds_there_are_no_variables_and_of_what_is_not_offered_words(sledge: Fmu) -> None:
+    instance = sledge.instance()
+    nothing = ctypes.c_size_t(0)
+    instance.call("GetBoolean", None, nothing, None, nothing)
+    with pytest.raises(AssertionError, match="all variables of this model"):
+        instance.call("GetBoolean", None, ctypes.c_size_t(1), None, nothing)
+    name = "SerializeFMUstate" if sledge.fmi == 2 else "SerializeFMUState"
+    with pytest.raises(AssertionError, match="is not offered"):
+        instance.call(name, None, None, nothing)
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_an_fmu_has_the_same_bytes_and_no_python(tmp_path: Path, fmi: Version) -> None:
+    first = write_sledge_fmu(SCENARIO, tmp_path / "a.fmu", fmi=fmi)
+    assert first.read_bytes() == write_sledge_fmu(SCENARIO, tmp_path / "b.fmu", fmi=fmi).read_bytes()
+    with zipfile.ZipFile(first) as archive:
+        names = {Path(name).suffix for name in archive.namelist()}
+    assert names == {".xml", ".so", ".txt"}
+
+
+def test_wrong_names_numbers_and_scenarios_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=r"does not end in \.fmu"):
+        write_sledge_fmu(SCENARIO, tmp_path / "sledge.zip")
+    with pytest.raises(ParameterError, match="fmi is 1"):
+        write_sledge_fmu(SCENARIO, tmp_path / "sledge.fmu", fmi=1)  # type: ignore[arg-type]
+    with pytest.raises(ParameterError, match="skis is 3"):
+        write_contact_fmu(SCENARIO, tmp_path / "contact.fmu", skis=3)
+    assert not list(tmp_path.iterdir())

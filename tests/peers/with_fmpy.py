@@ -1,0 +1,43 @@
+"""What FMPy makes of FMUs: ``python -S with_fmpy.py PACKAGES FMU…``, without skisnow; the ends of runs as JSON.
+
+FMPy's own check says nothing of an FMU without an interface, so that the model description is held against the
+standard's schema, too, which FMPy brings along.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import io
+import json
+import os
+import sys
+import zipfile
+from pathlib import Path
+
+DURATION, STEP = 0.5, 0.01
+
+
+def main(packages: str, *paths: str) -> None:
+    """Check and simulate each."""
+    sys.path += packages.split(os.pathsep)
+    sys.modules["skisnow"] = None  # type: ignore[assignment]
+    assert not any("skisnow" in name for name in sys.modules if sys.modules[name] is not None)
+    import fmpy
+    from fmpy.validation import validate_fmu
+    from lxml import etree
+
+    ends = []
+    for path in paths:
+        assert not validate_fmu(path)
+        with zipfile.ZipFile(path) as archive:
+            description = etree.parse(io.BytesIO(archive.read("modelDescription.xml")))
+        fmi = description.getroot().attrib["fmiVersion"][0]
+        schemas = Path(str(importlib.util.find_spec("fmpy").origin)).parent / "schema"  # type: ignore[union-attr]
+        etree.XMLSchema(file=str(schemas / f"fmi{fmi}" / f"fmi{fmi}ModelDescription.xsd")).assertValid(description)
+        rows = fmpy.simulate_fmu(path, stop_time=DURATION, step_size=STEP, output_interval=STEP)
+        ends.append(dict(zip(rows.dtype.names, rows[-1].tolist(), strict=True)))
+    print(json.dumps(ends))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
