@@ -42,7 +42,7 @@ def run_with_boots() -> Run:
     axes = np.array([[axes_of(angle, 0.05, 0.2 + angle) for angle in pair] for pair in angles])
     place = run.place[:, None] + np.array([[0.0, 0.35, 0.02], [0.1, -0.35, 0.0]])
     zeros = np.zeros((5, 2, 3))
-    boots = BootHistory(place=place, axes=axes, own_force=zeros, own_moment=zeros)
+    boots = BootHistory(place=place, axes=axes, own_force=zeros, own_moment=zeros, centre_of_mass=place.mean(axis=1))
     return replace(run, boots=boots, boots_by="moved by a table")
 
 
