@@ -17,6 +17,7 @@ from .shear_displacement import displacement_sites_table, displacement_table
 from .sites import sites_table
 from .snow_micro_pen import snow_micro_pen_table
 from .unloading import unloading_sites_table, unloading_table
+from .weather import weather_table
 
 if TYPE_CHECKING:
     from ..report_data import ReportData
@@ -52,10 +53,14 @@ BUILDERS = (
 
 RECORDING_BUILDERS = (snow_micro_pen_table,)
 """Where the campaign has recordings of a SnowMicroPen."""
+WEATHER_BUILDERS = (weather_table,)
+"""Where the campaign names the file of a weather station."""
 
 
 def tables_of(data: ReportData) -> dict[str, Table]:
     """All tables by name, those without a row too."""
-    builders = (*BUILDERS, *RECORDING_BUILDERS) if data.campaign.snow_micro_pen else BUILDERS
+    recordings = RECORDING_BUILDERS if data.campaign.snow_micro_pen else ()
+    weather = WEATHER_BUILDERS if data.campaign.weather else ()
+    builders = (*BUILDERS, *recordings, *weather)
     built = (replace(build(data), synthetic=data.synthetic) for build in builders)
     return {table.name: table for table in built}
