@@ -21,9 +21,9 @@ _COLUMNS = (
 
 
 def weather_table(data: ReportData) -> Table:
-    """A row for each site."""
+    """A row for each site with an experiment whose weather is known."""
     found = data.results["weather"]
-    rows = [tuple(row[column.key] for column in _COLUMNS) for row in found["sites"]]
+    rows = [tuple(row[column.key] for column in _COLUMNS) for row in found["sites"] if row["n"]]
     caption = f"Weather at the times of the experiments, by the station {found['station']}: means by site."
     note = "Linear between the station's readings; experiments whose time of day is not noted are not counted."
     return Table("weather", caption, _COLUMNS, rows, note=note)
