@@ -59,10 +59,8 @@ def forces_of(path: Path, folder: Path) -> Run:
     measured = read_trc(path)
     window = round(SMOOTHED_S * measured.rate) | 1
     smooth = replace(measured, place=savgol_filter(measured.place, window, 3, axis=0))
-    of = {
-        side: BootMarkers(*(f"{side}_{name}" for name in ("heel", "toe", "left")), SOLE) for side in ("left", "right")
-    }
-    boots = boots_of_markers(smooth, of["left"], of["right"], slope_angle=SLOPE)
+    left, right = (BootMarkers(f"{side}_heel", f"{side}_toe", f"{side}_left", SOLE) for side in ("left", "right"))
+    boots = boots_of_markers(smooth, left, right, slope_angle=SLOPE)
     return run_of(folder, boots_text(boots, edge_angles_only=True))
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from skisnow import scenario, simulate
@@ -14,7 +15,7 @@ from skisnow.simulate.boots_table import write_boots
 
 opensim: Any = pytest.importorskip("opensim", reason="OpenSim is not installed: pip install 'skisnow[peers]'")
 
-TIME = np.arange(5) * 0.01
+TIME: npt.NDArray[np.float64] = np.array([0.0, 0.01, 0.02, 0.03, 0.04])
 
 
 def columns_of(table: Any) -> dict[str, list[float]]:

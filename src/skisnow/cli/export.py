@@ -6,13 +6,13 @@ import argparse
 from pathlib import Path
 
 from .announced import announced
-from .words import Parser
+from .words import Parser, whole_number
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the program's."""
     parser = commands.add_parser(
-        "export", help="models for other programs: FMUs", description="Write a model for another program."
+        "export", help="models for other programs: FMUs, MJCF", description="Write a model for another program."
     )
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
     fmu = kinds.add_parser(
@@ -39,6 +39,15 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="another value for one key, several times for several; the section may be left out",
     )
     fmu.set_defaults(run=_fmu, parser=fmu)
+    mjcf = kinds.add_parser(
+        "mjcf",
+        help="a ski for MuJoCo",
+        description="Write a ski as MJCF: rigid segments on hinges with its compliance in bending and torsion.",
+    )
+    mjcf.add_argument("ski", metavar="SKI", help="a ski of the catalogue by its name, or a ski file")
+    mjcf.add_argument("--out", type=Path, metavar="FILE", required=True, help="the file to write, ending in .xml")
+    mjcf.add_argument("--segments", type=whole_number(4, 400), default=20, metavar="N", help="of the ski; left out: 20")
+    mjcf.set_defaults(run=_mjcf)
 
 
 def _fmu(options: argparse.Namespace) -> int:
@@ -55,4 +64,12 @@ def _fmu(options: argparse.Namespace) -> int:
         else:
             written = write_sledge_fmu(asked, options.out, fmi=options.fmi)
     print(written)
+    return 0
+
+
+def _mjcf(options: argparse.Namespace) -> int:
+    from ..interop.mujoco import write_ski_mjcf
+    from ..ski import read_ski
+
+    print(write_ski_mjcf(read_ski(options.ski), options.out, segments=options.segments))
     return 0
