@@ -39,11 +39,11 @@ def scene(step: float = STEP) -> str:
     return f"""<mujoco model="sledge on snow">
 <compiler angle="radian" eulerseq="zyx"/>
 <option timestep="{step}" gravity="{GRAVITY[0]} {GRAVITY[1]} {GRAVITY[2]}"/>
-<visual><headlight ambient="0.4 0.4 0.4"/></visual>
-<asset><texture name="grid" type="2d" builtin="checker" rgb1="0.95 0.97 1" rgb2="0.85 0.9 0.97"
+<visual><headlight ambient="0.3 0.3 0.3" diffuse="0.3 0.3 0.3" specular="0 0 0"/></visual>
+<asset><texture name="grid" type="2d" builtin="checker" rgb1="0.8 0.84 0.9" rgb2="0.72 0.77 0.85"
 width="300" height="300"/>
 <material name="snow" texture="grid" texrepeat="1 1" texuniform="true"/></asset>
-<worldbody><light pos="0 0 10" directional="true"/>
+<worldbody><light dir="-0.4 0.3 -1" directional="true" castshadow="false" diffuse="0.5 0.5 0.5" specular="0 0 0"/>
 <geom name="snow" type="plane" size="100 100 1" material="snow" contype="0" conaffinity="0"/>
 <body name="sledge" pos="{START[0]} {START[1]} {START[2]}" euler="{HEADING} {PITCH} {ROLL}"><freejoint/>
 <camera name="behind" pos="-3 0 1.5" xyaxes="0 -1 0 0.45 0 0.9" mode="track"/>
