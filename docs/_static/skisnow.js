@@ -1,4 +1,4 @@
-// Blocks of code: a button that copies them, and a place in the tab order, so that long lines can be scrolled by key.
+// Blocks of code: a button that copies them, and a place in the tab order, so that long lines can be scrolled by key; wide equations too.
 "use strict";
 
 const COMMAND = /^(\$ )?(skisnow|make|python|pip|\.venv\/bin\/|\.ci\/|git|kill)\b|^ +/;
@@ -26,7 +26,7 @@ function furnished(block) {
   const pre = block.querySelector("pre");
   const text = pre.textContent;
   pre.tabIndex = 0;
-  pre.setAttribute("role", "region");
+  pre.setAttribute("role", "group");
   pre.setAttribute("aria-label", "code");
   const sentences = !block.closest(".highlight-python, .highlight-toml, .highlight-json, .doctest") && !text.includes(">>> ");
   if (text.split("\n").every((line) => !line || COMMAND.test(line)) || (sentences && !COLUMNS.test(text))) {
@@ -42,6 +42,17 @@ function furnished(block) {
   block.append(button);
 }
 
+/** What is wider than the page has a place in the tab order, and only that. */
+function reachable() {
+  document.querySelectorAll("article .equation").forEach((each) => {
+    if (each.scrollWidth > each.clientWidth) each.tabIndex = 0;
+    else each.removeAttribute("tabindex");
+  });
+}
+
 document.addEventListener("DOMContentLoaded", () => {
   document.querySelectorAll("article div.highlight").forEach(furnished);
+  reachable();
 });
+addEventListener("load", reachable);
+addEventListener("resize", reachable);

@@ -7,7 +7,7 @@ import pytest
 
 from skisnow.errors import ParameterError
 from skisnow.ski import Ski, ski_named, ski_names
-from skisnow.ski.editing import EDITED_COLUMNS, SkiEdit, edit_stations, edited_ski, values_at
+from skisnow.ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
 from skisnow.units import MM
 
 NAN = math.nan
@@ -39,6 +39,20 @@ def test_factors_scale_whole_curves_and_the_radius_follows() -> None:
     # three widths: R = L² / (2 (tip + tail - 2 waist)) + small terms, so 1.1 times the widths is R / 1.1; the term that
     # is left out, half the sidecut's depth, is 17 mm of 13 m
     assert new.sidecut_radius_of_three_widths == pytest.approx(ski.sidecut_radius_of_three_widths / 1.1, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", ["slalom", "giant-slalom", "carver"])
+def test_a_deeper_sidecut_leaves_the_waist_and_divides_the_radius(name: str) -> None:
+    """The side line's curvature is that of the half widths, which the factor scales, but for slopes' second order."""
+    ski = ski_named(name)
+    new = edited(ski, factors={SIDECUT: 1.05})
+    half = ski.sidecut_length / 2.0
+    inside = np.abs(ski.station - ski.sidecut_middle) < half
+    waist = ski.width[inside].min()
+    assert new.width[inside].min() == waist
+    assert new.width[inside] - waist == pytest.approx(1.05 * (ski.width[inside] - waist), abs=1e-12)
+    assert new.sidecut_radius_of_edge_line == pytest.approx(ski.sidecut_radius_of_edge_line / 1.05, rel=2e-3)
+    assert np.abs(np.diff(new.width / ski.width)).max() < 1e-3  # no step where the sidecut ends
 
 
 def test_a_value_given_at_a_station_is_met_and_the_far_side_is_untouched() -> None:

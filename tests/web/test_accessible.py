@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -12,26 +13,25 @@ import pytest
 
 from skisnow.cli import main
 
-from .conftest import Served, ready, settled
+from ..report.runs import circle_run
+from .conftest import Served, follow, ready, settled
 from .replay.test_lab_page import kept
 from .test_carve_page import ANSWERED_MS
 from .test_day import create, enter_series
+from .test_kept import imported
 
 if importlib.util.find_spec("axe_playwright_python") is None:
     pytest.skip("axe-core is not installed: pip install axe-playwright-python", allow_module_level=True)
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from playwright.sync_api import Browser, Page
 
 DOCS = Path(__file__).parents[2] / "docs"
-PAGES_OF_DOCS = (
-    "index.html",
-    "how-to/web-lab.html",
-    "files/scenario.html",
-    "validation/coverage.html",
-    "gallery/index.html",
-)
-"""One of each kind: a list, words with pictures, wide tables, equations with numbers, figures."""
+WIDTHS = (1280, 390)
+WIDE_PAGES = "methods/simulated-turn.md", "files/scenario.md"
+"""Wide equations, wide tables and blocks of code: what the pages have of each kind."""
 
 
 def barred(page: Page) -> list[str]:
@@ -42,12 +42,59 @@ def barred(page: Page) -> list[str]:
     return [f"{each['id']}: {each['nodes'][0]['html']}" for each in found if each["impact"] in ("serious", "critical")]
 
 
-def test_it_finds_what_bars_people(page: Page) -> None:
-    page.set_content('<html lang="en"><title>t</title><main><h1>t</h1><img src="data:,"><input></main></html>')
-    assert {each.split(":")[0] for each in barred(page)} == {"image-alt", "label"}
+def barred_in(page: Page, files: list[Path]) -> dict[tuple[str, int], list[str]]:
+    """The same of files, on a desk and on a telephone; the page is no wider than either."""
+    found = {}
+    for width in WIDTHS:
+        page.set_viewport_size({"width": width, "height": 844})
+        for file in files:
+            page.goto(file.as_uri())
+            found[f"{file.parent.name}/{file.name}", width] = barred(page)
+            assert page.evaluate("document.documentElement.scrollWidth") <= width, (file, width)
+    return {name: each for name, each in found.items() if each}
 
 
+@pytest.fixture
+def plain(chromium: Browser) -> Iterator[Page]:
+    """A page of files, not of a server."""
+    made = chromium.new_page()
+    yield made
+    made.close()
+
+
+def test_it_finds_what_bars_people(plain: Page) -> None:
+    plain.set_content('<html lang="en"><title>t</title><main><h1>t</h1><img src="data:,"><input></main></html>')
+    assert {each.split(":")[0] for each in barred(plain)} == {"image-alt", "label"}
+
+
+def test_nobody_is_barred_from_correcting(page: Page, served: Served) -> None:
+    """The page of a test, while its reason is asked."""
+    imported(page, served)
+    follow(page, "Correct")
+    page.get_by_role("heading", name="Tests").wait_for()
+    page.goto(f"{page.url}?table=penetration.csv&test=1")
+    page.get_by_label("Depth (mm), row 3", exact=True).fill("2,15")
+    page.keyboard.press("Enter")
+    page.get_by_label("Why", exact=True).wait_for()
+    for width in WIDTHS:
+        page.set_viewport_size({"width": width, "height": 844})
+        settled(page)
+        assert barred(page) == [], width
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+def test_nobody_is_barred_from_where_the_token_is_asked(plain: Page) -> None:
+    token_page = pytest.importorskip("skisnow.web.token_page", reason="the web lab is not installed")
+    plain.set_content(token_page.token_page({"type": "http", "headers": []}, 403).body.decode("utf-8"))
+    assert barred(plain) == []
+
+
+@pytest.mark.slow
 def test_nobody_is_barred_from_a_page_of_the_lab(page: Page, served: Served) -> None:
+    imported(page, served)
+    follow(page, "Correct")
+    page.get_by_role("heading", name="Tests").wait_for()
+    correcting = page.url
     create(page, served)
     enter_series(page, "1")
     kept(served.lab, "a-run")
@@ -59,46 +106,70 @@ def test_nobody_is_barred_from_a_page_of_the_lab(page: Page, served: Served) -> 
         served.address: ".card",
         f"{served.address}describe": "h2",
         f"{served.address}analysis/entry/{id_}": ".results",
+        correcting: "summary",
+        f"{correcting}?table=penetration.csv&test=1": ".beside path.points",
         f"{served.address}skis": "td",
         f"{served.address}carve": "td",
         f"{served.address}simulate": "summary",
         f"{served.address}replay": ".card",
+        f"{served.address}replay/show?run=a-run": "canvas",
         f"{served.address}nowhere": "h1",
     }
-    for place, shown in places.items():
-        page.goto(place)
-        page.locator(shown).first.wait_for(timeout=ANSWERED_MS)
-        page.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
-        if not place.endswith("nowhere"):
-            ready(page)
-        settled(page)
-        assert barred(page) == [], place
-
-
-@pytest.mark.slow
-def test_nobody_is_barred_from_a_report(chromium: Browser, tmp_path: Path) -> None:
-    page = chromium.new_page()
-    assert main(["reference", str(tmp_path / "campaign"), "--seed", "1"]) == 0
-    assert main(["analyse", str(tmp_path / "campaign"), "--out", str(tmp_path / "analysis")]) == 0
-    assert main(["simulate", "carved-46m", "--set", "run.duration_s=0.2", "--out", str(tmp_path / "run")]) == 0
-    reports = sorted(tmp_path.glob("*/report.html"))
-    assert len(reports) == 2
-    for width in (1280, 390):
+    for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 844})
-        for report in reports:
-            page.goto(report.as_uri())
-            assert barred(page) == [], (report.parent.name, width)
-    page.close()
+        for place, shown in places.items():
+            page.goto(place)
+            page.locator(shown).first.wait_for(timeout=ANSWERED_MS)
+            page.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
+            if not place.endswith(("nowhere", "run=a-run")):
+                ready(page)
+            settled(page)
+            assert barred(page) == [], (place, width)
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_nobody_is_barred_from_the_report_of_a_run(plain: Page, tmp_path: Path) -> None:
+    circle_run().report(tmp_path)
+    assert barred_in(plain, [tmp_path / "report.html"]) == {}
 
 
 @pytest.mark.slow
-def test_nobody_is_barred_from_the_documentation(chromium: Browser, tmp_path: Path) -> None:
-    page = chromium.new_page()
-    build = [sys.executable, "-m", "sphinx", "-q", "-b", "html", str(DOCS), str(tmp_path / "html")]
+def test_nobody_is_barred_from_a_report(plain: Page, tmp_path: Path) -> None:
+    """Of each kind that has a page: campaign, run with its replay, turn, identification."""
+    campaign, run, short = str(tmp_path / "campaign"), str(tmp_path / "run"), ["--set", "run.duration_s=0.2"]
+    turn = ["--set", "slope.angle_deg=5", "--set", "start.speed_m_per_s=4.5", "--set", "sledge.edge_angle_deg=40"]
+    for words in (
+        ["reference", campaign, "--seed", "1"],
+        ["analyse", campaign, "--out", str(tmp_path / "analysis")],
+        ["simulate", "carved-46m", *short, "--out", run, "--replay"],
+        ["turn", campaign, "--site", "C", *turn, *short, "--runs", "4", "--out", str(tmp_path / "turn")],
+        ["identify", "carved-46m", f"{run}/track.csv", "--free", "mu_0", *short, "--out", str(tmp_path / "identified")],
+    ):
+        assert main(words) == 0, words
+    reports = sorted(tmp_path.glob("*/*.html"))
+    assert len(reports) == 5
+    assert barred_in(plain, reports) == {}
+
+
+def built(folder: Path, html: Path) -> None:
+    build = [sys.executable, "-m", "sphinx", "-q", "-b", "html", str(folder), str(html)]
     subprocess.run(build, check=True, capture_output=True)
-    found = {}
-    for name in PAGES_OF_DOCS:
-        page.goto((tmp_path / "html" / name).as_uri())
-        found[name] = barred(page)
-    assert {name: each for name, each in found.items() if each} == {}
-    page.close()
+
+
+def test_nobody_is_barred_from_wide_pages_of_the_documentation(plain: Page, tmp_path: Path) -> None:
+    """Two of them, built alone; links to others lead nowhere."""
+    docs = tmp_path / "docs"
+    for name in (*WIDE_PAGES, "conf.py", "_static/skisnow.js", "_static/skisnow.css", "../pyproject.toml"):
+        (docs / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(DOCS / name, docs / name)
+    (docs / "index.md").write_text("# All\n\n```{toctree}\n" + "\n".join(WIDE_PAGES) + "\n```\n", encoding="utf-8")
+    built(docs, tmp_path / "html")
+    assert barred_in(plain, [(tmp_path / "html" / each).with_suffix(".html") for each in WIDE_PAGES]) == {}
+
+
+@pytest.mark.slow
+def test_nobody_is_barred_from_the_documentation(plain: Page, tmp_path: Path) -> None:
+    built(DOCS, tmp_path / "html")
+    pages = [each for each in sorted((tmp_path / "html").rglob("*.html")) if "_static" not in each.parts]
+    assert len(pages) >= len([each for each in DOCS.rglob("*.md") if "_build" not in each.parts])
+    assert barred_in(plain, pages) == {}

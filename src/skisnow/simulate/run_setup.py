@@ -42,6 +42,7 @@ SET_DOWN: Final = 0.1
 """Distance (m) of the boots past a border that still counts as on it: a sledge may start there and settle."""
 AT_REST: Final = 1e-6
 """Last step (m) of Newton's method that counts as equilibrium."""
+_UP: Final = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(slots=True)
@@ -125,6 +126,8 @@ class Setup:
     @property
     def past_end(self) -> bool:
         """Whether tips or boots are past the end of the slope, or past a side of it."""
+        if isinstance(self.scenario.slope, Plane):
+            return False
         boots, ahead = self.place[:2], self.attitude[:2, 0]
         low, high = np.transpose(reach_of(self.scenario.slope))
         tips = boots + float(self.node[0]) * ahead
@@ -142,6 +145,8 @@ class Setup:
         return normals_of(self.scenario.slope, x, y)
 
     def _slope_at_boots(self) -> tuple[float, FloatArray]:
+        if isinstance(self.scenario.slope, Plane):
+            return 0.0, _UP
         x, y = self.place[:2].tolist()
         return float(heights_of(self.scenario.slope, x, y)), self.slope_normal(x, y)
 

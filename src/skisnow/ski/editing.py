@@ -26,6 +26,8 @@ EDITED_COLUMNS: Final = {
     "GJ_N_m2": "torsional_stiffness",
 }
 """Columns of a ski's table that can be edited, and what they are called in `Ski`."""
+SIDECUT: Final = "sidecut_depth"
+"""Factor of how much wider than the waist the ski is: the waist's own width stays."""
 _LARGEST_FACTOR: Final = 100.0
 _END: Final = 0.005  # m between two stations at least (modelling assumption)
 
@@ -39,7 +41,7 @@ class SkiEdit:
     station
         Places (m from the boot, falling) at which values may be given. Shape (k,).
     factors
-        By column of `EDITED_COLUMNS` and for ``mass_per_length_kg_per_m``; left out: 1.
+        By column of `EDITED_COLUMNS`, for ``mass_per_length_kg_per_m``, and for `SIDECUT`; left out: 1.
     values
         By column, in SI, shape (k,): the value wanted there; NaN: as it is but for the factor.
     """
@@ -74,7 +76,9 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
     ski
         To begin with; it is not changed.
     edit
-        Factors act on the whole of a curve. Where a value is given the curve passes through it: width and stiffness
+        Factors act on the whole of a curve. That of the sidecut's depth leaves the narrowest place as wide as it is;
+        the radius of the side line is divided by it. Beyond the widest places tip and tail are widened like these.
+        Where a value is given the curve passes through it: width and stiffness
         are multiplied by the ratio of new to old value, to the base's height the difference is added. Between
         stations ratio and difference follow a shape-preserving cubic (`StationTable`), so that where nothing is given
         at two neighbouring stations nothing changes between them. Mass changes by its factor alone.
@@ -111,11 +115,10 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
     )
 
 
-def values_at(ski: Ski, station: FloatArray, *, factors: Mapping[str, float] | None = None) -> dict[str, FloatArray]:
-    """What the columns of `EDITED_COLUMNS` are at stations (m), in SI, times their factors. Each of shape (k,)."""
+def values_at(ski: Ski, station: FloatArray) -> dict[str, FloatArray]:
+    """What the columns of `EDITED_COLUMNS` are at stations (m), in SI. Each of shape (k,)."""
     return {
-        column: (factors or {}).get(column, 1.0)
-        * np.interp(station, ski.station[::-1], np.asarray(getattr(ski, attribute))[::-1])
+        column: np.interp(station, ski.station[::-1], np.asarray(getattr(ski, attribute))[::-1])
         for column, attribute in EDITED_COLUMNS.items()
     }
 
@@ -123,13 +126,24 @@ def values_at(ski: Ski, station: FloatArray, *, factors: Mapping[str, float] | N
 def _curve(ski: Ski, edit: SkiEdit, column: str) -> FloatArray:
     factor = edit.factors.get(column, 1.0)
     curve = factor * np.asarray(getattr(ski, EDITED_COLUMNS[column]))
+    if column == "width_mm" and (deeper := edit.factors.get(SIDECUT, 1.0)) != 1.0:
+        curve = curve * _with_deeper_sidecut(ski, deeper)
     if column not in edit.values:
         return curve
-    before = values_at(ski, edit.station, factors=edit.factors)[column]
+    before = np.interp(edit.station, ski.station[::-1], curve[::-1])
     wanted = np.where(np.isnan(edit.values[column]), before, edit.values[column])
     if column == "base_height_mm":
         return np.asarray(curve + StationTable(edit.station, wanted - before).at(ski.station))
     return np.asarray(curve * StationTable(edit.station, wanted / before).at(ski.station))
+
+
+def _with_deeper_sidecut(ski: Ski, factor: float) -> FloatArray:
+    """By how much each width is to be multiplied, so that what it has over the waist is ``factor`` times as much."""
+    half = ski.sidecut_length / 2.0
+    place = np.clip(ski.station, ski.sidecut_middle - half, ski.sidecut_middle + half)
+    width = np.interp(place, ski.station[::-1], ski.width[::-1])
+    waist = width.min()
+    return np.asarray((waist + factor * (width - waist)) / width)
 
 
 def _require(edit: SkiEdit) -> None:

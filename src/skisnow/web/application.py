@@ -17,6 +17,7 @@ from .language import COOKIE, languages
 from .layout import KEEPING, LANGUAGE, SCRIPT, STYLES
 from .pages import INNER, PAGES
 from .patience import RECONNECT_S, use_heartbeat
+from .ski_uploads import add_ski_uploads
 from .socket_events import answer_quietly
 from .transfer import add_transfer
 
@@ -49,6 +50,7 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     outer.add_api_route(KEEPING, lambda: _own("kept.js", "text/javascript"), include_in_schema=False)
     outer.add_api_route(LANGUAGE + "/{code}", _chosen, include_in_schema=False, response_model=None)
     add_transfer(outer, lab)
+    add_ski_uploads(outer, lab)
     for name in (*PAGES, *INNER):
         import_module(f".pages.{name}", __package__).add_page(lab)
     add_error_pages(outer)
@@ -63,6 +65,9 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     pages_app.on_startup(use_heartbeat)
     answer_quietly()
     pages_app.config.socket_io_js_transports = ["websocket"]
+    pages_app.config.quasar_config["loadingBar"] = {
+        "skipHijack": True
+    }  # a bar without a name, where the page says more
     return Guard(outer, Access(host, token, lab.limits.upload_bytes))
 
 

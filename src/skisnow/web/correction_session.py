@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ..errors import FieldDataError, StoreError
 from ..field import campaign_of_files
-from ..field.reading import READ_FILES, FilesInMemory
+from ..field.reading import READ_FILES, FilesInMemory, unfolded
 from ..field.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
+from ..field.reading.table_forms import CORRECTIONS
 from ..field.reading.text import UnreadableTextError, decode
 from ..field.store import corrected_files, stored_tables
 from ..field.store.journal_entry import JournalEntry
@@ -22,20 +23,26 @@ if TYPE_CHECKING:
     from ..field.store import NewEntry, StoredTable
     from .settings import Lab
 
+OWN_SHEET: Final = (
+    "The corrections of this campaign stand in a sheet of its workbook. Correct it there, and import the workbook "
+    "again."
+)
+
 
 class CorrectionSession(EditSession):
     """A kept campaign as one page sees it."""
 
     def __init__(self, lab: Lab, id_: str) -> None:
         self.stored, self._files = lab.store.contents(id_, READ_FILES)
+        self._tables = unfolded(FilesInMemory(self._files))
         self._entries: tuple[JournalEntry, ...] = ()
-        stored = stored_tables(FilesInMemory(self._files))
+        stored = stored_tables(self._tables)
         self.tables: dict[str, StoredTable] = {file: table for file, table in stored.items() if file in TABLES}
         super().__init__(lab, self.stored.id)
 
     @property
     def described(self) -> CampaignFile:
-        """What its campaign.toml says.
+        """What its campaign.toml says, or the sheets that stand for it.
 
         Raises
         ------
@@ -44,8 +51,8 @@ class CorrectionSession(EditSession):
         """
         found: list[Problem] = []
         try:
-            text = decode(self._files[CAMPAIGN_FILE]).text
-        except (KeyError, UnreadableTextError) as error:
+            text = decode(self._tables.read(CAMPAIGN_FILE) or b"").text
+        except (FileNotFoundError, UnreadableTextError) as error:
             raise StoreError(f"{CAMPAIGN_FILE} of this campaign cannot be read, so nothing in it can be.") from error
         described = read_campaign_file(text, found)
         if described is None:
@@ -71,7 +78,15 @@ class CorrectionSession(EditSession):
         return {cell_key(line, column): text for line, cells in rows.items() for column, text in cells.items()}
 
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
-        """Store a correction, a cancelling or an undoing; see `Journals.correct`."""
+        """Store a correction, a cancelling or an undoing; see `Journals.correct`.
+
+        Raises
+        ------
+        StoreError
+            As there; or the campaign's own corrections stand in a sheet, which no rows can follow.
+        """
+        if CORRECTIONS.file in self._tables.places:
+            raise StoreError(OWN_SHEET)
         standing = self.standing(entry.file, entry.test)
         written = self._journals.correct(self.id, entry, seen=seen, standing=standing)
         self.refresh()

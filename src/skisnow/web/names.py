@@ -30,6 +30,11 @@ def _asking(table: str, test: str, **further: str) -> str:
     return "?" + "&".join(words) if words else ""
 
 
+def carving(ski: str, other: str = "") -> str:
+    """Where a ski is carved, with another one beside it."""
+    return f"/carve?ski={quote(ski, safe='')}" + (f"&other={quote(other, safe='')}" if other else "")
+
+
 def analysis(kind: str, id_: str) -> str:
     """Where a campaign is analysed; kind: entry or kept."""
     return f"/analysis/{kind}/{id_}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from ..ski.editing import EDITED_COLUMNS, SkiEdit, edit_stations, edited_ski, values_at
+from ..ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
 from ..ski.file_keys import COLUMNS
 from .lab_skis import ski_of_texts
 from .typed import typed_number
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ..ski import Ski
 
 FACTORS: Final = {
+    SIDECUT: "Sidecut depth",
     "width_mm": "Width",
     "base_height_mm": "Base height",
     "EI_N_m2": "EI",

@@ -4,19 +4,28 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ..errors import ParameterError
+from ..field.reading import unfolded
+from ..field.reading.campaign_file import CAMPAIGN_FILE
+from ..field.reading.campaign_files import FilesOfFolder
 from ..field.store import Store
 from .unpacking import Unpacking, campaign_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from ..field.store.address import StorePlace
     from .settings import Limits
 
+UNDESCRIBED: Final = (
+    "there is no campaign.toml in it, nor a workbook (.xlsx) with the sheets campaign, tools and plates; choose the "
+    "folder of a campaign, a zip of it, or such a workbook"
+)
 
-def add_uploaded(store: Path, place: str, names: Sequence[str], limits: Limits) -> str:
+
+def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Limits) -> str:
     """Keep a campaign of uploaded files, which lie in a folder under their numbers; gives its id.
 
     Raises
@@ -32,7 +41,8 @@ def add_uploaded(store: Path, place: str, names: Sequence[str], limits: Limits) 
         with (Path(place) / str(number)).open("rb") as file:
             (unpacking.take_zip if name.lower().endswith(".zip") else partial(unpacking.take, name))(file)
     folder = campaign_folder(unpacking.folder)
-    if not (folder / "campaign.toml").is_file():
-        raise ParameterError("there is no campaign.toml in it; choose the folder of a campaign, or a zip of it")
+    files = unfolded(FilesOfFolder(folder))
+    if CAMPAIGN_FILE not in files.names():
+        raise ParameterError(f"{files.found[0].value}. {files.found[0].action}" if files.found else UNDESCRIBED)
     with Store.open(store) as opened:
         return opened.add(folder).id

@@ -2,5 +2,14 @@
 
 from .campaign import CAMPAIGN_FILES, READ_FILES, campaign_of_files, check_campaign, read_campaign
 from .campaign_files import FilesInMemory
+from .workbook_files import unfolded
 
-__all__ = ["CAMPAIGN_FILES", "READ_FILES", "FilesInMemory", "campaign_of_files", "check_campaign", "read_campaign"]
+__all__ = [
+    "CAMPAIGN_FILES",
+    "READ_FILES",
+    "FilesInMemory",
+    "campaign_of_files",
+    "check_campaign",
+    "read_campaign",
+    "unfolded",
+]

@@ -35,18 +35,24 @@ if TYPE_CHECKING:
     from .table_forms import TableForm
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
-"""Names of the files that a campaign reads, in their order."""
+"""Names of the files that a campaign reads, in their order; workbooks may stand for them."""
 
 
 class _ReadFiles(Container[str]):
-    """Those, and files in the campaign's folder that its tables may name."""
+    """Those, and in the campaign's folder workbooks and the files that its tables may name."""
 
     def __contains__(self, name: object) -> bool:
-        return name in CAMPAIGN_FILES or (isinstance(name, str) and "/" not in name and name.lower().endswith(ENDING))
+        if not isinstance(name, str) or "/" in name:
+            return False
+        return name in CAMPAIGN_FILES or name.lower().endswith(ENDING) or is_workbook(name)
 
 
 READ_FILES: Final = _ReadFiles()
-"""Names of files that a campaign may read."""
+"""Names of files that a campaign may read.
+
+>>> ["shear.csv" in READ_FILES, "Hang.xlsx" in READ_FILES, "photos/Hang.xlsx" in READ_FILES, "photo.jpg" in READ_FILES]
+[True, True, False, False]
+"""
 
 
 def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None = None) -> Campaign:

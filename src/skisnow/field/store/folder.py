@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING, Final, Protocol
 
 from ...errors import ParameterError, StoreError
 from ...given import MOST_TOML_BYTES, plain_bytes, toml_values
+from ..reading.campaign_files import FilesOfFolder
 from ..reading.text import UnreadableTextError, decode
+from ..reading.workbook_files import DESCRIPTION, unfolded
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -116,14 +118,24 @@ def read_chunks(file: Path, chunk_bytes: int) -> Iterator[bytes]:
 
 
 def campaign_name(folder: Path) -> str:
-    """Name from campaign.toml where it can be read, else the folder's; never an error: raw data are kept as is."""
+    """Name from campaign.toml, or the sheets that stand for it, where they can be read, else the folder's.
+
+    Never an error: raw data are kept as is.
+    """
     own = folder.resolve().name.encode(errors="replace").decode()
     try:
-        name = toml_values(decode(plain_bytes(folder / "campaign.toml", most_bytes=MOST_TOML_BYTES)).text).get("name")
+        name = toml_values(decode(_description(folder)).text).get("name")
     except (OSError, ParameterError, UnreadableTextError):
         return own
     words = " ".join(name.split()) if isinstance(name, str) else ""
     return words or own
+
+
+def _description(folder: Path) -> bytes:
+    place = folder / DESCRIPTION
+    if place.exists():
+        return plain_bytes(place, most_bytes=MOST_TOML_BYTES)
+    return unfolded(FilesOfFolder(folder)).read(DESCRIPTION) or b""
 
 
 def unsafe_because(path: str, *, for_windows: bool) -> str | None:

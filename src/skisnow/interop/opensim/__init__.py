@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from .boots import BootMarkers, boots_of_markers, boots_text
 from .c3d import read_c3d
-from .convert import convert_motion
 from .markers import Markers, read_trc, write_trc
 from .table import MotionTable, read_motion, write_motion
 
@@ -14,7 +13,6 @@ __all__ = [
     "MotionTable",
     "boots_of_markers",
     "boots_text",
-    "convert_motion",
     "read_c3d",
     "read_motion",
     "read_trc",

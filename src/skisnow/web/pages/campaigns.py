@@ -119,7 +119,8 @@ def _stored_sample(lab: Lab) -> str:
 def _import_form(lab: Lab) -> None:
     heading("Import")
     sentence(
-        "A campaign's folder, its files, or a zip of it. It is stored byte for byte; corrections stand beside it. "
+        "A campaign's folder, its files, a workbook (.xlsx), or a zip. It is stored byte for byte; corrections stand "
+        "beside it. "
         f"At most {counted(lab.limits.files, 'file')}.",
         "quiet",
     )

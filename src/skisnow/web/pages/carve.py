@@ -12,7 +12,7 @@ from nicegui import background_tasks, run, ui
 from ...errors import ParameterError, SkisnowError
 from ...report.number_formatting import significant
 from ...report.write import RESULTS
-from ..fields import choice
+from ..fields import choice, link
 from ..lab_skis import LabSkis
 from ..language import said
 from ..layout import framed
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 PATH: Final = "/carve"
 TITLE: Final = "Carve"
+SKIS: Final = "/skis"
 ALONG: Final = "Along the ski (m), boot = 0"
 ENDS: Final = ("tail", "tip")
 """Where the axis leads to: stations count forward from the boot."""
@@ -86,9 +87,9 @@ def add_page(lab: Lab) -> None:
     solver, skis = _Solver(), LabSkis(lab.runs)
 
     @ui.page(PATH)
-    async def carve() -> None:
+    async def carve(ski: str = "", other: str = "") -> None:
         with framed("Carve", here=PATH):
-            _Carve(lab, solver, skis).ask()  # answered while the browser builds the page
+            _Carve(lab, solver, skis, (ski, other)).ask()  # answered while the browser builds the page
 
 
 class _Solver:
@@ -121,19 +122,23 @@ class _Solver:
 class _Carve:
     """The sliders and what follows them; while one answer is computed only the latest question waits."""
 
-    def __init__(self, lab: Lab, solver: _Solver, skis: LabSkis) -> None:
+    def __init__(self, lab: Lab, solver: _Solver, skis: LabSkis, asked: tuple[str, str]) -> None:
         self._solver = solver
         self._skis = skis
         self._values: dict[str, str] = {key: start for key, (_, _, start) in SLIDERS.items()}
         self._waiting = False
         self._working = False
         names = skis.names()
+        first, other = (
+            name if name in names else otherwise for name, otherwise in zip(asked, (names[0], NOTHING), strict=True)
+        )
         self._headline = named(ui.element("section").classes("headline above"), "Carved radius")
         with ui.element("div").classes("fields large"):
-            self._ski = choice("Ski", names, names[0])
-            self._other = choice("Compared with", [NOTHING, *names], NOTHING)
+            self._ski = choice("Ski", names, first)
+            self._other = choice("Compared with", [NOTHING, *names], other)
             self._ratio = choice("Unloading ratio k_u/H_V", RATIOS, "10")
             self._snow = SnowChoice(lab, NUMBERS, self._other_snow)
+        link("Add or change a ski", SKIS)
         self._of_snow: dict[str, ui.element] = {}
         with ui.element("div").classes("sliders"):
             for key in SLIDERS:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
+from urllib.parse import quote
 
 from nicegui import run, ui
 
@@ -10,11 +11,13 @@ from ...errors import SkisnowError
 from ...report.ski_drawing import SkiDrawing, ski_drawing
 from ..confined import OF_A_SKI, confined
 from ..error_pages import error_sentence
-from ..fields import button, choice, field, said_options
+from ..fields import button, choice, field, link, said_options
 from ..lab_skis import FILE, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..layout import framed, heading, sentence
 from ..line_chart import STYLES, ChartLine, LineChart
+from ..names import carving
 from ..patience import BUILD_S
+from ..ski_adding import SkiAdding
 from ..ski_asked import SkiAsked, SkiFound, ski_found
 from ..ski_editor import SkiEditor
 from ..worded import Words, named
@@ -43,9 +46,11 @@ def add_page(lab: Lab) -> None:
     skis = LabSkis(lab.runs)
 
     @ui.page(PATH, response_timeout=BUILD_S)
-    async def show_skis() -> None:
+    async def show_skis(ski: str = "", added: str = "") -> None:
         with framed("Skis", here=PATH):
-            page = _Skis(skis)
+            page = _Skis(skis, ski)
+        if added and ski in skis.saved():
+            page.tell_added(ski)
         await page.draw()
 
 
@@ -56,12 +61,15 @@ def _checked_apart(text: str, table: str) -> None:
 class _Skis:
     """Two skis over each other; the second one may be the edited one, or none."""
 
-    def __init__(self, skis: LabSkis) -> None:
+    def __init__(self, skis: LabSkis, ski: str = "") -> None:
         self._skis = skis
         self._asked = 0
         names = skis.names()
+        chosen = ski if ski in names else names[0]
+        SkiAdding(skis, lambda name: ui.navigate.to(f"{PATH}?ski={quote(name, safe='')}&added=1"))
+        self._told = ui.element("div")
         with ui.element("div").classes("fields"):
-            self._first = choice("Ski", names, names[0])
+            self._first = choice("Ski", names, chosen)
             self._second = choice("Compared with", [NOTHING, EDITED, *names], NOTHING)
         self._status = Words("").classes("status").props("role=status")
         self._facts = ui.element("div").classes("table")
@@ -72,8 +80,8 @@ class _Skis:
                     for key, title in PANELS.items()
                 }
             with named(ui.element("section"), "Editor"):
-                self._editor = SkiEditor(skis, names[0], self._follow)
-                self._checked = skis.texts(names[0])
+                self._editor = SkiEditor(skis, chosen, self._follow)
+                self._checked = skis.texts(chosen)
                 self._saving()
         self._first.on_value_change(self.draw)
         self._second.on_value_change(self.draw)
@@ -88,6 +96,7 @@ class _Skis:
             button("Save in the lab", self._save, "main", once=True)
             button("Download the file", self._download)
         self._saved = Words("").classes("status").props("role=status")
+        self._next = ui.element("div").classes("acts")
 
     async def _begin(self) -> None:
         await self._editor.begin(str(self._first.value))
@@ -150,6 +159,17 @@ class _Skis:
         self._second.set_options(said_options([NOTHING, EDITED, *names]))
         self._second.set_value(name)  # which draws it
         _show(self._saved, f"Saved: {name}. Carve and Simulate have it too.", bad=False)
+        first = str(self._first.value)
+        self._next.clear()
+        with self._next:
+            link("Carve both side by side", carving(first, name), "main")
+
+    def tell_added(self, name: str) -> None:
+        """Say that a measured ski was taken in, and what can be done with it."""
+        with self._told:
+            sentence(
+                f"The ski {name} is added. Carve and Simulate have it too; below it can be changed.", "good"
+            ).props("role=status")
 
     def _keep(self, name: str, asked: SkiAsked) -> None:
         self._skis.require_new(name)

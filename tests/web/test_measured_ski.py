@@ -1,0 +1,127 @@
+"""A measured ski comes into the lab, is changed by five per cent, and both are carved side by side."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.ski import read_ski
+from skisnow.web.lab_skis import LabSkis
+from skisnow.web.settings import Limits
+
+from .conftest import Served, fill
+from .test_carve_page import ANSWERED_MS
+
+pytest.importorskip("nicegui", reason="the web lab is not installed")
+
+from skisnow.web.measured_ski import add_ski, measured_text, read_ski_files, ski_of_uploads
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+TYPED = {
+    "length_mm": "1593", "running_length_mm": "1396", "sidecut_length_mm": "1458", "tip_width_mm": "116",
+    "waist_width_mm": "68", "tail_width_mm": "101", "mass_kg": "2,231", "camber_mm": "7",
+    "EI_N_m2": "100 250; 440, 260,5 100", "GJ_N_m2": "60 140 175 140 60",
+}  # fmt: skip
+DESIGN = {
+    "board": {
+        "name": "Board", "nose length": "15 cm", "effective edge length": "130 cm", "tail length": "10 cm",
+        "sidecut radius": "13 m", "waist width": "9.3 cm", "taper": "0 cm", "stance setback": "0 cm",
+        "nose width": "12 cm",
+        "edge shape": {"type": "Basic Arc"},
+    }
+}  # fmt: skip
+TABLE = "station_m;width_mm;EI_N_m2\n0,845;25;100\n0,729;116;100\n0;68;440\n-0,729;101;100\n-0,749;101;100\n"
+WITH_TABLE = """name = "my slalom"
+running_length_mm = 1396
+sidecut_length_mm = 1458
+mass_kg = 2.231
+GJ_N_m2 = [60, 140, 175, 140, 60]
+table = "rows.csv"
+"""
+
+
+def test_three_widths_are_a_ski_file(tmp_path: Path) -> None:
+    (tmp_path / "ski.toml").write_text(measured_text("mine", TYPED), encoding="utf-8")
+    ski = read_ski(tmp_path / "ski.toml")
+    assert ski.name == "mine"
+    assert ski.mass == pytest.approx(2.231)
+    middle = abs(ski.station).argmin()
+    assert ski.width[middle] == pytest.approx(0.068, abs=1e-6)
+    assert ski.bending_stiffness[middle] == pytest.approx(440.0, rel=1e-4)
+    with pytest.raises(ParameterError, match=re.escape("Width at the tip (mm): 'wide' is no number")):
+        measured_text("mine", {**TYPED, "tip_width_mm": "wide"})
+    with pytest.raises(ParameterError, match=r"EI .* is no number"):
+        measured_text("mine", {**TYPED, "EI_N_m2": ""})
+
+
+def test_a_file_with_its_table_is_taken_as_it_is_read(tmp_path: Path) -> None:
+    uploads = [("Skis\\mine.toml", io.BytesIO(WITH_TABLE.encode())), ("rows.csv", io.BytesIO(TABLE.encode()))]
+    texts = ski_of_uploads(uploads, {}, Limits())
+    skis = LabSkis(tmp_path)
+    assert add_ski(skis, "", texts) == "my slalom"
+    (tmp_path / "mine.toml").write_text(WITH_TABLE, encoding="utf-8")
+    (tmp_path / "rows.csv").write_text(TABLE, encoding="utf-8")
+    ours, theirs = read_ski(skis.word("my slalom")), read_ski(tmp_path / "mine.toml")
+    assert ours.width == pytest.approx(theirs.width, abs=1e-12)
+    with pytest.raises(ParameterError, match="there is a ski my slalom already"):
+        add_ski(skis, "", texts)
+    assert add_ski(skis, " another  name ", texts) == "another name"
+
+
+def test_a_design_is_taken_with_what_it_does_not_know(tmp_path: Path) -> None:
+    (tmp_path / "ski-def.json").write_text(json.dumps(DESIGN), encoding="utf-8")
+    texts = read_ski_files(str(tmp_path), ["ski-def.json"], TYPED)
+    assert texts.name == "Board"
+    skis = LabSkis(tmp_path / "lab")
+    ski = read_ski(skis.word(add_ski(skis, "design", texts)))
+    assert float(ski.width[abs(ski.station).argmin()]) == pytest.approx(0.093, abs=1e-6)
+    assert ski.mass == pytest.approx(2.231)
+
+
+def test_what_is_no_ski_is_said_and_other_files_are_not_read(tmp_path: Path) -> None:
+    (tmp_path / "rows.csv").write_text(TABLE, encoding="utf-8")
+    (tmp_path / "mine.toml").write_text(WITH_TABLE.replace("rows.csv", "../rows.csv"), encoding="utf-8")
+    with pytest.raises(ParameterError, match="choose that file, too"):
+        read_ski_files(str(tmp_path), ["mine.toml", "rows.csv"], {})
+    with pytest.raises(ParameterError, match="choose one ski"):
+        read_ski_files(str(tmp_path), ["rows.csv"], {})
+    (tmp_path / "mine.toml").write_text(WITH_TABLE.replace("1396", "-1"), encoding="utf-8")
+    with pytest.raises(ParameterError, match=r"^mine\.toml: running_length_mm is -1"):
+        read_ski_files(str(tmp_path), ["mine.toml", "rows.csv"], {})
+
+
+@pytest.mark.slow
+def test_a_ski_maker_sees_what_five_per_cent_do(page: Page, served: Served) -> None:
+    """Sidecut and stiffness of a ski that was measured: the carved radii of both stand beside each other."""
+    page.goto(f"{served.address}carve")
+    page.get_by_role("link", name="Add or change a ski").click()
+    page.locator("summary", has_text="Add a measured ski").click()
+    labels = dict(zip(TYPED, ("Length (mm)", "Running length (mm)", "Sidecut length (mm)", "Width at the tip (mm)",
+        "Width at the waist (mm)", "Width at the tail (mm)", "Mass of one ski (kg)", "Camber (mm)",
+        "EI (N m²) from tip to tail", "GJ (N m²) from tip to tail"), strict=True))  # fmt: skip
+    form = page.locator(".adding > .fields")
+    fill(page, {"Name of the ski": "mine"})
+    for key, label in labels.items():
+        form.get_by_label(label, exact=True).fill(TYPED[key])
+    page.get_by_role("button", name="Add this ski").click()
+    page.get_by_text("The ski mine is added.").wait_for()
+    page.get_by_role("columnheader", name="mine").wait_for()
+    for factor in ("Sidecut depth ×", "EI ×", "GJ ×"):
+        page.get_by_label(factor, exact=True).fill("1,05")
+        page.keyboard.press("Tab")
+    page.get_by_role("columnheader", name="mine, edited").wait_for()
+    fill(page, {"New name": "mine plus 5"})
+    page.get_by_role("button", name="Save in the lab").click()
+    page.get_by_role("link", name="Carve both side by side").click()
+    radii = page.get_by_role("region", name="Carved radius").locator(".value")
+    radii.nth(1).wait_for(timeout=ANSWERED_MS)
+    first, second = (float(re.findall(r"([\d.]+) m", each)[0]) for each in radii.all_inner_texts())
+    assert second == pytest.approx(first / 1.05, rel=0.02)  # about as the sidecut radius
