@@ -15,7 +15,6 @@ from skisnow import scenario, simulate
 from skisnow.contact import Runner, SnowContact
 from skisnow.errors import ParameterError
 from skisnow.interop import write_contact_fmu, write_sledge_fmu
-from skisnow.interop.fmu.description import Version
 from skisnow.simulate.run_setup import laid_out
 from skisnow.simulate.sledge.frames import rotation
 
@@ -192,10 +191,9 @@ def test_of_other_kinds_there_are_no_variables_and_of_what_is_not_offered_words(
         instance.call(name, None, None, nothing)
 
 
-@pytest.mark.parametrize("fmi", [2, 3])
-def test_an_fmu_has_the_same_bytes_and_no_python(tmp_path: Path, fmi: Version) -> None:
-    first = write_sledge_fmu(SCENARIO, tmp_path / "a.fmu", fmi=fmi)
-    assert first.read_bytes() == write_sledge_fmu(SCENARIO, tmp_path / "b.fmu", fmi=fmi).read_bytes()
+def test_an_fmu_has_the_same_bytes_and_no_python(tmp_path: Path) -> None:
+    first = write_sledge_fmu(SCENARIO, tmp_path / "a.fmu")
+    assert first.read_bytes() == write_sledge_fmu(SCENARIO, tmp_path / "b.fmu").read_bytes()
     with zipfile.ZipFile(first) as archive:
         names = {Path(name).suffix for name in archive.namelist()}
     assert names == {".xml", ".so", ".txt"}
