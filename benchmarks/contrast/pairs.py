@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -66,10 +66,10 @@ class Pairs:
         """Names are full ones already."""
         return dict(table)
 
-    def require_sound(self, points: list[Point], fixed: Point) -> None:
+    def require_sound(self, points: Sequence[Point], fixed: Point) -> None:
         """The design is sound."""
 
-    def files(self, points: list[Point]) -> list[Path]:  # noqa: ARG002 - a point names none
+    def files(self, points: Sequence[Point]) -> list[Path]:  # noqa: ARG002 - a point names none
         """No file."""
         return []
 

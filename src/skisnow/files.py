@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import os
 import tempfile
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from .errors import OutputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 def write_file(path: str | Path, content: str | bytes) -> None:
@@ -17,16 +22,29 @@ def write_file(path: str | Path, content: str | bytes) -> None:
     OutputError
         The place cannot be written or is full; whatever stood there before still does.
     """
-    path = Path(path)
     data = content.encode("utf-8") if isinstance(content, str) else content
+    with place_to_write(path) as place:
+        place.write_bytes(data)
+
+
+@contextmanager
+def place_to_write(path: str | Path) -> Iterator[Path]:
+    """An empty file to be filled by its name, which stands in its place when the block ends well, and else nowhere.
+
+    Raises
+    ------
+    OutputError
+        The place cannot be written or is full; whatever stood there before still does.
+    """
+    path = Path(path)
     temporary: Path | None = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".partial", dir=path.parent)
+        os.close(handle)
         temporary = Path(name)
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
+        yield temporary
+        with temporary.open("r+b") as file:
             os.fsync(file.fileno())
         temporary.chmod(0o644)
         temporary.replace(path)

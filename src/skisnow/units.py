@@ -52,6 +52,7 @@ _BY_ENDING: Final = {
     "m_per_s": Unit("m/s", 1.0),
     "s_per_m": Unit("s/m", 1.0),
     "per_rad": Unit("1/rad", 1.0),
+    "per_s": Unit("1/s", 1.0),
     "kg_m2": Unit("kg m²", 1.0),
     "N_m2": Unit("N m²", 1.0),
     "Nm_per_deg": Unit("N m/°", 1.0 / DEGREE),

@@ -1,6 +1,7 @@
 """`skisnow study` as a user meets it, killed and interrupted too."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -11,6 +12,8 @@ from pathlib import Path
 import pytest
 
 from skisnow.cli import main
+from skisnow.errors import SkisnowError
+from skisnow.parallel.kept_rows import KeptRows
 
 TEXT = """
 out = "tables/table.csv"
@@ -128,8 +131,16 @@ def wait_for(condition: Callable[[], bool], patience_s: float = 120.0) -> None:
         time.sleep(0.01)
 
 
-def lines_of(partial: Path) -> int:
-    return partial.read_bytes().count(b"\n") if partial.exists() else 0
+def kept_in(partial: Path, copy: Path) -> int:
+    """Rows in a file that another process has; it is looked at in a copy."""
+    copy.mkdir(exist_ok=True)
+    for name in (partial.name, f"{partial.name}-wal"):
+        if (place := partial.with_name(name)).exists():
+            shutil.copyfile(place, copy / name)
+    try:
+        return len(KeptRows.read(copy / partial.name))
+    except SkisnowError:  # it was copied in the middle of a writing, or is not there yet
+        return 0
 
 
 def children_of(process: int) -> list[int]:
@@ -156,20 +167,18 @@ def test_killed_and_interrupted_studies_go_on_to_the_same_bytes(tmp_path: Path, 
     broken, whole = study_in(tmp_path / "broken", TEXT), study_in(tmp_path / "whole", TEXT)
     partial = broken.parent / "tables" / "table.csv.partial"
     first = started(broken, "--workers", "2")
-    wait_for(lambda: lines_of(partial) > 3 or first.poll() is not None)
+    wait_for(lambda: kept_in(partial, tmp_path / "copy") > 3 or first.poll() is not None)
     workers = children_of(first.pid)
     os.kill(first.pid, how)
     _, err = first.communicate(timeout=60)
     assert first.returncode == code, err.decode()
     assert b"Traceback" not in err
     assert how == signal.SIGKILL or b"resource_tracker" not in err
-    kept = lines_of(partial) - 1
+    kept = kept_in(partial, tmp_path / "copy")
     assert 3 <= kept < POINTS
     assert not (broken.parent / "tables" / "table.csv").exists()
     assert workers
     wait_for(lambda: not any(alive(worker) for worker in workers), 20.0)
-    with partial.open("ab") as stream:
-        stream.write(b'299 {"ski":"sl')  # a line that was torn in the middle
     assert main(["study", str(broken), "--workers", "1"]) == 0
     assert main(["study", str(whole), "--workers", "1"]) == 0
     tables = [path.parent / "tables" / "table.csv" for path in (broken, whole)]

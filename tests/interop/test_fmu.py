@@ -223,4 +223,6 @@ def test_wrong_names_numbers_and_scenarios_are_refused(tmp_path: Path) -> None:
         write_sledge_fmu(SCENARIO, tmp_path / "sledge.fmu", fmi=1)  # type: ignore[arg-type]
     with pytest.raises(ParameterError, match="skis is 3"):
         write_contact_fmu(SCENARIO, tmp_path / "contact.fmu", skis=3)
+    with pytest.raises(ParameterError, match="skier: an FMU holds a sledge"):
+        write_sledge_fmu(scenario("skier-10deg"), tmp_path / "skier.fmu")
     assert not list(tmp_path.iterdir())

@@ -3,17 +3,16 @@
 import itertools
 import os
 import signal
-from collections.abc import Iterator
 from functools import partial
 from multiprocessing import Pipe
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import pytest
 
-from skisnow.errors import OutputError, ParameterError
+from skisnow.errors import ParameterError
 from skisnow.parallel.batch import run_batch
-from skisnow.parallel.kept_rows import KeptRows, row_text
+from skisnow.parallel.kept_rows import KeptRows
 from skisnow.parallel.worker_process import begin_worker
 
 POINTS = [[("n", n), ("third", n / 3.0), ("text", 'a "quoted", ü\nline')] for n in range(25)]
@@ -54,17 +53,6 @@ def test_other_processes_are_started_for_several_points_alone(workers: int, poin
     assert {row["process"] == os.getpid() for row in rows} == {own}
 
 
-def test_a_row_that_cannot_be_kept_is_told_with_its_file(place: Path) -> None:
-    class Full:
-        def write(self, _: bytes) -> None:
-            raise OSError(28, "No space left on device")
-
-    kept = KeptRows(place, {}, cast("Any", Full()))
-    with pytest.raises(OutputError, match=r"rows\.partial cannot be written: No space left on device"):
-        kept.add([(0, row_text({}))])
-    assert kept.rows == {}
-
-
 def test_a_worker_leaves_an_interrupt_to_its_parent() -> None:
     before = signal.getsignal(signal.SIGINT)
     parent, child = Pipe()
@@ -94,7 +82,7 @@ def test_finished_points_are_kept_over_an_interruption(place: Path) -> None:
         run_batch(POINTS, Stopping(7), kept=kept, workers=1)
     kept.close()
     again = KeptRows.opened(place, "f")
-    assert again.rows == dict(enumerate(ROWS[:7]))
+    assert dict(again.rows()) == dict(enumerate(ROWS[:7]))
     rest = Stopping(len(POINTS) - 7)  # one point more would interrupt again
     assert run_batch(POINTS, rest, kept=again, workers=1) == ROWS
     again.remove()
@@ -106,69 +94,10 @@ def test_error_of_the_function_ends_the_batch_and_keeps_what_was_done(place: Pat
     kept = KeptRows.opened(place, "f")
     with pytest.raises(TypeError):
         run_batch([*POINTS, 5], dict, kept=kept, workers=2)
-    assert set(kept.rows) <= set(range(25))
+    assert set(kept.numbers()) <= set(range(25))
     kept.close()
-
-
-def test_torn_last_line_is_dropped_wherever_it_tore(place: Path) -> None:
-    kept = KeptRows.opened(place, "f")
-    kept.add((number, row_text(row)) for number, row in enumerate(ROWS[:3]))
-    kept.close()
-    whole = place.read_bytes()
-    ends = [place for place, byte in enumerate(whole) if byte == ord("\n")]
-    for length in range(len(whole) + 1):
-        place.write_bytes(whole[:length])
-        opened = KeptRows.opened(place, "f")
-        complete = sum(end < length for end in ends) - 1  # without the first line
-        assert opened.rows == dict(enumerate(ROWS[: max(complete, 0)]))
-        opened.add([(9, '{"n":9}')])
-        opened.close()
-        reopened = KeptRows.opened(place, "f")
-        assert reopened.rows[9] == {"n": 9}
-        reopened.close()
-
-
-def test_damaged_line_is_computed_again(place: Path) -> None:
-    kept = KeptRows.opened(place, "f")
-    kept.add((number, row_text(row)) for number, row in enumerate(ROWS[:3]))
-    kept.close()
-    lines = place.read_bytes().split(b"\n")
-    lines[2] = b"\0" * 40
-    place.write_bytes(b"\n".join(lines))
-    opened = KeptRows.opened(place, "f")
-    assert opened.rows == {0: ROWS[0]}
-    assert run_batch(POINTS, dict, kept=opened, workers=1) == ROWS
-    opened.close()
-
-
-def test_rows_of_another_batch_are_refused(place: Path) -> None:
-    KeptRows.opened(place, "f").close()
-    with pytest.raises(ParameterError, match="remove that file to begin anew"):
-        KeptRows.opened(place, "g")
-    KeptRows.opened(place, "f").close()
-
-
-def test_two_runs_at_once_are_refused(place: Path) -> None:
-    pytest.importorskip("fcntl", reason="locks of files are those of Unix")
-    first = KeptRows.opened(place, "f")
-    with pytest.raises(OutputError, match="another run"):
-        KeptRows.opened(place, "f")
-    first.close()
 
 
 def test_no_worker_is_refused() -> None:
     with pytest.raises(ParameterError, match="workers is 0"):
         run_batch(POINTS, dict, workers=0)
-
-
-def test_numbers_come_back_with_every_digit(place: Path) -> None:
-    def many() -> Iterator[float]:
-        yield from (0.1 + 0.2, 1e-320, 1.7976931348623157e308, -0.0, 1 / 3)
-
-    points = [[("x", x)] for x in many()]
-    kept = KeptRows.opened(place, "f")
-    run_batch(points, dict, kept=kept, workers=1)
-    kept.close()
-    opened = KeptRows.opened(place, "f")
-    assert [repr(opened.rows[n]["x"]) for n in range(len(points))] == [repr(x) for x in many()]
-    opened.close()

@@ -10,8 +10,10 @@ from typing import Any
 import pytest
 
 from skisnow.errors import ParameterError, SkisnowError
+from skisnow.parallel.chunk import computed
+from skisnow.parallel.crews import LARGEST_FOR_A_PIPE, _in_worker
 from skisnow.parallel.kept_rows import NumberedText
-from skisnow.parallel.pool import LARGEST_CHUNK, Pool, _chunk, workers_in_force
+from skisnow.parallel.pool import Pool, workers_in_force
 
 
 def own_process(_point: Any) -> dict[str, Any]:
@@ -78,13 +80,13 @@ def test_quick_points_are_handed_over_many_at_a_time() -> None:
         chunks = [len(chunk) for chunk in pool.rows([(n, None) for n in range(1000)])]
     assert sum(chunks) == 1000
     assert chunks[0] == 1
-    assert 10 < max(chunks) <= LARGEST_CHUNK
+    assert 10 < max(chunks) <= LARGEST_FOR_A_PIPE
     assert len(chunks) < 500
 
 
 def test_only_a_pool_starts_a_worker() -> None:
     with pytest.raises(SkisnowError, match="not started by a Pool"):
-        _chunk([(0, None)])
+        _in_worker([(0, None)])
 
 
 @pytest.mark.parametrize(("points", "each"), [([2.0], 2.0), ([1.0, 3.0], 2.0), ([], 0.0)])
@@ -97,6 +99,5 @@ def test_a_chunk_tells_how_long_a_point_takes(
         clock[0] += seconds
         return {}
 
-    monkeypatch.setattr("skisnow.parallel.pool._Worker.function", lasting)
-    monkeypatch.setattr("skisnow.parallel.pool.time.perf_counter", lambda: clock[0])
-    assert _chunk(list(enumerate(points))).seconds_per_point == each
+    monkeypatch.setattr("skisnow.parallel.chunk.time.perf_counter", lambda: clock[0])
+    assert computed(lasting, list(enumerate(points))).seconds_per_point == each

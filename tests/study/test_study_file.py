@@ -72,7 +72,7 @@ def test_logarithmic_sample_is_even_in_the_logarithm(tmp_path: Path) -> None:
 def test_paths_are_relative_to_the_study(tmp_path: Path) -> None:
     fixed = FIXED.replace('ski = "slalom"\n', "")
     found = study(tmp_path, f'{OUT}{fixed}{GRID}ski = ["mine/ski.toml", "slalom"]\n')
-    assert found.subject.files(found.points) == [tmp_path / "mine" / "ski.toml"]
+    assert found.subject.files(found.numbered) == [tmp_path / "mine" / "ski.toml"]
 
 
 def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp_path: Path) -> None:

@@ -56,8 +56,8 @@ def run(options: argparse.Namespace) -> int:
         )
         print(f"{study.partial}.\nThe same command goes on with them.", file=sys.stderr)
         return 143 if ended else 130
-    _tell(study, table)
-    if not table.answers():
+    _tell(study.out, table)
+    if table.tally().failed == len(table.rows):
         print(f"skisnow: not one point could be asked; {study.out} was not written.", file=sys.stderr)
         return 1
     if options.figure is not None:
@@ -76,17 +76,18 @@ def _tell_state(study: Study) -> None:
         print(f"{study.out} holds this study already; nothing is computed again.", file=sys.stderr)
 
 
-def _tell(study: Study, table: StudyTable) -> None:
-    counts = ", ".join(f"{outcome} {count}" for outcome, count in table.counts().items())
-    print(f"{study.out}: points {len(table.rows)} ({counts})")
-    rows = list(enumerate(table.rows, start=1))
-    failed = [(place, row["reason"]) for place, row in rows if row["outcome"] == "error"]
-    warned = [(place, row["warnings"]) for place, row in rows if row["warnings"]]
-    for found, what in ((failed, "could not be asked"), (warned, "carry warnings")):
-        if found:
-            place, text = found[0]
-            count = "1 point" if len(found) == 1 else f"{len(found)} points"
-            print(f"warning: {count} {what}; the first, row {place}: {text}", file=sys.stderr)
+def _tell(place: Path, table: StudyTable) -> None:
+    found = table.tally()
+    counts = ", ".join(f"{outcome} {count}" for outcome, count in found.counts().items())
+    print(f"{place}: points {found.rows} ({counts})")
+    for number, first, what in (
+        (found.failed, found.first_failed, "could not be asked"),
+        (found.warned, found.first_warned, "carry warnings"),
+    ):
+        if first is not None:
+            row, text = first
+            count = "1 point" if number == 1 else f"{number} points"
+            print(f"warning: {count} {what}; the first, row {row}: {text}", file=sys.stderr)
 
 
 def _draw(options: argparse.Namespace, table: StudyTable) -> None:

@@ -4,7 +4,7 @@ All TOML and JSON of users is read here and nowhere else: campaigns, scenarios, 
 """
 
 from .errors import GivenError
-from .json_text import MOST_JSON_BYTES, json_value, read_json
+from .json_text import MOST_JSON_BYTES, json_value, own_json, read_json
 from .plain_file import is_file, plain_bytes, plain_text
 from .toml_text import MOST_TOML_BYTES, read_toml, toml_values
 from .workbook import workbook_sheets
@@ -17,6 +17,7 @@ __all__ = [
     "GivenError",
     "is_file",
     "json_value",
+    "own_json",
     "plain_bytes",
     "plain_text",
     "read_json",

@@ -49,6 +49,17 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
     return value
 
 
+def own_json(text: str | bytes) -> Any:
+    """The value of a JSON text that this program wrote: limits are not looked for, and a number may be infinite.
+
+    Raises
+    ------
+    ValueError
+        It is no JSON.
+    """
+    return json.loads(text)
+
+
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) != len(pairs):

@@ -14,7 +14,8 @@ import numpy as np
 from ..errors import FitError, ParameterError
 from ..former_names import with_former_keywords
 from ..inputs import values_of
-from ..parallel.kept_rows import KeptRows
+from ..parallel.executors import ExecutorLike, require_executor
+from ..parallel.kept_rows import KeptRows, forget
 from ..scenario import Scenario, ScenarioFile
 from ..scenario.free_keys import free_keys
 from ..scenario.given import GivenScenario, given_scenario
@@ -57,6 +58,7 @@ def identify(
     clock_is_free: bool | None = None,
     rng: np.random.Generator | None = None,
     workers: int | None = None,
+    executor: ExecutorLike | None = None,
     checkpoint: Path | None = None,
     restart: bool = False,
     progress: Progress | None = None,
@@ -89,6 +91,8 @@ def identify(
         Source of random numbers, for starts, bootstrap and posterior; left out, one with the seed 0.
     workers
         Processes that simulate; None: as many as this process has cores.
+    executor
+        What simulates in place of processes of this computer, as of `skisnow.run_batch`.
     checkpoint
         File in which finished simulations are stored, and looked for first; None: nowhere.
     restart
@@ -126,6 +130,7 @@ def identify(
     """
     begun = time.monotonic()
     require_bootstrap(bootstrap, bootstrap_by)
+    require_executor(executor)
     given = (scenario if isinstance(scenario, GivenScenario) else given_scenario(scenario)).changed(changes)
     asked = resolved(given)
     own = given_parameters(given.identify)
@@ -136,10 +141,10 @@ def identify(
     parameters = parameter_table(keys_of_runs(keys, read.runs), values_to_begin_with(asked, read, own), own)
     simulate = RunSimulation(given, tuple(track.time for track in read.tracks))
     if restart and checkpoint is not None:
-        checkpoint.unlink(missing_ok=True)
+        forget(checkpoint)
     rows = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, fingerprint(given, read.tracks))
     counted = _Counted(progress or _silent)
-    with Simulations(simulate, rows, workers, counted) as simulations:
+    with Simulations(simulate, rows, workers, counted, executor) as simulations:
         observations = _observations(asked, read, simulations, clock_is_free=_clock(given, clock_is_free))
         _require_used(keys, observations)
         plan = Request(

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
+from ..parallel.executors import ExecutorLike
 from ..parallel.kept_rows import KeptRows, Row
 from ..parallel.pool import Pool, workers_in_force
 from .run_simulation import RunSimulation, RunTask
@@ -28,6 +29,8 @@ class Simulations:
         Number of processes; None: as many as this process has cores; 1: this process itself.
     progress
         Called with the number of runs computed so far.
+    executor
+        What computes; None: processes of this computer.
     computed, found
         How many were computed here, and how many were finished before.
     """
@@ -36,6 +39,7 @@ class Simulations:
     kept: KeptRows = field(default_factory=KeptRows)
     workers: int | None = None
     progress: Callable[[int], None] = field(default=lambda _: None)
+    executor: ExecutorLike | None = None
     computed: int = 0
     found: int = 0
     _pool: Pool = field(init=False)
@@ -43,8 +47,8 @@ class Simulations:
 
     def __post_init__(self) -> None:
         advice = "finished runs are kept. Start again with --resume, with fewer workers"
-        self._pool = Pool(self.simulate, workers_in_force(self.workers), advice=advice)
-        self._before = frozenset(self.kept.rows)
+        self._pool = Pool(self.simulate, workers_in_force(self.workers), advice=advice, executor=self.executor)
+        self._before = frozenset(self.kept.numbers())
 
     def __call__(self, tasks: Sequence[RunTask]) -> list[Row]:
         """Rows of all tasks, in their order.
@@ -55,13 +59,12 @@ class Simulations:
             A process ended unexpectedly; what was finished is kept.
         """
         numbers = [task_number(task) for task in tasks]
-        missing = {number: task for number, task in zip(numbers, tasks, strict=True) if number not in self.kept.rows}
+        missing = {number: task for number, task in zip(numbers, tasks, strict=True) if number not in self.kept}
         self.found += sum(number in self._before for number in dict.fromkeys(numbers))
         for rows in self._pool.rows(list(missing.items())):
-            self.kept.add(rows)
-            self.computed += len(rows)
+            self.computed += self.kept.add(rows)
             self.progress(self.computed)
-        return [self.kept.rows[number] for number in numbers]
+        return [self.kept.row(number) for number in numbers]
 
     def __enter__(self) -> Self:
         """Start nothing yet."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
+from .chunk import PointFunction
+from .executors import ExecutorLike
 from .kept_rows import KeptRows, Row
-from .pool import PointFunction, Pool, workers_in_force
+from .pool import Pool, workers_in_force
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Takes the number of finished points and that of all."""
@@ -18,6 +20,7 @@ def run_batch(
     *,
     kept: KeptRows | None = None,
     workers: int | None = None,
+    executor: ExecutorLike | None = None,
     progress: Progress | None = None,
 ) -> list[Row]:
     """Rows of all points, in their order.
@@ -34,6 +37,9 @@ def run_batch(
         Rows that are finished already, and where to keep new ones; None: nowhere.
     workers
         Number of processes; None: as many as this process has cores; 1: this process itself.
+    executor
+        What computes in place of processes of this computer: "threads"; any `concurrent.futures.Executor`, which is not
+        shut down; a Dask client, the address of a Dask scheduler, or a TOML file of one. The rows do not depend on it.
     progress
         Called with the number of finished points and that of all.
 
@@ -45,9 +51,9 @@ def run_batch(
     Raises
     ------
     ParameterError
-        The number of workers is below 1.
+        The number of workers is below 1, or the executor is none.
     SkisnowError
-        A worker ended unexpectedly; what was finished is kept.
+        A worker ended unexpectedly, or has another skisnow; what was finished is kept.
 
     See Also
     --------
@@ -63,17 +69,50 @@ def run_batch(
     The page docs/how-to/study.md.
     """
     kept = kept if kept is not None else KeptRows()
+    compute_missing(points, function, kept, workers=workers, executor=executor, progress=progress)
+    return [row for number, row in kept.rows() if number < len(points)]
+
+
+def compute_missing(
+    points: Sequence[Any],
+    function: PointFunction,
+    kept: KeptRows,
+    *,
+    numbers: range | None = None,
+    workers: int | None = None,
+    executor: ExecutorLike | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Compute the rows of points that are not kept yet, and keep them; memory does not grow with their number.
+
+    Parameters
+    ----------
+    points, function, kept, workers, executor, progress
+        As of `run_batch`.
+    numbers
+        The points that are asked for; None: all.
+
+    Raises
+    ------
+    ParameterError, SkisnowError
+        As of `run_batch`.
+    """
     wanted = workers_in_force(workers)
-    missing = [(number, point) for number, point in enumerate(points) if number not in kept.rows]
-
-    def tell() -> None:
-        if progress is not None:
-            progress(len(kept.rows), len(points))
-
-    tell()
+    numbers = range(len(points)) if numbers is None else numbers
+    finished = bytearray(len(points))
+    for number in kept.numbers():
+        if number < len(finished):
+            finished[number] = True
+    done = sum(finished[numbers.start : numbers.stop : numbers.step])
+    missing = len(numbers) - done
+    tell = progress or _silent
+    tell(done, len(numbers))
     advice = "finished points are kept. Start again, with fewer workers"
-    with Pool(function, max(1, min(wanted, len(missing))), advice=advice) as pool:
-        for done in pool.rows(missing):
-            kept.add(done)
-            tell()
-    return [kept.rows[number] for number in range(len(points))]
+    with Pool(function, max(1, min(wanted, missing)), advice=advice, executor=executor) as pool:
+        for rows in pool.rows(((number, points[number]) for number in numbers if not finished[number]), missing):
+            done += kept.add(rows)
+            tell(done, len(numbers))
+
+
+def _silent(_done: int, _total: int) -> None:
+    return

@@ -20,6 +20,7 @@ from ..geometry.surfaces import Grid
 from ..scenario import Plane, Scenario, SnowMap
 from ..scenario.slope_surface import down_and_left, heights_of, normals_of, reach_of, surface_of
 from ..ski.beam.clamped import clamped
+from ..skier import BalancedSkier
 from .moving_boots import BootControl, BootDrive, TableControl
 from .sledge.body import sledge_body
 
@@ -177,6 +178,8 @@ def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
         if scenario.boots is not None:
             raise ParameterError("the boots move by boots.file and by a function; give one of them")
         return BootDrive(boots)
+    if scenario.skier is not None:
+        return BootDrive(BalancedSkier(scenario))
     if scenario.boots is None:
         return None
     return BootDrive(TableControl(scenario.boots), held=scenario.boots.frame == "slope")

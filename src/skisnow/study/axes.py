@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,12 +12,12 @@ import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..inputs import Quantity, checked_table, made
-from .study import Point
+from .points import Column, GridPoints, Point, SampledPoints
 
 FloatArray = npt.NDArray[np.float64]
 
 MOST_POINTS: Final = 1_000_000
-"""Of one study: a table of half a gigabyte (modelling assumption)."""
+"""Of one study: a table of about half a gigabyte on disk; memory does not grow with it (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,14 +99,16 @@ class Axis:
         middle = self._at(share)
         return [self._in_kind(x) for x in (low, *middle[1:-1].tolist(), high)]
 
-    def sampled(self, share: FloatArray) -> list[Any]:
+    def sampled(self, share: FloatArray) -> Column:
         """The values at shares from 0 to 1 of the axis; of a list each value has the same share."""
         if self.values:
             index = np.minimum((share * len(self.values)).astype(int), len(self.values) - 1)
-            return [self.values[place] for place in index.tolist()]
+            return Column(index, self.values)
         if self.n is not None:
             raise ParameterError(f"{self.key.name}: n stands once in [latin_hypercube], not in a range")
-        return [self._in_kind(x) for x in self._at(share).tolist()]
+        numbers = self._at(share)
+        whole = self.key.kind == "whole number"
+        return Column(np.array([round(x) for x in numbers.tolist()]) if whole else numbers)
 
     def _at(self, share: FloatArray) -> FloatArray:
         low, high = (math.log(end) for end in self.ends) if self.log else self.ends
@@ -118,19 +119,19 @@ class Axis:
         return round(number) if self.key.kind == "whole number" else number
 
 
-def grid_points(axes: list[Axis]) -> list[Point]:
+def grid_points(axes: list[Axis], fixed: Point) -> GridPoints:
     """Every combination; the last axis varies fastest."""
-    values = [axis.on_grid() for axis in axes]
-    require_count(math.prod(len(each) for each in values))
-    return [dict(zip((axis.key.name for axis in axes), each, strict=True)) for each in itertools.product(*values)]
+    points = GridPoints(fixed, {axis.key.name: axis.on_grid() for axis in axes})
+    require_count(len(points))
+    return points
 
 
-def hypercube_points(axes: list[Axis], n: int, seed: int) -> list[Point]:
+def hypercube_points(axes: list[Axis], fixed: Point, n: int, seed: int) -> SampledPoints:
     """A Latin hypercube: each of n equal slices of every axis holds one point, at a random place in its slice."""
     require_count(n)
     generator = np.random.default_rng(seed)
     columns = {axis.key.name: axis.sampled((generator.permutation(n) + generator.uniform(size=n)) / n) for axis in axes}
-    return [{name: values[place] for name, values in columns.items()} for place in range(n)]
+    return SampledPoints(fixed, columns, n)
 
 
 def require_count(n: int) -> None:

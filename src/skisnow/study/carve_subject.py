@@ -23,7 +23,7 @@ from ..ski.beam.clamped import CLAMP_LENGTH
 from ..snow.given_stress import require_stress
 from ..sources import Sources
 from ..units import MM
-from .study import Point
+from .points import Point, Points
 
 RESULTS: Final = (
     "outcome",
@@ -72,12 +72,12 @@ class CarveModel(ShownFields):
         """The values of a table of the study by their names, which they have already."""
         return dict(table)
 
-    def require_sound(self, points: list[Point], fixed: Point) -> None:
+    def require_sound(self, points: Points, fixed: Point) -> None:
         """Refuse a study that lacks an input, names the snow in two ways, or whose fixed ski or snow cannot be had."""
-        carving = [point for point in points if point.get("at_rest") is not True]
-        for point in (carving or points)[:1]:
-            require_complete(point)
-            self._require_snow(point, fixed, carves=bool(carving))
+        carves = points.distinct("at_rest") != [True]
+        point = next(point for point in points if not (carves and point.get("at_rest") is True))
+        require_complete(point)
+        self._require_snow(point, fixed, carves=carves)
         if "ski" in fixed:
             ski, _ = self._sources.ski(fixed["ski"])
             if "clamp_length_m" in fixed or "clamp_length_m" not in points[0]:
@@ -89,10 +89,10 @@ class CarveModel(ShownFields):
         if named and named <= set(fixed):
             require_stress(self._sources.named_snow(fixed), point.get("S_f_N_per_mm2"), carves=carves)
 
-    def files(self, points: list[Point]) -> list[Path]:
+    def files(self, points: Points) -> list[Path]:
         """Ski files and results files."""
-        skis = (self._sources.ski_file(word) for word in _distinct(points, "ski"))
-        return [path for path in skis if path] + [self._sources.path(word) for word in _distinct(points, "results")]
+        skis = (self._sources.ski_file(word) for word in points.distinct("ski"))
+        return [path for path in skis if path] + [self._sources.path(word) for word in points.distinct("results")]
 
     def __call__(self, point: Point) -> Row:
         """One row; whatever is wrong with a point stands in it."""
@@ -102,10 +102,6 @@ class CarveModel(ShownFields):
             return _failure(point, str(error))
         except Exception as error:  # a study never stops for one point
             return _failure(point, f"unexpected {type(error).__name__}: {error}")
-
-
-def _distinct(points: list[Point], name: str) -> list[str]:
-    return list(dict.fromkeys(point[name] for point in points if name in point))
 
 
 def _row(answer: CarveAnswer) -> Row:

@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import tempfile
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
-from ..errors import ParameterError
-from ..files import cannot_write, write_file
-from ..parallel.batch import Progress, run_batch
-from ..parallel.kept_rows import KeptRows
+from ..errors import OutputError, ParameterError
+from ..files import cannot_write
+from ..inputs import Quantity
+from ..parallel.batch import Progress, compute_missing
+from ..parallel.executors import ExecutorLike, require_executor
+from ..parallel.kept_rows import KeptRows, Row, json_text
 from ..parallel.pool import workers_in_force
+from .computing import StudyRows
 from .study import Study
 from .study_file import read_study
-from .table import StudyTable, read_table
+from .table import MOST_ROWS_HELD, StudyTable, large_csv, read_table, stored_rows
+from .tally import FAILED, Tally
+from .writing import write_csv, write_table, writer_of
 
 
 class StudyState(Enum):
@@ -31,18 +41,28 @@ def study_state(study: Study) -> StudyState:
     ParameterError
         A file that is no study's table stands in its place: it is not replaced.
     """
+    return _standing(study, None)[0]
+
+
+def _standing(study: Study, fingerprint: str | None) -> tuple[StudyState, StudyTable | None]:
     if not study.out.exists():
-        return StudyState.NEW
+        return StudyState.NEW, None
     try:
-        table = read_table(study.out, study.subject.keys)
+        table = read_table(study.out, study.subject.keys, varied=study.varied)
     except ParameterError as error:
         raise ParameterError(f"{error}. It is not replaced: name another place in out, or move it away") from error
-    names = {row["study"] for row in table.rows}
-    same = names == {study.fingerprint()} and len(table.rows) == len(study.points)
-    return StudyState.FINISHED if same else StudyState.ANOTHER
+    found = table.tally()
+    same = found.rows == len(study.points) and found.studies == {fingerprint or study.fingerprint()}
+    return (StudyState.FINISHED if same else StudyState.ANOTHER), table
 
 
-def run_study(study: Study | str | Path, *, workers: int | None = None, progress: Progress | None = None) -> StudyTable:
+def run_study(
+    study: Study | str | Path,
+    *,
+    workers: int | None = None,
+    executor: ExecutorLike | None = None,
+    progress: Progress | None = None,
+) -> StudyTable:
     """Ask one question over a grid or a sample of its inputs: compute the points that are missing, write the table.
 
     Parameters
@@ -52,6 +72,8 @@ def run_study(study: Study | str | Path, *, workers: int | None = None, progress
         another study is moved to `Study.place_for_previous`. A table in which no point could be asked is not written.
     workers
         Number of processes; None: one for each core. The table does not depend on it.
+    executor
+        What computes in place of processes of this computer, as of `skisnow.run_batch`.
     progress
         Called with the number of finished points and that of all.
 
@@ -80,25 +102,96 @@ def run_study(study: Study | str | Path, *, workers: int | None = None, progress
     * The page docs/how-to/study.md.
     """
     workers = workers_in_force(workers)
+    require_executor(executor)
     study = study if isinstance(study, Study) else read_study(study)
+    writer_of(study.out)
     fingerprint = study.fingerprint()
-    state = study_state(study)
-    if state is StudyState.FINISHED:
+    before = _stamp(study.out)
+    state, table = _standing(study, fingerprint)
+    if state is StudyState.FINISHED and table is not None:
         if study.partial.exists():  # a kill between writing the one and removing the other
-            KeptRows.opened(study.partial, fingerprint).remove()
-        return read_table(study.out, study.subject.keys, varied=study.varied)
-    kept = KeptRows.opened(study.partial, fingerprint)
+            kept_rows(study, study.partial, fingerprint).remove()
+        return table
+    kept = kept_rows(study, study.partial, fingerprint)
     try:
-        rows = run_batch(study.points, study.subject, kept=kept, workers=workers, progress=progress)
-        table = StudyTable(study.columns, [row | {"study": fingerprint} for row in rows], study.varied)
-        if table.answers():
-            if state is StudyState.ANOTHER:
-                _move(study.out, study.place_for_previous())
-            write_file(study.out, table.csv())
+        if _stamp(study.out) != before:
+            raise OutputError(f"{study.out} was just written by another run. Start again to see its table")
+        rows = StudyRows.of(study)
+        compute_missing(study.points, rows, kept, workers=workers, executor=executor, progress=progress)
+        if state is StudyState.ANOTHER and any_answer(kept):
+            _move(study.out, study.place_for_previous())
+        found = written(study.out, kept, fingerprint, study.subject.keys)
         kept.remove()
     finally:
         kept.close()
-    return table
+    return replace(found, varied=study.varied)
+
+
+def kept_rows(study: Study, path: Path, fingerprint: str, **about: str) -> KeptRows:
+    """The finished points of a study, in a file."""
+    kinds = json_text({name: key.kind for name, key in study.subject.keys.items()})
+    about = {"points": str(len(study.points)), "kinds": kinds, **about}
+    return KeptRows.opened(path, fingerprint, columns=study.columns[:-1], about=about)
+
+
+def written(out: Path, kept: KeptRows, fingerprint: str, keys: Mapping[str, Quantity]) -> StudyTable:
+    """The table of all kept rows; it is not written if no point could be asked.
+
+    Raises
+    ------
+    OutputError
+        Its place cannot be written.
+    """
+    columns = (*(kept.columns or ()), "study")
+    rows = _Rows(kept, columns, fingerprint)
+    stored = None
+    if any_answer(kept):
+        begins = write_table(out, columns, rows)
+        stored = None if rows.held is not None else stored_rows(out, keys, begins)
+    elif len(kept) > MOST_ROWS_HELD:
+        file = tempfile.TemporaryFile()  # noqa: SIM115 - the rows close it
+        begins = write_csv(file, columns, rows())
+        file.seek(0)
+        stored = large_csv(out, file, keys, begins)
+    else:
+        deque(rows(), maxlen=0)
+    found = stored[1] if stored is not None else rows.held or []
+    return StudyTable(columns, found, (), rows.counted)
+
+
+def any_answer(kept: KeptRows) -> bool:
+    """Whether a point could be asked."""
+    return any(row["outcome"] != FAILED for _, row in kept.rows())
+
+
+class _Rows:
+    """Rows as lists of values; with each beginning they are counted, and held where they are few, anew."""
+
+    def __init__(self, kept: KeptRows, columns: tuple[str, ...], fingerprint: str) -> None:
+        self._kept, self._columns, self._fingerprint = kept, columns, fingerprint
+        self.counted = Tally()
+        self.held: list[Row] | None = None
+
+    def __call__(self) -> Iterator[list[Any]]:
+        self.counted = Tally()
+        self.held = [] if len(self._kept) <= MOST_ROWS_HELD else None
+        return self.counted.counting(self._columns, self._values())
+
+    def _values(self) -> Iterator[list[Any]]:
+        for values in self._kept.values():
+            row = [*values, self._fingerprint]
+            if self.held is not None:
+                self.held.append(dict(zip(self._columns, row, strict=True)))
+            yield row
+
+
+def _stamp(path: Path) -> tuple[int, int, int] | None:
+    """Another one where a file was written anew."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_size, found.st_mtime_ns
 
 
 def _move(table: Path, place: Path) -> None:

@@ -23,7 +23,7 @@ from ..simulate.run import Run
 from ..simulate.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
 from ..sources import Sources
 from ..units import MM
-from .study import Point
+from .points import Point, Points
 
 RESULTS: Final = (
     "outcome",
@@ -106,7 +106,7 @@ class ScenarioModel(ShownFields):
                 found[full] = each
         return found
 
-    def require_sound(self, points: list[Point], fixed: Point) -> None:  # noqa: ARG002 - points hold what is fixed
+    def require_sound(self, points: Points, fixed: Point) -> None:  # noqa: ARG002 - points hold what is fixed
         """Refuse a study of which none of the first points can be asked, with what is wrong with the first."""
         first: SkisnowError | None = None
         for point in points[:MOST_TRIED]:
@@ -119,10 +119,10 @@ class ScenarioModel(ShownFields):
         if first is not None:
             raise first
 
-    def files(self, points: list[Point]) -> list[Path]:
+    def files(self, points: Points) -> list[Path]:
         """The scenario's file, and every file that it or a point names."""
         own = files_of(self._base) if self._base.file else (scenario_place(self.scenario), *files_of(self._base))
-        named = {point[name] for name in PATH_KEYS for point in points if name in point}
+        named = {word for name in PATH_KEYS for word in points.distinct(name)}
         return [*own, *(self.folder / word for word in sorted(named))]
 
     def __call__(self, point: Point) -> Row:

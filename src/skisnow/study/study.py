@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -14,8 +14,7 @@ from ..given import is_file
 from ..inputs import Quantity
 from ..parallel.kept_rows import Row
 from ..shown import Facts, Shown
-
-Point: TypeAlias = dict[str, Any]
+from .points import ListedPoints, Point, Points
 
 
 class StudyModel(Protocol):
@@ -35,11 +34,11 @@ class StudyModel(Protocol):
         """The values of a table of the study under the names of `keys`; a name that is none may stay."""
         ...
 
-    def require_sound(self, points: list[Point], fixed: Point) -> None:
+    def require_sound(self, points: Points, fixed: Point) -> None:
         """Refuse points that cannot be a study: an input is missing, two say the same, what is fixed cannot be read."""
         ...
 
-    def files(self, points: list[Point]) -> list[Path]:
+    def files(self, points: Points) -> list[Path]:
         """Files that the points name: when one of them changes, the study is another."""
         ...
 
@@ -67,7 +66,7 @@ class Study(Shown):
     varied
         Names of the inputs that vary, in the order of the file: the last varies fastest.
     points
-        The inputs of every point.
+        The inputs of every point: a list of them, or what makes each from its number.
 
     See Also
     --------
@@ -78,12 +77,17 @@ class Study(Shown):
     out: Path
     subject: StudyModel
     varied: tuple[str, ...]
-    points: list[Point]
+    points: Sequence[Point]
 
     def _facts(self) -> Facts:
         subject = type(self.subject).__name__
         rows = (("of", subject), ("varied", ", ".join(self.varied)), ("table", str(self.out)))
         return Facts(f"of {len(self.points)} points, {self.file}", rows)
+
+    @property
+    def numbered(self) -> Points:
+        """The points as such."""
+        return self.points if isinstance(self.points, Points) else ListedPoints(self.points)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -97,16 +101,21 @@ class Study(Shown):
 
     def place_for_previous(self) -> Path:
         """Where another study's table goes that stands in this one's place: a name that is free."""
-        place, count = self.out.with_name(f"{self.out.stem}.previous.csv"), 1
+        place, count = self.out.with_name(f"{self.out.stem}.previous{self.out.suffix}"), 1
         while place.exists():
             count += 1
-            place = self.out.with_name(f"{self.out.stem}.previous-{count}.csv")
+            place = self.out.with_name(f"{self.out.stem}.previous-{count}{self.out.suffix}")
         return place
 
     def fingerprint(self) -> str:
         """Sixteen hexadecimal digits that change with any point, any file that points name, and skisnow's version."""
-        digest = hashlib.sha256()
-        digest.update(json.dumps([version("skisnow"), self.columns, self.points]).encode())
-        for path in self.subject.files(self.points):
+        points = self.numbered
+        digest = hashlib.sha256(json.dumps([version("skisnow"), self.columns])[:-1].encode())
+        lead = ", ["
+        for text in points.json_texts():
+            digest.update(f"{lead}{text}".encode())
+            lead = ", "
+        digest.update(b"]]")
+        for path in self.subject.files(points):
             digest.update(b"\0" + (path.read_bytes() if is_file(path) else b"absent"))
         return digest.hexdigest()[:16]

@@ -12,8 +12,10 @@ from ..given import read_toml
 from ..inputs import InputValue, Quantity, checked_table, made, nearest
 from .axes import Axis, grid_points, hypercube_points
 from .carve_subject import CarveModel
+from .points import Point
 from .scenario_subject import ScenarioModel
-from .study import ModelReader, Point, Study, StudyModel
+from .study import ModelReader, Study, StudyModel
+from .writing import WRITERS
 
 FORMS: Final = ("grid", "latin_hypercube")
 TOP_KEYS: Final = ("out", "scenario", "fixed", *FORMS)
@@ -80,8 +82,7 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     axes = [_axis(form, name, value, asked.keys, fixed) for name, value in inputs.items()]
     if not axes:
         raise ParameterError(f"[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]")
-    points = grid_points(axes) if form == "grid" else hypercube_points(axes, *_sample(varying))
-    points = [{**fixed, **point} for point in points]
+    points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_sample(varying))
     asked.require_sound(points, fixed)
     return Study(path, _out(path, values), asked, tuple(axis.key.name for axis in axes), points)
 
@@ -150,6 +151,6 @@ def _out(path: Path, values: Mapping[str, Any]) -> Path:
     if not isinstance(out, str) or not out.strip():
         found = "is missing" if out is None else f"is {out!r}"
         raise ParameterError(f'out {found}; it is the place of the table, such as out = "table.csv"')
-    if Path(out).suffix.lower() != ".csv":
-        raise ParameterError(f"out is {out!r}; the table is a CSV file, so its name must end in .csv")
+    if Path(out).suffix.lower() not in WRITERS:
+        raise ParameterError(f"out is {out!r}; the name of the table must end in {', '.join(WRITERS)}")
     return path.parent / out

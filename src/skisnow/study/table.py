@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
-import json
+from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
-from typing import Any, Final
+from typing import IO, Final
 
 from ..errors import ParameterError
-from ..given import json_value
 from ..inputs import Quantity
 from ..parallel.kept_rows import Row
 from ..shown import Facts, Shown
@@ -21,12 +20,18 @@ from ..spreadsheet_text import (
     NoTextError,
     decimal_mark,
     decoded,
-    guarded,
     most_frequent_separator,
     named_separator,
-    unguarded,
 )
+from .cells import readers, row_of
+from .rows import ROWS_OF_A_BLOCK, CsvRows, DatabaseRows, ParquetRows, StoredRows, csv_block
+from .tally import FAILED, Tally
+from .writing import write_csv
 
+MOST_ROWS_HELD: Final = 20_000
+"""A table of more stays in its file, and rows are read as they are used (8 kB each in memory)."""
+MOST_BYTES_HELD: Final = 1 << 24
+"""Of a CSV file; a larger one is not read at once."""
 _HEAD: Final = 1 << 16
 
 
@@ -39,9 +44,11 @@ class StudyTable(Shown):
     columns
         The names, inputs first.
     rows
-        Numbers, texts and switches.
+        Numbers, texts and switches. Of a table of more than 20,000 rows they are read from its file as they are used.
     varied
         The inputs that vary.
+    counted
+        What was counted while the rows went by; None: it is counted when it is asked for.
 
     See Also
     --------
@@ -49,8 +56,9 @@ class StudyTable(Shown):
     """
 
     columns: tuple[str, ...]
-    rows: list[Row]
+    rows: Sequence[Row]
     varied: tuple[str, ...]
+    counted: Tally | None = None
 
     def _facts(self) -> Facts:
         counts = ", ".join(f"{outcome} {count}" for outcome, count in self.counts().items())
@@ -59,20 +67,21 @@ class StudyTable(Shown):
 
     def answers(self) -> list[Row]:
         """The rows whose point could be asked."""
-        return [row for row in self.rows if row["outcome"] != "error"]
+        return [row for row in self.rows if row["outcome"] != FAILED]
 
     def csv(self) -> str:
         """The table as text: numbers with all their digits, true and false, nothing where there is no value."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(self.columns)
-        writer.writerows([_cell(row.get(name)) for name in self.columns] for row in self.rows)
-        return stream.getvalue()
+        stream = io.BytesIO()
+        write_csv(stream, self.columns, ([row.get(name) for name in self.columns] for row in self.rows))
+        return stream.getvalue().decode("utf-8")
 
     def counts(self) -> dict[str, int]:
         """How many rows have each outcome, the most frequent first."""
-        outcomes = [str(row["outcome"]) for row in self.rows]
-        return dict(sorted(((each, outcomes.count(each)) for each in set(outcomes)), key=lambda pair: (-pair[1], pair)))
+        return self.tally().counts()
+
+    def tally(self) -> Tally:
+        """Outcomes, warnings and errors, counted."""
+        return Tally.of(self.rows) if self.counted is None else self.counted
 
 
 def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequence[str] = ()) -> StudyTable:
@@ -81,7 +90,7 @@ def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequen
     Parameters
     ----------
     path
-        The CSV file.
+        The file: CSV, or by the ending of its name SQLite or Parquet.
     keys
         The study's inputs: the texts among them stay texts.
     varied
@@ -92,8 +101,97 @@ def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequen
     ParameterError
         It cannot be read, or is no study's table.
     """
+    path = Path(path)
+    stored = stored_rows(path, keys)
+    if stored is None:
+        return StudyTable(*_read_at_once(path, keys), tuple(varied))
+    columns, rows = stored
+    _require_columns(path, columns)
+    counted = Tally.of(rows)
+    held = rows if len(rows) > MOST_ROWS_HELD else list(rows)
+    return StudyTable(columns, held, tuple(varied), counted)
+
+
+def stored_rows(
+    path: Path, keys: Mapping[str, Quantity], begins: array[int] | None = None
+) -> tuple[tuple[str, ...], StoredRows] | None:
+    """Columns and rows that are read as they are used; None of a small CSV file, and of one of another program."""
+    ending = path.suffix.lower()
+    if ending in (".sqlite", ".parquet"):
+        found = DatabaseRows(path) if ending == ".sqlite" else ParquetRows(path)
+        return found.columns, found
     try:
-        text = decoded(Path(path).read_bytes()).text
+        if begins is None and path.stat().st_size <= MOST_BYTES_HELD:
+            return None
+        file = path.open("rb")
+    except OSError as error:
+        raise _unreadable(path, error) from error
+    return large_csv(path, file, keys, begins)
+
+
+def large_csv(
+    path: Path, file: IO[bytes], keys: Mapping[str, Quantity], begins: array[int] | None = None
+) -> tuple[tuple[str, ...], StoredRows] | None:
+    """Columns and rows of a CSV file as `write_csv` writes it; None of any other, which is closed.
+
+    Parameters
+    ----------
+    path
+        For messages.
+    file
+        Open for reading.
+    keys
+        The study's inputs.
+    begins
+        As `write_csv` gave it; None: looked for.
+    """
+    try:
+        found = _large_csv(path, file, keys, begins)
+    except BaseException:
+        file.close()
+        raise
+    if found is None:
+        file.close()
+    return found
+
+
+def _large_csv(
+    path: Path, file: IO[bytes], keys: Mapping[str, Quantity], begins: array[int] | None
+) -> tuple[tuple[str, ...], StoredRows] | None:
+    try:
+        head = file.readline().decode("utf-8")
+        columns = tuple(next(csv.reader([head], strict=True)))
+    except (UnicodeDecodeError, csv.Error, StopIteration):
+        return None
+    if not {"outcome", "study"} <= set(columns) or "\ufeff" in head:
+        return None
+    begins = _begins(file) if begins is None else begins
+    each = readers(columns, keys, ".")
+    whole = max(len(begins) - 2, 0)
+    file.seek(begins[whole])
+    last = csv_block(path, file.read(), columns, each, whole * ROWS_OF_A_BLOCK)
+    count = whole * ROWS_OF_A_BLOCK + len(last)
+    return columns, CsvRows(path, file, columns, each, begins, count)
+
+
+def _begins(file: IO[bytes]) -> array[int]:
+    """Where blocks of rows begin, from the file's place on, and where the last one ends. A text may have line ends."""
+    begins, place, rows, quotes = array("q", [file.tell()]), file.tell(), 0, 0
+    for line in file:
+        place += len(line)
+        quotes += line.count(b'"')
+        if quotes % 2 == 0:
+            rows += 1
+            if rows % ROWS_OF_A_BLOCK == 0:
+                begins.append(place)
+    if rows % ROWS_OF_A_BLOCK or quotes % 2:
+        begins.append(place)
+    return begins
+
+
+def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, ...], list[Row]]:
+    try:
+        text = decoded(path.read_bytes()).text
         named = named_separator(text)
         separator = named if named in SEPARATOR_NAMES else most_frequent_separator(text[:_HEAD])
         stream = io.StringIO(text, newline="")
@@ -102,59 +200,19 @@ def read_table(path: str | Path, keys: Mapping[str, Quantity], *, varied: Sequen
         columns = tuple(next(reader, ()))
         _require_columns(path, columns)
         lines = [(reader.line_num + skipped, cells) for cells in reader if cells]
-        mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
-        rows = [_row(f"{path}, line {line}", columns, cells, keys, mark) for line, cells in lines]
     except OSError as error:
-        raise ParameterError(f"{path} cannot be read: {error.strerror or error}") from error
+        raise _unreadable(path, error) from error
     except (NoTextError, csv.Error) as error:
         raise ParameterError(f"{path} is no table of a study: {error}") from error
-    return StudyTable(columns, rows, tuple(varied))
+    mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
+    each = readers(columns, keys, mark)
+    return columns, [row_of(f"{path}, line {line}", columns, cells, each) for line, cells in lines]
+
+
+def _unreadable(path: Path, error: OSError) -> ParameterError:
+    return ParameterError(f"{path} cannot be read: {error.strerror or error}")
 
 
 def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
     if not {"outcome", "study"} <= set(columns):
         raise ParameterError(f"{path} is no table of a study: its first line names no columns outcome and study")
-
-
-def _row(place: str, columns: Sequence[str], cells: Sequence[str], keys: Mapping[str, Quantity], mark: str) -> Row:
-    if len(cells) != len(columns):
-        raise ParameterError(
-            f"{place}: a row of this table has {len(columns)} cells, this line has {len(cells)}. Remove the line"
-        )
-    row = {}
-    for name, cell in zip(columns, cells, strict=True):
-        try:
-            row[name] = _value(name, cell, keys, mark)
-        except (ValueError, TypeError):
-            raise ParameterError(f"{place}: {name} is {cell!r}; it must be a number. Correct or remove it") from None
-    return row
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, list | tuple):
-        return json.dumps(list(value))
-    return guarded(value) if isinstance(value, str) else repr(value)
-
-
-_TEXTS = ("outcome", "ski_name", "warnings", "reason", "study")
-
-
-def _value(name: str, cell: str, keys: Mapping[str, Quantity], mark: str) -> Any:
-    is_text = name in _TEXTS or (name in keys and keys[name].kind == "text")
-    if cell == "":
-        return "" if name in ("warnings", "reason") else None
-    if is_text:
-        return unguarded(cell)
-    if cell.startswith("["):
-        return [float(each) for each in json_value(cell)]
-    if cell.lower() in ("true", "false"):
-        return cell.lower() == "true"
-    return (
-        int(cell)
-        if name in keys and keys[name].kind == "whole number"
-        else float(cell if mark == "." else cell.replace(",", "."))
-    )

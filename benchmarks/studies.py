@@ -1,0 +1,133 @@
+"""A study of a million points that cost nothing: memory and time of its parent, and how a second start begins.
+
+``python -m benchmarks.studies --points 1000000``; every part runs in a process of its own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from skisnow.carve.keys import CARVE_KEYS
+from skisnow.inputs import Quantity
+from skisnow.parallel.batch import compute_missing
+from skisnow.study import Study, read_study, run_study
+from skisnow.study.carve_subject import RESULTS, CarveModel
+from skisnow.study.computing import StudyRows
+from skisnow.study.points import Point, Points
+from skisnow.study.run import kept_rows
+
+TEXT: Final = """
+out = "table.csv"
+[fixed]
+ski = "slalom"
+published = "race-piste"
+unloading_ratio = 10
+[grid]
+load_N = {{ from = 300, to = 1500, n = 1000 }}
+edge_angle_deg = {{ from = 10, to = 60, n = {n} }}
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Costless:
+    """Rows as long as those of carved turns, in no time."""
+
+    carve: CarveModel
+
+    @property
+    def keys(self) -> Mapping[str, Quantity]:
+        return CARVE_KEYS
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        return RESULTS
+
+    def named(self, table: Mapping[str, Any]) -> dict[str, Any]:
+        return self.carve.named(table)
+
+    def require_sound(self, points: Points, fixed: Point) -> None:
+        self.carve.require_sound(points, fixed)
+
+    def files(self, points: Points) -> list[Path]:
+        return self.carve.files(points)
+
+    def __call__(self, point: Point) -> dict[str, Any]:
+        number = point["load_N"] / 3.0 + point["edge_angle_deg"] / 7.0
+        results = {name: number + place for place, name in enumerate(RESULTS)}
+        texts = {"outcome": "equilibrium", "holds": True, "ski_name": "slalom", "warnings": "", "reason": ""}
+        return {**dict.fromkeys(CARVE_KEYS), **point, **results, **texts}
+
+
+def costless(folder: Path) -> Costless:
+    """Of a folder."""
+    return Costless(CarveModel(folder))
+
+
+def run(folder: Path, *, share: float) -> dict[str, float]:
+    """A share of the study, or all of it with its table, in this process and two workers."""
+    begin, spent = time.perf_counter(), time.process_time()
+    study: Study = read_study(folder / "study.toml", subject=costless)
+    first: list[float] = []
+
+    def tell(_done: int, _total: int) -> None:
+        if not first:
+            first.append(time.perf_counter() - begin)
+
+    if share < 1.0:
+        kept = kept_rows(study, study.partial, study.fingerprint())
+        some = range(int(share * len(study.points)))
+        compute_missing(study.points, StudyRows.of(study), kept, numbers=some, workers=2, progress=tell)
+        kept.close()
+    else:
+        run_study(study, workers=2, progress=tell)
+    return {
+        "place_s": first[0],
+        "wall_s": time.perf_counter() - begin,
+        "cpu_us_per_row": 1e6 * (time.process_time() - spent) / (share * len(study.points)),
+        "memory_MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0,
+    }
+
+
+def main() -> None:
+    """Print a table of all parts."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--points", type=int, default=1_000_000, help="a multiple of 1,000")
+    parser.add_argument("--part", type=float, help=argparse.SUPPRESS)
+    parser.add_argument("--folder", type=Path, help=argparse.SUPPRESS)
+    asked = parser.parse_args()
+    if asked.part is not None:
+        print(json.dumps(run(asked.folder, share=asked.part)))
+        return
+    print("| part | found its place after | wall time | CPU of the parent for a row | peak memory of the parent |")
+    print("| --- | ---: | ---: | ---: | ---: |")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "study.toml").write_text(TEXT.format(n=asked.points // 1000), encoding="utf-8")
+        for title, share in (("all, with the table", 1.0), ("nine tenths", 0.9), ("the rest, with the table", 1.0)):
+            words = ["-m", "benchmarks.studies", "--part", str(share), "--folder", name]
+            found = json.loads(subprocess.run([sys.executable, *words], check=True, capture_output=True).stdout)
+            print(
+                f"| {title} | {found['place_s']:.2f} s | {found['wall_s']:.0f} s | {found['cpu_us_per_row']:.1f} µs | "
+                f"{found['memory_MB']:.0f} MB |",
+                flush=True,
+            )
+            if title.startswith("all"):
+                size = (folder / "table.csv").stat().st_size / 1e6
+                (folder / "table.csv").unlink()
+            elif share < 1.0:
+                kept = (folder / "table.csv.partial").stat().st_size / 1e6
+    print(f"\nThe table has {size:.0f} MB, the file of finished points {kept:.0f} MB with nine tenths of them.")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,173 @@
+"""Who computes chunks: processes or threads of this computer, or an executor that somebody else made."""
+
+from __future__ import annotations
+
+import multiprocessing
+import pickle
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from concurrent.futures import (
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+)
+from multiprocessing.connection import Connection
+from typing import Final
+
+from ..errors import SkisnowError
+from .chunk import Done, Numbered, PointFunction, computed, computed_elsewhere, own_identity
+from .worker_process import begin_worker, interrupts_ignored
+
+LARGEST_FOR_A_PIPE: Final = 64
+"""Points; their rows stay well below the 64 kB that a pipe takes in one piece."""
+LARGEST: Final = 10_000
+"""Points of one chunk: some megabytes of rows (modelling assumption)."""
+
+
+class Crew(ABC):
+    """Takes chunks of points and gives futures of their rows."""
+
+    largest: int = LARGEST
+    """Points of one chunk."""
+
+    @abstractmethod
+    def size(self) -> int:
+        """How many chunks are computed at once; may change while work goes on."""
+
+    @abstractmethod
+    def submit(self, points: list[Numbered]) -> Future[Done]:
+        """Hand out a chunk."""
+
+    def told(self, error: Exception) -> str | None:
+        """What an error that is none of the function means, in words; None: it is passed on."""
+        if isinstance(error, BrokenExecutor):
+            return "a worker process ended unexpectedly, perhaps for lack of memory"
+        return "the scheduler was lost, or gave the work up" if isinstance(error, CancelledError) else None
+
+    @abstractmethod
+    def end(self, *, at_once: bool) -> None:
+        """Let go of what this has started; `at_once`: in the middle of what it does, where that is possible."""
+
+
+class ProcessCrew(Crew):
+    """Processes of this computer.
+
+    They are started afresh ("spawn"), on every system alike, with the first chunk, and stay: loading the libraries
+    takes long. They end with their parent, however that ends.
+    """
+
+    largest = LARGEST_FOR_A_PIPE
+
+    def __init__(self, function: PointFunction, workers: int) -> None:
+        self._function, self._workers = function, workers
+        self._executor: ProcessPoolExecutor | None = None
+        self._leash: Connection | None = None
+
+    def size(self) -> int:
+        """The number of processes."""
+        return self._workers
+
+    def submit(self, points: list[Numbered]) -> Future[Done]:
+        """Hand out a chunk; the first starts the processes."""
+        if self._executor is None:
+            context = multiprocessing.get_context("spawn")
+            alive, self._leash = context.Pipe(duplex=False)
+            self._executor = ProcessPoolExecutor(
+                self._workers, mp_context=context, initializer=_begin, initargs=(self._function, alive)
+            )
+        with interrupts_ignored():  # a worker that starts inherits this: Ctrl-C is for the parent alone
+            return self._executor.submit(_in_worker, points)
+
+    def end(self, *, at_once: bool) -> None:
+        """End the processes."""
+        if at_once:
+            self._let_go()
+        if self._executor is not None:
+            self._executor.shutdown(wait=True, cancel_futures=True)
+        self._let_go()
+        self._executor = None
+
+    def _let_go(self) -> None:
+        if self._leash is not None:
+            self._leash.close()
+        self._leash = None
+
+
+class ThreadCrew(Crew):
+    """Threads of this process: the compiled core lets other threads run while it computes."""
+
+    def __init__(self, function: PointFunction, workers: int) -> None:
+        self._function, self._workers = function, workers
+        self._executor = ThreadPoolExecutor(workers)
+
+    def size(self) -> int:
+        """The number of threads."""
+        return self._workers
+
+    def submit(self, points: list[Numbered]) -> Future[Done]:
+        """Hand out a chunk."""
+        return self._executor.submit(computed, self._function, points)
+
+    def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - a thread cannot be stopped
+        """Wait for the chunks that are being computed."""
+        self._executor.shutdown(wait=True, cancel_futures=True)
+
+
+class GivenCrew(Crew):
+    """An executor of somebody else, on this computer or others: the function goes with every chunk.
+
+    Parameters
+    ----------
+    function
+        Pickled once.
+    executor
+        It is not shut down here.
+    size
+        How many chunks it computes at once.
+    close
+        Called at the end; None: there is nothing to close.
+    """
+
+    def __init__(
+        self,
+        function: PointFunction,
+        executor: Executor,
+        size: Callable[[], int],
+        close: Callable[[], None] | None = None,
+    ) -> None:
+        self._packed, self._executor, self._size, self._close = pickle.dumps(function), executor, size, close
+        self._identity = own_identity()
+
+    def size(self) -> int:
+        """As it says."""
+        return max(1, self._size())
+
+    def submit(self, points: list[Numbered]) -> Future[Done]:
+        """Hand out a chunk."""
+        return self._executor.submit(computed_elsewhere, self._packed, self._identity, points)
+
+    def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - its owner knows how to end it
+        """Close what was opened for it."""
+        if self._close is not None:
+            self._close()
+
+
+class _Worker:
+    """What a worker process knows; in every other process it stays empty."""
+
+    function: PointFunction | None = None
+
+
+def _begin(function: PointFunction, alive: Connection) -> None:
+    """Start a worker: it ends with its parent, however that ends."""
+    begin_worker(alive)
+    _Worker.function = function
+
+
+def _in_worker(points: list[Numbered]) -> Done:
+    if _Worker.function is None:
+        raise SkisnowError("a worker was not started by a Pool")
+    return computed(_Worker.function, points)
