@@ -26,6 +26,10 @@ N_PER_MM3: Final = 1e9
 """N/m³ in 1 N/mm³, the unit of H_V."""
 DEGREE: Final = 0.017453292519943295
 """Radians in a degree."""
+HOUR: Final = 3600.0
+"""Seconds in an hour."""
+PERCENT: Final = 0.01
+"""One percent."""
 MS: Final = 1e-3
 """Seconds in a millisecond."""
 
@@ -66,6 +70,7 @@ _BY_ENDING: Final = {
     "N": Unit("N", 1.0),
     "m": Unit("m", 1.0),
     "s": Unit("s", 1.0),
+    "h": Unit("h", HOUR),
 }
 """Endings of keys and columns, longer ones before those that end like them."""
 

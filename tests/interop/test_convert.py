@@ -135,3 +135,36 @@ def test_a_missing_source_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[
     for name in ("gone.caaml", "gone.pnt"):
         assert main(["convert", str(tmp_path / name), str(tmp_path / "x.csv")]) == 1
         assert name in told(capsys)[1]
+
+
+SMET = """SMET 1.1 ASCII
+[HEADER]
+station_id = S1
+station_name = Hang oben
+nodata = -777
+tz = 1
+units_offset = 0 273.15 0
+fields = timestamp TA RH
+[DATA]
+2026-02-03T08:00 -4.5 0.8
+2026-02-03T09:00 -2 -777
+"""
+
+
+def test_weather_becomes_csv_and_plain_smet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source, plain, again = (tmp_path / name for name in ("s.smet", "plain.smet", "again.csv"))
+    source.write_text(SMET)
+    assert main(["convert", str(source), str(tmp_path / "s.csv")]) == 0
+    told(capsys)
+    assert (tmp_path / "s.csv").read_text().splitlines() == [
+        "time,air_temperature_C,relative_humidity_percent",
+        "2026-02-03T08:00:00+01:00,-4.5,80",
+        "2026-02-03T09:00:00+01:00,-2,",
+    ]
+    assert main(["convert", str(source), str(plain)]) == 0
+    assert plain.read_text().splitlines()[-2:] == ["2026-02-03T08:00:00 268.65 0.8", "2026-02-03T09:00:00 271.15 -999"]
+    assert main(["convert", str(plain), str(again)]) == 0
+    assert again.read_text() == (tmp_path / "s.csv").read_text()
+    source.write_text(SMET.replace("TA RH", "HS PSUM"))
+    assert main(["convert", str(source), str(tmp_path / "none.csv")]) == 1
+    assert "none of the fields TA, RH" in told(capsys)[1]

@@ -12,23 +12,32 @@ from typing import TYPE_CHECKING, Final
 from ..errors import OutputError, ParameterError
 from ..field import read_campaign, read_snow_micro_pen
 from ..field.caaml import read_caaml
+from ..field.smet import read_smet
 from ..field.snow_pit import ForceProfile, SnowPit
 from ..inputs import meant
 from .caaml import write_caaml
+from .opensim import read_c3d, read_motion, read_trc, write_motion, write_trc
 from .site_pit import site_pit, sites_of
+from .smet import write_smet, write_weather_csv
 from .snowex import write_snowex_force, write_snowex_pit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
 CAMPAIGN: Final = "campaign"
+CSV: Final = "CSV"
 ENDINGS: Final[Mapping[str, str]] = {
     ".caaml": "CAAML",
     ".xml": "CAAML",
     ".pnt": "SnowMicroPen",
-    ".csv": "SnowEx CSV",
+    ".smet": "SMET",
+    ".csv": CSV,
     ".xlsx": CAMPAIGN,
     ".xlsm": CAMPAIGN,
+    ".mot": "OpenSim table",
+    ".sto": "OpenSim table",
+    ".trc": "TRC markers",
+    ".c3d": "C3D markers",
 }
 """Kind of a file by its ending; a folder is a campaign."""
 
@@ -135,19 +144,37 @@ def _to_snowex(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
     return lambda source, target, options: write_snowex_pit(_completed(read(source, options), options), target)
 
 
+def _motion(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
+    write_motion(read_motion(source), target)
+    return (target,)
+
+
+def _markers(read: Callable[[Path], Markers]) -> Conversion:
+    def convert_markers(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
+        write_trc(read(source), target)
+        return (target,)
+
+    return convert_markers
+
+
 if TYPE_CHECKING:
     from typing import TypeAlias
+
+    from .opensim import Markers
 
     Conversion: TypeAlias = Callable[[Path, Path, ConvertOptions], tuple[Path, ...]]
 
 CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     (CAMPAIGN, "CAAML"): _to_caaml(_pit_of_campaign),
-    (CAMPAIGN, "SnowEx CSV"): _to_snowex(_pit_of_campaign),
+    (CAMPAIGN, CSV): _to_snowex(_pit_of_campaign),
     ("CAAML", "CAAML"): _to_caaml(lambda source, _: read_caaml(source)),
-    ("CAAML", "SnowEx CSV"): _to_snowex(lambda source, _: read_caaml(source)),
+    ("CAAML", CSV): _to_snowex(lambda source, _: read_caaml(source)),
     ("SnowMicroPen", "CAAML"): _to_caaml(lambda source, _: _pit_of_recording(source)),
-    ("SnowMicroPen", "SnowEx CSV"): lambda source, target, _: (
-        write_snowex_force(read_snow_micro_pen(source), target),
-    ),
+    ("SnowMicroPen", CSV): lambda source, target, _: (write_snowex_force(read_snow_micro_pen(source), target),),
+    ("SMET", "SMET"): lambda source, target, _: (write_smet(read_smet(source), target),),
+    ("SMET", CSV): lambda source, target, _: (write_weather_csv(read_smet(source), target),),
+    ("OpenSim table", "OpenSim table"): _motion,
+    ("TRC markers", "TRC markers"): _markers(read_trc),
+    ("C3D markers", "TRC markers"): _markers(read_c3d),
 }
 """By the kinds of source and target."""

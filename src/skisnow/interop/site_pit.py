@@ -51,7 +51,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
         latitude_deg=None if first is None else first.latitude_deg,
         longitude_deg=None if first is None else first.longitude_deg,
         elevation=None if first is None else first.height,
-        air_temperature_C=math.fsum(air) / len(air) if air else None,
+        air_temperature_C=math.fsum(air) / len(air) if air else _station_air(analysis, site),
         densities=densities,
         temperatures=(DepthTemperature(0.0, math.fsum(temperatures) / len(temperatures)),) if temperatures else (),
         forces=tuple(_forces(profile, found) for profile, found in profiles),
@@ -80,6 +80,13 @@ def _cells(campaign: Campaign, site: str, column: str) -> Iterator[str]:
         for name, cell in zip(sites, further.get(column, ()), strict=False):
             if name == site and cell:
                 yield cell
+
+
+def _station_air(analysis: Analysis, site: str) -> float | None:
+    """Mean at the site's experiments by the weather station; None where it is not known."""
+    found = () if analysis.weather is None else analysis.weather.site_means()
+    mean = next((means["air_temperature_C"] for name, _, means in found if name == site), math.nan)
+    return mean if math.isfinite(mean) else None
 
 
 def _notes(campaign: Campaign, site: str, column: str) -> list[float]:
