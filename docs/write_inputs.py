@@ -20,6 +20,7 @@ from skisnow.field.reading import campaign_schema
 from skisnow.field.reading.campaign_file import CAMPAIGN_KEYS
 from skisnow.field.reading.table_forms import PENETRATION, SHEAR
 from skisnow.field.snow_micro_pen_records import SnowMicroPenSettings
+from skisnow.field.weather_records import WeatherSettings
 from skisnow.inputs import own_quantities
 from skisnow.inputs.json_schema import Schema, output_schema, schema_text
 from skisnow.inputs.page_table import page_table
@@ -64,6 +65,7 @@ TABLES = {
     "ski": page_table(SKI_KEYS.values(), ("key", "meaning", "unit", "range", "usual", "left out")),
     "campaign": page_table(CAMPAIGN_KEYS.values(), ("key", "unit", "range", "meaning")),
     "snow_micro_pen": page_table(own_quantities(SnowMicroPenSettings), ("key", "unit", "range", "default", "meaning")),
+    "weather": page_table(own_quantities(WeatherSettings), ("key", "unit", "range", "default", "meaning")),
     "penetration": page_table(PENETRATION.numbers, _OF_CSV),
     "shear": page_table(SHEAR.numbers[:4], _OF_CSV),
     "search": page_table(

@@ -159,6 +159,7 @@ def test_only_these_places_reach_up() -> None:
         "report.turn_report.write_turn_report": "report/turn_chain.py",
         "report.turn_sentences.plain_sentences": "report/turn_chain.py",
         "scenario.changed.changed_scenario": "scenario/scenario.py",
+        "simulate.run_balance.balance_of": "simulate/run.py",
     }
     assert imports == {"__init__.py", "callable_packages.py", "from_above.py", "report/run_frames.py"}
     for each in found:

@@ -240,7 +240,8 @@ void bind_snow(nb::module_& m) {
 void make_contact(SnowContact* at, std::shared_ptr<Snow> snow, std::vector<Runner> runners, double spacing,
                   const std::optional<std::string>& set) {
   const Kernels* chosen = set ? kernels_named(set->c_str()) : &kernels();
-  if (chosen == nullptr) throw std::invalid_argument("this processor or library lacks the instruction set " + *set);
+  if (set && chosen == nullptr)
+    throw std::invalid_argument("this processor or library lacks the instruction set " + *set);
   new (at) SnowContact(std::move(snow), std::move(runners), spacing, *chosen);
 }
 

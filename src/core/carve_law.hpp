@@ -87,8 +87,8 @@ class CarvePressure {
   std::size_t interval_ = 0, part_ = 0;
   CarveLaws::Values cuts_, depth_, deepest_, angle_, found_;
 
-  void add_by_law(const CarveInterval& interval, StripSums& sums);
-  void divide(const CarveInterval& interval);
+  void add_by_law(const CarveInterval& at, StripSums& sums);
+  void divide(const CarveInterval& at);
   double told(double depth, double groove) const { return depth + memory_ * (groove - depth); }
   CarveLaws::Values over_residual(const std::vector<Place>& places) const;
   void keep_what_bears();

@@ -97,6 +97,7 @@ constexpr double ALIKE = 1.0 + 1e-4, TINY_AREA = 1e-24;  // (m²): of areas that
 }  // namespace
 
 Ground& Ground::operator=(const Ground& other) {
+  if (this == &other) return *this;
   count = other.count;
   std::copy_n(other.place, count, place);
   std::copy_n(other.depth, count, depth);

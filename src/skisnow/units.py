@@ -26,6 +26,10 @@ N_PER_MM3: Final = 1e9
 """N/m³ in 1 N/mm³, the unit of H_V."""
 DEGREE: Final = 0.017453292519943295
 """Radians in a degree."""
+HOUR: Final = 3600.0
+"""Seconds in an hour."""
+PERCENT: Final = 0.01
+"""One percent."""
 MS: Final = 1e-3
 """Seconds in a millisecond."""
 
@@ -52,6 +56,7 @@ _BY_ENDING: Final = {
     "m_per_s": Unit("m/s", 1.0),
     "s_per_m": Unit("s/m", 1.0),
     "per_rad": Unit("1/rad", 1.0),
+    "per_s": Unit("1/s", 1.0),
     "kg_m2": Unit("kg m²", 1.0),
     "N_m2": Unit("N m²", 1.0),
     "Nm_per_deg": Unit("N m/°", 1.0 / DEGREE),
@@ -65,6 +70,7 @@ _BY_ENDING: Final = {
     "N": Unit("N", 1.0),
     "m": Unit("m", 1.0),
     "s": Unit("s", 1.0),
+    "h": Unit("h", HOUR),
 }
 """Endings of keys and columns, longer ones before those that end like them."""
 

@@ -111,6 +111,8 @@ def test_out_writes_the_json_and_the_figure(straight: Path, tmp_path: Path, caps
     assert "Straße.csv" in text
     assert (folder / "track_comparison.png").read_bytes().startswith(b"\x89PNG")
     assert "<svg" in (folder / "track_comparison.svg").read_text(encoding="utf-8")
+    assert (folder / "track_comparison.pdf").read_bytes().startswith(b"%PDF")
+    assert (folder / "track_comparison.eps").read_bytes().startswith(b"%!PS-Adobe")
 
 
 @pytest.mark.parametrize("azimuth", [0, 90])

@@ -21,7 +21,7 @@ def after(*words: str) -> list[str]:
 def test_commands_options_and_names() -> None:
     assert {"new", "check", "simulate", "carve"} <= set(after(""))
     assert after("--") == ["--help", "--version"]
-    assert after("store", "") == ["add", "list", "show", "export", "verify"]
+    assert after("store", "") == ["add", "list", "show", "export", "verify", "sync"]
     assert set(after("store", "list", "--")) == {"--help", "--store", "--json"}
     assert "carved-46m" in after("simulate", "")
     assert "slalom" in after("carve", "--ski", "")

@@ -19,7 +19,9 @@ CAMPAIGN, RESULTS, COMMANDS = (
     (ROOT / "docs" / "files" / f"{name}.md").read_text(encoding="utf-8")
     for name in ("campaign", "results", "command-line")
 )
-RECORDINGS = (ROOT / "docs" / "files" / "snow-micro-pen.md").read_text(encoding="utf-8")
+BESIDE = "".join(
+    (ROOT / "docs" / "files" / f"{name}.md").read_text(encoding="utf-8") for name in ("snow-micro-pen", "smet")
+)
 PACKAGE = Path(skisnow.__file__).parent
 
 
@@ -39,7 +41,7 @@ def test_every_flag_is_told_with_its_default(flag: Any) -> None:
 def test_every_table_and_column_is_told(form: Any) -> None:
     assert f"`{form.file}`" in CAMPAIGN
     for name in form.known:
-        assert f"`{name}`" in CAMPAIGN + RECORDINGS, name
+        assert f"`{name}`" in CAMPAIGN + BESIDE, name
 
 
 def test_every_shape_is_told() -> None:
@@ -59,13 +61,13 @@ def keys_of(schema: Any) -> Iterator[str]:
 
 def test_every_key_of_the_results_is_told() -> None:
     schema = json.loads((PACKAGE / "estimate/schemas/results.schema.json").read_text(encoding="utf-8"))
-    missing = {key for key in keys_of(schema) if key not in RESULTS + RECORDINGS}
+    missing = {key for key in keys_of(schema) if key not in RESULTS + BESIDE}
     assert not missing
 
 
 def test_every_key_of_campaign_toml_is_told() -> None:
     schema = json.loads((PACKAGE / "field/schemas/campaign.schema.json").read_text(encoding="utf-8"))
-    missing = {key for key in keys_of(schema) if key not in CAMPAIGN + RECORDINGS}
+    missing = {key for key in keys_of(schema) if key not in CAMPAIGN + BESIDE}
     assert not missing
 
 

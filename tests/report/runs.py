@@ -93,7 +93,11 @@ def _boots(skis: SkiHistory, attitude: np.ndarray) -> BootHistory:
     shape = skis.track.shape
     axes = np.broadcast_to(np.swapaxes(attitude, 1, 2)[:, None], (*shape[:2], 3, 3))
     return BootHistory(
-        place=skis.track, axes=axes, own_force=np.broadcast_to([0.0, 0.0, 400.0], shape), own_moment=np.zeros(shape)
+        place=skis.track,
+        axes=axes,
+        own_force=np.broadcast_to([0.0, 0.0, 400.0], shape),
+        own_moment=np.zeros(shape),
+        centre_of_mass=skis.track.mean(axis=1) + np.array([0.0, 0.0, 0.5]),
     )
 
 

@@ -70,6 +70,11 @@ def test_units_come_from_the_names() -> None:
         "transverse_friction",
         "residual_ratio",
         "stiffness_factor",
+        "turns",
+        "leg_gain",
+        "edge_gain",
+        "lean_more",
+        "reach",
     }
 
 

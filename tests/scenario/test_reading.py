@@ -76,7 +76,8 @@ def test_every_value_of_a_built_in_scenario_says_where_it_is_from(name: str) -> 
     left_out |= {"snow_density_kg_per_m3", "dynamic_shear_strength_N_per_mm2"}  # of laws other than the default
     given = {line.split(" = ")[0] for line in lines}
     assert not left_out & given  # from ski and snow
-    no_course = {full for full in SCENARIO_KEYS if not full.startswith("course.")}
+    absent = ("course.",) if "\n[skier]\n" in scenario_text(name) else ("course.", "skier.")
+    no_course = {full for full in SCENARIO_KEYS if not full.startswith(absent)}
     every = {full.split(".")[1] for full in no_course} - left_out
     other_ways = {
         "profile",

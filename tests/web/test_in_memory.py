@@ -25,6 +25,7 @@ from skisnow.web.snow_of_campaign import campaign_snow, results_with
 from skisnow.web.transfer import entry_files, kept_files, write_entry
 from skisnow.web.uploaded import add_uploaded
 
+from ..field.recordings import plain_snow
 from ..given.test_workbook import packed
 
 TOML = """name = "Desk"
@@ -54,6 +55,9 @@ def no_folder(monkeypatch: pytest.MonkeyPatch, lab: Lab) -> None:
 
     assert lab.store.list() == ()
     monkeypatch.setattr(tempfile, "mkdtemp", refused)
+
+
+SMET = "SMET 1.1 ASCII\n[HEADER]\nstation_id = S\nnodata = -999\nfields = timestamp TA\n[DATA]\n2026-02-03T08:00 263\n"
 
 
 def kept_id(lab: Lab, folder: Path) -> str:
@@ -120,6 +124,24 @@ def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: 
     unchanged = numbers_of(before, Choice())
     assert isinstance(unchanged, Numbers)
     assert experiments(unchanged.results)[1] != experiments(results)[1]
+
+
+def test_recordings_and_weather_of_a_kept_campaign_are_read_from_the_store(lab: Lab, tmp_path: Path) -> None:
+    folder = tmp_path / "kept"
+    folder.mkdir()
+    toml = TOML + '\n[weather]\nfile = "s.smet"\n'
+    (folder / "campaign.toml").write_text(toml, encoding="utf-8")
+    (folder / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
+    (folder / "snow_micro_pen.csv").write_text("recording,site,file\nr,A,R.PNT\n", encoding="utf-8")
+    (folder / "R.PNT").write_bytes(plain_snow(2.0))
+    (folder / "s.smet").write_text(SMET, encoding="utf-8")
+    id_ = lab.store.add(folder).id
+    found = numbers_of(kept_files(lab, id_), Choice())
+    assert isinstance(found, Numbers)
+    assert found.results["snow_micro_pen"]["recordings"][0]["mean_force_N"] == pytest.approx(2.0, rel=0.01)
+    assert found.results["weather"]["station"] == "S"
+    assert set(CorrectionSession(lab, id_).tables) == {"penetration.csv"}
+    assert CorrectionSession(lab, id_).quick_results("A").penetration["1"] == experiments(found.results)[0]
 
 
 @pytest.mark.usefixtures("no_folder")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
@@ -16,12 +17,14 @@ if "nicegui" in MISSING:
 
 from skisnow.carve.result import REMEDIES
 from skisnow.errors import ParameterError
-from skisnow.field import QUALITY_FLAGS
+from skisnow.field import QUALITY_FLAGS, write_reference
+from skisnow.field.reading import FilesInMemory
 from skisnow.field.store import Journals, Store
 from skisnow.field.store.description import Description, description_text
 from skisnow.report.ski_drawing import ski_drawing
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
+from skisnow.web.analysing import N_FIGURES, Choice, Numbers, figure, numbers_of
 from skisnow.web.catalogue import Catalogue, read_catalogue
 from skisnow.web.language import FOLDER, catalogue, languages
 from skisnow.web.pages.simulate import BASIC, _expert
@@ -139,3 +142,21 @@ def test_a_series_is_entered_in_german(chromium: Browser, served: Served, watche
     page.get_by_label("Depth under 20 N (mm)").wait_for()  # the same series, and what was typed is there
     context.close()
     assert watched.errors == []
+
+
+@pytest.mark.slow
+def test_an_analysis_has_its_german_texts(tmp_path: Path) -> None:
+    """What stands between the tags of tables, sentences and captions, but for the names that users gave."""
+    write_reference(tmp_path / "campaign", seed=1)
+    files = {each.name: each.read_bytes() for each in (tmp_path / "campaign").iterdir()}
+    numbers = numbers_of(FilesInMemory(files), Choice())
+    assert isinstance(numbers, Numbers)
+    drawn = filter(None, (figure(numbers.analysis, number) for number in range(N_FIGURES)))
+    shown = [each[:5000] for each in numbers.tables.values()] + list(numbers.key_results)
+    shown += [each.caption for each in drawn]
+    left = set()
+    for html in shown:
+        if GERMAN.translated(html) == html:
+            between = {each.strip() for each in re.findall(r">([^<>]+)<", f">{html}<")}
+            left |= {each for each in between if re.search("[A-Za-z]{3}", each) and GERMAN.translated(each) == each}
+    assert {each for each in left if "linear" not in each and "deg" not in each} == {"layered", "plate 100 mm"}

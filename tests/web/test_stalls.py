@@ -79,7 +79,7 @@ def test_the_heartbeat_outlasts_a_stall(served: Served) -> None:
     assert said["pingInterval"] <= 30_000  # or a connection that broke would not be noticed for long
 
 
-@of_seconds(8.0)
+@of_seconds(2.0)
 def test_a_series_while_the_lab_stands_still(page: Page, served: Served, seconds: float) -> None:
     opened(page, served)
     page.keyboard.type("A\n30\n1.5\n")

@@ -27,6 +27,7 @@ def build_parser() -> argparse.ArgumentParser:
         check,
         compare,
         completion,
+        convert,
         export,
         identify,
         man,
@@ -51,7 +52,7 @@ def build_parser() -> argparse.ArgumentParser:
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
     every = (
         new, check, analyse, store, reference, carve, simulate, replay, turn, study, track, compare, identify, export,
-        serve, completion, man,
+        convert, serve, completion, man,
     )  # fmt: skip
     for command in every:
         command.add_parser(commands)

@@ -54,7 +54,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="inclination of the plane slope, with --fall-line-azimuth-deg; left out: x stays horizontal",
     )
     parser.add_argument("--from-above", action="store_true", help="leave the heights out")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write compare.json and the figure")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="write compare.json and the figure (PNG, SVG, PDF, EPS)"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
     parser.set_defaults(run=run, parser=parser)
 
@@ -126,12 +128,11 @@ def _in_slope(track: Track, options: argparse.Namespace) -> Track:
 
 def _write(folder: Path, found: Comparison, text: str) -> None:
     from ..files import write_file
-    from ..report.figures.figure_file import write_figure
-    from ..report.figures.track_comparison import track_comparison
+    from ..report.figures.track_comparison import comparison_drawing
+    from ..report.pictures import write_pictures
     from ..staging import staged
 
     with staged(folder, last="compare.json") as stage:
         write_file(stage.path / "compare.json", f"{text}\n")
-        for ending in ("png", "svg"):
-            write_figure(stage.path / f"track_comparison.{ending}", lambda: track_comparison(found))
-    print(f"Figure: {folder / 'track_comparison.png'}", file=sys.stderr)
+        write_pictures(map(comparison_drawing, [found]), stage.path, every=())
+    print(f"Figure: {folder / 'track_comparison.png'}, and as SVG, PDF and EPS", file=sys.stderr)

@@ -151,7 +151,8 @@ def _tell(
 
 
 def _write(folder: Path, found: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
-    from ..report.run_folder import REPLAY, write_run
+    from ..report.run_folder import write_run
+    from ..report.run_report import REPLAY
 
     def replay(place: Path) -> None:
         if replay_title is not None:

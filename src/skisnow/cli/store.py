@@ -10,12 +10,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from ..errors import StoreError
 from .progress import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ..field.store import Store, StoredCampaign
+    from ..field.store import Side, Store, StoredCampaign, StorePlace
 
 Json: TypeAlias = dict[str, object]
 Answer: TypeAlias = tuple[Json, str, int]
@@ -25,7 +26,10 @@ Answer: TypeAlias = tuple[Json, str, int]
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add ``store`` and its actions to the command line."""
     every = argparse.ArgumentParser(add_help=False)
-    place: dict[str, Any] = {"type": Path, "metavar": "PATH", "help": "file of the store (default: the user's own)"}
+    place: dict[str, Any] = {
+        "metavar": "PATH",
+        "help": "file of the store, or postgresql://USER@HOST/DATABASE (default: the user's own file)",
+    }
     alone: dict[str, Any] = {"action": "store_true", "help": "print JSON alone to standard output"}
     every.add_argument("--store", default=argparse.SUPPRESS, **place)  # what stands before the action stays
     every.add_argument("--json", default=argparse.SUPPRESS, **alone)
@@ -46,6 +50,25 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     export.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder to make")
     export.add_argument("--as-added", action="store_true", help="its files alone, without corrections made in the lab")
     actions.add_parser("verify", parents=[every], help="check every file in the store; exit code 1 if any is damaged")
+    syncing = actions.add_parser(
+        "sync",
+        parents=[every],
+        help="bring this store and the group's what each lacks; exit code 1 if conflicts are open",
+    )
+    syncing.add_argument(
+        "group",
+        metavar="URL",
+        help="the group's store: postgresql://USER@HOST/DATABASE, or a file that is carried about",
+    )
+    syncing.add_argument(
+        "--keep",
+        action="append",
+        type=_choice,
+        metavar="ID=SIDE",
+        default=[],
+        help="settle the conflict with this id, or all: here, there or both; what is not kept stays in the history",
+    )
+    syncing.add_argument("--who", default="", metavar="NAME", help="whose choice it is")
     parser.set_defaults(run=run)
 
 
@@ -53,9 +76,9 @@ def run(args: argparse.Namespace) -> int:
     """Do what was asked; 1 if verify found damage, else 0."""
     from ..field.store import Store
 
-    act = {"add": _add, "list": _list, "show": _show, "export": _export, "verify": _verify}[args.action]
-    with Store.open(args.store, create=args.action == "add") as store:
-        answer, text, code = act(store, args)
+    act = {"add": _add, "list": _list, "show": _show, "export": _export, "verify": _verify, "sync": _sync}
+    with Store.open(args.store, create=args.action in ("add", "sync")) as store:
+        answer, text, code = act[args.action](store, args)
     print(json.dumps(answer, indent=2, allow_nan=False) if args.json else text)
     return code
 
@@ -107,6 +130,46 @@ def _verify(store: Store, _: argparse.Namespace) -> Answer:
         findings = store.verify(progress=progress)
     lines = [str(finding) for finding in findings] or ["All is sound."]
     return {"findings": [asdict(finding) for finding in findings]}, "\n".join(lines), 1 if findings else 0
+
+
+def _sync(store: Store, args: argparse.Namespace) -> Answer:
+    from ..field.store import Store, sync
+
+    with Store.open(_group_place(args.group)) as group, _share_shown("synchronising") as progress:
+        done = sync(store, group, keep=dict(args.keep), who=args.who, progress=progress)
+    lines = [
+        f"given: {_amounts(done.n_campaigns_given, done.n_entries_given)}; "
+        f"taken: {_amounts(done.n_campaigns_taken, done.n_entries_taken)}",
+        *([f"conflicts settled: {done.n_settled}"] if done.n_settled else []),
+        *done.same_names,
+        *(f"left where it is: {problem}" for problem in done.problems),
+    ]
+    for conflict in done.conflicts:
+        choices = " or ".join(f"--keep {conflict.id}={side}" for side in conflict.choices)
+        lines += ["", f"not carried over: {conflict}", f"    choose with {choices}"]
+    return asdict(done), "\n".join(lines), 1 if done.conflicts or done.problems else 0
+
+
+def _group_place(given: str) -> StorePlace:
+    """Where the group's store is; a file is made in a folder that exists, not where a stick is not plugged in."""
+    from ..field.store import store_place
+
+    place = store_place(given)
+    if isinstance(place, Path) and not place.parent.is_dir():
+        raise StoreError(f"{place.parent} is not there; is the disk or stick with the group's store plugged in?")
+    return place
+
+
+def _choice(text: str) -> tuple[str, Side]:
+    id_, _, side = text.partition("=")
+    if not id_ or side not in ("here", "there", "both"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not ID=here, ID=there or ID=both")
+    return id_, side  # type: ignore[return-value]
+
+
+def _amounts(n_campaigns: int, n_entries: int) -> str:
+    campaigns = f"{n_campaigns} stored campaign{'' if n_campaigns == 1 else 's'}"
+    return f"{campaigns}, {n_entries} entr{'y' if n_entries == 1 else 'ies'}"
 
 
 def _as_json(stored: StoredCampaign) -> Json:

@@ -51,7 +51,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         choices=("slalom", "giant-slalom"),
         help="with --course: check the course against the rules of this discipline",
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write figures (PNG, SVG) and track.json")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF, EPS) and track.json")
     parser.add_argument("--json", action="store_true", help="print track.json alone to standard output")
     parser.set_defaults(run=run, parser=parser)
 

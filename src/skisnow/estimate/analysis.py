@@ -44,6 +44,7 @@ from .site_snow import site_snow
 from .sites import SiteComparison, SiteMean, compare_sites, site_means
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
 from .unloading import NOT_FALLING, site_unloading, unloading
+from .weather import WeatherAtTests, weather_at_tests
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -80,6 +81,8 @@ class Analysis(Shown):
         When it was made.
     snow_micro_pen
         What the recordings of a SnowMicroPen say; None where the campaign has none.
+    weather
+        At each experiment, from a station; None where the campaign has none.
 
     See Also
     --------
@@ -101,6 +104,7 @@ class Analysis(Shown):
     observations: Mapping[Source, Observations]
     time: datetime = field(default_factory=lambda: datetime.now(UTC))
     snow_micro_pen: SnowMicroPenAnalysis | None = None
+    weather: WeatherAtTests | None = None
 
     @cached_property
     def results(self) -> dict[str, Any]:
@@ -242,6 +246,7 @@ def _analysis(
         own_stress=own_stress,
         observations=observations,
         snow_micro_pen=pen,
+        weather=weather_at_tests(campaign),
     )
 
 

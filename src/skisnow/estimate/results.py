@@ -20,6 +20,7 @@ from .campaign_notes import campaign_notes
 from .hardness import DEFINITIONS
 from .model_rows import model_rows, nested_row, selected_model
 from .snow_micro_pen_results import snow_micro_pen_results
+from .weather_results import weather_results
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -87,6 +88,8 @@ def results_dict(analysis: Analysis) -> Json:
     }
     if analysis.snow_micro_pen is not None:
         results["snow_micro_pen"] = snow_micro_pen_results(analysis.snow_micro_pen)
+    if analysis.weather is not None and analysis.campaign.weather is not None:
+        results["weather"] = weather_results(analysis.campaign.weather, analysis.weather)
     cleaned: Json = without_nan(results)
     return cleaned
 

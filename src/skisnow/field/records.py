@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ..geometry import Tool
     from .problems import Problem
     from .snow_micro_pen_records import SnowMicroPenRecordings
+    from .weather_records import CampaignWeather
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -336,6 +337,8 @@ class Campaign(Shown):
         Names of files in the folder that are no part of a campaign.
     pole_stiffness
         Moment over twist of the shear device between angle and plate (N m/rad); None: rigid.
+    weather
+        Readings of a station; None where the campaign has none.
     places
         What people know a table as that is a sheet of a workbook, by the file's name.
 
@@ -367,6 +370,7 @@ class Campaign(Shown):
     pole_stiffness: float | None = None
     places: Mapping[str, str] = field(default_factory=dict)
     snow_micro_pen: SnowMicroPenRecordings | None = None
+    weather: CampaignWeather | None = None
 
     def _facts(self) -> Facts:
         tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}

@@ -8,10 +8,12 @@ from .json_text import MOST_JSON_BYTES, json_value, own_json, read_json
 from .plain_file import is_file, plain_bytes, plain_text
 from .toml_text import MOST_TOML_BYTES, read_toml, toml_values
 from .workbook import workbook_sheets
+from .xml_tree import Element, xml_tree
 
 __all__ = [
     "MOST_JSON_BYTES",
     "MOST_TOML_BYTES",
+    "Element",
     "GivenError",
     "is_file",
     "json_value",
@@ -22,4 +24,5 @@ __all__ = [
     "read_toml",
     "toml_values",
     "workbook_sheets",
+    "xml_tree",
 ]

@@ -9,6 +9,7 @@ from ..inputs import nearest
 from ..units import DEGREE
 from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
+from .figures.run_balance import run_balance
 from .figures.run_course import run_course
 from .figures.run_energies import run_energies
 from .figures.run_grip import run_grip
@@ -66,6 +67,19 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         run_motion(run),
         wide=True,
     )
+    if run.scenario.skier is not None:
+        yield Drawing(
+            "balance",
+            prose(
+                "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean "
+                "that would be in balance with speed and path radius of the centre of mass. (b) Load of each ski along "
+                "the snow's normal. (c) Side force of the snow on each. The axes of (b, c) leave one peak in a hundred "
+                "out."
+            ),
+            "Lean, edge angle and forces of a skier over time.",
+            run_balance(run),
+            wide=True,
+        )
     yield Drawing(
         "along_ski",
         prose(
@@ -116,6 +130,7 @@ _FIGURES: Final = {
     "track": run_track,
     "course": run_course,
     "motion": run_motion,
+    "balance": run_balance,
     "along_ski": run_along_ski,
     "grip": run_grip,
     "energies": run_energies,

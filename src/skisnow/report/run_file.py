@@ -12,7 +12,7 @@ from scipy.io import netcdf_file
 
 from ..files import write_file
 from ..scenario.keys import SCENARIO_KEYS
-from .run_variables import PIECE, RUN_VARIABLES, SKI, STATION, TIME
+from .run_variables import PIECE, SKI, STATION, TIME, variables_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -60,7 +60,7 @@ def write_run_file(
     _attributes(file, run, values, provenance or {"versions": {"skisnow": version("skisnow")}})
     _dimensions(file, run)
     _names(file)
-    for variable in RUN_VARIABLES:
+    for variable in variables_of(run):
         _write(file, variable, run)
     file.flush()
     content = memory.getvalue()

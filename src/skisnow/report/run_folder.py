@@ -14,14 +14,14 @@ from ..simulate.run_summary import summary_dict
 from ..simulate.track_table import write_track
 from ..staging import staged, tidied
 from .pictures import picture_files
-from .run_report import FIGURES, OF_COURSE, write_run_report
+from .run_report import FIGURES, OF_COURSE, REPLAY, write_run_report
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from ..simulate.run import Run
 
-SUMMARY, REPLAY, GATES = "summary.json", "replay.html", "gates.csv"
+SUMMARY, GATES = "summary.json", "gates.csv"
 _STALE: Final = (*picture_files((*FIGURES, OF_COURSE)), GATES, REPLAY, "replay.glb")
 _MOMENTS: Final = "replay-*s.glb"
 
@@ -69,9 +69,9 @@ def write_run(
         write_file(stage.path / SUMMARY, f"{text}\n")
         write_track(run, stage.path / "track.csv")
         _write_gates(run, stage.path)
-        page = write_run_report(run, contents, stage.path, progress=report)
         if beside is not None:
             beside(stage.path)
+        page = write_run_report(run, contents, stage.path, progress=report)
     return folder / page.name
 
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..scenario.values import in_sections, scenario_values
-from ..simulate.track_table import COLUMNS, track_table
+from ..simulate.track_table import track_columns, track_table
 from .run_file import SKI_NAMES
-from .run_variables import RUN_VARIABLES, SKI
+from .run_variables import SKI, variables_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -26,14 +26,15 @@ if TYPE_CHECKING:
 def run_dataframe(run: Run) -> DataFrame:
     """The rows of track.csv; see `Run.to_dataframe`."""
     pandas = _needed("pandas", "a table of a run as a DataFrame")
-    return pandas.DataFrame(track_table(run), columns=list(COLUMNS))
+    return pandas.DataFrame(track_table(run), columns=list(track_columns(run)))
 
 
 def run_dataset(run: Run) -> Dataset:
     """Every variable of run.nc with its unit and meaning; see `Run.to_xarray`."""
     xarray = _needed("xarray", "a run as a Dataset")
-    coordinates = {each.name for each in RUN_VARIABLES if (each.name,) == each.dimensions}
-    variables = {each.name: _variable(each, run) for each in RUN_VARIABLES}
+    stored = variables_of(run)
+    coordinates = {each.name for each in stored if (each.name,) == each.dimensions}
+    variables = {each.name: _variable(each, run) for each in stored}
     return xarray.Dataset(
         {name: value for name, value in variables.items() if name not in coordinates},
         {name: variables[name] for name in coordinates} | {SKI: list(SKI_NAMES)},

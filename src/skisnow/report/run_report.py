@@ -36,6 +36,10 @@ FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
 OF_COURSE: Final = "course"
 """The one that a run with a course has beside them."""
+REPLAY: Final = "replay.html"
+"""The run in three dimensions, where that was asked for."""
+
+_LINK: Final = Markup('<a href="{}">the run in three dimensions</a>').format(REPLAY)
 
 
 def write_run_report(
@@ -71,12 +75,12 @@ def write_run_report(
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
     pictures = write_pictures(run_drawings(run), folder / "figures", every=(*FIGURES, OF_COURSE), progress=report)
     report("report.html")
-    write_file(folder / "report.html", run_page(run, summary, pictures))
+    write_file(folder / "report.html", run_page(run, summary, pictures, has_replay=(folder / REPLAY).is_file()))
     return folder / "report.html"
 
 
-def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture]) -> str:
-    """The HTML of a run's report."""
+def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], *, has_replay: bool = False) -> str:
+    """The HTML of a run's report; with a replay beside it a link leads there."""
     by_name = {picture.name: [picture] for picture in pictures}
     sections = [
         Section("outcome", "Outcome", key=outcome_sentences(run), pictures=by_name.get("track", ())),
@@ -91,7 +95,7 @@ def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture]) 
         sections.append(Section("verification", "Computed again", tables=[verification_table(summary["verification"])]))
     sections.append(Section("scenario", "Scenario", tables=[scenario_table(summary["scenario"])]))
     sections.append(Section("provenance", "Provenance", words=provenance_sentences(run, summary)))
-    return sheet(_header(run), sections)
+    return sheet(_header(run, has_replay=has_replay), sections)
 
 
 def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
@@ -102,7 +106,7 @@ def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[
     return [Section("gates", "Gates", words=words, pictures=by_name.get("course", ()), tables=[gates_table(result)])]
 
 
-def _header(run: Run) -> Header:
+def _header(run: Run, *, has_replay: bool) -> Header:
     scenario, ratio = run.scenario, run.scenario.contact.unloading_ratio
     facts = [
         ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}")),
@@ -110,6 +114,7 @@ def _header(run: Run) -> Header:
         *_laws(run),
         ("Skis", f"{scenario.ski.name}, edge angle {significant(scenario.sledge.edge_angle / DEGREE)}°"),
         ("Computed", f"skisnow {version('skisnow')}"),
+        *([("Replay", _LINK)] if has_replay else []),
     ]  # fmt: skip
     return Header("A simulated run of a sledge on two flexible skis", _title(run), facts, headline=_headline(run))
 

@@ -201,3 +201,40 @@ def _of_groove() -> list[RunVariable]:
 
 RUN_VARIABLES: Final = (*_coordinates(), *_over_time(), *_along_skis(), *_of_boots(), *_energies(), *_of_groove())
 """Every variable of run.nc but the names of the skis, in the order of the file."""
+
+
+def _of_balance() -> tuple[RunVariable, ...]:
+    def of(name: str) -> Values:
+        return lambda run: getattr(run.balance, name)
+
+    leans = {
+        "lean": "lean of the line from the boots' middle to the centre of mass, positive to the left",
+        "pressure_lean": "lean of the line from the centre of pressure to the centre of mass, positive to the left",
+        "balanced_lean": "lean in balance with speed and path radius of the centre of mass, positive to the left",
+        "rolling_lean": "the same with what the body's roll and the rise of its centre of mass take",
+        "angulation": "mean edge angle of the boots less the lean",
+    }
+    lengths = {
+        "leg": "length from the boots' middle to the centre of mass",
+        "pressure": "centre of pressure from the boots' middle, to the left",
+    }
+    centre = "centre of mass of the body: {}"
+    return (
+        *(RunVariable(name, (TIME,), "rad", meaning, of(name)) for name, meaning in leans.items()),
+        *(RunVariable(name, (TIME,), "m", meaning, of(name)) for name, meaning in lengths.items()),
+        RunVariable("load", (TIME, SKI), "N", "load of the ski along the snow's normal", of("load")),
+        *_three("centre_{}", (TIME,), "m", centre, _centre),
+    )
+
+
+def _centre(run: Run) -> npt.NDArray[np.float64]:
+    return np.full((len(run.time), 3), np.nan) if run.boots is None else run.boots.centre_of_mass
+
+
+SKIER_VARIABLES: Final = _of_balance()
+"""What a skier's run has besides."""
+
+
+def variables_of(run: Run) -> tuple[RunVariable, ...]:
+    """Every variable of a run's file but the names of the skis."""
+    return RUN_VARIABLES if run.scenario.skier is None else (*RUN_VARIABLES, *SKIER_VARIABLES)

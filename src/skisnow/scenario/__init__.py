@@ -13,6 +13,7 @@ from .contact import Contact
 from .profile_file import read_profile
 from .reading import ScenarioFile, read_scenario, scenario_file
 from .scenario import Scenario
+from .skier import Skier
 from .sledge import RigidSledge
 from .slope import Plane, Profile
 from .slope_surface import Slope
@@ -33,6 +34,7 @@ __all__ = [
     "RigidSledge",
     "Scenario",
     "ScenarioFile",
+    "Skier",
     "Slope",
     "SnowMap",
     "Solver",

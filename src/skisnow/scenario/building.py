@@ -54,7 +54,9 @@ def built(given: GivenScenario, sources: Sources) -> tuple[Scenario, tuple[str, 
     course = _course(given, slope)
     told = () if course is None else course.warnings
     boots = _boots(given, values)
-    scenario = made(Scenario, values, slope=slope, contact=contact, ski=ski, course=course, boots=boots)
+    scenario = made(
+        Scenario, values, slope=slope, contact=contact, ski=ski, course=course, boots=boots, **_no_skier(values)
+    )
     return scenario, (*warned, *told)
 
 
@@ -63,6 +65,11 @@ def _boots(given: GivenScenario, values: Mapping[str, Any]) -> Boots | None:
         return None
     edge_angle = math.radians(values["sledge.edge_angle_deg"])
     return read_boots(given.path("boots.file"), edge_angle=edge_angle, stance_width=values["sledge.stance_width_m"])
+
+
+def _no_skier(values: Mapping[str, Any]) -> dict[str, Any]:
+    """A scenario has a skier where it says something of one."""
+    return {} if any(name.startswith("skier.") for name in values) else {"skier": None}
 
 
 def outdone(given: GivenScenario, snow: SnowProperties, snow_map: SnowMap | None) -> frozenset[str]:

@@ -17,6 +17,8 @@ from .replaced import replaced
 
 _FOLDER: Final = files(__package__) / "catalogue"
 _COMMENTS_FROM: Final = 40
+_BY_PRESENCE: Final = ("skier",)
+"""Sections that a scenario has or has not: their defaults count where it has them."""
 _SECTION: Final = re.compile(r"^\[(\w+)\]\n", re.MULTILINE)
 
 
@@ -38,8 +40,8 @@ def scenario_names() -> tuple[str, ...]:
 
     Examples
     --------
-    >>> scenario_names()
-    ('carved-46m', 'carver-42m', 'giant-slalom-67m')
+    >>> [name for name in scenario_names() if "deg" not in name]
+    ['carved-46m', 'carver-42m', 'giant-slalom-20-gates', 'giant-slalom-67m', 'slalom-20-gates']
     """
     there = (entry.name for entry in _FOLDER.iterdir())
     return tuple(sorted(name.removesuffix(".toml") for name in there if name.endswith(".toml")))
@@ -65,7 +67,7 @@ def scenario_text(name: str) -> str:
     head, *parts = _SECTION.split(text)
     written = dict(zip(parts[::2], parts[1::2], strict=True))
     defaults = _defaults(text)
-    there = (each for each in SECTIONS if each in written or defaults[each])
+    there = (each for each in SECTIONS if each in written or (defaults[each] and each not in _BY_PRESENCE))
     sections = (f"[{each}]\n{written.get(each, '').rstrip()}\n{defaults[each]}" for each in there)
     return head + "\n".join(section.replace("]\n\n", "]\n") for section in sections)
 

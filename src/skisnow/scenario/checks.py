@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from ..ski import Ski
     from .contact import Contact
     from .shear import Shear
+    from .skier import Skier
     from .sledge import RigidSledge
     from .slope_surface import Slope
     from .start import Start
@@ -37,6 +38,32 @@ def require_sound(
     """
     for complaint in _together(slope, contact, sledge, ski, clamp_length, start, shear):
         raise ParameterError(complaint)
+
+
+def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, has_course: bool) -> None:
+    """Refuse what a skier cannot do with the rest of a scenario.
+
+    Raises
+    ------
+    ParameterError
+        The boots are edged or moved by a table, there are no gates to steer by, or the legs are
+        too short.
+    """
+    if skier is None:
+        return
+    if sledge.edge_angle != 0.0:
+        raise ParameterError(
+            f"sledge.edge_angle_deg is {math.degrees(sledge.edge_angle):g}; the skier sets the edges itself: write 0"
+        )
+    if has_boots:
+        raise ParameterError("boots.file and [skier] both move the boots; leave one of them out")
+    if skier.steers == "gates" and not has_course:
+        raise ParameterError('skier.steers is "gates" without a course; give course.name or course.file')
+    if skier.longest_leg <= sledge.centre_of_mass[1]:
+        raise ParameterError(
+            f"skier.longest_leg_m is {skier.longest_leg:g}, and sledge.centre_of_mass_height_m "
+            f"{sledge.centre_of_mass[1]:g}; the leg must be longer than that"
+        )
 
 
 def _together(

@@ -19,9 +19,10 @@ from ..ski.beam.clamped import CLAMP_LENGTH
 from ..units import DEGREE
 from .air import Air
 from .boots import Boots
-from .checks import require_sound
+from .checks import require_skier, require_sound
 from .contact import Contact
 from .shear import Shear
+from .skier import Skier
 from .sledge import RigidSledge
 from .slope import Plane, Profile
 from .slope_surface import Slope
@@ -71,6 +72,8 @@ class Scenario(Shown):
         (m/s²), > 0.
     course
         Gates in the slope's x and y, whose passing a run tells; None: there are none.
+    skier
+        Who moves the boots, keeps balance and steers; None: nobody does.
 
     See Also
     --------
@@ -176,6 +179,7 @@ class Scenario(Shown):
         ),
     ] = STANDARD_GRAVITY
     course: Course | None = None
+    skier: Skier | None = None
 
     def __post_init__(self) -> None:
         if self.contact.snow.failure_shear_stress is None:
@@ -194,6 +198,7 @@ class Scenario(Shown):
             start=self.start,
             shear=self.shear,
         )
+        require_skier(self.skier, self.sledge, has_boots=self.boots is not None, has_course=self.course is not None)
 
     def with_(self, **changes: Any) -> Scenario:
         """The same scenario with other parts or other values; this one stays as it is.
@@ -241,6 +246,7 @@ class Scenario(Shown):
             ("sledge", f"{amount(sledge.mass, 'kg')}, edge angle {amount(sledge.edge_angle / DEGREE, '°')}"),
             ("ski", repr(self.ski).strip("<>")),
             *([("boots", repr(self.boots).strip("<>"))] if self.boots is not None else []),
+            *([("skier", f"steers by {self.skier.steers}")] if self.skier is not None else []),
             ("start", f"{amount(start.speed, 'm/s')}, heading {amount(start.heading / DEGREE, '°')}"),
             *([("course", repr(self.course).strip("<>"))] if self.course is not None else []),
             ("end", " or ".join(amount(value, unit) for value, unit in end if value is not None)),

@@ -26,12 +26,15 @@ class BootHistory(Shown):
         (n, 2, 3, 3): ahead, left across the base, off the base, as rows in the slope's axes.
     own_force, own_moment
         (n, 2, 3) of the ski on its boot, about it, in the boot's axes (N, N m).
+    centre_of_mass
+        (n, 3) of the body that they carry, without the skis (m).
     """
 
     place: FloatArray
     axes: FloatArray
     own_force: FloatArray
     own_moment: FloatArray
+    centre_of_mass: FloatArray
 
     @property
     def force(self) -> FloatArray:
@@ -49,4 +52,6 @@ class BootHistory(Shown):
         return angles_of(self.axes)
 
     def _facts(self) -> Facts:
-        return field_facts(self, {"place": "m", "axes": "", "own_force": "N", "own_moment": "N m"})
+        return field_facts(
+            self, {"place": "m", "axes": "", "own_force": "N", "own_moment": "N m", "centre_of_mass": "m"}
+        )

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..contact import Laws
+    from .balance_history import BalanceHistory
     from .boot_history import BootHistory
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -28,6 +29,7 @@ Outcome: TypeAlias = Literal[
     "distance_reached",
     "end_of_slope",
     "tipped_over",
+    "fell",
     "airborne",
     "sunk",
     "missed_gate",
@@ -191,6 +193,12 @@ class Run(Shown):
         return {**laws, "strength_along": along}
 
     @property
+    def balance(self) -> BalanceHistory:
+        """How the body leant over its skis, and what would have been in balance; needs `boots`."""
+        found: BalanceHistory = from_above("simulate.run_balance", "balance_of")(self)
+        return found
+
+    @property
     def track(self) -> Track:
         """The path of the middle between the boots, as track.csv has it: what `skisnow.compare_tracks` takes."""
         axes = ("x down the fall line", "z out of the snow")
@@ -218,7 +226,7 @@ class Run(Shown):
         what
             "track": from above, with the grooves; "motion": speed, heading and turn radius; "along_ski": depth and
             force along both skis over time; "grip": the share of the shear strength in use; "energies";
-            "course": the line over the gates, with the edge angle as colour.
+            "course": the line over the gates, with the edge angle as colour; "balance": lean, edge angle and forces.
 
         Returns
         -------

@@ -156,6 +156,7 @@ class Record:
 
     def _boots(self) -> BootHistory:
         """The boots in space."""
+        forward, height = self.setup.scenario.sledge.centre_of_mass
         origin, axes = (np.array([each.body[part] for each in self._moments]) for part in (0, 1))
         boots, wrench = (np.array([getattr(each, name) for each in self._moments]) for name in ("boots", "wrench"))
         return BootHistory(
@@ -163,6 +164,7 @@ class Record:
             axes=np.einsum("nab,nkcb->nkca", axes, boots[:, :, 1:4]),
             own_force=wrench[..., :3],
             own_moment=wrench[..., 3:],
+            centre_of_mass=origin + axes @ np.array([forward, 0.0, height]),
         )
 
     def _moved_tracks(self, boots: BootHistory) -> FloatArray:

@@ -19,6 +19,7 @@ from ..geometry.surfaces import Grid
 from ..scenario import Plane, Scenario, SnowMap
 from ..scenario.slope_surface import down_and_left, heights_of, normals_of, reach_of, surface_of
 from ..ski.beam.clamped import clamped
+from ..skier import BalancedSkier
 from ..snow.measured_range import without_range_warnings
 from .moving_boots import BootControl, BootDrive, TableControl
 from .sledge.body import sledge_body
@@ -42,6 +43,7 @@ SET_DOWN: Final = 0.1
 """Distance (m) of the boots past a border that still counts as on it: a sledge may start there and settle."""
 AT_REST: Final = 1e-6
 """Last step (m) of Newton's method that counts as equilibrium."""
+_UP: Final = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(slots=True)
@@ -125,6 +127,8 @@ class Setup:
     @property
     def past_end(self) -> bool:
         """Whether tips or boots are past the end of the slope, or past a side of it."""
+        if isinstance(self.scenario.slope, Plane):
+            return False
         boots, ahead = self.place[:2], self.attitude[:2, 0]
         low, high = np.transpose(reach_of(self.scenario.slope))
         tips = boots + float(self.node[0]) * ahead
@@ -142,6 +146,8 @@ class Setup:
         return normals_of(self.scenario.slope, x, y)
 
     def _slope_at_boots(self) -> tuple[float, FloatArray]:
+        if isinstance(self.scenario.slope, Plane):
+            return 0.0, _UP
         x, y = self.place[:2].tolist()
         return float(heights_of(self.scenario.slope, x, y)), self.slope_normal(x, y)
 
@@ -172,6 +178,8 @@ def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
         if scenario.boots is not None:
             raise ParameterError("the boots move by boots.file and by a function; give one of them")
         return BootDrive(boots)
+    if scenario.skier is not None:
+        return BootDrive(BalancedSkier(scenario))
     if scenario.boots is None:
         return None
     return BootDrive(TableControl(scenario.boots), held=scenario.boots.frame == "slope")

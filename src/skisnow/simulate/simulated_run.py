@@ -46,6 +46,8 @@ REMEDIES: Final[dict[Outcome, str]] = {
     "or a shorter run.",
     "tipped_over": "The sledge leant more than 60° from the snow's normal: it has tipped over. Lower its centre of "
     "mass, widen the stance, or take less edge or speed.",
+    "fell": "The skier leant more than 60° from the snow's normal: it fell. Take less speed, a gentler slope or "
+    "shorter turns; figures/balance shows where the lean left what would be in balance.",
     "airborne": "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a "
     "smoother slope.",
     "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
@@ -174,7 +176,7 @@ def _loop(setup: Setup, record: Record, progress: Progress | None, strength_alon
 
 def _ended(setup: Setup, flying: float) -> Outcome | None:
     if setup.leaning > TIPPED:
-        return "tipped_over"
+        return "tipped_over" if setup.scenario.skier is None else "fell"
     if flying >= LONGEST_FLIGHT:
         return "airborne"
     if setup.height < -SINKING_DEPTH:

@@ -30,15 +30,25 @@ COLUMNS: Final = (
     "right_y_m",
     "right_depth_mm",
 )
+SKIER_COLUMNS: Final = ("lean_deg", "edge_angle_deg", "left_load_N", "right_load_N")
+"""Columns that a skier's run has besides."""
+
+
+def track_columns(run: Run) -> tuple[str, ...]:
+    """Names of the columns of a run's track.csv."""
+    return COLUMNS if run.scenario.skier is None else (*COLUMNS, *SKIER_COLUMNS)
 
 
 def track_table(run: Run) -> npt.NDArray[np.float64]:
-    """The rows of track.csv under `COLUMNS`, (n, 13); the turn radius is infinite where the path is straight."""
+    """The rows of track.csv under `track_columns`, (n, 13) or more; the turn radius of a straight path is infinite."""
     skis = [
         column
         for ski in (0, 1)
         for column in (run.skis.track[:, ski, 0], run.skis.track[:, ski, 1], run.skis.depth[:, ski] / MM)
     ]
+    if run.scenario.skier is not None:
+        balance = run.balance
+        skis += [balance.lean / DEGREE, (balance.lean + balance.angulation) / DEGREE, *balance.load.T]
     return np.column_stack([run.time, run.place, run.speed, run.heading / DEGREE, run.turn_radius, *skis])
 
 
@@ -46,7 +56,7 @@ def track_csv(run: Run) -> str:
     """The table as text: numbers with all their digits, nothing where a number does not exist."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    writer.writerow(track_columns(run))
     writer.writerows([repr(cell) if math.isfinite(cell) else "" for cell in row] for row in track_table(run).tolist())
     return stream.getvalue()
 

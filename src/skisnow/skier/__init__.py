@@ -1,6 +1,7 @@
-"""A skier on two legs: plans of turns, and a control that steers by the edge angle and keeps balance by the legs."""
+"""A skier on two legs: a control that steers by the edge angle, keeps balance by legs and edges, and its body."""
 
-from .balance import BalancedSkier, BalanceRecord, BalanceTuning
-from .plan import TurnPlan
+from .anthropometry import Body, body_of
+from .balance import BalancedSkier, BalanceRecord
+from .seen import Seen
 
-__all__ = ["BalanceRecord", "BalanceTuning", "BalancedSkier", "TurnPlan"]
+__all__ = ["BalanceRecord", "BalancedSkier", "Body", "Seen", "body_of"]

@@ -1,7 +1,7 @@
 """A control of moving boots that keeps a tall body in balance while it turns.
 
-The body is an inverted pendulum over the skis. What it can do: draw up one leg and stretch the other, so that it leans,
-and edge the skis, so that they turn. Its lean ψ is that of the line from the middle of the feet to the centre of mass.
+The body is an inverted pendulum over the skis. What it can do: stretch one leg and draw up the other, so that it leans
+while its centre of mass stays level over the snow, and edge the skis, so that they turn.
 """
 
 from __future__ import annotations
@@ -9,153 +9,74 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Final, Protocol, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ..dynamics import BootPose
 from ..errors import ParameterError
-from ..geometry.boot_axes import axes_of
 from ..scenario import Plane, Scenario
-from .plan import TurnPlan
+from ..scenario.skier import Skier
+from ..scenario.slope_surface import down_and_left, normals_of
+from .edges import Edges
+from .legs import leg_poses
+from .seen import Moment, Seen, seen_at
+from .steering import LineThroughGates, Steering, TurnsOverTime, Underway
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-AHEAD, STRIDE = 1.6, 0.02
-"""Time (s) that is looked ahead, and its step."""
-LIFTED: Final = 0.02
-"""Share of the load below which a ski counts as lifted."""
-LEAST_LOAD: Final = 150.0
-"""Load (N) below which nothing is learnt of the centre of pressure."""
-
-
-class Moment(Protocol):
-    """What is asked of a `skisnow.BootMoment`."""
-
-    @property
-    def time(self) -> float: ...  # noqa: D102
-    @property
-    def until(self) -> float: ...  # noqa: D102
-    @property
-    def rotation(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def velocity(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def boots(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def wrench(self) -> FloatArray: ...  # noqa: D102
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BalanceTuning:
-    """Numbers of the control, found by trial on a giant-slalom ski (modelling assumption).
-
-    Attributes
-    ----------
-    gain
-        Of the legs on the error of the capture point.
-    edge_change, edge_filter, share_filter, load_filter
-        Corner frequencies (Hz): of the planned change of edges, of the edge angle, of what balance asks of the edges,
-        of what is learnt from the loads.
-    edge_gain
-        Of the edges on the same error.
-    lean_more
-        By how much more than in balance the body is to lean.
-    reach
-        How far the centre of pressure may go from the middle, as a share of half the stance.
-    carving_share
-        Of the planned acceleration from which on the edges are set as for carving.
-    grip_at_1_deg
-        Side force over load with an edge at 1°, which grows with the root of the angle.
-    angulation
-        Edge angle beyond the lean (rad).
-    greatest_edge
-        (rad).
-    lag
-        Way after which the path has the edge's curvature (m).
-    correction
-        Lean by which the loads may correct what is planned (rad).
-    touch
-        How fast a lifted ski is put down (1/s).
-    """
-
-    gain: float = 1.5
-    edge_change: float = 1.2
-    edge_filter: float = 3.0
-    share_filter: float = 3.0
-    load_filter: float = 4.0
-    edge_gain: float = 0.8
-    lean_more: float = 1.1
-    reach: float = 0.86
-    carving_share: float = 0.5
-    grip_at_1_deg: float = 0.38
-    angulation: float = math.radians(3.0)
-    greatest_edge: float = math.radians(50.0)
-    lag: float = 0.6
-    correction: float = 0.15
-    touch: float = 8.0
+AHEAD: Final = 1.6
+STRIDE: Final = 0.02
+"""Time (s) that is looked ahead, and its step (modelling assumption)."""
+FADING: Final = 0.3
+"""Time (s) in which what balance asks, and what the loads teach, is thought to fade (modelling assumption)."""
+FORGETTING: Final = 6.0
+"""Rate (1/s) at which what the loads taught is forgotten while a ski is lifted (modelling assumption)."""
+MOST_GROWTH: Final = 25.0
+"""Greatest acceleration of the centre of mass against the feet (m/s²) (modelling assumption)."""
+ROLLS: Final = 0.7
+"""Share of the roll inertia that counts in the pendulum's rate (modelling assumption)."""
+TURN_MORE: Final = 1.3
+"""Greatest acceleration with what balance asks, over the greatest planned one (modelling assumption)."""
+SLOWEST: Final = 2.0
+"""Speed (m/s) with which the lag is computed at least (modelling assumption)."""
+STEEPEST: Final = 1.1
+"""Greatest planned acceleration over gravity (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True)
 class BalanceRecord:
-    """What the control saw and did at one moment: s, m/s, rad, m, N.
+    """What the control saw and did at one moment.
 
     Attributes
     ----------
-    time, speed, heading
-        When, how fast, and where to.
-    lean, balanced_lean, capture
-        Of the body; what would be in balance; the capture point's that is wanted.
+    time
+        (s).
+    seen
+        What it saw.
+    balanced, capture
+        Where the centre of mass would be in balance, and the capture point that is wanted, from the middle of the feet
+        to the left (m).
     edge_angle
-        Against the snow.
-    pressure_aside
-        The centre of pressure from the middle of the feet, to the left.
-    left_load, right_load
-        Along the snow's normal.
+        Against the snow (rad).
     """
 
     time: float
-    speed: float
-    heading: float
-    lean: float
-    balanced_lean: float
+    seen: Seen
+    balanced: float
     capture: float
     edge_angle: float
-    pressure_aside: float
-    left_load: float
-    right_load: float
-
-
-@dataclass(slots=True)
-class _Seen:
-    """What is measured: lean (rad), the pressure's place aside (m), loads (N), speed, heading, height of the centre."""
-
-    lean: float
-    aside: float
-    left: float
-    right: float
-    speed: float
-    heading: float
-    height: float
-
-    @property
-    def load(self) -> float:
-        return self.left + self.right
 
 
 @dataclass(slots=True, eq=False)
 class BalancedSkier:
-    """Moves the boots of a run: `skisnow.simulate(scenario, boots=BalancedSkier(scenario, plan))`.
+    """Moves the boots of a run as a scenario's skier; `skisnow.simulate` takes it for a scenario that has one.
 
     Parameters
     ----------
     scenario
-        On a plane, its sledge as tall as the skier and without an edge angle.
-    plan
-        When it turns.
-    tuning
-        Numbers of the control.
+        With a skier, whose numbers the control has.
 
     Attributes
     ----------
@@ -165,187 +86,173 @@ class BalancedSkier:
     Raises
     ------
     ParameterError
-        The slope is no plane, or the boots are edged or moved by a table.
+        The scenario has no skier.
 
     Notes
     -----
-    With ω² = m g h/(I + m h²) the lean obeys ψ'' = ω² (ψ - ψ_b - u/h): ψ_b would be in balance at the present
-    acceleration, u is how far aside the centre of pressure is. Of the two movements the one that grows belongs to the
-    capture point ξ = ψ + ψ'/ω; what it has to be is what is planned: ω ∫ exp(-ω s) ψ_b(t + s) ds. The legs bring u to
-    where ξ - ξ_ref decays, as far as the stance allows, and edge angles help.
+    With the centre of mass at the height z and ω² = m g z/(I + m z²), its place y aside of the feet obeys
+    y'' = ω² (y - b - u): b would be in balance at the present acceleration, u is how far aside the centre of pressure
+    is. Of the two movements the one that grows belongs to the capture point ξ = y + y'/ω; what it has to be is what is
+    planned: ω ∫ exp(-ω s) b(t + s) ds. The legs bring u to where ξ - ξ_ref decays, as far as the stance allows, and
+    edge angles help.
+
+    References
+    ----------
+    The page docs/methods/skier.md.
     """
 
     scenario: Scenario
-    plan: TurnPlan
-    tuning: BalanceTuning = field(default_factory=BalanceTuning)
     records: list[BalanceRecord] = field(default_factory=list)
-    _lean: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])  # with its rates
+    skier: Skier = field(init=False)
+    steering: Steering = field(init=False)
+    edges: Edges = field(init=False)
+    _aside: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])  # with its rates
     _edge: list[float] = field(default_factory=lambda: [0.0, 0.0])
-    _share: list[float] = field(default_factory=lambda: [0.0, 0.0])  # of the planned acceleration, with its rate
-    _asked: float = 0.0  # share that balance asks for
+    _turn: list[float] = field(default_factory=lambda: [0.0, 0.0])  # planned curvature over speed², with its rate
+    _asked: float = 0.0  # acceleration that balance asks for
     _acceleration: float = 0.0  # of the feet to the left
     _correction: float = 0.0
-    _last: tuple[float, float] = (0.0, 0.0)  # lean as seen, with its rate
     _gravity: float = field(init=False)
     _downhill: float = field(init=False)
+    _rate: float = field(init=False)
 
     def __post_init__(self) -> None:
-        slope, sledge = self.scenario.slope, self.scenario.sledge
-        if not isinstance(slope, Plane):
-            raise ParameterError("BalancedSkier: the slope is a profile; the control knows planes alone")
-        if sledge.edge_angle != 0.0 or self.scenario.boots is not None:
-            raise ParameterError(
-                "BalancedSkier: it sets the edges itself; sledge.edge_angle_deg must be 0, no boots.file"
-            )
-        self._gravity = self.scenario.gravity * math.cos(slope.angle)
-        self._downhill = self.scenario.gravity * math.sin(slope.angle)
+        sledge = self.scenario.sledge
+        if self.scenario.skier is None:
+            raise ParameterError("BalancedSkier: the scenario has no skier; give Scenario.with_(skier=Skier())")
+        self.skier = self.scenario.skier
+        self._stand_on(self.scenario.start.x, self.scenario.start.y)
+        self.edges = Edges.of(self.scenario, self._gravity, self.skier.greatest_edge)
+        self.steering = self._steering()
+        height, roll = sledge.centre_of_mass[1], ROLLS * sledge.inertia[0]
+        self._rate = math.sqrt(self._gravity * height * sledge.mass / (roll + sledge.mass * height**2))
+
+    def _stand_on(self, x: float, y: float) -> FloatArray:
+        """Take gravity along the snow's normal and down the slope there; gives the normal (3,)."""
+        slope, gravity = self.scenario.slope, self.scenario.gravity
+        normal = normals_of(slope, x, y)
+        if isinstance(slope, Plane):
+            self._gravity, self._downhill = gravity * math.cos(slope.angle), gravity * math.sin(slope.angle)
+        else:
+            self._gravity, self._downhill = gravity * float(normal[2]), -gravity * float(down_and_left(normal)[0][2])
+        return normal
+
+    def _steering(self) -> Steering:
+        course, start = self.scenario.course, self.scenario.start
+        if self.skier.steers == "gates" and course is not None:
+            return LineThroughGates(course, self.skier, (start.x, start.y))
+        return TurnsOverTime(self.skier)
+
+    @property
+    def _height(self) -> float:
+        return self.scenario.sledge.centre_of_mass[1]
 
     def __call__(self, moment: Moment) -> Sequence[BootPose]:
         """Where the boots shall be at the moment's end."""
         dt = moment.until - moment.time
         if dt > 0.0:
-            seen = self._look(moment)
-            wanted, balanced = self._foreseen(moment.until, seen, dt)
-            self._step_lean(seen, wanted, balanced, dt)
-            self._step_edge(moment.until, seen, dt)
-            self.records.append(
-                BalanceRecord(moment.until, seen.speed, seen.heading, seen.lean, balanced, wanted, self._edge[0],
-                              seen.aside, seen.left, seen.right)
-            )  # fmt: skip
-        return self._poses()
+            normal = self._stand_on(*moment.position[:2].tolist())
+            seen = seen_at(moment, self._height, normal)
+            wanted, planned = self._foreseen(moment.until, seen)
+            self._learn(seen, planned, dt)
+            wanted += self._correction * self._rate / (self._rate + 1.0 / FADING)
+            balanced, wanted = planned + self._correction, self.skier.lean_more * wanted
+            error = self._step_aside(seen, wanted, balanced, dt)
+            self._step_edge(moment.until, seen, error, dt)
+            self.records.append(BalanceRecord(moment.until, seen, balanced, wanted, self._edge[0]))
+        stance, half = self.scenario.sledge.stance_width, float(self.scenario.ski.at(0.0).width) / 2.0
+        (aside, rate, _), (edge, turning) = self._aside, self._edge
+        return leg_poses((aside, rate), (edge, turning), self._height, stance, half)
 
-    def _look(self, moment: Moment) -> _Seen:
-        """Loads and lean, about the direction in which the body heads on the snow."""
-        rotation, boots = moment.rotation, moment.boots
-        force, turning = (np.einsum("kca,kc->ka", boots[:, 1:4], part) for part in np.split(moment.wrench, 2, axis=1))
-        up = rotation[2]
-        ahead = np.array([1.0, 0.0, 0.0]) - up[0] * up
-        ahead /= np.linalg.norm(ahead)
-        place, middle = boots[:, 0], boots[:, 0].mean(axis=0)
-        roll = float((np.cross(place - middle, force) + turning).sum(axis=0) @ ahead)
-        left, right = (float(each @ up) for each in force)
-        load = left + right
-        centre = np.array([0.0, 0.0, self.scenario.sledge.centre_of_mass[1]]) - middle
-        heading = rotation @ ahead
-        return _Seen(
-            lean=math.atan2(float(centre @ np.cross(up, ahead)), float(centre @ up)),
-            aside=roll / load if load > LEAST_LOAD else 0.0,
-            left=left,
-            right=right,
-            speed=float(np.linalg.norm(moment.velocity[:3])),
-            heading=math.atan2(heading[1], heading[0]),
-            height=float(np.linalg.norm(centre)),
-        )
+    def _most(self, speed: float) -> float:
+        """Acceleration of a carve in balance (m/s²)."""
+        return min(self.edges.carving_acceleration(speed), STEEPEST * self._gravity)
 
-    def _drop(self, height: float) -> float:
-        """ω² (1/s²)."""
-        sledge = self.scenario.sledge
-        return self._gravity * height * sledge.mass / (sledge.inertia[0] + sledge.mass * height**2)
+    def _planned(self, at: Underway, most: float) -> float:
+        """Acceleration that is planned, over that of a carve in balance."""
+        limit = self._limit(at.speed)
+        return max(-limit, min(limit, self.steering.acceleration(at, most))) / max(most, 1e-3)
 
-    def carving_edge(self, speed: float) -> float:
-        """Edge angle (rad) at which a carve at this speed (m/s) is in balance, and some angulation."""
-        ratio = min(0.95, speed**2 / (self.scenario.ski.sidecut_radius_of_edge_line * self._gravity))
-        return min(math.asin(ratio) + self.tuning.angulation, self.tuning.greatest_edge)
+    def _limit(self, speed: float) -> float:
+        """Greatest planned acceleration (m/s²): with the greatest edge angle."""
+        return min(speed**2 / (self.edges.radius * math.cos(self.edges.greatest)), STEEPEST * self._gravity)
 
-    def carving_acceleration(self, speed: float) -> float:
-        """Of such a carve (m/s²)."""
-        return speed**2 / (self.scenario.ski.sidecut_radius_of_edge_line * math.cos(self.carving_edge(speed)))
-
-    def edge_of(self, share: float, speed: float) -> float:
-        """Edge angle (rad) for a share of that acceleration: little edge skids, from a share on it carves."""
-        tuning, carving = self.tuning, self.carving_edge(speed)
-        grip = abs(share) * self.carving_acceleration(speed) / self._gravity / tuning.grip_at_1_deg
-        skidding = min(math.radians(grip**2), carving)
-        x = min(1.0, max(0.0, (abs(share) - tuning.carving_share) / (1.0 - tuning.carving_share)))
-        return math.copysign(skidding + (carving - skidding) * x * x * (3.0 - 2.0 * x), share)
-
-    def _foreseen(self, now: float, seen: _Seen, dt: float) -> tuple[float, float]:
-        """The capture point's lean that is wanted, and the lean that is in balance now."""
-        tuning, omega = self.tuning, math.sqrt(self._drop(seen.height))
-        change, lag = 2.0 * math.pi * tuning.edge_change, tuning.lag / max(seen.speed, 2.0)
-        carve = self.carving_acceleration(seen.speed)
-        (share, rate), acceleration, heading = self._share, self._acceleration, seen.heading
-        ahead = np.arange(0.5 * STRIDE, AHEAD, STRIDE)
-        planned = np.empty(len(ahead))
-        for i, later in enumerate(ahead):
-            rate += STRIDE * (change**2 * (self.plan.sense(now + later) - share) - 2.0 * change * rate)
-            share += STRIDE * rate
-            target = carve * (share + self._asked * math.exp(-later / 0.3))
+    def _foreseen(self, now: float, seen: Seen) -> tuple[float, float]:
+        """Where the capture point should be, and where the centre of mass would be in balance now (m)."""
+        change, lag = self.skier.edge_change, self.skier.lag / max(seen.speed, SLOWEST)
+        most, (turn, rate), acceleration = self._most(seen.speed), self._turn, self._acceleration
+        at = Underway(now, *seen.place, seen.course, seen.speed, acceleration)
+        total = weights = first = 0.0
+        for i in range(round(AHEAD / STRIDE)):
+            later = (i + 0.5) * STRIDE
+            at.time = now + later
+            rate += STRIDE * (change**2 * (self._planned(at, most) - turn) - 2.0 * change * rate)
+            turn += STRIDE * rate
+            target = most * turn + self._asked * math.exp(-later / FADING)
             acceleration += (target - acceleration) * STRIDE / (lag + STRIDE)
-            planned[i] = math.atan((acceleration + self._downhill * math.sin(heading)) / self._gravity)
-            heading += acceleration / max(seen.speed, 1.0) * STRIDE
-        self._learn(seen, float(planned[0]), dt)
-        weight = np.exp(-omega * ahead)
-        wanted = tuning.lean_more * float(weight @ (planned + self._correction * np.exp(-ahead / 0.3)) / weight.sum())
-        self._acceleration += (carve * (self._share[0] + self._asked) - self._acceleration) * dt / (lag + dt)
-        return wanted, float(planned[0]) + self._correction
+            balanced = self._height * (acceleration + self._downhill * math.sin(at.heading)) / self._gravity
+            first = balanced if i == 0 else first
+            weight = math.exp(-self._rate * later)
+            total, weights = total + weight * balanced, weights + weight
+            at.x += STRIDE * at.speed * math.cos(at.heading)
+            at.y += STRIDE * at.speed * math.sin(at.heading)
+            at.acceleration = acceleration
+            at.heading += acceleration / max(seen.speed, 1.0) * STRIDE
+        return total / weights, first
 
-    def _learn(self, seen: _Seen, planned: float, dt: float) -> None:
-        """How far the lean in balance is from the planned one, by the loads while both skis bear."""
-        if seen.load <= LEAST_LOAD or self._lifted(seen):
-            self._correction *= 1.0 - 6.0 * dt
+    def _learn(self, seen: Seen, planned: float, dt: float) -> None:
+        """How far balance is from the plan, by the loads while both skis bear and are edged."""
+        if not seen.bears or seen.lifted:
+            self._correction *= 1.0 - FORGETTING * dt
             return
-        found = seen.lean - seen.aside / seen.height - self._lean[2] / self._drop(seen.height)
-        most = self.tuning.correction
-        self._correction += _share_of(dt, self.tuning.load_filter) * (
-            max(-most, min(most, found - planned)) - self._correction
-        )
+        most, skids = self.skier.correction, math.degrees(abs(self._edge[0]))
+        found = seen.aside - seen.pressure - self._aside[2] / self._rate**2 - planned
+        known = min(1.0, max(0.0, (skids - 2.0) / 3.0)) * found  # skis that hardly hold follow the feet
+        self._correction += _share_of(dt, self.skier.load_filter) * (max(-most, min(most, known)) - self._correction)
 
-    def _lifted(self, seen: _Seen) -> bool:
-        return seen.load > LEAST_LOAD and min(seen.left, seen.right) < LIFTED * seen.load
-
-    def _step_lean(self, seen: _Seen, wanted: float, balanced: float, dt: float) -> None:
-        """Draw the capture point towards what is wanted, by legs and edges."""
-        tuning, drop = self.tuning, self._drop(seen.height)
-        omega, (lean, rate, _) = math.sqrt(drop), self._lean
-        lean_before, rate_before = self._last
-        swing = rate_before + _share_of(dt, 8.0) * ((seen.lean - lean_before) / dt - rate_before)
-        self._last = (seen.lean, swing if self.records else 0.0)
-        if self._lifted(seen):
-            back = min(1.0, tuning.touch * dt)
-            lean, rate = lean + back * (seen.lean - lean), rate + back * (swing - rate)
-            error = seen.lean + swing / omega - wanted
+    def _step_aside(self, seen: Seen, wanted: float, balanced: float, dt: float) -> float:
+        """Draw the capture point towards what is wanted; gives how far it is from it (m)."""
+        skier, omega, (aside, rate, _) = self.skier, self._rate, self._aside
+        if seen.lifted or not seen.bears:
+            back = min(1.0, skier.touch * dt)
+            aside, rate = aside + back * (seen.aside - aside), rate + back * (seen.aside_rate - rate)
+            error = seen.aside + seen.aside_rate / omega - wanted
         else:
-            error = lean + rate / omega - wanted
-        carve = math.atan(self.carving_acceleration(seen.speed) / self._gravity)
-        asked = max(-1.0, min(1.0, tuning.edge_gain * error / max(carve, 0.1)))
-        self._asked += _share_of(dt, tuning.share_filter) * (asked - self._asked)
-        reach = tuning.reach * self.scenario.sledge.stance_width / 2.0 / seen.height
-        aside = max(-reach, min(reach, (1.0 + tuning.gain) * error))
-        growth = max(-30.0, min(30.0, drop * (lean - balanced - aside)))
+            error = aside + rate / omega - wanted
+        reach = skier.reach * self.scenario.sledge.stance_width / 2.0
+        pressure = max(-reach, min(reach, (1.0 + skier.leg_gain) * error))
+        growth = max(-MOST_GROWTH, min(MOST_GROWTH, omega**2 * (aside - pressure - balanced)))
         rate += growth * dt
-        self._lean = [max(-1.1, min(1.1, lean + rate * dt)), rate, growth]
+        furthest = math.sqrt(skier.longest_leg**2 - self._height**2)
+        self._aside = [max(-furthest, min(furthest, aside + rate * dt)), rate, growth]
+        return error
 
-    def _step_edge(self, now: float, seen: _Seen, dt: float) -> None:
-        """By critically damped filters: the planned change of edges, then the edge angle itself."""
-        change, swift = (2.0 * math.pi * each for each in (self.tuning.edge_change, self.tuning.edge_filter))
-        share, rate = self._share
-        rate += (change**2 * (self.plan.sense(now) - share) - 2.0 * change * rate) * dt
-        self._share = [share + rate * dt, rate]
-        wanted = self.edge_of(max(-1.3, min(1.3, self._share[0] + self._asked)), seen.speed)
-        edge, turning = self._edge
+    def _step_edge(self, now: float, seen: Seen, error: float, dt: float) -> None:
+        """By critically damped filters: the planned turn, then the edge angle itself."""
+        skier, (turn, rate), (edge, turning) = self.skier, self._turn, self._edge
+        change, swift, most = skier.edge_change, skier.edge_filter, self._most(seen.speed)
+        planned = self._planned(Underway(now, *seen.place, seen.course, seen.speed, self._acceleration), most)
+        rate += dt * (change**2 * (planned - turn) - 2.0 * change * rate)
+        self._turn = [turn + rate * dt, rate]
+        lean = max(math.atan(most / self._gravity), 0.1)
+        asked = max(-1.0, min(1.0, skier.edge_gain * error / self._height / lean))
+        self._asked += _share_of(dt, skier.share_filter) * (most * asked - self._asked)
+        ahead = most * self._turn[0] + self._asked
+        lag = skier.lag / max(seen.speed, SLOWEST)
+        self._acceleration += (ahead - self._acceleration) * dt / (lag + dt)
+        limit = TURN_MORE * self._limit(seen.speed)
+        target = max(-limit, min(limit, ahead))
+        grip = (target + self._downhill * math.sin(seen.course)) / self._gravity
+        wanted = self.edges.angle(target, grip, seen.speed, seen.load)
         turning += (swift**2 * (wanted - edge) - 2.0 * swift * turning) * dt
         self._edge = [edge + turning * dt, turning]
 
-    def _poses(self) -> list[BootPose]:
-        """Legs that lean the body, and are drawn up by as much as an edged ski lifts its boot."""
-        (lean, rate, _), (edge, turning), stance = self._lean, self._edge, self.scenario.sledge.stance_width
-        half, blunt = float(self.scenario.ski.at(0.0).width) / 2.0, math.sin(math.radians(3.0))
-        root = math.hypot(math.sin(edge), blunt)
-        up, upwards = half * (root - blunt), half * math.sin(edge) * math.cos(edge) * turning / root
-        rise, rises = stance * math.tan(lean), stance * rate / math.cos(lean) ** 2
-        axes = axes_of(edge - lean, 0.0, 0.0)
-        return [
-            BootPose(
-                np.array([0.0, side * stance, side * rise + up]),
-                axes,
-                np.array([0.0, 0.0, side * rises + upwards]),
-                np.array([rate - turning, 0.0, 0.0]),
-            )
-            for side in (0.5, -0.5)
-        ]
+    @property
+    def edge_steps(self) -> FloatArray:
+        """Changes of the edge angle from record to record (rad)."""
+        return np.diff([each.edge_angle for each in self.records])
 
 
-def _share_of(dt: float, frequency: float) -> float:
-    """Of a step towards its input that a filter of first order takes."""
-    return dt / (dt + 1.0 / (2.0 * math.pi * frequency))
+def _share_of(dt: float, rate: float) -> float:
+    """Of a step towards its input that a filter of first order takes, of that corner (rad/s)."""
+    return dt / (dt + 1.0 / rate)

@@ -16,6 +16,7 @@ from .unpacking import Unpacking, campaign_folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from ..field.store.address import StorePlace
     from .settings import Limits
 
 UNDESCRIBED: Final = (
@@ -24,7 +25,7 @@ UNDESCRIBED: Final = (
 )
 
 
-def add_uploaded(store: Path, place: str, names: Sequence[str], limits: Limits) -> str:
+def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Limits) -> str:
     """Keep a campaign of uploaded files, which lie in a folder under their numbers; gives its id.
 
     Raises

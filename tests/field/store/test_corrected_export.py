@@ -33,11 +33,6 @@ penetration.csv,2,5,depth_mm,14,"1,4",Bo,then,"the ""point""",seen
 '''
 
 
-@pytest.fixture
-def store(tmp_path: Path) -> Store:
-    return Store.open(tmp_path / "store.sqlite3")
-
-
 def kept(store: Store, place: Path, penetration: bytes, corrections: str = "") -> str:
     """The id of a campaign with these files."""
     place.mkdir()

@@ -1,16 +1,19 @@
 """A campaign that is being entered: nothing is overwritten, and its files are read as any campaign's."""
 
 import csv
-import sqlite3
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from sqlalchemy import insert
+from sqlalchemy.exc import IntegrityError
 
 from skisnow.errors import StoreError
 from skisnow.field import read_campaign
 from skisnow.field.store import Journals, NewEntry, OvertakenError, Store, campaign_files, replayed, write_campaign
+from skisnow.field.store.engine import writing
+from skisnow.field.store.schema import journal_entry
 
 TOML = """name = "a day"
 gauge_resolution_mm = 0.01
@@ -24,11 +27,6 @@ width_mm = 62.0
 name = "p"
 length_mm = 100.0
 """
-
-
-@pytest.fixture
-def store(tmp_path: Path) -> Store:
-    return Store.open(tmp_path / "store.sqlite3")
 
 
 def reading(test: str, position: int, load: str, depth: str) -> NewEntry:
@@ -180,21 +178,18 @@ def test_the_list_counts_entries(store: Store) -> None:
 
 @pytest.mark.parametrize(
     ("action", "about", "rule"),
-    [("overwrite", 1, "known_action"), ("correct", None, "about_an_entry"), ("add", 1, "about_an_entry")],
+    [("rewrite", 1, "known_action"), ("correct", None, "about_an_entry"), ("add", 1, "about_an_entry")],
 )
 def test_entries_can_only_be_added_by_the_rules(store: Store, action: str, about: int | None, rule: str) -> None:
     """The table itself refuses what no program should write."""
     id_, _ = campaign_with(Journals(store), "1.5")
     before = Journals(store).entries(id_)
     with (
-        sqlite3.connect(store.path) as connection,
-        pytest.raises(sqlite3.IntegrityError, match=f"CHECK constraint failed: ck_journal_entry_{rule}"),
+        writing(store.engine) as connection,
+        pytest.raises(IntegrityError, match=f"ck_journal_entry_{rule}"),
     ):
-        connection.execute(
-            "INSERT INTO journal_entry (journal_id, at, who, action, file, test, about, cells, why) "
-            "VALUES (?, '', '', ?, '', '', ?, '{}', '')",
-            (id_, action, about),
-        )
+        row = {"sequence": 99, "at": "", "who": "", "file": "", "test": "", "cells": "{}", "why": ""}
+        connection.execute(insert(journal_entry).values(journal_id=id_, action=action, about=about, **row))
     assert Journals(store).entries(id_) == before
 
 

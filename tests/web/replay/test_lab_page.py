@@ -64,6 +64,7 @@ def test_the_command_writes_a_replay_beside_the_report(tmp_path: Path, capsys: p
     assert main(words) == 0
     assert "<h1>carved-46m</h1>" in (tmp_path / "run" / "replay.html").read_text(encoding="utf-8")
     assert "replay.html" in capsys.readouterr().err
+    assert 'href="replay.html"' in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
 
 
 def test_a_replay_needs_a_folder(capsys: pytest.CaptureFixture[str]) -> None:

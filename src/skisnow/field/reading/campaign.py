@@ -21,6 +21,8 @@ from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SN
 from .tables import read_table
 from .text import UnreadableTextError, decode, inspect_csv
 from .together import check_together
+from .weather import ENDING as WEATHER_ENDING
+from .weather import campaign_weather
 from .workbook_files import is_workbook, unfolded
 
 if TYPE_CHECKING:
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
     from ..applied_correction import AppliedCorrection
     from ..problems import Problem
+    from ..weather_records import CampaignWeather
     from .campaign_file import CampaignFile
     from .campaign_files import CampaignFiles
     from .corrections import RowCorrections
@@ -44,7 +47,7 @@ class _ReadFiles(Container[str]):
     def __contains__(self, name: object) -> bool:
         if not isinstance(name, str) or "/" in name:
             return False
-        return name in CAMPAIGN_FILES or name.lower().endswith(ENDING) or is_workbook(name)
+        return name in CAMPAIGN_FILES or name.lower().endswith((ENDING, WEATHER_ENDING)) or is_workbook(name)
 
 
 READ_FILES: Final = _ReadFiles()
@@ -147,6 +150,7 @@ class _Contents:
     unread: tuple[str, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
     recordings: Mapping[str, bytes] = field(default_factory=dict)
+    weather: CampaignWeather | None = None
 
 
 def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
@@ -173,6 +177,7 @@ def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Cont
             tables[form.file] = table
             files.found.extend(check_together(table, described))
     recordings = recording_contents(tables.get(SNOW_MICRO_PEN.file), files)
+    weather = None if described is None else campaign_weather(described.weather, files)
     there = campaign.names()
     files.found.extend(_misnamed(there, files.absent))
     if {PENETRATION.file, SHEAR.file} <= files.absent:
@@ -188,9 +193,10 @@ def _read(lying: CampaignFiles, progress: Callable[[str], None] | None) -> _Cont
         hashes | campaign.hashes,
         tuple(placed(problem, campaign.places) for problem in _in_order(files.found)),
         tuple(each.applied() for each in applied),
-        (*(name for name in _unread(there) if name not in recordings), *campaign.unread),
+        (*(name for name in _unread(there) if name not in files.hashes), *campaign.unread),
         campaign.places,
         recordings,
+        weather,
     )
 
 
@@ -304,4 +310,5 @@ def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
         )
         if SNOW_MICRO_PEN.file in tables
         else None,
+        weather=contents.weather,
     )

@@ -15,6 +15,7 @@ from ...units import MM
 from ..problems import error, warning
 from ..quality_flags import ALWAYS_EXCLUDE, QUALITY_FLAGS
 from ..snow_micro_pen_records import SnowMicroPenSettings
+from ..weather_records import WeatherSettings
 from .headings import KEY as COLUMNS_KEY
 from .headings import Headings, headings_of
 from .toml_values import TomlValues
@@ -92,12 +93,13 @@ class CampaignFile:
     excluding: frozenset[str]
     headings: Headings
     snow_micro_pen: SnowMicroPenSettings
+    weather: WeatherSettings
 
 
 CAMPAIGN_KEYS: Final = {key.name: key for key in own_quantities(CampaignFile)}
 """Keys with one value or a list of numbers."""
 (PLATE_LENGTH,) = own_quantities(Plate)
-_SECTIONS: Final = ("tool", "plate", "screening", COLUMNS_KEY, "snow_micro_pen")
+_SECTIONS: Final = ("tool", "plate", "screening", COLUMNS_KEY, "snow_micro_pen", "weather")
 _TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], *_SECTIONS)
 
 
@@ -140,6 +142,7 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
         excluding=_excluding(top),
         headings=headings_of(top),
         snow_micro_pen=_recordings(top.table("snow_micro_pen")),
+        weather=top.table("weather").declared(WeatherSettings),
     )
 
 

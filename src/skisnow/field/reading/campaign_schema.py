@@ -8,6 +8,7 @@ from ...inputs import own_quantities
 from ...inputs.json_schema import DRAFT, Schema, table_schema
 from ..quality_flags import QUALITY_FLAGS
 from ..snow_micro_pen_records import SnowMicroPenSettings
+from ..weather_records import WeatherSettings
 from .campaign_file import CAMPAIGN_KEYS, PLATE_LENGTH
 from .tool_shapes import SHAPES, Shape
 
@@ -31,6 +32,7 @@ def campaign_schema() -> Schema:
             "plate": {"type": "array", "items": {"$ref": "#/$defs/plate"}},
             "columns": _columns(),
             "snow_micro_pen": _recordings(),
+            "weather": _weather(),
             "screening": {"type": "object", "properties": {"exclude": _exclude()}},
         },
         "$defs": {"mark": {"enum": list(QUALITY_FLAGS)}, "tool": _tool(), "plate": _plate()},
@@ -58,6 +60,12 @@ def _recordings() -> Schema:
     """How recordings of a SnowMicroPen are evaluated."""
     words = "How the recordings that snow_micro_pen.csv names are evaluated."
     return {"description": words, **table_schema(own_quantities(SnowMicroPenSettings))}
+
+
+def _weather() -> Schema:
+    """The readings of a station."""
+    words = "Readings of a weather station, in SMET."
+    return {"description": words, **table_schema(own_quantities(WeatherSettings))}
 
 
 def _tool() -> Schema:

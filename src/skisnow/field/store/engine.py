@@ -1,6 +1,7 @@
-"""The SQLite file under the store: connections, transactions, schema, and plain words for what goes wrong.
+"""The database under the store: connections, transactions, the schema of a file, plain words for what goes wrong.
 
-Every connection has foreign keys on and waits for others; every commit is on the disk before it returns
+A store on a server is opened by `server`. In a file,
+every connection has foreign keys on and waits for others; every commit is on the disk before it returns
 (``synchronous=FULL``). Connections are opened for each piece of work and closed after it, threads share none.
 """
 
@@ -18,11 +19,17 @@ from sqlalchemy import Connection, Engine, NullPool, create_engine, event
 from sqlalchemy.exc import DBAPIError
 
 from ...errors import StoreError
-from .schema import APPLICATION_ID, REVISION
+from .address import ServerAddress
+from .schema import APPLICATION_ID
+from .server import lock_for_writing, needs_migration, open_server, reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+    from sqlalchemy import ExceptionContext
+
+    from .address import StorePlace
 
 _NO_ROOM: Final = "there is no room left on the disk; free some space and try again"
 _READ_ONLY: Final = "it is read-only; allow writing to the file and its folder, or name another place"
@@ -47,11 +54,14 @@ _SYSTEM_REASONS: Final = {
 
 
 @contextmanager
-def database_errors(store: Path, doing: str) -> Iterator[None]:
+def database_errors(store: StorePlace, doing: str) -> Iterator[None]:
     """Turn a database error into a `StoreError` that says what to do; ``doing`` as in "could not be read"."""
     try:
         yield
     except (DBAPIError, sqlite3.Error) as error:
+        store = _place_of(error) or store
+        if isinstance(store, ServerAddress):
+            raise StoreError(f"The store {store} {doing}: {reason(error, store)}.") from error
         message = str(getattr(error, "orig", error))
         code = sqlite3.SQLITE_CORRUPT if message.startswith(_NO_TEXT) else _primary_code(error)
         why = _SQLITE_REASONS.get(code, message)
@@ -70,6 +80,19 @@ def file_errors(place: Path, doing: str) -> Iterator[None]:
         raise StoreError(f"{error.filename or place} {doing}: {why}.") from error
 
 
+def _remember_place(engine: Engine, place: StorePlace) -> None:
+    """Errors say which of two stores they are from."""
+
+    def remember(context: ExceptionContext) -> None:
+        context.original_exception.skisnow_place = place  # type: ignore[attr-defined]
+
+    event.listen(engine, "handle_error", remember)
+
+
+def _place_of(error: BaseException) -> StorePlace | None:
+    return getattr(getattr(error, "orig", None) or error, "skisnow_place", None)
+
+
 def _primary_code(error: DBAPIError | sqlite3.Error) -> int:
     code: int = getattr(getattr(error, "orig", error), "sqlite_errorcode", 0)
     return code & 0xFF  # the upper bits say more than a user can act on
@@ -81,6 +104,8 @@ def reading(engine: Engine) -> Iterator[Connection]:
     with (
         engine.connect() as connection
     ):  # ended by a rollback, which works even on damaged files, where COMMIT does not
+        if not is_file(connection):
+            connection.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
         yield connection
 
 
@@ -88,21 +113,47 @@ def reading(engine: Engine) -> Iterator[Connection]:
 def writing(engine: Engine) -> Iterator[Connection]:
     """Give a connection that alone may write; all of its work is kept, or none."""
     with engine.connect() as connection, connection.execution_options(skisnow_begin="IMMEDIATE").begin():
+        if not is_file(connection):
+            lock_for_writing(connection)
         yield connection
 
 
-def open_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
-    """Connect to the SQLite file and bring its schema up to date.
+@contextmanager
+def apart(connection: Connection) -> Iterator[None]:
+    """What fails inside leaves the transaction as it was before, so that it can go on; a server ends it otherwise."""
+    if is_file(connection):
+        yield
+    else:
+        with connection.begin_nested():
+            yield
+
+
+def is_file(connection: Connection) -> bool:
+    """Tell an SQLite file from a server."""
+    return connection.dialect.name == "sqlite"
+
+
+def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> Engine:
+    """Connect to the database and bring its schema up to date.
 
     Raises
     ------
     StoreError
-        The file is no store, or of a newer program, or damaged, or must be written and cannot.
+        It is no store, or of a newer program, or damaged, or must be written and cannot.
     """
-    with database_errors(path, "cannot be used"):
-        engine = _readable_engine(path, create=create, busy_timeout_s=busy_timeout_s)
-        if _is_outdated(engine, path):
-            _bring_up_to_date(engine, path, busy_timeout_s)
+    with database_errors(place, "cannot be used"):
+        if isinstance(place, ServerAddress):
+            engine = open_server(place, create=create, busy_timeout_s=busy_timeout_s)
+        else:
+            engine = _open_file(place, create=create, busy_timeout_s=busy_timeout_s)
+    _remember_place(engine, place)
+    return engine
+
+
+def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
+    engine = _readable_engine(path, create=create, busy_timeout_s=busy_timeout_s)
+    if _is_outdated(engine, path):
+        _bring_up_to_date(engine, path, busy_timeout_s)
     return engine
 
 
@@ -168,20 +219,7 @@ def _revision(connection: Connection, path: Path) -> str | None:
 
 def _is_outdated(engine: Engine, path: Path) -> bool:
     with reading(engine) as connection:
-        return _needs_migration(_revision(connection, path), path)
-
-
-def _needs_migration(revision: str | None, path: Path) -> bool:
-    if revision == REVISION:
-        return False  # the usual case: alembic need not even be imported
-    from .migrations import knows
-
-    if revision is not None and not knows(revision):
-        raise StoreError(
-            f"{path} was written by a newer skisnow (schema {revision}; this one knows up to {REVISION}); "
-            "update skisnow, or name another store."
-        )
-    return True
+        return needs_migration(_revision(connection, path), path)
 
 
 def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None:
@@ -193,7 +231,7 @@ def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None
         # of a transaction and are checked before it ends.
         connection.connection.cursor().execute("PRAGMA foreign_keys = OFF")
         with connection.execution_options(skisnow_begin="IMMEDIATE").begin():
-            if not _needs_migration(_revision(connection, path), path):
+            if not needs_migration(_revision(connection, path), path):
                 return  # another process was faster
             upgrade(connection)
             if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:

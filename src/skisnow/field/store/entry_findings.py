@@ -8,7 +8,8 @@ from sqlalchemy import Connection, LargeBinary, cast, select
 from sqlalchemy.exc import DatabaseError
 
 from ...errors import StoreError
-from .entry_sums import cells_of, differing, entry_sha256
+from .engine import is_file
+from .entry_sums import as_bytes, cells_of, differing, entry_sha256
 from .finding import Finding
 from .journal_entry import readable_entry
 from .schema import journal_entry
@@ -25,9 +26,7 @@ _CHECKSUM: Final = "its checksum is damaged, what it says is sound"
 
 def findings_of_entries(connection: Connection) -> Iterator[Finding]:
     """Check each entry, read as bytes: what is no text any more is named as well."""
-    asked = select(*(cast(column, LargeBinary).label(column.name) for column in journal_entry.c))
-    found = connection.execute(asked.order_by(journal_entry.c.sequence)).mappings().all()
-    rows: list[_Row] = [{str(name): data for name, data in row.items()} for row in found]
+    rows = list(_as_bytes(connection))
     places = {row["sequence"]: row["position"] for row in rows}
     for row in rows:
         about = row if row["about"] is None else {**row, "position": places.get(row["about"])}
@@ -35,6 +34,16 @@ def findings_of_entries(connection: Connection) -> Iterator[Finding]:
         if row["sha256"] is None or not damage:
             yield from _of_form(connection, row)
         yield from (_finding(row, _place(about, column), what) for column, what in damage)
+
+
+def _as_bytes(connection: Connection) -> Iterator[_Row]:
+    columns = journal_entry.c
+    if is_file(connection):
+        asked = select(*(cast(column, LargeBinary).label(column.name) for column in columns))
+    else:
+        asked = select(*columns)  # a server holds nothing in a text that is none
+    for row in connection.execute(asked.order_by(columns.sequence)).mappings().all():
+        yield {str(name): as_bytes(value) for name, value in row.items()}
 
 
 def _of_form(connection: Connection, row: _Row) -> Iterator[Finding]:

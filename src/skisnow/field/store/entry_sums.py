@@ -1,7 +1,7 @@
 """Checksums of an entry of a journal: one that shows whether it is what was written down, and one for each part of it.
 
-They are taken from the bytes that SQLite holds, so that an entry which is no text any more can be checked, too. What
-is written down here must stay as it is: stores hold it (migration 0004 has a copy).
+They are taken from the bytes that the store holds, so that an entry which is no text any more can be checked, too. What
+is written down here must stay as it is: stores hold it (migrations 0004 and 0005 have copies).
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ _PARTICULARS: Final = (
     "about",
     "why",
     "once",
+    "uid",
 )
 """Columns beside the cells, in the order in which they are summed; only ever added to with a migration."""
 
@@ -41,7 +42,7 @@ def entry_sha256(row: Mapping[str, object]) -> str:
     """
     found = sha256()
     for name in (*_PARTICULARS, "cells"):
-        data = _bytes(row.get(name))
+        data = as_bytes(row.get(name))
         found.update(b"-;" if data is None else b"%d;%b" % (len(data), data))
     return found.hexdigest()
 
@@ -80,7 +81,7 @@ def cells_of(row: Mapping[str, object]) -> dict[str, str]:
     ValueError
         They cannot be taken apart.
     """
-    data = _bytes(row.get("cells")) or b""
+    data = as_bytes(row.get("cells")) or b""
     cells = json_value(data.decode(errors="replace"))
     if not isinstance(cells, dict) or not all(isinstance(cell, str) for cell in cells.values()):
         raise ValueError("the cells are not texts by their columns")
@@ -88,7 +89,7 @@ def cells_of(row: Mapping[str, object]) -> dict[str, str]:
 
 
 def _of_particulars(row: Mapping[str, object]) -> dict[str, str]:
-    return {name: _crc32(_bytes(row.get(name))) for name in _PARTICULARS}
+    return {name: _crc32(as_bytes(row.get(name))) for name in _PARTICULARS}
 
 
 def _of_cells(row: Mapping[str, object]) -> dict[str, str]:
@@ -99,7 +100,7 @@ def _crc32(data: bytes | None) -> str:
     return "none" if data is None else f"{zlib.crc32(data):08x}"
 
 
-def _bytes(value: object) -> bytes | None:
+def as_bytes(value: object) -> bytes | None:
     """A value as SQLite casts it to a BLOB."""
     if value is None or isinstance(value, bytes):
         return value

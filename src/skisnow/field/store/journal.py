@@ -9,10 +9,8 @@ first entry about a test says what the file says.
 
 from __future__ import annotations
 
-import json
 import secrets
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
 from hashlib import sha256
 from typing import TYPE_CHECKING, Final
 
@@ -20,9 +18,9 @@ from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
 
 from ...errors import StoreError
 from .engine import database_errors, reading, writing
-from .entry_sums import entry_sha256, entry_sums
-from .journal_entry import DESCRIPTION, PLAIN, JournalEntry, NewEntry, entry_of
-from .rows import TIME, damaged, number_of, text_of
+from .entry_rows import file_uid, now, write_entry
+from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, entry_of
+from .rows import damaged, number_of, text_of
 from .schema import campaign, journal, journal_entry
 
 if TYPE_CHECKING:
@@ -64,9 +62,9 @@ class Journals:
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
             if once is not None and connection.execute(select(journal.c.id).where(journal.c.id == id_)).first():
                 return id_
-            connection.execute(insert(journal).values(id=id_, begun_at=_now()))
+            connection.execute(insert(journal).values(id=id_, begun_at=now()))
             entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: description}, who=who)
-            _write(connection, id_, entry)
+            write_entry(connection, id_, entry)
         return id_
 
     def list(self) -> tuple[JournalHead, ...]:
@@ -89,6 +87,9 @@ class Journals:
     def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
         """Give the entries of a journal, oldest first, from the one behind a sequence on.
 
+        The order is that of their uids, which is the same in all stores; where nothing was synchronised it is that in
+        which they were written down.
+
         Raises
         ------
         StoreError
@@ -110,8 +111,8 @@ class Journals:
         with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
             require(connection, id_)
             asked = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
-            rows = connection.execute(asked.order_by(journal_entry.c.sequence)).mappings()
-            return tuple(entry_of(row) for row in rows)
+            rows = connection.execute(asked).mappings()
+            return tuple(sorted(map(entry_of, rows), key=lambda entry: entry.uid))
 
     def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
         """Write an entry down; when this returns it is on the disk. One that is there already is given back.
@@ -138,7 +139,7 @@ class Journals:
                 return known
             _refuse_overtaken(connection, id, entry, seen)
             _require_subject(connection, id, entry)
-            return _write(connection, id, entry)
+            return write_entry(connection, id, entry)
 
     def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:  # noqa: A002
         """Write down what is to be different in a campaign that is stored byte for byte.
@@ -167,12 +168,12 @@ class Journals:
                 return known
             _refuse_overtaken(connection, id, entry, seen)
             if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
-                connection.execute(insert(journal).values(id=id, begun_at=_now()))
+                connection.execute(insert(journal).values(id=id, begun_at=now()))
             base = _base(connection, id, entry, standing)
             if entry.action == "correct":
                 entry = replace(entry, about=base)
             _require_subject(connection, id, entry)
-            return _write(connection, id, entry)
+            return write_entry(connection, id, entry)
 
 
 def _head(id_: object, begun_at: object, n_entries: object, last_at: object) -> JournalHead:
@@ -180,10 +181,6 @@ def _head(id_: object, begun_at: object, n_entries: object, last_at: object) -> 
         return JournalHead(text_of(id_), text_of(begun_at), number_of(n_entries), text_of(last_at))
     except TypeError as error:
         raise damaged(f"The campaign in entry {id_}") from error
-
-
-def _now() -> str:
-    return datetime.now(UTC).strftime(TIME)
 
 
 def _require(connection: Connection, id_: str) -> None:
@@ -203,7 +200,8 @@ def _base(connection: Connection, id_: str, entry: NewEntry, standing: Mapping[s
     if row is not None:
         return int(row[0])
     original = NewEntry(action="add", file=entry.file, test=entry.test, cells=standing, why="as the file has it")
-    return _write(connection, id_, original).sequence
+    uid = file_uid(id_, entry.file, entry.test)
+    return write_entry(connection, id_, original, uid=uid).sequence
 
 
 def _of_test(id_: str, entry: NewEntry) -> ColumnElement[bool]:
@@ -237,13 +235,3 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
     found = select(journal_entry.c.sequence).where(_of_test(id_, entry), journal_entry.c.sequence == entry.about)
     if connection.execute(found).first() is None:
         raise StoreError(f"{entry.test} has no entry {entry.about} that could be corrected or undone.")
-
-
-def _write(connection: Connection, id_: str, entry: NewEntry) -> JournalEntry:
-    plain = {name: getattr(entry, name) for name in PLAIN}
-    sequence = connection.execute(select(func.coalesce(func.max(journal_entry.c.sequence), 0) + 1)).scalar_one()
-    at = _now()
-    cells = json.dumps(dict(entry.cells), ensure_ascii=False)
-    row = {**plain, "sequence": sequence, "at": at, "journal_id": id_, "cells": cells}
-    connection.execute(insert(journal_entry).values(**row, sha256=entry_sha256(row), sums=entry_sums(row)))
-    return JournalEntry(**plain, cells=dict(entry.cells), at=at, sequence=sequence)

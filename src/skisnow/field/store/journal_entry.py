@@ -57,10 +57,22 @@ class NewEntry:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JournalEntry(NewEntry):
-    """What was written down: with its number in the store, which rises, and the time in UTC (ISO 8601)."""
+    """What was written down.
+
+    Attributes
+    ----------
+    sequence
+        Its number in this store, which rises.
+    at
+        When, in UTC (ISO 8601).
+    uid
+        What it is called in every store that has it; entries sorted by it are in the same order everywhere, and none
+        stands before one that its writer knew.
+    """
 
     sequence: int
     at: str
+    uid: str = ""
 
     @property
     def is_from_file(self) -> bool:
@@ -84,9 +96,9 @@ def entry_of(row: RowMapping) -> JournalEntry:
 
 def readable_entry(row: RowMapping) -> JournalEntry:
     """An entry from its row, whether or not that is what was written down; errors as in `entry_of`."""
-    values: dict[str, Any] = {name: row[name] for name in (*PLAIN, "sequence", "at")}
+    values: dict[str, Any] = {name: row[name] for name in (*PLAIN, "sequence", "at", "uid")}
     try:
-        for name in ("action", "file", "test", "at", "who", "why"):
+        for name in ("action", "file", "test", "at", "who", "why", "uid"):
             text_of(values[name])
         for name in ("sequence", "position", "about"):
             if values[name] is not None or name == "sequence":

@@ -45,7 +45,7 @@ class ReplayedTest:
     @property
     def last(self) -> int:
         """Sequence of the last entry about it: what `Journals.append` takes as seen."""
-        return self.history[-1].sequence if self.history else 0
+        return max((entry.sequence for entry in self.history), default=0)
 
     @property
     def cancelled(self) -> str:
@@ -113,13 +113,15 @@ def replayed(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None
             added.setdefault((entry.file, entry.test), []).append(entry)
     for key, new in added.items():
         known = campaign.tests[key].history if key in campaign.tests else []
-        campaign.tests[key] = _test(key, [*known, *new])
+        campaign.tests[key] = _test(key, sorted([*known, *new], key=lambda entry: entry.uid))
     return campaign
 
 
 def _test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
     test = ReplayedTest(*key, history=history)
-    test.undone = {entry.about for entry in history if entry.action == "undo" and entry.about is not None}
+    for entry in reversed(history):  # an undoing can be undone
+        if entry.action == "undo" and entry.about is not None and entry.sequence not in test.undone:
+            test.undone.add(entry.about)
     rows: dict[int, ReplayedRow] = {}
     for entry in history:
         if entry.sequence not in test.undone:

@@ -97,6 +97,11 @@ def _candidates(rows: Sequence[Row[tuple[object, ...]]]) -> str:
     return (", ".join(named) or "none") + (f" and {further} more" if further else "")
 
 
+def stored_hashes(connection: Connection) -> set[str]:
+    """The SHA-256 of every campaign."""
+    return set(connection.execute(select(campaign.c.sha256)).scalars())
+
+
 def damaged(what: str) -> StoreError:
     """The error for rows that hold what was never written there."""
     return StoreError(
@@ -131,12 +136,12 @@ def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> Sto
 
 
 def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
-    files = connection.execute(
+    rows = connection.execute(
         select(campaign_file.c.path, content.c.size, content.c.sha256)
         .join_from(campaign_file, content)
         .where(campaign_file.c.campaign_id == row.id)
-        .order_by(campaign_file.c.path)
     )
+    files = [StoredFile(text_of(file.path), number_of(file.size), text_of(file.sha256)) for file in rows]
     return StoredCampaign(
         id=text_of(row.id),
         name=text_of(row.name),
@@ -144,7 +149,7 @@ def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> St
         sha256=text_of(row.sha256),
         n_errors=None if row.n_errors is None else number_of(row.n_errors),
         n_warnings=None if row.n_warnings is None else number_of(row.n_warnings),
-        files=tuple(StoredFile(text_of(file.path), number_of(file.size), text_of(file.sha256)) for file in files),
+        files=tuple(sorted(files, key=lambda file: file.path)),
     )
 
 
@@ -200,13 +205,27 @@ def store_content(connection: Connection, folder: Path, file: StoredFile) -> boo
     else:
         connection.execute(update(content).where(content.c.sha256 == file.sha256).values(size=file.size))
         connection.execute(delete(chunk).where(chunk.c.sha256 == file.sha256))
-    found = hashlib.sha256()
-    for position, piece in enumerate(read_chunks(folder / file.path, CHUNK_BYTES)):
-        found.update(piece)
-        connection.execute(insert(chunk).values(sha256=file.sha256, position=position, data=piece))
-    if found.hexdigest() != file.sha256:
+    if not _store_chunks(connection, file.sha256, read_chunks(folder / file.path, CHUNK_BYTES)):
         refuse_changed([file.path])
     return stored_size is not None
+
+
+def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[bytes]) -> bool:
+    """Store the bytes of a file that another store gives, unless they are there; False where they are damaged."""
+    held = connection.execute(select(content.c.size).where(content.c.sha256 == file.sha256)).first()
+    if held is not None:
+        return True
+    connection.execute(insert(content).values(sha256=file.sha256, size=file.size))
+    return _store_chunks(connection, file.sha256, pieces)
+
+
+def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) -> bool:
+    """Store a content piece by piece; whether it has its hash."""
+    found = hashlib.sha256()
+    for position, piece in enumerate(pieces):
+        found.update(piece)
+        connection.execute(insert(chunk).values(sha256=sha256, position=position, data=piece))
+    return found.hexdigest() == sha256
 
 
 def refuse_changed(paths: Sequence[str]) -> None:
@@ -219,9 +238,18 @@ def refuse_changed(paths: Sequence[str]) -> None:
 
 
 def store_campaign(
-    connection: Connection, files: Iterable[StoredFile], sha256: str, name: str, counts: tuple[int | None, int | None]
+    connection: Connection,
+    files: Iterable[StoredFile],
+    sha256: str,
+    name: str,
+    counts: tuple[int | None, int | None],
+    *,
+    added_at: datetime | None = None,
 ) -> bool:
-    """Enter a campaign whose contents are stored already; False where it was there before. Counts: errors, warnings."""
+    """Enter a campaign whose contents are stored already; False where it was there before.
+
+    Counts: errors, warnings. ``added_at`` is now where it is not given.
+    """
     id_ = sha256[:ID_DIGITS]
     present = connection.execute(select(campaign.c.sha256).where(campaign.c.id == id_)).scalar_one_or_none()
     if present == sha256:
@@ -233,7 +261,7 @@ def store_campaign(
             id=id_,
             sha256=sha256,
             name=name,
-            added_at=datetime.now(UTC).strftime(TIME),
+            added_at=(added_at or datetime.now(UTC)).strftime(TIME),
             n_errors=counts[0],
             n_warnings=counts[1],
         )

@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import Final
 
 from sqlalchemy import (
+    BigInteger,
     CheckConstraint,
     Column,
     ForeignKey,
@@ -24,11 +25,14 @@ from sqlalchemy import (
     Text,
 )
 
-REVISION: Final = "0004"
+REVISION: Final = "0005"
 """Newest migration; tests compare it with the migrations themselves."""
 
 APPLICATION_ID: Final = 0x536B6953
 """Number in the file's header ("SkiS") that tells a store from other people's SQLite files."""
+
+MARK: Final = "campaigns of a store of skisnow"
+"""Comment on a table that tells a store on a server from other people's tables."""
 
 CHUNK_BYTES: Final = 1 << 20
 
@@ -53,6 +57,7 @@ campaign = Table(
     Column("n_warnings", Integer),
     CheckConstraint("id = substr(sha256, 1, 12)", name="id_from_sha256"),
     CheckConstraint("(n_errors IS NULL) = (n_warnings IS NULL)", name="both_counts_or_none"),
+    comment=MARK,
 )
 """``added_at``: UTC, ISO 8601. Counts are NULL where the campaign could not be checked."""
 
@@ -60,7 +65,7 @@ content = Table(
     "content",
     metadata,
     Column("sha256", String(64), primary_key=True),
-    Column("size", Integer, nullable=False),
+    Column("size", BigInteger().with_variant(Integer, "sqlite"), nullable=False),
     CheckConstraint("size >= 0", name="size_not_negative"),
 )
 
@@ -108,11 +113,13 @@ journal_entry = Table(
     Column("once", Text),
     Column("sha256", String(64)),
     Column("sums", Text),
+    Column("uid", String(31)),
     CheckConstraint("action IN ('describe', 'add', 'correct', 'cancel', 'undo')", name="known_action"),
     CheckConstraint("(about IS NULL) = (action IN ('describe', 'add', 'cancel'))", name="about_an_entry"),
     Index(None, "journal_id", "file", "test"),
     Index(None, "journal_id", "once", unique=True),
+    Index(None, "uid", unique=True),
 )
 """Entries are only ever added. ``about``: the entry that is corrected or undone; ``cells``: a JSON object of texts;
 ``once``: what tells an entry that is sent again from a new one; ``sha256``: of all that the entry says; ``sums``: of
-each part of it (`entry_sums`)."""
+each part of it (`entry_sums`); ``uid``: what the entry is called in every store that has it (`entry_rows`)."""

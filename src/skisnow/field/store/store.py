@@ -1,4 +1,4 @@
-"""The store of campaigns: raw files stored byte for byte in one SQLite file.
+"""The store of campaigns: raw files stored byte for byte in one SQLite file, or on a PostgreSQL server.
 
 An import is one transaction: after it, or after the process was killed in its midst, the store holds the whole campaign
 or nothing of it. A campaign's id comes from its content, so the same files get the same id wherever they are added.
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Self
 
 from ...errors import StoreError
 from ...shown import Facts, Shown
+from .address import ServerAddress, store_place
 from .engine import database_errors, file_errors, open_engine, reading, writing
 from .finding import Finding
 from .folder import (
@@ -48,6 +49,8 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from sqlalchemy import Engine
+
+    from .address import StorePlace
 
 __all__ = ["AddedCampaign", "Finding", "Store", "StoredCampaign", "StoredFile", "default_path"]
 
@@ -102,20 +105,23 @@ class Store(Shown):
     skisnow.read_campaign
     """
 
-    def __init__(self, path: Path, engine: Engine) -> None:
+    def __init__(self, path: StorePlace, engine: Engine) -> None:
         self.path = path
         self.engine = engine
 
     @classmethod
-    def open(cls, path: Path | None = None, *, create: bool = True, busy_timeout_s: float = 30.0) -> Self:
+    def open(
+        cls, path: Path | str | ServerAddress | None = None, *, create: bool = True, busy_timeout_s: float = 30.0
+    ) -> Self:
         """Open a store, and bring it to the present schema.
 
         Parameters
         ----------
         path
-            The SQLite file; None: the user's own, see `default_path`.
+            The SQLite file, or a database as ``postgresql://USER@HOST/DATABASE``; None: the user's own file, see
+            `default_path`.
         create
-            Make the file, and the folders above it, where there is none.
+            Make the file, and the folders above it, or the tables in the database, where there are none.
         busy_timeout_s
             How long to wait for another process that writes (s).
 
@@ -124,7 +130,9 @@ class Store(Shown):
         StoreError
             There is none, or it is something else, or it was written by a newer skisnow.
         """
-        place = default_path() if path is None else Path(path).absolute()
+        place = default_path() if path is None else store_place(path)
+        if isinstance(place, ServerAddress):
+            return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
         with file_errors(place, "cannot be used as a store"):
             if place.is_dir():
                 raise StoreError(f"{place} is a folder, not a store; name a file.")
@@ -138,7 +146,7 @@ class Store(Shown):
         return Facts(f"at {self.path}")
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Let go of the file or the server."""
         self.engine.dispose()
 
     def __enter__(self) -> Self:
@@ -193,7 +201,7 @@ class Store(Shown):
     def _files_to_add(self, folder: Path) -> dict[str, FileState]:
         if not folder.is_dir():
             raise StoreError(f"{folder} is no folder; name the folder that holds the campaign's files.")
-        if self.path.resolve().is_relative_to(folder.resolve()):
+        if isinstance(self.path, Path) and self.path.resolve().is_relative_to(folder.resolve()):
             raise StoreError(f"The store {self.path} lies in {folder} itself; keep it somewhere else.")
         files = listed_files(folder)
         if not files:

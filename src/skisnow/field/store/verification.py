@@ -8,11 +8,13 @@ from sqlalchemy import Connection, select
 from sqlalchemy.exc import DatabaseError
 
 from ...errors import StoreError
+from .engine import apart, is_file
 from .entry_findings import findings_of_entries
 from .finding import Finding
 from .folder import Progress, manifest_sha256, unsafe_because
 from .rows import StoredCampaign, is_sound, stored_campaign
 from .schema import campaign, campaign_file, content
+from .server import broken_references
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,8 +25,9 @@ def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
     found: list[Finding] = []
     for of_part in (_of_database, lambda each: _of_contents(each, progress), _of_campaigns, findings_of_entries):
         try:
-            for finding in of_part(connection):
-                found.append(finding)
+            with apart(connection):
+                for finding in of_part(connection):
+                    found.append(finding)
         except (DatabaseError, UnicodeDecodeError) as error:
             why = getattr(error, "orig", error)
             stopped = Finding(None, None, f"cannot be read further: {why}; put a backup in its place")
@@ -33,6 +36,11 @@ def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
 
 
 def _of_database(connection: Connection) -> Iterator[Finding]:
+    if not is_file(connection):
+        for table, parent, number in broken_references(connection):
+            rows = f"{number} row{'' if number == 1 else 's'} of table {table}"
+            yield Finding(None, None, f"{rows} pointing at what table {parent} does not hold")
+        return
     for message in connection.exec_driver_sql("PRAGMA integrity_check").scalars():
         if message != "ok":
             yield Finding(None, None, f"SQLite's integrity check: {message}")
@@ -56,7 +64,8 @@ def _of_contents(connection: Connection, progress: Progress) -> Iterator[Finding
 
 def _is_sound(connection: Connection, sha256: object, size: int) -> bool:
     try:
-        return isinstance(sha256, str) and is_sound(connection, sha256, size)
+        with apart(connection):
+            return isinstance(sha256, str) and is_sound(connection, sha256, size)
     except (DatabaseError, UnicodeDecodeError):  # the pages that hold it are broken; other files may be whole
         return False
 

@@ -6,7 +6,7 @@ import { largest } from "./binary.js";
 import { surfaceHeight } from "./motion.js";
 import { hills } from "./snow.js";
 
-export const SHADOW = 0xbccbd9;
+export const SHADOW = 0x93a7bb;
 const STEEL = 0x4b5966;
 const TUBE = 0x2c3742;
 const RED = 0xc8372d;

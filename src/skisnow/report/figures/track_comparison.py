@@ -10,7 +10,8 @@ from matplotlib.lines import Line2D
 
 from ..compare_summary import TITLES
 from ..number_formatting import significant
-from ..symbols import figure_text
+from ..symbols import figure_text, prose
+from .drawing import Drawing
 from .run_track import plan_axes, plan_height_mm, track_limits
 from .style import BLACK, BLUE, DOUBLE_MM, GREEN, PALE, PURPLE, VERMILLION, legend_below, new_figure, plain_number
 
@@ -60,6 +61,15 @@ def track_comparison(comparison: Comparison) -> Figure:
     _along(figure.add_subplot(grid[1]), comparison)
     legend_below(figure, _handles(comparison))
     return figure
+
+
+def comparison_drawing(comparison: Comparison) -> Drawing:
+    """The same with its words; it stands on no page."""
+    simulated, measured = comparison.names
+    words = "{simulated} and {measured} from above, and the distance between them along the latter."
+    alt = f"{simulated} and {measured} from above, and the distance between them."
+    caption = prose(words, simulated=simulated, measured=measured)
+    return Drawing("track_comparison", caption, alt, track_comparison(comparison))
 
 
 def _limits(points: FloatArray) -> tuple[float, float, float, float]:

@@ -17,6 +17,7 @@ from .shear_displacement import displacement_sites_table, displacement_table
 from .sites import sites_table
 from .snow_micro_pen import snow_micro_pen_table
 from .unloading import unloading_sites_table, unloading_table
+from .weather import weather_table
 
 if TYPE_CHECKING:
     from ..report_data import ReportData
@@ -39,7 +40,9 @@ BUILDERS = (
     unloading_table,
     displacement_sites_table,
     displacement_table,
+    snow_micro_pen_table,
     regressions_table,
+    weather_table,
     site_comparison_table,
     published_table,
     quality_flags_table,
@@ -50,12 +53,12 @@ BUILDERS = (
 """In the order of the report. A further table is one more function here."""
 
 
-RECORDING_BUILDERS = (snow_micro_pen_table,)
-"""Where the campaign has recordings of a SnowMicroPen."""
-
-
 def tables_of(data: ReportData) -> dict[str, Table]:
-    """All tables by name, those without a row too."""
-    builders = (*BUILDERS, *RECORDING_BUILDERS) if data.campaign.snow_micro_pen else BUILDERS
+    """All tables by name, those without a row too; of recordings and weather where the campaign has some."""
+    absent = {
+        snow_micro_pen_table: data.campaign.snow_micro_pen is None,
+        weather_table: data.campaign.weather is None,
+    }
+    builders = (build for build in BUILDERS if not absent.get(build, False))
     built = (replace(build(data), synthetic=data.synthetic) for build in builders)
     return {table.name: table for table in built}

@@ -18,7 +18,8 @@ from ..analysing import ready, write_whole_report
 from ..analysis_view import AnalysisView, OpenAnalysis
 from ..error_pages import plain_page
 from ..fields import link
-from ..layout import framed
+from ..language import ENGLISH, language_of
+from ..layout import framed, sentence
 from ..names import entering, export, required_id
 from ..unpacking import files_below, write_zip
 from ..worker import Worker
@@ -111,3 +112,5 @@ def _links(kind: str, id_: str, key: str) -> None:
         everything = link("Download everything", "#")
         everything.on("click.prevent", lambda: ui.download(f"/report/{key}/analysis.zip"))
         link("Export the campaign", export(kind, id_))
+    if language_of() != ENGLISH:
+        sentence("Figures and the report are in English.", "quiet")

@@ -12,7 +12,9 @@ depends_on = None
 
 
 def upgrade() -> None:
-    op.execute("PRAGMA application_id = 0x536B6953")  # as it was then: a migration never follows today's constants
+    is_file = op.get_bind().dialect.name == "sqlite"
+    if is_file:
+        op.execute("PRAGMA application_id = 0x536B6953")  # as it was then: a migration never follows today's constants
     op.create_table(
         "campaign",
         sa.Column("id", sa.String(12), nullable=False),
@@ -25,11 +27,12 @@ def upgrade() -> None:
         sa.CheckConstraint("id = substr(sha256, 1, 12)", name=op.f("ck_campaign_id_from_sha256")),
         sa.CheckConstraint("(n_errors IS NULL) = (n_warnings IS NULL)", name=op.f("ck_campaign_both_counts_or_none")),
         sa.UniqueConstraint("sha256", name=op.f("uq_campaign_sha256")),
+        comment="campaigns of a store of skisnow",  # which a server keeps
     )
     op.create_table(
         "content",
         sa.Column("sha256", sa.String(64), nullable=False),
-        sa.Column("size", sa.Integer, nullable=False),
+        sa.Column("size", sa.Integer if is_file else sa.BigInteger, nullable=False),
         sa.PrimaryKeyConstraint("sha256", name=op.f("pk_content")),
         sa.CheckConstraint("size >= 0", name=op.f("ck_content_size_not_negative")),
     )
@@ -65,4 +68,5 @@ def downgrade() -> None:
     op.drop_table("chunk")
     op.drop_table("content")
     op.drop_table("campaign")
-    op.execute("PRAGMA application_id = 0")
+    if op.get_bind().dialect.name == "sqlite":
+        op.execute("PRAGMA application_id = 0")

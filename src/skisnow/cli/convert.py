@@ -1,0 +1,50 @@
+"""``skisnow convert``: other people's formats of snow, by the endings of the files."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from .announced import announced
+from .words import number
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "convert",
+        help="snow pits, recordings and weather between formats: CAAML, SnowMicroPen, SMET, SnowEx",
+        description="Read IN, a campaign (folder or .xlsx), a snow pit in CAAML 6 (.caaml, .xml) or a recording of a "
+        "SnowMicroPen (.pnt), and write OUT in the format that its ending tells: CAAML 6.0.3 (.caaml, .xml) or CSV "
+        "with the column names of SnowEx (.csv). Weather in SMET (.smet) becomes SMET 1.1 in SI, or CSV.",
+    )
+    parser.add_argument("source", type=Path, metavar="IN", help="what is read")
+    parser.add_argument("target", type=Path, metavar="OUT", help="what is written; SnowEx's tables add to the name")
+    parser.add_argument("--site", metavar="S", help="the site of a campaign, where it has several")
+    parser.add_argument(
+        "--snow-height-cm",
+        type=number("cm", lowest=0, highest=100_000),
+        metavar="CM",
+        help="height of the snow on the ground, where IN does not say it: SnowEx counts from there",
+    )
+    parser.add_argument(
+        "--time", metavar="TIME", help="day or time such as 2026-11-23T09:10, where IN has none: CAAML demands one"
+    )
+    parser.set_defaults(run=run, parser=parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Convert, and print the files that were written."""
+    from ..units import CM
+
+    with announced(f"reading {options.source}"):
+        from ..interop.convert import ConvertOptions, convert
+
+        height = options.snow_height_cm
+        asked = ConvertOptions(
+            site=options.site, time=options.time, snow_height=None if height is None else height * CM
+        )
+        written = convert(options.source, options.target, asked)
+    for path in written:
+        print(path)
+    return 0

@@ -1,0 +1,211 @@
+"""What two stores say about one test, where each has entries that the other lacks: whether they agree, or in words."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from hashlib import sha256
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+
+from ..journal_entry import DESCRIPTION
+from ..stored_tables import cell_of
+from .heads import entries_about
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from sqlalchemy import Connection
+
+    from ..journal_entry import JournalEntry
+    from .heads import Heads, Subject
+
+Side: TypeAlias = Literal["here", "there", "both"]
+Kind: TypeAlias = Literal["described", "begun twice", "added to", "cancelled", "corrected", "taken back"]
+_ID_DIGITS: Final = 8
+_LONGEST: Final = 80
+
+_WHAT: Final[dict[Kind, str]] = {
+    "described": "the campaign was described differently",
+    "begun twice": "a test of this name was begun in both",
+    "added to": "rows were added in both",
+    "cancelled": "it was cancelled in one and changed in the other",
+    "taken back": "an entry was taken back in one, and the other has entries of its own",
+    "corrected": "the same cell was corrected differently",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """What was written here and there about one test and cannot both stand; nothing of it was carried over.
+
+    Attributes
+    ----------
+    id
+        By which a choice names it; it changes when one of the sides does.
+    campaign, name
+        Id and name of the campaign.
+    file, test
+        What it is about; for a description ``campaign.toml`` and ``""``.
+    what
+        In words.
+    here, there
+        What was written in each store alone, one line each, oldest first.
+    choices
+        What can be kept.
+    """
+
+    id: str
+    campaign: str
+    name: str
+    file: str
+    test: str
+    what: str
+    here: tuple[str, ...]
+    there: tuple[str, ...]
+    choices: tuple[Side, ...]
+
+    def __str__(self) -> str:
+        """Say it in a few lines."""
+        subject = f"{self.file}, {self.test}" if self.test else self.file
+        lines = [f"{self.id}  {self.name} ({self.campaign}), {subject}: {self.what}"]
+        lines += [f"    {side}: {line}" for side in ("here", "there") for line in getattr(self, side)]
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True, slots=True)
+class Divergence:
+    """Entries about one test, in the order of their uids: those of both stores (as numbered here) and of each alone."""
+
+    journal_id: str
+    subject: Subject
+    common: tuple[JournalEntry, ...]
+    here: tuple[JournalEntry, ...]
+    there: tuple[JournalEntry, ...]
+    uid_here: Mapping[int, str]
+    uid_there: Mapping[int, str]
+
+    @property
+    def id(self) -> str:
+        """What a choice names it by: the same as long as both sides are."""
+        parts = (self.journal_id, *self.subject, *(each.uid for side in (self.here, self.there) for each in side))
+        said = sha256("\0".join(parts).encode())
+        return said.hexdigest()[:_ID_DIGITS]
+
+    @property
+    def is_agreed(self) -> bool:
+        """Whether what both sides wrote can stand together without anybody's choice."""
+        if self.subject[0] == DESCRIPTION:
+            return self.here[-1].cells == self.there[-1].cells
+        entries = (*self.here, *self.there)
+        if all(entry.action == "correct" for entry in entries):
+            return not self.contested
+        return not any(entry.action == "add" for entry in entries) and self._said("here") == self._said("there")
+
+    @property
+    def contested(self) -> list[tuple[str, str]]:
+        """The cells that both sides corrected, to different ends: uid of the row's entry, and column."""
+        here, there = _corrected(self.here, self.uid_here), _corrected(self.there, self.uid_there)
+        return sorted(cell for cell in here.keys() & there.keys() if here[cell] != there[cell])
+
+    @property
+    def kind(self) -> Kind:
+        """What sort of a contradiction it is."""
+        actions = {entry.action for entry in (*self.here, *self.there)}
+        added = [any(entry.action == "add" for entry in side) for side in (self.here, self.there)]
+        if self.subject[0] == DESCRIPTION:
+            return "described"
+        if all(added):
+            return "added to" if any(entry.action == "add" for entry in self.common) else "begun twice"
+        if "cancel" in actions:
+            return "cancelled"
+        if "undo" in actions:
+            return "taken back"
+        return "corrected" if self.contested else "added to"
+
+    @property
+    def choices(self) -> tuple[Side, ...]:
+        """What can be kept: both, where neither takes the other's word back."""
+        together = self.kind == "begun twice" or (self.kind == "cancelled" and not self.contested)
+        return ("here", "there", "both") if together else ("here", "there")
+
+    def told(self, name: str) -> Conflict:
+        """It in words."""
+        known = {entry.uid: entry for entry in (*self.common, *self.here, *self.there)}
+        return Conflict(
+            id=self.id,
+            campaign=self.journal_id,
+            name=name,
+            file=self.subject[0],
+            test=self.subject[1],
+            what=_WHAT[self.kind],
+            here=tuple(_line(entry, self.uid_here, known) for entry in self.here),
+            there=tuple(_line(entry, self.uid_there, known) for entry in self.there),
+            choices=self.choices,
+        )
+
+    def _said(self, side: Literal["here", "there"]) -> Counter[tuple[object, ...]]:
+        entries, uids = (self.here, self.uid_here) if side == "here" else (self.there, self.uid_there)
+        return Counter(
+            (entry.action, uids.get(entry.about or 0), tuple(sorted(entry.cells.items())), entry.why)
+            for entry in entries
+        )
+
+
+def divergences(
+    here: Connection, there: Connection, journal_id: str, of_here: Heads, of_there: Heads
+) -> Iterator[Divergence]:
+    """What the stores say about each test that both wrote about, each in what the other lacks."""
+    for subject in of_here.written_on_both(of_there):
+        on_here, on_there = entries_about(here, journal_id, subject), entries_about(there, journal_id, subject)
+        uids_here, uids_there = {entry.uid for entry in on_here}, {entry.uid for entry in on_there}
+        yield Divergence(
+            journal_id,
+            subject,
+            common=tuple(entry for entry in on_here if entry.uid in uids_there),
+            here=tuple(entry for entry in on_here if entry.uid not in uids_there),
+            there=tuple(entry for entry in on_there if entry.uid not in uids_here),
+            uid_here=of_here.uid,
+            uid_there=of_there.uid,
+        )
+
+
+def _corrected(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict[tuple[str, str], str]:
+    """What cells came to by the corrections among the entries."""
+    return {
+        (uids.get(entry.about or 0, ""), column): text
+        for entry in entries
+        if entry.action == "correct"
+        for column, text in entry.cells.items()
+    }
+
+
+def _line(entry: JournalEntry, uids: Mapping[int, str], known: Mapping[str, JournalEntry]) -> str:
+    about = known.get(uids.get(entry.about or 0, ""))
+    return f"{entry.who or 'somebody'}, {entry.at}: {_did(entry, about)}"
+
+
+def _did(entry: JournalEntry, about: JournalEntry | None) -> str:
+    if entry.action == "describe":
+        return f"described the campaign: {_short(entry.cells[DESCRIPTION])}"
+    if entry.action == "cancel":
+        return f"cancelled it: {_short(entry.why)}"
+    if entry.action == "undo":
+        return f"took back: {_did(about, None)}" if about is not None else "took an entry back"
+    if entry.action == "correct":
+        return "corrected " + ", ".join(_cell(key, text, about) for key, text in entry.cells.items())
+    cells = ", ".join(f"{column} {text}" for column, text in entry.cells.items() if text and text != entry.test)
+    return f"added row {(entry.position or 0) + 1}: {_short(cells)}"
+
+
+def _cell(key: str, text: str, about: JournalEntry | None) -> str:
+    """A correction of a cell; those of a stored campaign say their line."""
+    if "/" in key:
+        line, column = cell_of(key)
+        return f"line {line}, {column} to {text!r}"
+    row = f"row {about.position + 1}, " if about is not None and about.position is not None else ""
+    return f"{row}{key} to {text!r}"
+
+
+def _short(text: str) -> str:
+    words = " ".join(text.split())
+    return words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…"

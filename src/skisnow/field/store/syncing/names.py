@@ -1,0 +1,67 @@
+"""The names of campaigns, and which from two sources bear the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sqlalchemy import Connection, select
+
+from ....errors import ParameterError, StoreError
+from ....given import toml_values
+from ..journal_entry import DESCRIPTION
+from ..schema import campaign, journal
+from .heads import entries_about
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """Names by id, of stored campaigns and of those in entry; damaged ones have none."""
+
+    stored: Mapping[str, str]
+    entered: Mapping[str, str]
+
+    @property
+    def all(self) -> dict[str, str]:
+        """Both kinds."""
+        return {**self.entered, **self.stored}
+
+
+def names_of(connection: Connection) -> Names:
+    """The names of a store's campaigns."""
+    rows = connection.execute(select(campaign.c.id, campaign.c.name)).all()
+    stored = {str(id_): name for id_, name in rows if isinstance(name, str)}
+    ids = set(connection.execute(select(journal.c.id)).scalars()) - {id_ for id_, _ in rows}
+    return Names(stored, {id_: name for id_ in ids if (name := _entered_name(connection, id_))})
+
+
+def same_names(here: Names, there: Names) -> Iterator[str]:
+    """Campaigns of one kind and name that meet for the first time, in words."""
+    for what, of_here, of_there in (
+        ("stored campaigns", here.stored, there.stored),
+        ("campaigns in entry", here.entered, there.entered),
+    ):
+        met = {
+            (name, other, id_)
+            for id_, name in of_there.items()
+            if id_ not in of_here
+            for other, its_name in of_here.items()
+            if its_name == name
+        }
+        for name, other, id_ in sorted(met):
+            yield (
+                f"Two {what} are called {name!r}: {other}, which was here, and {id_} from there. "
+                "They are kept apart; give one another name if they are not the same."
+            )
+
+
+def _entered_name(connection: Connection, journal_id: str) -> str:
+    try:
+        described = entries_about(connection, journal_id, (DESCRIPTION, ""))
+        name = toml_values(described[-1].cells[DESCRIPTION]).get("name") if described else ""
+    except (StoreError, ParameterError, KeyError):
+        return ""
+    return " ".join(name.split()) if isinstance(name, str) else ""

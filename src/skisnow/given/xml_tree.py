@@ -1,0 +1,94 @@
+"""XML of users as a small tree: no document types, hence no entities; nesting and number of elements are limited."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+from xml.parsers import expat
+
+from .errors import GivenError
+
+DEEPEST: Final = 60
+MOST_ELEMENTS: Final = 500_000
+
+
+@dataclass(slots=True)
+class Element:
+    """An element: namespace, local name, attributes by local name, text before its first child, children."""
+
+    namespace: str
+    name: str
+    attributes: Mapping[str, str]
+    text: str = ""
+    children: list[Element] = field(default_factory=list)
+
+    def child(self, *path: str) -> Element | None:
+        """The first element that local names lead to, or None."""
+        found: Element | None = self
+        for name in path:
+            if found is None:
+                return None
+            found = next((each for each in found.children if each.name == name), None)
+        return found
+
+    def every(self, name: str) -> Iterator[Element]:
+        """Every child of this local name."""
+        return (each for each in self.children if each.name == name)
+
+    def text_of(self, *path: str) -> str:
+        """The text where local names lead to, stripped; ``""`` where there is none."""
+        found = self.child(*path)
+        return "" if found is None else found.text.strip()
+
+
+class _Builder:
+    """Takes the elements in as expat meets them."""
+
+    def __init__(self) -> None:
+        self.root: Element | None = None
+        self._open: list[Element] = []
+        self._count = 0
+
+    def start(self, name: str, attributes: Mapping[str, str]) -> None:
+        self._count += 1
+        if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST:
+            raise GivenError(f"more than {MOST_ELEMENTS} elements, or {DEEPEST} within each other, are not read")
+        namespace, _, local = name.rpartition("}")
+        element = Element(namespace, local, {key.rpartition("}")[2]: value for key, value in attributes.items()})
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self.root = element
+        self._open.append(element)
+
+    def text(self, text: str) -> None:
+        if self._open and not self._open[-1].children:
+            self._open[-1].text += text
+
+    def end(self, _name: str) -> None:
+        self._open.pop()
+
+    def document_type(self, *_what: object) -> None:
+        raise GivenError("a document type is declared, which is refused: it may hold entities without end")
+
+
+def xml_tree(data: bytes) -> Element:
+    """Parse XML.
+
+    Raises
+    ------
+    GivenError
+        It is no XML, is damaged, declares a document type, or is nested or counted beyond the limits.
+    """
+    builder, parser = _Builder(), expat.ParserCreate(namespace_separator="}")
+    parser.buffer_text = True
+    parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
+    parser.CharacterDataHandler, parser.StartDoctypeDeclHandler = builder.text, builder.document_type
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        raise GivenError(f"no XML, or a damaged one ({expat.ErrorString(error.code)})", line=error.lineno) from error
+    if builder.root is None:
+        raise GivenError("no element")
+    return builder.root

@@ -1,0 +1,220 @@
+"""Snow pits to CAAML 6.0.3, with H_V and S_f as custom data in a namespace of their own."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+from xml.sax.saxutils import escape, quoteattr
+
+from ..errors import ParameterError
+from ..field.caaml import OWN_NAMESPACE
+from ..files import write_file
+from ..units import CM, MM
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ..field.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
+
+VERSION: Final = "6.0.3"
+HAND_HARDNESSES: Final = (
+    "F-", "F", "F+", "F-4F", "4F-", "4F", "4F+", "4F-1F", "1F-", "1F", "1F+", "1F-P", "P-", "P", "P+", "P-K",
+    "K-", "K", "K+", "K-I", "I",
+)  # fmt: skip
+_GRAINS: Final = """
+    PP PPco PPnd PPpl PPsd PPir PPgp PPhl PPip PPrm MM MMrp MMci DF DFdc DFbk RG RGsr RGlr RGwp RGxf FC FCso FCsf FCxr
+    DH DHcp DHpr DHch DHla DHxr SH SHsu SHcv SHxr MF MFcl MFpc MFsl MFcr IF IFil IFic IFbi IFrc IFsc
+"""
+GRAIN_FORMS: Final = frozenset(_GRAINS.split())
+"""Codes that the standard lists; others cannot be written in it."""
+METHODS: Final = ("SnowMicroPen", "Ram Sonde", "Push-Pull Gauge", "other")
+_NAMES: Final = (
+    f'xmlns:caaml="http://caaml.org/Schemas/SnowProfileIACS/v{VERSION}" xmlns:gml="http://www.opengis.net/gml" '
+    f'xmlns:skisnow="{OWN_NAMESPACE}"'
+)
+_TIME: Final = re.compile(r"\d{4}-\d\d-\d\d(T\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\d:\d\d)?)?")
+
+
+def write_caaml(pit: SnowPit, path: str | Path) -> Path:
+    """Write a snow pit as CAAML 6.0.3.
+
+    Returns
+    -------
+    The file.
+
+    Raises
+    ------
+    ParameterError
+        The pit has no time, which CAAML demands, a snow temperature above 0 °C, or a code that CAAML does not have.
+    OutputError
+        The file cannot be written.
+
+    References
+    ----------
+    The page docs/files/caaml.md.
+    """
+    write_file(path, caaml_text(pit))
+    return Path(path)
+
+
+def caaml_text(pit: SnowPit) -> str:
+    """The text of the file; see `write_caaml`."""
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + "\n".join(_profile(pit)) + "\n"
+
+
+def _profile(pit: SnowPit) -> Iterator[str]:
+    own = re.sub(r"[^\w.-]", "_", pit.name) or "pit"
+    yield f"<caaml:SnowProfile {_NAMES} gml:id={quoteattr(f'skisnow-{own}')}>"
+    if pit.comment:
+        yield _nested("metaData", _text("comment", pit.comment))
+    yield _nested("timeRef/recordTime/TimeInstant", _text("timePosition", _moment(pit.time)))
+    person = _text("name", pit.observer or "unknown")
+    yield f'<caaml:srcRef><caaml:Person gml:id="observer-{own}">{person}</caaml:Person></caaml:srcRef>'
+    yield f'<caaml:locRef gml:id="location-{own}">'
+    yield from _place(pit, own)
+    yield "</caaml:locRef>"
+    yield '<caaml:snowProfileResultsOf><caaml:SnowProfileMeasurements dir="top down">'
+    yield from _measurements(pit)
+    yield "</caaml:SnowProfileMeasurements></caaml:snowProfileResultsOf>"
+    yield _text("application", "skisnow")
+    yield "</caaml:SnowProfile>"
+
+
+def _place(pit: SnowPit, own: str) -> Iterator[str]:
+    yield _text("name", pit.name)
+    yield _text("obsPointSubType", "snow profile location")
+    if pit.elevation is not None:
+        yield _nested("validElevation/ElevationPosition", _text("position", str(round(pit.elevation))), uom="m")
+    if pit.aspect:
+        yield _nested("validAspect/AspectPosition", _text("position", pit.aspect))
+    if pit.slope_angle_deg is not None:
+        angle = _text("position", str(round(pit.slope_angle_deg)))
+        yield _nested("validSlopeAngle/SlopeAnglePosition", angle, uom="deg")
+    if pit.latitude_deg is not None and pit.longitude_deg is not None:
+        where = f"{_number(pit.latitude_deg)} {_number(pit.longitude_deg)}"
+        point = f'<gml:Point gml:id="point-{own}" srsName="urn:ogc:def:crs:EPSG::4326" srsDimension="2">'
+        yield _nested("pointLocation", f"{point}<gml:pos>{where}</gml:pos></gml:Point>")
+    if pit.country:
+        yield _text("country", pit.country)
+    if pit.region:
+        yield _text("region", pit.region)
+
+
+def _measurements(pit: SnowPit) -> Iterator[str]:
+    if pit.air_temperature_C is not None:
+        yield _nested("weatherCond", _text("airTempPres", _number(pit.air_temperature_C), uom="degC"))
+    if pit.snow_height is not None:
+        yield _nested("snowPackCond/hS/Components", _cm("height", pit.snow_height))
+    if pit.layers:
+        yield _nested("stratProfile", "<caaml:stratMetaData/>" + "".join(map(_layer, pit.layers)))
+    if pit.temperatures:
+        yield _nested("tempProfile", "<caaml:tempMetaData/>" + "".join(map(_temperature, pit.temperatures)))
+    if pit.densities:
+        method = _nested("densityMetaData", _text("methodOfMeas", "other"))
+        yield _nested("densityProfile", method + "".join(map(_density, pit.densities)))
+    yield from map(_forces, pit.forces)
+    yield from _custom(pit)
+
+
+def _layer(layer: SnowLayer) -> str:
+    parts = [_nested("metaData", _text("comment", layer.comment)) if layer.comment else ""]
+    parts.append(_extent(layer))
+    if layer.grain_form:
+        _require("grain form", layer.grain_form, GRAIN_FORMS)
+        parts.append(_text("grainFormPrimary", layer.grain_form))
+    if layer.grain_size is not None:
+        average = _nested("Components", _text("avg", _number(layer.grain_size / MM)))
+        parts.append(_nested("grainSize", average, uom="mm"))
+    if layer.hardness:
+        _require("hand hardness", layer.hardness, HAND_HARDNESSES)
+        parts.append(_text("hardness", layer.hardness, uom=""))
+    return _nested("Layer", "".join(parts))
+
+
+def _density(sample: LayerDensity) -> str:
+    return _nested("Layer", _extent(sample) + _text("density", _number(sample.snow_density), uom="kgm-3"))
+
+
+def _temperature(observed: DepthTemperature) -> str:
+    if observed.temperature_C > 0.0:
+        raise ParameterError(f"snow at {observed.temperature_C:g} °C cannot be written: CAAML allows up to 0 °C")
+    temperature = _text("snowTemp", _number(observed.temperature_C), uom="degC")
+    return _nested("Obs", _cm("depth", observed.depth) + temperature)
+
+
+def _extent(layer: SnowLayer | LayerDensity) -> str:
+    """Depth of the top, and the thickness where it is known."""
+    return _cm("depthTop", layer.top) + ("" if layer.thickness is None else _cm("thickness", layer.thickness))
+
+
+def _forces(profile: ForceProfile) -> str:
+    method = profile.method if profile.method in METHODS else "other"
+    pairs = zip((profile.depth / CM).tolist(), profile.force.tolist(), strict=True)
+    rows = " ".join(f"{_number(depth)},{_number(force)}" for depth, force in pairs)
+    components = _text("depth", "template") + _text("penRes", "template")
+    return _nested(
+        "hardnessProfile",
+        _nested("hardnessMetaData", _text("methodOfMeas", method))
+        + _nested("MeasurementComponents", components, uomDepth="cm", uomHardness="N")
+        + _nested("Measurements", _text("tupleList", rows)),
+    )
+
+
+def _custom(pit: SnowPit) -> Iterator[str]:
+    values = (
+        ("snowHardness", "N mm-3", pit.snow_hardness),
+        ("failureShearStress", "N mm-2", pit.failure_shear_stress),
+    )
+    known = "".join(_plate_value(name, unit, value) for name, unit, value in values if value is not None)
+    if known:
+        yield _nested("customData", known)
+
+
+def _plate_value(name: str, unit: str, value: PlateValue) -> str:
+    ends = "" if value.interval is None else ' low="{}" high="{}"'.format(*map(_number, value.interval))
+    return f'<skisnow:{name} uom="{unit}" n="{value.n}"{ends}>{_number(value.value)}</skisnow:{name}>'
+
+
+def _nested(path: str, inner: str, **attributes: str) -> str:
+    """Elements within each other, the attributes on the last."""
+    *outer, last = path.split("/")
+    words = "".join(f" {name}={quoteattr(value)}" for name, value in attributes.items())
+    found = f"<caaml:{last}{words}>{inner}</caaml:{last}>"
+    for name in reversed(outer):
+        found = f"<caaml:{name}>{found}</caaml:{name}>"
+    return found
+
+
+def _text(name: str, text: str, *, uom: str | None = None) -> str:
+    unit = "" if uom is None else f" uom={quoteattr(uom)}"
+    return f"<caaml:{name}{unit}>{escape(_printable(text))}</caaml:{name}>"
+
+
+def _printable(text: str) -> str:
+    """Without the control characters that no XML can hold."""
+    return re.sub(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", " ", text)
+
+
+def _cm(name: str, length: float) -> str:
+    return _text(name, _number(length / CM), uom="cm")
+
+
+def _number(value: float) -> str:
+    """Twelve digits: what a unit's size adds to the last ones is taken off."""
+    return f"{value:.12g}"
+
+
+def _require(what: str, value: str, allowed: frozenset[str] | tuple[str, ...]) -> None:
+    if value not in allowed:
+        raise ParameterError(f"the {what} {value!r} cannot be written: CAAML knows {', '.join(sorted(allowed))}")
+
+
+def _moment(time: str) -> str:
+    if not _TIME.fullmatch(time):
+        found = f"{time!r} is no such time" if time else "the pit has none"
+        raise ParameterError(
+            f"CAAML demands a day such as 2026-11-23 or a time such as 2026-11-23T09:10, and {found}: give it with "
+            "--time"
+        )
+    return f"{time}:00" if re.fullmatch(r"[^T]+T\d\d:\d\d", time) else time

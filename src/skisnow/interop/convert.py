@@ -1,0 +1,157 @@
+"""From one format to another by the endings of the files: what ``skisnow convert`` does.
+
+A further conversion is one more entry in `CONVERSIONS`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from ..errors import OutputError, ParameterError
+from ..field import read_campaign, read_snow_micro_pen
+from ..field.caaml import read_caaml
+from ..field.smet import read_smet
+from ..field.snow_pit import ForceProfile, SnowPit
+from ..inputs import meant
+from .caaml import write_caaml
+from .site_pit import site_pit, sites_of
+from .smet import write_smet, write_weather_csv
+from .snowex import write_snowex_force, write_snowex_pit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+CAMPAIGN: Final = "campaign"
+CSV: Final = "CSV"
+ENDINGS: Final[Mapping[str, str]] = {
+    ".caaml": "CAAML",
+    ".xml": "CAAML",
+    ".pnt": "SnowMicroPen",
+    ".smet": "SMET",
+    ".csv": CSV,
+    ".xlsx": CAMPAIGN,
+    ".xlsm": CAMPAIGN,
+}
+"""Kind of a file by its ending; a folder is a campaign."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConvertOptions:
+    """What the formats do not say themselves.
+
+    Attributes
+    ----------
+    site
+        Of a campaign; None where it has one.
+    snow_height
+        Of the snow on the ground (m), where the source does not say it.
+    time
+        ISO 8601, where the source does not say it.
+    """
+
+    site: str | None = None
+    snow_height: float | None = None
+    time: str | None = None
+
+
+def convert(source: str | Path, target: str | Path, options: ConvertOptions | None = None) -> tuple[Path, ...]:
+    """Read one file or campaign and write another; the kinds follow from the endings.
+
+    Returns
+    -------
+    The files that were written.
+
+    Raises
+    ------
+    ParameterError
+        No such conversion is known; the message names those that are. Or the target's format demands what the source
+        does not hold.
+    FieldDataError
+        The source cannot be read.
+    OutputError
+        The target is the source, or cannot be written.
+    """
+    source, target = Path(source), Path(target)
+    kinds = _kind(source), _kind(target)
+    made = CONVERSIONS.get(kinds)
+    if made is None:
+        raise ParameterError(f"{kinds[0]} to {kinds[1]} is not known. Known are {known_conversions()}")
+    if source.resolve() == target.resolve():
+        raise OutputError(f"{target} is the file that is read; give the new one another name")
+    return made(source, target, options or ConvertOptions())
+
+
+def known_conversions() -> str:
+    """All conversions, in words."""
+    return "; ".join(f"{source} to {target}" for source, target in CONVERSIONS)
+
+
+def _kind(path: Path) -> str:
+    if path.is_dir():
+        return CAMPAIGN
+    ending = path.suffix.lower()
+    if ending not in ENDINGS:
+        hint = meant(ending, ENDINGS)
+        raise ParameterError(
+            f"the ending of {path} tells no format. {hint}Known are {', '.join(ENDINGS)}, and a folder"
+        )
+    return ENDINGS[ending]
+
+
+def _pit_of_campaign(source: Path, options: ConvertOptions) -> SnowPit:
+    from ..estimate.analysis import FEWEST_RESAMPLES, analyse
+
+    campaign = read_campaign(source)
+    sites = sites_of(campaign)
+    if options.site is None and len(sites) != 1:
+        raise ParameterError(f"{source} has {len(sites)} sites; name one with --site: {', '.join(sites)}")
+    site = sites[0] if options.site is None else options.site
+    return site_pit(analyse(campaign, n_resamples=FEWEST_RESAMPLES), site)  # no bootstrap is in a mean's interval
+
+
+def _pit_of_recording(source: Path) -> SnowPit:
+    profile = read_snow_micro_pen(source)
+    day = profile.recorded_on
+    return SnowPit(
+        name=profile.name or source.stem,
+        time="" if day is None else day.isoformat(),
+        comment=profile.comment,
+        latitude_deg=profile.latitude_deg,
+        longitude_deg=profile.longitude_deg,
+        elevation=profile.height,
+        forces=(ForceProfile("SnowMicroPen", profile.depth, profile.force.clip(min=0.0)),),
+    )
+
+
+def _completed(pit: SnowPit, options: ConvertOptions) -> SnowPit:
+    """The pit with what was said besides, where it does not say so itself."""
+    height = options.snow_height if pit.snow_height is None else pit.snow_height
+    return replace(pit, snow_height=height, time=pit.time or options.time or "")
+
+
+def _to_caaml(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
+    return lambda source, target, options: (write_caaml(_completed(read(source, options), options), target),)
+
+
+def _to_snowex(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
+    return lambda source, target, options: write_snowex_pit(_completed(read(source, options), options), target)
+
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Conversion: TypeAlias = Callable[[Path, Path, ConvertOptions], tuple[Path, ...]]
+
+CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
+    (CAMPAIGN, "CAAML"): _to_caaml(_pit_of_campaign),
+    (CAMPAIGN, CSV): _to_snowex(_pit_of_campaign),
+    ("CAAML", "CAAML"): _to_caaml(lambda source, _: read_caaml(source)),
+    ("CAAML", CSV): _to_snowex(lambda source, _: read_caaml(source)),
+    ("SnowMicroPen", "CAAML"): _to_caaml(lambda source, _: _pit_of_recording(source)),
+    ("SnowMicroPen", CSV): lambda source, target, _: (write_snowex_force(read_snow_micro_pen(source), target),),
+    ("SMET", "SMET"): lambda source, target, _: (write_smet(read_smet(source), target),),
+    ("SMET", CSV): lambda source, target, _: (write_weather_csv(read_smet(source), target),),
+}
+"""By the kinds of source and target."""

@@ -1,0 +1,85 @@
+"""Weather of a station to SMET 1.1 in SI, and to CSV."""
+
+from __future__ import annotations
+
+import math
+from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from ..errors import ParameterError
+from ..estimate.weather import QUANTITIES
+from ..files import write_file
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ..field.smet import StationSeries
+
+NO_DATA: Final = -999.0
+
+
+def write_smet(series: StationSeries, path: str | Path) -> Path:
+    """Write all fields in SI, with the times in the file's own time zone.
+
+    Raises
+    ------
+    ParameterError
+        A value is exactly -999, which stands for none.
+    OutputError
+        The file cannot be written.
+    """
+    write_file(path, "\n".join(_smet(series)) + "\n")
+    return Path(path)
+
+
+def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
+    """Write what a campaign takes over of a station: time with its zone, temperatures in °C, humidity in percent.
+
+    Raises
+    ------
+    ParameterError
+        The station has none of these quantities.
+    OutputError
+        The file cannot be written.
+    """
+    known = {key: made for key, made in QUANTITIES.items() if made[0] in series.fields}
+    if not known:
+        wanted = ", ".join(name for name, *_ in QUANTITIES.values())
+        raise ParameterError(f"{series.file} has none of the fields {wanted}; nothing was written")
+    columns = [(series.fields[name] * factor + offset).tolist() for name, factor, offset in known.values()]
+    rows = (
+        ",".join((when, *("" if math.isnan(value) else f"{value:.10g}" for value in values)))
+        for when, *values in zip(_times(series, zone=True), *columns, strict=True)
+    )
+    write_file(path, "\n".join((",".join(("time", *known)), *rows)) + "\n")
+    return Path(path)
+
+
+def _smet(series: StationSeries) -> Iterator[str]:
+    place = {
+        "latitude": series.latitude_deg,
+        "longitude": series.longitude_deg,
+        "altitude": series.altitude,
+    }
+    yield "SMET 1.1 ASCII"
+    yield "[HEADER]"
+    yield f"station_id = {''.join(series.station.split()) or 'station'}"
+    yield f"station_name = {series.station}"
+    yield from (f"{key} = {NO_DATA if value is None else value:.10g}" for key, value in place.items())
+    yield f"nodata = {NO_DATA:g}"
+    yield f"tz = {series.utc_offset:g}"
+    yield f"fields = {' '.join(('timestamp', *series.fields))}"
+    yield "[DATA]"
+    columns = [column.tolist() for column in series.fields.values()]
+    for when, *values in zip(_times(series, zone=False), *columns, strict=True):
+        if NO_DATA in values:
+            raise ParameterError(f"{series.file} has a value of {NO_DATA:g} at {when}, which stands for none in SMET")
+        yield " ".join((when, *(f"{NO_DATA if math.isnan(value) else value:.10g}" for value in values)))
+
+
+def _times(series: StationSeries, *, zone: bool) -> Iterator[str]:
+    own = timezone(timedelta(hours=series.utc_offset))
+    for seconds in series.time.tolist():
+        moment = datetime.fromtimestamp(seconds, UTC).astimezone(own)
+        yield (moment if zone else moment.replace(tzinfo=None)).isoformat()

@@ -1,0 +1,274 @@
+"""The skier of a run: what it does, and the numbers of its control."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal, TypeAlias
+
+from ..errors import ParameterError
+from ..inputs import Quantity, declared_text, require_declared
+from ..units import DEGREE
+
+Steers: TypeAlias = Literal["turns", "gates"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Skier:
+    """What a balanced skier steers by, what its body can do, and the numbers of its control, SI and rad.
+
+    Attributes
+    ----------
+    steers
+        By a plan of turns over time, or through the gates of the scenario's course.
+    first_turn, turn_time, turns, first_to_left
+        The plan: when the first half turn begins (s), how long a whole turn takes (s), how many there are, the first
+        one counted as a half, and to which side it goes.
+    pole_clearance, sight, line_rate
+        Through gates: how far beside the turning poles the boots' middle is to pass (m), the time ahead (s) at which
+        the line is looked at, and the rate (1/s) at which the skier goes back to it.
+    longest_leg
+        Greatest distance from the middle of the feet to the centre of mass (m).
+    greatest_edge
+        Greatest edge angle (rad).
+    leg_gain, edge_gain, edge_change, edge_filter, share_filter, load_filter, lean_more, reach, lag, correction, touch
+        Of the control; the page docs/methods/skier.md has what they do.
+
+    See Also
+    --------
+    skisnow.Scenario
+
+    References
+    ----------
+    The page docs/methods/skier.md.
+    """
+
+    steers: Annotated[
+        Steers,
+        Quantity(
+            "skier.steers",
+            "what it steers by: turns planned over time, or the gates of the course",
+            label="steers by",
+            origin="choice: needs no course",
+        ),
+    ] = "turns"
+    first_turn: Annotated[
+        float,
+        Quantity(
+            "skier.first_turn_s",
+            "when the first half turn begins",
+            label="first turn",
+            lowest=0.0,
+            origin="choice: time to begin to lean",
+        ),
+    ] = 0.8
+    turn_time: Annotated[
+        float,
+        Quantity(
+            "skier.turn_time_s",
+            "from edge change to edge change",
+            label="time of a turn",
+            lowest=0.0,
+            highest=1e6,
+            above=True,
+            origin="choice: an easy rhythm",
+        ),
+    ] = 2.0
+    turns: Annotated[
+        float,
+        Quantity(
+            "skier.turns",
+            "how many turns, the first one a half; then straight on",
+            label="turns",
+            lowest=0.0,
+            highest=1e6,
+            above=True,
+            origin="choice: as in the published simulation of consecutive turns",
+        ),
+    ] = 4.5
+    first_to_left: Annotated[
+        bool,
+        Quantity("skier.first_to_left", "whether the first turn goes to the left", label="first turn to the left"),
+    ] = True
+    pole_clearance: Annotated[
+        float,
+        Quantity(
+            "skier.pole_clearance_m",
+            "how far beside a turning pole the middle of the boots is to pass",
+            label="clearance from the pole",
+            lowest=0.0,
+            highest=10.0,
+            origin="choice: half the stance, and what the line is missed by",
+        ),
+    ] = 0.8
+    sight: Annotated[
+        float,
+        Quantity(
+            "skier.sight_s",
+            "through gates: time ahead at which the line is looked at and steered to",
+            label="time ahead",
+            lowest=0.05,
+            highest=5.0,
+            origin="found by trial",
+        ),
+    ] = 0.3
+    line_rate: Annotated[
+        float,
+        Quantity(
+            "skier.line_rate_per_s",
+            "through gates: rate at which it goes back to the line",
+            label="rate back to the line",
+            lowest=0.0,
+            highest=100.0,
+            origin="found by trial",
+        ),
+    ] = 2.0
+    longest_leg: Annotated[
+        float,
+        Quantity(
+            "skier.longest_leg_m",
+            "greatest distance from the middle of the feet to the centre of mass",
+            label="longest leg",
+            lowest=0.1,
+            highest=2.0,
+            origin="centre of mass of a man of 1.76 m who stands, and 7 cm of sole, binding and ski",
+        ),
+    ] = 1.05
+    greatest_edge: Annotated[
+        float,
+        Quantity(
+            "skier.greatest_edge_deg",
+            "greatest edge angle that it sets",
+            label="greatest edge angle",
+            lowest=1.0,
+            highest=80.0,
+            origin="what was measured of slalom racers at gates 10 m apart, 65.7 ± 1.7° (Reid 2020)",
+        ),
+    ] = 66.0 * DEGREE
+    leg_gain: Annotated[
+        float,
+        Quantity(
+            "skier.leg_gain",
+            "of the legs on the error of the capture point",
+            label="gain of the legs",
+            lowest=0.0,
+            highest=100.0,
+            origin="found by trial",
+        ),
+    ] = 0.7
+    edge_gain: Annotated[
+        float,
+        Quantity(
+            "skier.edge_gain",
+            "of the turn, by the edges, on the same error",
+            label="gain of the edges",
+            lowest=0.0,
+            highest=100.0,
+            origin="found by trial",
+        ),
+    ] = 2.0
+    edge_change: Annotated[
+        float,
+        Quantity(
+            "skier.edge_change_per_s",
+            "2π times the corner frequency with which the planned turn goes from side to side",
+            label="speed of the edge change",
+            lowest=0.1,
+            highest=1000.0,
+            origin="found by trial: 1.6 Hz",
+        ),
+    ] = 10.0
+    edge_filter: Annotated[
+        float,
+        Quantity(
+            "skier.edge_filter_per_s",
+            "2π times the corner frequency of the edge angle",
+            label="speed of the edge angle",
+            lowest=0.1,
+            highest=1000.0,
+            origin="found by trial: 3 Hz",
+        ),
+    ] = 19.0
+    share_filter: Annotated[
+        float,
+        Quantity(
+            "skier.share_filter_per_s",
+            "the same of what balance asks of the edges",
+            label="speed of the balance by edges",
+            lowest=0.1,
+            highest=1000.0,
+            origin="found by trial: 3 Hz",
+        ),
+    ] = 19.0
+    load_filter: Annotated[
+        float,
+        Quantity(
+            "skier.load_filter_per_s",
+            "the same of what is learnt from the loads",
+            label="speed of what the loads teach",
+            lowest=0.1,
+            highest=1000.0,
+            origin="found by trial: 4 Hz",
+        ),
+    ] = 25.0
+    lean_more: Annotated[
+        float,
+        Quantity(
+            "skier.lean_more",
+            "capture point wanted, over that of balance",
+            label="lean beyond balance",
+            lowest=0.0,
+            highest=3.0,
+            origin="found by trial",
+        ),
+    ] = 1.1
+    reach: Annotated[
+        float,
+        Quantity(
+            "skier.reach",
+            "share of half the stance within which the centre of pressure is asked for",
+            label="reach",
+            lowest=0.0,
+            highest=1.0,
+            origin="found by trial",
+        ),
+    ] = 0.8
+    lag: Annotated[
+        float,
+        Quantity(
+            "skier.lag_m",
+            "way after which the path has the edge's curvature",
+            label="lag",
+            lowest=0.0,
+            highest=10.0,
+            origin="found by trial",
+        ),
+    ] = 0.6
+    correction: Annotated[
+        float,
+        Quantity(
+            "skier.correction_m",
+            "by how much the loads may correct the planned place of the centre of mass, aside",
+            label="correction by loads",
+            lowest=0.0,
+            highest=1.0,
+            origin="found by trial",
+        ),
+    ] = 0.12
+    touch: Annotated[
+        float,
+        Quantity(
+            "skier.touch_per_s",
+            "how fast a lifted ski is put down",
+            label="touch",
+            lowest=0.0,
+            highest=1000.0,
+            origin="found by trial",
+        ),
+    ] = 20.0
+
+    __repr__ = declared_text
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+        if self.first_turn == float("inf"):
+            raise ParameterError("skier.first_turn_s is infinite; give a time in s")

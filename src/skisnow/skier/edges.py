@@ -1,0 +1,72 @@
+"""Which edge angle turns how much: a little edge skids, more of it carves."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+from ..scenario import Scenario
+
+CARVING_SHARE: Final = 0.6
+"""Share of the straightest carve's acceleration from which on the edges are set as for carving (modelling assumption).
+"""
+EDGE_BEYOND_LEAN: Final = math.radians(3.0)
+"""Edge angle beyond the lean in a carve (modelling assumption)."""
+CONTACT_SHARE: Final = 0.85
+"""Share of the ski's length that bears (modelling assumption)."""
+LEAST_LOAD: Final = 100.0
+"""Load of a ski (N) with which its edge is computed at least (modelling assumption)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Edges:
+    """The edge angle that gives an acceleration.
+
+    Attributes
+    ----------
+    radius
+        Of the sidecut (m).
+    gravity
+        Along the snow's normal (m/s²).
+    softness
+        2 S_f² L/H_V (N): a wedge of angle ϑ under the load N holds √(2 S_f² L tan ϑ/(H_V N)) times that load aside.
+    greatest
+        Edge angle (rad).
+    """
+
+    radius: float
+    gravity: float
+    softness: float
+    greatest: float
+
+    @classmethod
+    def of(cls, scenario: Scenario, gravity: float, greatest: float) -> Edges:
+        """Those of a scenario's ski on its snow."""
+        snow, ski = scenario.contact.snow, scenario.ski
+        length = CONTACT_SHARE * float(ski.station[0] - ski.station[-1])
+        strength = snow.failure_shear_stress or 0.0
+        softness = 2.0 * strength**2 * length / snow.snow_hardness
+        return cls(ski.sidecut_radius_of_edge_line, gravity, softness, greatest)
+
+    def carving_acceleration(self, speed: float) -> float:
+        """Of a carve in balance at a speed (m/s), with the edge angle of its lean: sin ϑ = v²/(R_sc g) (m/s²)."""
+        lean = math.asin(min(0.95, speed**2 / (self.radius * self.gravity)))
+        return speed**2 / (self.radius * math.cos(min(lean, self.greatest)))
+
+    def skidding(self, grip: float, load: float) -> float:
+        """Edge angle (rad) that holds so many times the load (N) of both skis aside, and no more."""
+        return math.atan(grip**2 * max(load / 2.0, LEAST_LOAD) / self.softness)
+
+    def angle(self, acceleration: float, grip: float, speed: float, load: float) -> float:
+        """Edge angle (rad) for an acceleration to the left (m/s²), which takes so many times the load (N) aside."""
+        carving = min(math.atan(abs(grip)) + EDGE_BEYOND_LEAN, self.greatest)
+        skidding = min(self.skidding(grip, load), carving)
+        share = abs(acceleration) * self.radius / max(speed**2, 0.05 * self.radius)
+        x = min(1.0, max(0.0, (share - CARVING_SHARE) / (1.0 - CARVING_SHARE)))
+        carved = self._carved(share, carving)
+        return math.copysign(skidding + (carved - skidding) * x * x * (3.0 - 2.0 * x), grip)
+
+    def _carved(self, share: float, in_balance: float) -> float:
+        """Edge angle (rad) of a carve that is so many times as curved as the sidecut; at least that of balance."""
+        return min(self.greatest, max(in_balance, math.acos(1.0 / share) if share > 1.0 else 0.0))

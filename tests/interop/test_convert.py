@@ -1,0 +1,170 @@
+"""Conversions by endings, from the command line: what comes out, and what is refused with nothing written."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+
+from skisnow.cli import main
+from skisnow.field.caaml import read_caaml
+from skisnow.interop.caaml import write_caaml
+
+from ..field.recordings import plain_snow
+from .pits import full_pit
+
+TOML = """
+name = "Hang"
+place = "Kühtai"
+observers = ["A. Müller"]
+[[tool]]
+name = "disc"
+shape = "disc"
+diameter_mm = 100
+"""
+PENETRATION = (
+    "experiment,site,tool,edge_angle_deg,load_N,depth_mm,time,snow_temperature_C,air_temperature_C\n"
+    + "".join(
+        f"p{site}{number},{site},disc,0,{load},{load / 100 * number},2026-02-0{number}T09:10,-{number}.5,-8\n"
+        for site in "AB"
+        for number in (2, 1)
+        for load in (100, 200, 300)
+    )
+)
+
+
+@pytest.fixture
+def campaign(tmp_path: Path) -> Path:
+    folder = tmp_path / "campaign"
+    folder.mkdir()
+    (folder / "campaign.toml").write_text(TOML, encoding="utf-8")
+    (folder / "penetration.csv").write_text(PENETRATION)
+    (folder / "density.csv").write_text("sample,site,snow_density_kg_per_m3\n1,A,450\n2,B,300\n3,A,470\n")
+    (folder / "snow_micro_pen.csv").write_text("recording,site,file\nr,A,r.pnt\n")
+    (folder / "r.pnt").write_bytes(plain_snow(2.0))
+    return folder
+
+
+def told(capsys: pytest.CaptureFixture[str]) -> tuple[list[str], str]:
+    found = capsys.readouterr()
+    return found.out.split(), found.err
+
+
+def test_a_site_of_a_campaign_becomes_caaml(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """H_V of the two series: 300 N at 3 and 6 mm under a disc of 100 mm, and their geometric mean."""
+    out = tmp_path / "a.caaml"
+    assert main(["convert", str(campaign), str(out), "--site", "A"]) == 0
+    assert told(capsys)[0] == [str(out)]
+    pit = read_caaml(out)
+    assert (pit.name, pit.region, pit.observer, pit.time) == ("A", "Kühtai", "A. Müller", "2026-02-01T09:10:00")
+    assert [each.snow_density for each in pit.densities] == [450.0, 470.0]
+    assert [each.temperature_C for each in pit.temperatures] == [-2.0]
+    assert pit.air_temperature_C == -8.0
+    assert "without a depth" in pit.comment
+    assert pit.snow_hardness is not None
+    soft, hard = (300.0 / (3.14159265 * 2500.0 * depth) for depth in (6.0, 3.0))
+    assert pit.snow_hardness.value == pytest.approx((soft * hard) ** 0.5, rel=1e-6)
+    assert (pit.snow_hardness.n, pit.failure_shear_stress) == (2, None)
+    (force,) = pit.forces
+    assert force.force.mean() == pytest.approx(2.0, rel=0.02)
+    assert force.depth[0] == pytest.approx(0.0005, abs=1e-5)
+    assert (pit.latitude_deg, pit.longitude_deg) == (-45.5, 170.25)
+
+
+def test_a_pit_becomes_snowex_tables(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Heights from the ground: of 125 cm of snow the second layer lies from 113 to 83."""
+    source = write_caaml(full_pit(), tmp_path / "pit.caaml")
+    assert main(["convert", str(source), str(tmp_path / "pit.csv")]) == 0
+    names = ("density", "temperature", "stratigraphy")
+    assert told(capsys)[0] == [str(tmp_path / f"pit_{name}.csv") for name in names]
+    tables = {}
+    for name in names:
+        with (tmp_path / f"pit_{name}.csv").open(newline="", encoding="utf-8") as stream:
+            tables[name] = list(csv.reader(stream))[7:]
+    assert tables["density"][0] == [
+        "# Top (cm)", "Bottom (cm)", "Density A (kg/m3)", "Density B (kg/m3)", "Density C (kg/m3)",
+    ]  # fmt: skip
+    assert tables["density"][2] == ["105", "95", "430", "-9999", "-9999"]
+    assert tables["temperature"][1:] == [["125", "-7.25"], ["115", "-5.5"], ["75", "0"]]
+    assert tables["stratigraphy"][2] == ["113", "83", "0.5", "RGsr", "P+", "-9999", ""]
+
+
+def test_a_recording_becomes_depth_and_force(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = tmp_path / "S31M0067_20190302.pnt"
+    source.write_bytes(plain_snow(1.0, air_mm=1.0, snow_mm=2.0))
+    assert main(["convert", str(source), str(tmp_path / "r.csv")]) == 0
+    rows = (tmp_path / "r.csv").read_text().splitlines()
+    assert rows[1] == "# Date,2019-03-02"
+    assert rows[4:6] == ["Depth (mm),Force (N)", "0.000000,0.050000"]
+    assert len(rows) == 5 + 750
+    assert main(["convert", str(source), str(tmp_path / "r.caaml")]) == 0
+    assert read_caaml(tmp_path / "r.caaml").time == "2019-03-02"
+    assert main(["convert", str(source), str(tmp_path / "none_density.csv.caaml"), "--time", "2019-03-03"]) == 0
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("target", "more", "words"),
+    [
+        ("a.caaml", [], "has 2 sites; name one with --site: A, B"),
+        ("a.caaml", ["--site", "C"], "has no site 'C'; it has A, B"),
+        ("a.csv", ["--site", "A"], "--snow-height-cm"),
+        ("a.docx", ["--site", "A"], "tells no format"),
+        ("a.caam", ["--site", "A"], "Is .caaml meant?"),
+        ("a.pnt", ["--site", "A"], "campaign to SnowMicroPen is not known. Known are campaign to CAAML"),
+    ],
+)
+def test_refusals(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], target: str, more: list[str], words: str
+) -> None:
+    assert main(["convert", str(campaign), str(tmp_path / target), *more]) == 1
+    assert words in told(capsys)[1]
+    assert {path.name for path in tmp_path.iterdir()} == {"campaign"}
+
+
+def test_the_source_is_not_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = write_caaml(full_pit(), tmp_path / "pit.caaml")
+    before = source.read_bytes()
+    assert main(["convert", str(source), str(source)]) == 1
+    assert "another" in told(capsys)[1]
+    assert source.read_bytes() == before
+
+
+def test_a_missing_source_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("gone.caaml", "gone.pnt"):
+        assert main(["convert", str(tmp_path / name), str(tmp_path / "x.csv")]) == 1
+        assert name in told(capsys)[1]
+
+
+SMET = """SMET 1.1 ASCII
+[HEADER]
+station_id = S1
+station_name = Hang oben
+nodata = -777
+tz = 1
+units_offset = 0 273.15 0
+fields = timestamp TA RH
+[DATA]
+2026-02-03T08:00 -4.5 0.8
+2026-02-03T09:00 -2 -777
+"""
+
+
+def test_weather_becomes_csv_and_plain_smet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source, plain, again = (tmp_path / name for name in ("s.smet", "plain.smet", "again.csv"))
+    source.write_text(SMET)
+    assert main(["convert", str(source), str(tmp_path / "s.csv")]) == 0
+    told(capsys)
+    assert (tmp_path / "s.csv").read_text().splitlines() == [
+        "time,air_temperature_C,relative_humidity_percent",
+        "2026-02-03T08:00:00+01:00,-4.5,80",
+        "2026-02-03T09:00:00+01:00,-2,",
+    ]
+    assert main(["convert", str(source), str(plain)]) == 0
+    assert plain.read_text().splitlines()[-2:] == ["2026-02-03T08:00:00 268.65 0.8", "2026-02-03T09:00:00 271.15 -999"]
+    assert main(["convert", str(plain), str(again)]) == 0
+    assert again.read_text() == (tmp_path / "s.csv").read_text()
+    source.write_text(SMET.replace("TA RH", "HS PSUM"))
+    assert main(["convert", str(source), str(tmp_path / "none.csv")]) == 1
+    assert "none of the fields TA, RH" in told(capsys)[1]

@@ -1,0 +1,129 @@
+"""Parts of the skier: its plan, its line through gates, edges, legs, body, and what a scenario may say of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from skisnow import Course, Gate, scenario
+from skisnow.errors import ParameterError
+from skisnow.scenario import Skier, scenario_values
+from skisnow.skier import body_of
+from skisnow.skier.edges import Edges
+from skisnow.skier.legs import leg_poses
+from skisnow.skier.steering import LineThroughGates, TurnsOverTime, Underway
+
+STEEP = 9.81
+
+
+def test_plan() -> None:
+    """A half turn, then whole ones to the other side."""
+    plan = TurnsOverTime(Skier(first_turn=1.0))
+    assert [plan.sense(time) for time in (0.9, 1.1, 1.9, 2.1, 3.9, 4.1, 9.9, 10.1)] == [0, 1, 1, -1, -1, 1, 1, 0]
+    assert TurnsOverTime(Skier(first_turn=1.0, first_to_left=False)).sense(1.5) == -1.0
+    assert plan.acceleration(Underway(1.5, 0.0, 0.0, 0.0, 7.0, 0.0), 4.0) == 4.0
+
+
+def line() -> LineThroughGates:
+    gates = tuple(Gate(name=str(i), turning=(10.0 * i, y), side=side) for i, (y, side) in enumerate(POLES, 1))  # type: ignore[arg-type]
+    return LineThroughGates(Course(gates=gates), Skier(pole_clearance=1.0, sight=0.2), (0.0, 0.0))
+
+
+POLES = ((2.0, "left"), (-2.0, "right"), (2.0, "left"))
+
+
+def test_the_line_goes_by_each_pole_at_its_clearance() -> None:
+    found = line()
+    assert [found.at(x)[0] for x in (0.0, 10.0, 20.0, 30.0, 50.0)] == pytest.approx([0.0, 3.0, -3.0, 3.0, 3.0])
+    step = 1e-4
+    for x in (4.0, 13.0, 27.0):  # slope and second derivative are those of the line
+        below, here, above = (found.at(x + d)[0] for d in (-step, 0.0, step))
+        assert found.at(x)[1] == pytest.approx((above - below) / (2 * step), rel=1e-6)
+        assert found.at(x)[2] == pytest.approx((above - 2 * here + below) / step**2, rel=1e-3)
+
+
+def test_who_is_on_the_line_turns_as_it_does_and_who_is_beside_it_goes_back() -> None:
+    found = line()
+    aside, slope, bend = found.at(10.0)  # at the apex, where it looks to
+    on = Underway(0.0, 10.0 - 0.2 * 6.0, aside, math.atan(slope), 6.0, 0.0)
+    assert found.acceleration(on, 1.0) == pytest.approx(36.0 * bend, abs=0.2)
+    on.y += 0.5
+    assert found.acceleration(on, 1.0) < 36.0 * bend - 1.0
+
+
+def edges() -> Edges:
+    return Edges.of(scenario("skier-10deg"), STEEP, math.radians(66.0))
+
+
+def test_more_acceleration_takes_more_edge_and_left_is_as_right() -> None:
+    found = edges()
+    for speed in (3.0, 7.0, 11.0):
+        asked = np.linspace(0.0, 1.2 * found.carving_acceleration(speed), 60)
+        angles = [found.angle(each, each / STEEP, speed, 730.0) for each in asked]
+        assert (np.diff(angles) > -1e-12).all()
+        assert angles[0] == 0.0
+        assert angles[-1] <= found.greatest
+        assert found.angle(-asked[30], -asked[30] / STEEP, speed, 730.0) == pytest.approx(-angles[30])
+
+
+def test_a_wedge_holds_the_root_of_its_angle() -> None:
+    """Four times the tangent holds twice as much, at a load of 365 N on each ski: 0.44 of it at 1°."""
+    found = edges()
+    assert math.tan(found.skidding(0.8, 730.0)) == pytest.approx(4.0 * math.tan(found.skidding(0.4, 730.0)))
+    assert math.degrees(found.skidding(0.44, 730.0)) == pytest.approx(1.0, rel=0.15)
+
+
+def test_a_carve_in_balance_leans_as_it_must() -> None:
+    """tan ϑ = a/g, sin ϑ = v²/(R_sc g)."""
+    found, speed = edges(), 8.0
+    lean = math.asin(speed**2 / (found.radius * STEEP))
+    assert found.carving_acceleration(speed) == pytest.approx(STEEP * math.tan(lean))
+
+
+def test_legs_keep_the_centre_of_mass_level_and_their_rates_are_those_of_their_poses() -> None:
+    height, step = 0.6, 1e-6
+    for aside in (0.0, 0.3, -0.5):
+        poses = leg_poses((aside, 0.7), (0.4, -1.1), height, 0.44, 0.03)
+        lean = math.atan2(aside, height)
+        snow_up = np.array([0.0, -math.sin(lean), math.cos(lean)])  # in the body
+        flat = leg_poses((aside, 0.0), (0.0, 0.0), height, 0.44, 0.03)
+        for pose in flat:
+            assert float((np.array([0.0, 0.0, height]) - pose.place) @ snow_up) == pytest.approx(height)
+        later = leg_poses((aside + 0.7 * step, 0.7), (0.4 - 1.1 * step, -1.1), height, 0.44, 0.03)
+        for pose, other in zip(poses, later, strict=True):
+            assert (other.place - pose.place) / step == pytest.approx(pose.velocity, abs=1e-4)
+
+
+def test_a_body_scales() -> None:
+    one, other = body_of(75.0, 1.76), body_of(150.0, 1.76)
+    assert other.inertia == pytest.approx([2.0 * each for each in one.inertia])
+    assert 0.54 < one.standing_height / 1.76 < 0.58
+    assert scenario("skier-10deg").sledge.inertia == pytest.approx(one.inertia, abs=0.06)
+    with pytest.raises(ParameterError, match="from 20 to 200"):
+        body_of(7.0, 1.76)
+
+
+def test_keys_of_a_skier() -> None:
+    found = scenario("skier-10deg", changes={"skier.turn_time_s": 1.5})
+    assert found.skier is not None
+    assert found.skier.turn_time == 1.5
+    assert scenario_values(found)["skier.steers"] == "turns"
+    assert scenario("carved-46m").skier is None
+    assert scenario_values(scenario("carved-46m"))["skier.steers"] is None
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"sledge.edge_angle_deg": 5.0}, "write 0"),
+        ({"skier.steers": "gates"}, "without a course"),
+        ({"skier.longest_leg_m": 0.5}, "longer than that"),
+        ({"skier.turn_time_s": 0.0}, "above 0"),
+        ({"skier.turn_times_s": 2.0}, "turn_time_s"),
+    ],
+)
+def test_what_a_skier_cannot_do_is_refused(changes: dict[str, object], words: str) -> None:
+    with pytest.raises(ParameterError, match=words):
+        scenario("skier-10deg", changes=changes)
