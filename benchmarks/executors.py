@@ -25,16 +25,16 @@ ski = "slalom"
 published = "race-piste"
 unloading_ratio = 10
 [grid]
-load_N = { from = 300, to = 1500, n = 20 }
-edge_angle_deg = { from = 10, to = 60, n = 30 }
+load_N = { from = 300, to = 1500, n = 10 }
+edge_angle_deg = { from = 10, to = 60, n = 20 }
 """
 RUNS: Final = """
 out = "table.csv"
 scenario = "carved-46m"
 [fixed]
-"run.duration_s" = 0.5
+"run.duration_s" = 0.3
 [grid]
-"start.speed_m_per_s" = { from = 6, to = 9, n = 20 }
+"start.speed_m_per_s" = { from = 6, to = 9, n = 10 }
 mu_0 = [0.02, 0.05]
 """
 
@@ -87,7 +87,7 @@ def main() -> None:
     print("| points | one process | two threads: times as fast | two processes: times as fast |")
     print("| --- | ---: | ---: | ---: |")
     with tempfile.TemporaryDirectory() as name:
-        for title, text in (("carved turns", CARVE), ("runs of 0.5 s", RUNS)):
+        for title, text in (("carved turns", CARVE), ("runs of 0.3 s", RUNS)):
             times: dict[str | None, list[float]] = {None: [], "threads": [], "processes": []}
             for _ in range(asked.repeats):
                 for executor, found in times.items():

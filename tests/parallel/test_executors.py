@@ -11,11 +11,13 @@ from typing import Any
 import pytest
 
 from skisnow.errors import ParameterError, SkisnowError
+from skisnow.identify import identify
 from skisnow.parallel import chunk, crews, dask_cluster
 from skisnow.parallel.batch import run_batch
 from skisnow.parallel.chunk import Identity
 from skisnow.parallel.executors import require_executor
 from skisnow.parallel.pool import Pool
+from tests.identify.straight_tracks import SCENARIO, track
 
 POINTS = [[("n", n), ("third", n / 3.0)] for n in range(40)]
 ROWS = [dict(point) for point in POINTS]
@@ -52,6 +54,15 @@ def test_any_executor_gives_the_same_rows_in_few_chunks_and_is_left_open() -> No
     with ThreadPoolExecutor(2) as threads:
         assert run_batch(POINTS, dict, executor=threads) == ROWS
         assert threads.submit(len, "open").result() == 4
+
+
+@pytest.mark.slow
+def test_an_identification_takes_an_executor() -> None:
+    asked: dict[str, Any] = {"changes": SCENARIO}
+    here = identify("carved-46m", track(seed=5), "mu_0,speed", workers=1, **asked)
+    executor = Here()
+    assert identify("carved-46m", track(seed=5), "mu_0,speed", executor=executor, **asked).values == here.values
+    assert executor.chunks > 5
 
 
 def test_nothing_to_do_asks_nobody() -> None:
