@@ -254,7 +254,7 @@ class TestJobs:
         for line in ("-p short", "-A snow", "-n 1", "--cpus-per-task=16", "-t 02:00:00"):
             assert f"#SBATCH {line}\n" in script
         assert "--mem=30G" in script
-        assert "--nthreads 1 --nworkers 16" in script
+        assert all(words in script for words in ("--nthreads 1 ", "--nworkers 16 "))
 
     def test_an_option_that_it_has_not_is_refused(self, tmp_path: Path) -> None:
         path = tmp_path / "slurm.toml"
