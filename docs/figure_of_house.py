@@ -19,7 +19,7 @@ INSIDE = {
     "web": "the lab in a browser",
     "chain": "campaign, snow, turn and report in one call",
     "report": "tables, figures, pages, run.nc",
-    "interop": "FMUs, MuJoCo, OpenSim",
+    "interop": "FMUs, MuJoCo, OpenSim, CAAML",
     "replay": "a run in three dimensions",
     "identify": "friction, drag and snow from tracks",
     "study": "grids and samples of carves and runs",

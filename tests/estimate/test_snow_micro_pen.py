@@ -122,6 +122,15 @@ def test_few_forces_are_not_called_significant(make_campaign: MakeCampaign) -> N
     np.testing.assert_allclose(forces, [1, 1, 2, 2, math.nan, math.nan], rtol=0.002)
 
 
+def test_a_misspelt_site_of_a_recording_is_noted(make_campaign: MakeCampaign) -> None:
+    campaign = pen(
+        make_campaign, "recording,site,file\nr1,a,1.pnt\nr2,Z,2.pnt\n", {f"{i}.pnt": plain_snow(i) for i in (1, 2)}
+    )
+    notes = skisnow.analyse(campaign, n_resamples=100).results["campaign"]["remarks"]
+    assert any("'A', 'a' differ by capitals" in note for note in notes)
+    assert any("snow_micro_pen.csv describes 'Z', 'a'" in note for note in notes)
+
+
 def test_recordings_that_are_not_used_say_why(make_campaign: MakeCampaign) -> None:
     """No air before the snow; too shallow; cancelled. A stated surface makes up for missing air."""
     rows = (

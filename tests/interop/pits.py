@@ -25,7 +25,7 @@ def full_pit() -> SnowPit:
         layers=(
             SnowLayer(0.0, 0.12, "K-", "MFpc", 0.75e-3, "machine-made"),
             SnowLayer(0.12, 0.3, "P+", "RGsr", 0.5e-3),
-            SnowLayer(0.42, None, "4F", "FCxr"),
+            SnowLayer(0.42, None, "4F", "FCxr", hardness_bottom="P"),
         ),
         densities=(LayerDensity(0.0, 512.5, 0.1), LayerDensity(0.2, 430.0, 0.1), LayerDensity(0.5, 350.0)),
         temperatures=(DepthTemperature(0.0, -7.25), DepthTemperature(0.1, -5.5), DepthTemperature(0.5, 0.0)),

@@ -60,7 +60,8 @@ def test_another_program_s_file_of_another_version(tmp_path: Path) -> None:
     assert (pit.name, pit.observer, pit.time) == ("Ridge", "Kim", "2024-12-10T11:30:00")
     assert pit.snow_height == pytest.approx(1.4)
     (layer,) = pit.layers
-    assert (layer.top, layer.thickness, layer.hardness, layer.grain_size) == (0.2, 0.15, "4F-1F", None)
+    assert (layer.top, layer.thickness, layer.grain_size) == (0.2, 0.15, None)
+    assert (layer.hardness, layer.hardness_bottom) == ("4F", "1F")
     assert pit.temperatures == (DepthTemperature(0.1, -3.0),)
 
 

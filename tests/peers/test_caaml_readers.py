@@ -31,8 +31,9 @@ def test_snowpylot_reads_every_value(tmp_path: Path) -> None:
     assert layers == [
         ([0.0, "cm"], [12.0, "cm"], "K-", "MFpc", "machine-made"),
         ([12.0, "cm"], [30.0, "cm"], "P+", "RGsr", None),
-        ([42.0, "cm"], None, "4F", "FCxr", None),
+        ([42.0, "cm"], None, None, "FCxr", None),
     ]
+    assert [(each.hardness_top, each.hardness_bottom) for each in profile.layers][2] == ("4F", "P")
     assert [each.grain_form_primary.grain_size_avg for each in profile.layers] == [[0.75, "mm"], [0.5, "mm"], None]
     temperatures = [(each.depth, each.snow_temp) for each in profile.temp_profile]
     assert temperatures == [

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -119,6 +120,19 @@ def test_twenty_gates(name: str) -> None:
     passages = time_gates(course, run).passages
     assert [each.outcome for each in passages] == 20 * ["passed"]
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_gates_on_a_rolling_profile(tmp_path: Path) -> None:
+    """7° with rolls of 0.2 m on 30 m and 0.1 m on 17.3 m."""
+    x = np.arange(-5.0, 520.0)
+    height = (
+        -x * math.tan(math.radians(7.0)) + 0.2 * np.sin(2 * np.pi * x / 30) + 0.1 * np.sin(2 * np.pi * x / 17.3 + 1)
+    )
+    profile = tmp_path / "rolls.csv"
+    np.savetxt(profile, np.column_stack([x, height]), delimiter=",", header="x,y", comments="")
+    changes = {"slope.kind": "profile", "slope.profile": str(profile), "solver.method": "fast"}
+    assert simulate(scenario("giant-slalom-20-gates", changes=changes)).outcome == "finished"
 
 
 @pytest.mark.slow

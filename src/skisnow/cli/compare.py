@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from .announced import announced
 from .out_folder import ready
-from .words import number
+from .words import add_fall_line_azimuth, number
 
 if TYPE_CHECKING:
     from ..track.comparison import Comparison
@@ -41,12 +41,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="what equal time counts from: the files' dates or seconds, or each track's first point; left out: the "
         "clock, but the first points where only one file has a date",
     )
-    parser.add_argument(
-        "--fall-line-azimuth-deg",
-        type=number("degrees", lowest=-360, highest=360),
-        metavar="DEG",
-        help="compass direction of the fall line: puts a track in latitude and longitude into a simulated run's frame",
-    )
+    add_fall_line_azimuth(parser, "puts a track in latitude and longitude into a simulated run's frame")
     parser.add_argument(
         "--slope-angle-deg",
         type=number("degrees", lowest=0, highest=75),

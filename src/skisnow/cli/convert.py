@@ -1,4 +1,4 @@
-"""``skisnow convert``: other people's formats of snow, by the endings of the files."""
+"""``skisnow convert``: other people's formats of snow and of motion, by the endings of the files."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "convert",
-        help="snow pits, recordings and weather between formats: CAAML, SnowMicroPen, SMET, SnowEx",
+        help="files between formats: CAAML, SnowMicroPen, SMET, SnowEx, OpenSim",
         description="Read IN, a campaign (folder or .xlsx), a snow pit in CAAML 6 (.caaml, .xml) or a recording of a "
         "SnowMicroPen (.pnt), and write OUT in the format that its ending tells: CAAML 6.0.3 (.caaml, .xml) or CSV "
-        "with the column names of SnowEx (.csv). Weather in SMET (.smet) becomes SMET 1.1 in SI, or CSV.",
+        "with the column names of SnowEx (.csv). Weather in SMET (.smet) becomes SMET 1.1 in SI, or CSV; .mot and .sto "
+        "each other, markers (.trc, .c3d) .trc.",
     )
     parser.add_argument("source", type=Path, metavar="IN", help="what is read")
     parser.add_argument("target", type=Path, metavar="OUT", help="what is written; SnowEx's tables add to the name")

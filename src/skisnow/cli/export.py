@@ -6,13 +6,15 @@ import argparse
 from pathlib import Path
 
 from .announced import announced
-from .words import Parser
+from .words import Parser, whole_number
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the program's."""
     parser = commands.add_parser(
-        "export", help="models for other programs: FMUs", description="Write a model for another program."
+        "export",
+        help="models for other programs: FMUs, MJCF, terrain",
+        description="Write a model for one.",
     )
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
     fmu = kinds.add_parser(
@@ -39,6 +41,24 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="another value for one key, several times for several; the section may be left out",
     )
     fmu.set_defaults(run=_fmu, parser=fmu)
+    mjcf = kinds.add_parser(
+        "mjcf",
+        help="a ski for MuJoCo",
+        description="Write a ski as MJCF: rigid segments on hinges with its compliance in bending and torsion.",
+    )
+    mjcf.add_argument("ski", metavar="SKI", help="a ski of the catalogue by its name, or a ski file")
+    mjcf.add_argument("--out", type=Path, metavar="FILE", required=True, help="the file to write, ending in .xml")
+    mjcf.add_argument("--segments", type=whole_number(4, 400), default=20, metavar="N", help="of the ski; left out: 20")
+    mjcf.set_defaults(run=_mjcf)
+    chrono = kinds.add_parser(
+        "chrono",
+        help="the snow of a scenario as a terrain of Chrono::Vehicle, untested",
+        description="Write the snow of a scenario as a deformable terrain of Chrono::Vehicle, after its manual; "
+        "untested.",
+    )
+    chrono.add_argument("scenario", metavar="SCENARIO", help="a built-in one by its name, or a TOML file")
+    chrono.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder to write into")
+    chrono.set_defaults(run=_chrono)
 
 
 def _fmu(options: argparse.Namespace) -> int:
@@ -55,4 +75,20 @@ def _fmu(options: argparse.Namespace) -> int:
         else:
             written = write_sledge_fmu(asked, options.out, fmi=options.fmi)
     print(written)
+    return 0
+
+
+def _mjcf(options: argparse.Namespace) -> int:
+    from ..interop.mujoco import write_ski_mjcf
+    from ..ski import read_ski
+
+    print(write_ski_mjcf(read_ski(options.ski), options.out, segments=options.segments))
+    return 0
+
+
+def _chrono(options: argparse.Namespace) -> int:
+    from ..interop.chrono import write_chrono_terrain
+    from ..scenario import scenario_file
+
+    print(write_chrono_terrain(scenario_file(options.scenario).scenario, options.out))
     return 0

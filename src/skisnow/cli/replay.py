@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .announced import announced
-from .words import number
+from .words import add_fall_line_azimuth, number
 
 if TYPE_CHECKING:
     from ..replay import Replay, ReplayTrack
@@ -27,12 +27,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("folder", type=Path, metavar="RUN", help="the folder of a run, with its run.nc")
     parser.add_argument("--over", type=Path, metavar="RUN", help="a second run, laid over it translucent")
     parser.add_argument("--track", type=Path, metavar="FILE", help="a measured track to stand beside it")
-    parser.add_argument(
-        "--fall-line-azimuth-deg",
-        type=number("degrees", lowest=-360, highest=360),
-        metavar="DEG",
-        help="compass direction in which the slope falls, for a track in latitude and longitude",
-    )
+    add_fall_line_azimuth(parser, "for a track in latitude and longitude")
     parser.add_argument(
         "--starts-at-s",
         type=number("s", lowest=-36_000, highest=36_000),

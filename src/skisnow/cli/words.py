@@ -46,6 +46,16 @@ class Parser(argparse.ArgumentParser):
                 self.error(f"there is no option {name}.{_meant(name, options)} {self.prog} --help names all")
 
 
+def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:
+    """Add the option that says in which compass direction x of a slope's axes points, and what for."""
+    parser.add_argument(
+        "--fall-line-azimuth-deg",
+        type=number("degrees", lowest=-360, highest=360),
+        metavar="DEG",
+        help=f"compass direction in which the slope falls: {why}",
+    )
+
+
 def _meant(name: str, options: Iterable[str]) -> str:
     by_small = {option.lower(): option for option in sorted(options)}
     like = difflib.get_close_matches(name.lower(), by_small, n=1, cutoff=0.6)

@@ -20,7 +20,11 @@ def _tested(campaign: Campaign) -> set[str]:
 
 
 def _described(campaign: Campaign) -> dict[str, set[str]]:
-    tables = {"density.csv": campaign.density, "drop_cone.csv": campaign.drop_cone}
+    tables = {
+        "density.csv": campaign.density,
+        "drop_cone.csv": campaign.drop_cone,
+        "snow_micro_pen.csv": campaign.snow_micro_pen,
+    }
     return {name: set(table.site) for name, table in tables.items() if table is not None}
 
 

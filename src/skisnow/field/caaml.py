@@ -140,16 +140,17 @@ class _Profile:
 
     def _layer(self, layer: Element) -> SnowLayer:
         top, thickness = self._top_and_thickness(layer)
-        hands = dict.fromkeys(self._word(layer.text_of(name)) for name in ("hardness", "hardnessTop", "hardnessBottom"))
+        hand, upper, lower = (self._word(layer.text_of(name)) for name in ("hardness", "hardnessTop", "hardnessBottom"))
         size = layer.child("grainSize")
         average = None if size is None else self._number(size, "Components", "avg", words=True)
         return SnowLayer(
             top=top,
             thickness=thickness,
-            hardness="-".join(filter(None, hands)),
+            hardness=hand or upper or lower,
             grain_form=self._word(layer.text_of("grainFormPrimary")),
             grain_size=None if average is None else average * MM,
             comment=layer.text_of("metaData", "comment"),
+            hardness_bottom=lower if upper and not hand else "",
         )
 
     def _density(self, layer: Element) -> LayerDensity:

@@ -17,7 +17,8 @@ class SnowLayer:
     """A layer: depth of its top from the surface (m), thickness (m) or None, hand hardness, grain form and size.
 
     ``hardness`` and ``grain_form`` are codes of the International Classification for Seasonal Snow on the Ground, such
-    as ``P+`` and ``RGsr``, or ``""``; ``grain_size`` is in m, None where it is not said.
+    as ``P+`` and ``RGsr``, or ``""``; ``hardness_bottom`` is another one where the layer grows harder or softer
+    downwards. ``grain_size`` is in m, None where it is not said.
     """
 
     top: float
@@ -26,6 +27,7 @@ class SnowLayer:
     grain_form: str = ""
     grain_size: float | None = None
     comment: str = ""
+    hardness_bottom: str = ""
 
 
 @dataclass(frozen=True, slots=True)

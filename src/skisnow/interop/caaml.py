@@ -126,9 +126,11 @@ def _layer(layer: SnowLayer) -> str:
     if layer.grain_size is not None:
         average = _nested("Components", _text("avg", _number(layer.grain_size / MM)))
         parts.append(_nested("grainSize", average, uom="mm"))
-    if layer.hardness:
-        _require("hand hardness", layer.hardness, HAND_HARDNESSES)
-        parts.append(_text("hardness", layer.hardness, uom=""))
+    names = ("hardnessTop", "hardnessBottom") if layer.hardness_bottom else ("hardness",)
+    for name, hardness in zip(names, (layer.hardness, layer.hardness_bottom), strict=False):
+        if hardness:
+            _require("hand hardness", hardness, HAND_HARDNESSES)
+            parts.append(_text(name, hardness, uom=""))
     return _nested("Layer", "".join(parts))
 
 

@@ -16,6 +16,7 @@ from ..field.smet import read_smet
 from ..field.snow_pit import ForceProfile, SnowPit
 from ..inputs import meant
 from .caaml import write_caaml
+from .opensim import read_c3d, read_motion, read_trc, write_motion, write_trc
 from .site_pit import site_pit, sites_of
 from .smet import write_smet, write_weather_csv
 from .snowex import write_snowex_force, write_snowex_pit
@@ -33,6 +34,10 @@ ENDINGS: Final[Mapping[str, str]] = {
     ".csv": CSV,
     ".xlsx": CAMPAIGN,
     ".xlsm": CAMPAIGN,
+    ".mot": "OpenSim table",
+    ".sto": "OpenSim table",
+    ".trc": "TRC markers",
+    ".c3d": "C3D markers",
 }
 """Kind of a file by its ending; a folder is a campaign."""
 
@@ -139,8 +144,23 @@ def _to_snowex(read: Callable[[Path, ConvertOptions], SnowPit]) -> Conversion:
     return lambda source, target, options: write_snowex_pit(_completed(read(source, options), options), target)
 
 
+def _motion(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
+    write_motion(read_motion(source), target)
+    return (target,)
+
+
+def _markers(read: Callable[[Path], Markers]) -> Conversion:
+    def convert_markers(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
+        write_trc(read(source), target)
+        return (target,)
+
+    return convert_markers
+
+
 if TYPE_CHECKING:
     from typing import TypeAlias
+
+    from .opensim import Markers
 
     Conversion: TypeAlias = Callable[[Path, Path, ConvertOptions], tuple[Path, ...]]
 
@@ -153,5 +173,8 @@ CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     ("SnowMicroPen", CSV): lambda source, target, _: (write_snowex_force(read_snow_micro_pen(source), target),),
     ("SMET", "SMET"): lambda source, target, _: (write_smet(read_smet(source), target),),
     ("SMET", CSV): lambda source, target, _: (write_weather_csv(read_smet(source), target),),
+    ("OpenSim table", "OpenSim table"): _motion,
+    ("TRC markers", "TRC markers"): _markers(read_trc),
+    ("C3D markers", "TRC markers"): _markers(read_c3d),
 }
 """By the kinds of source and target."""

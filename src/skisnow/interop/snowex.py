@@ -115,7 +115,7 @@ def _tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str], l
                 *_limits(height, each.top, each.thickness),
                 NO_DATA if each.grain_size is None else f"{each.grain_size / MM:g}",
                 each.grain_form or NO_DATA,
-                each.hardness or NO_DATA,
+                "/".join(filter(None, (each.hardness, each.hardness_bottom))) or NO_DATA,
                 NO_DATA,
                 each.comment,
             )

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..given import GivenError, json_value
 from .colours import COLOURS, drawn_thickness
-from .replay import Replay, ReplayGroove, ReplaySkis, ReplayTrack
+from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkis, ReplayTerrain, ReplayTrack
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -74,6 +74,11 @@ KEPT: Final[dict[str, _Kept]] = {
     "track_place": _Kept(_EXACT, "m"),
     "track_time": _Kept(_EXACT, "s"),
     "gate_place": _Kept(_EXACT, "m"),
+    "boot_place": _Kept(_EXACT, "m"),
+    "boot_attitude": _Kept(_EXACT, "1"),
+    "terrain_x": _Kept(_EXACT, "m"),
+    "terrain_y": _Kept(_EXACT, "m"),
+    "terrain_height": _Kept(_EXACT, "m"),
 }
 """Every array that a file may hold. Those in uint16 are off by half a step at most: 1/131070 of the array's range."""
 
@@ -133,7 +138,11 @@ def thinned(replay: Replay) -> Replay:
 def at_moments(replay: Replay, kept: npt.NDArray[np.int64]) -> Replay:
     """Those moments alone, by their numbers; the groove stays whole."""
     skis = replay.skis
-    along = {name: getattr(skis, name)[kept] for name in ("bending", "twist", "edge_depth", "force_per_length")}
+    along: dict[str, Any] = {
+        name: getattr(skis, name)[kept] for name in ("bending", "twist", "edge_depth", "force_per_length")
+    }
+    if skis.boots is not None:
+        along["boots"] = ReplayBoots(place=skis.boots.place[kept], attitude=skis.boots.attitude[kept])
     over = {
         name: getattr(replay, name)[kept]
         for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
@@ -155,6 +164,10 @@ def _arrays(replay: Replay) -> dict[str, FloatArray]:
     if replay.track is not None:
         found |= {"track_place": replay.track.place, "track_time": replay.track.time}
     found["gate_place"] = replay.gates
+    if skis.boots is not None:
+        found |= {"boot_place": skis.boots.place, "boot_attitude": skis.boots.attitude}
+    if replay.terrain is not None:
+        found |= {f"terrain_{name}": getattr(replay.terrain, name) for name in ("x", "y", "height")}
     return {name: np.asarray(values, dtype=float) for name, values in found.items() if values is not None}
 
 
@@ -168,6 +181,7 @@ def _words(replay: Replay) -> dict[str, Any]:
         "centre_of_mass_height": replay.centre_of_mass_height,
         "groove_spacing": replay.groove.spacing,
         "colours": COLOURS,
+        **({} if replay.terrain is None else {"terrain_grade": list(replay.terrain.grade)}),
         "track_name": None if replay.track is None else replay.track.name,
     }
 
@@ -203,6 +217,11 @@ def _rebuilt(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay
 
     along = some("station", "half_width", "base_height", "middle", "bending", "twist", "edge_depth", "force_per_length")
     pieces = some("middle", "left", "width", "depth", "residual_depth", "time", before="groove_")
+    boots = ReplayBoots(**some("place", "attitude", before="boot_")) if "boot_place" in arrays else None
+    terrain = None
+    if "terrain_height" in arrays:
+        grade = header["terrain_grade"]
+        terrain = ReplayTerrain(**some("x", "y", "height", before="terrain_"), grade=(grade[0], grade[1]))
     track = None
     if "track_place" in arrays:
         track = ReplayTrack(name=header["track_name"], place=arrays["track_place"], time=arrays.get("track_time"))
@@ -213,10 +232,11 @@ def _rebuilt(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay
         profile=arrays.get("profile"),
         centre_of_mass_height=header["centre_of_mass_height"],
         **some("time", "place", "attitude", "speed", "curvature", "heading", "depth"),
-        skis=ReplaySkis(edge_angle=header["edge_angle"], **along),
+        skis=ReplaySkis(edge_angle=header["edge_angle"], boots=boots, **along),
         groove=ReplayGroove(
             ski=np.rint(arrays["groove_ski"]).astype(np.int64), spacing=header["groove_spacing"], **pieces
         ),
         track=track,
         gates=arrays.get("gate_place"),
+        terrain=terrain,
     )

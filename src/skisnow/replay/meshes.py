@@ -97,20 +97,31 @@ def groove_mesh(replay: Replay, kept: npt.NDArray[np.bool_]) -> Mesh:
 
 
 def _normals(replay: Replay, place: FloatArray) -> FloatArray:
-    if replay.profile is None:
+    if replay.terrain is not None:
+        beside = 0.5 * float(replay.terrain.x[1] - replay.terrain.x[0])
+        (x, y), heights = place[:, :2].T, replay.terrain.heights
+        slope = (heights(x + beside, y) - heights(x - beside, y)) / (2.0 * beside)
+        side = (heights(x, y + beside) - heights(x, y - beside)) / (2.0 * beside)
+    elif replay.profile is not None:
+        slope = np.interp(place[:, 0], replay.profile[:, 0], np.gradient(replay.profile[:, 1], replay.profile[:, 0]))
+        side = np.zeros_like(slope)
+    else:
         return np.broadcast_to([0.0, 0.0, 1.0], place.shape)
-    slope = np.interp(place[:, 0], replay.profile[:, 0], np.gradient(replay.profile[:, 1], replay.profile[:, 0]))
-    return np.stack([-slope, np.zeros_like(slope), np.ones_like(slope)], axis=1) / np.hypot(1.0, slope)[:, None]
+    return np.stack([-slope, -side, np.ones_like(slope)], axis=1) / np.sqrt(1.0 + slope**2 + side**2)[:, None]
 
 
 def snow_mesh(replay: Replay) -> Mesh:
     """The slope around the run."""
     low, high = _around(replay)
-    x = np.linspace(low[0], high[0], 2 if replay.profile is None else max(2, math.ceil(high[0] - low[0]) * 4))
-    line = zip(x, surface_heights(replay, x), strict=True)
-    vertices = np.array([[at, y, z] for at, z in line for y in (low[1], high[1])])
+    is_bent = replay.profile is not None, replay.terrain is not None
+    x, y = (
+        np.linspace(low[axis], high[axis], max(2, math.ceil(high[axis] - low[axis]) * 4) if bent else 2)
+        for axis, bent in enumerate((any(is_bent), is_bent[1]))
+    )
+    place = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+    vertices = np.column_stack([place, surface_heights(replay, *place.T)])
     colours = np.broadcast_to(linear(COLOURS["snow"]), vertices.shape)
-    return Mesh(vertices, colours, _strips(len(x), 2, [(0, 1)]))
+    return Mesh(vertices, colours, _strips(len(x), len(y), [(j, j + 1) for j in range(len(y) - 1)]))
 
 
 def grid_mesh(replay: Replay) -> Mesh:
@@ -120,15 +131,17 @@ def grid_mesh(replay: Replay) -> Mesh:
     """
     low, high = np.ceil(_around(replay)[0]), np.floor(_around(replay)[1])
     x, y = (np.arange(low[axis], high[axis] + 0.5) for axis in (0, 1))
-    finer = x if replay.profile is None else np.arange(low[0], high[0] + 0.1, 0.25)  # so that it follows the snow
+    # finer, so that they follow the snow
+    along_x = x if replay.profile is None and replay.terrain is None else np.arange(low[0], high[0] + 0.1, 0.25)
+    along_y = y if replay.terrain is None else np.arange(low[1], high[1] + 0.1, 0.25)
     pieces, tones = [], []
-    for along, across, order in ((y, x, (1, 0)), (finer, y, (0, 1))):
+    for along, across, order in ((along_y, x, (1, 0)), (along_x, y, (0, 1))):
         ends = np.stack([along[:-1], along[1:]], axis=1)
         place = np.stack(np.broadcast_arrays(ends[None], across[:, None, None]), axis=-1)  # line, piece, end, 2
         pieces.append(place[..., list(order)].reshape(-1, 2))
         tones.append(np.repeat(across % 5.0 == 0.0, 2 * len(ends)))
     place, dark = np.concatenate(pieces), np.concatenate(tones)
-    vertices = np.column_stack([place, surface_heights(replay, place[:, 0])])
+    vertices = np.column_stack([place, surface_heights(replay, *place.T)])
     vertices += LIFTED * _normals(replay, vertices)
     colours = np.where(dark[:, None], linear(_GRID[True]), linear(_GRID[False]))
     return Mesh(vertices, colours, np.arange(len(vertices)).reshape(-1, 2))
@@ -139,8 +152,10 @@ def _around(replay: Replay) -> FloatArray:
     return np.stack([replay.place.min(axis=0) - _MARGIN, replay.place.max(axis=0) + _MARGIN])
 
 
-def surface_heights(replay: Replay, x: FloatArray) -> FloatArray:
-    """Heights (k,) of the snow at distances x (k,), all in m; 0 on a plane."""
+def surface_heights(replay: Replay, x: FloatArray, y: FloatArray) -> FloatArray:
+    """Heights (k,) of the snow at places x, y (k,), all in m; 0 on a plane."""
+    if replay.terrain is not None:
+        return replay.terrain.heights(x, y)
     if replay.profile is None:
         return np.zeros_like(x)
     return np.interp(x, replay.profile[:, 0], replay.profile[:, 1])

@@ -23,7 +23,7 @@ from .meshes import CORNERS, grid_mesh, groove_mesh, snow_mesh, surface_heights,
 from .replay import SKI_NAMES
 
 if TYPE_CHECKING:
-    from .replay import Replay
+    from .replay import Replay, ReplayBoots
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -107,13 +107,27 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int) 
         model.move(joints[j], "translation", clock, model.array(place[:, j]))
         model.move(joints[j], "rotation", clock, model.array(turn[:, j]))
     boot = {"translation": skis.middle[ski], "rotation": _about(0, -skis.edge_angle)}
+    moved = None if skis.boots is None else _on_the_sledge(replay, skis.boots, ski)
+    if moved is not None:
+        boot = {"translation": moved[0][0], "rotation": moved[1][0]}
     carrier = model.node(f"{name}, boot", children=joints, **boot)
+    if moved is not None:
+        model.move(carrier, "translation", clock, model.array(moved[0]))
+        model.move(carrier, "rotation", clock, model.array(moved[1]))
     into_joints = np.tile(np.eye(4), (len(joints), 1, 1))
     into_joints[:, 0, 3], into_joints[:, 2, 3] = -skis.station, -skis.base_height
     skin = model.skin(name, joints, carrier, into_joints)
     of_section = np.repeat(np.arange(len(joints)), CORNERS)
     mesh = model.mesh(name, unloaded_ski_mesh(replay, ski), joints=of_section)
     return carrier, model.node(name, mesh=mesh, skin=skin)
+
+
+def _on_the_sledge(replay: Replay, boots: ReplayBoots, ski: int) -> tuple[FloatArray, FloatArray]:
+    """Places (n, 3) of a boot that moves in the sledge's frame (m), and its quaternions x, y, z, w against it."""
+    back = Rotation.from_quat(_xyzw(replay)).inv()
+    turn = (back * Rotation.from_quat(np.roll(boots.attitude[:, ski], -1, axis=1))).as_quat()
+    turned = np.cumprod(np.append(1.0, np.where(np.sum(turn[1:] * turn[:-1], axis=1) < 0.0, -1.0, 1.0)))
+    return back.apply(boots.place[:, ski] - replay.place), turn * turned[:, None]
 
 
 def _groove(model: Glb, replay: Replay) -> list[int]:
@@ -146,15 +160,15 @@ def _camera(model: Glb, replay: Replay, clock: int, course: int) -> int:
     leans = _about(1, _steepness_behind(replay))
     along = model.node("camera's place", translation=replay.place[0], rotation=leans[0], children=[eye])
     model.move(along, "translation", clock, course)
-    if replay.profile is not None:
+    if replay.profile is not None or replay.terrain is not None:
         model.move(along, "rotation", clock, model.array(leans))
     return along
 
 
 def _steepness_behind(replay: Replay) -> FloatArray:
     """Angle (n,) by which the snow falls from under the camera to the sledge (rad): by so much the camera is higher."""
-    x = replay.place[:, 0]
-    return np.arctan2(surface_heights(replay, x + _EYE[0]) - surface_heights(replay, x), -_EYE[0])
+    x, y = replay.place[:, 0], replay.place[:, 1]
+    return np.arctan2(surface_heights(replay, x + _EYE[0], y) - surface_heights(replay, x, y), -_EYE[0])
 
 
 def _extras(replay: Replay, exaggeration: float) -> dict[str, Any]:

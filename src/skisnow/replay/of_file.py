@@ -9,16 +9,20 @@ import numpy as np
 import numpy.typing as npt
 from scipy.io import netcdf_file
 
+from ..course import on_slope, read_course
 from ..errors import ParameterError, SkisnowError
+from ..geometry.boot_axes import axes_of
 from ..given import GivenError, json_value
-from ..scenario import Plane, Profile, read_profile
+from ..scenario import Plane, read_profile, read_terrain
 from ..ski import read_ski, ski_named
 from ..units import DEGREE
-from .of_run import Setting, assembled, facts_of, no_replay_on_grid, require_still
+from .of_run import Setting, assembled, facts_of, moving_boots
 
 if TYPE_CHECKING:
+    from ..course import Course
     from ..ski import Ski
-    from .replay import Replay, ReplayTrack
+    from .of_run import Slope
+    from .replay import Replay, ReplayBoots, ReplayTrack
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -58,11 +62,10 @@ def replay_of_file(
         with netcdf_file(path, "r", mmap=False) as file:
             content: Any = file  # its attributes are those of the file
             arrays, values = _arrays(content), _scenario(content)
-            boots = getattr(content, "boots", b"").decode("utf-8")
-            require_still(boots if boots.startswith("moved") else None)
+            boots = _boots(content)
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
         setting = _setting(path, values, outcome, spacing, ski)
-        return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track)
+        return assembled(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
     except GivenError as error:
         raise ParameterError(f"{path} is no run.nc of skisnow: {error} Simulate it again with --out") from error
     except SkisnowError:
@@ -82,6 +85,16 @@ def _arrays(file: Any) -> dict[str, FloatArray]:
     return plain | vectors
 
 
+def _boots(file: Any) -> ReplayBoots | None:
+    """The boots of a run whose boots moved."""
+    if not getattr(file, "boots", b"").decode("utf-8").startswith("moved"):
+        return None
+    place = np.stack([_values(file, f"boot_{axis}") for axis in "xyz"], axis=-1)
+    angles = np.stack([_values(file, f"boot_{name}") for name in ("edge_angle", "pitch", "heading")], axis=-1)
+    axes = np.array([axes_of(*map(float, each)) for each in angles.reshape(-1, 3)])
+    return moving_boots(place, axes.reshape(*angles.shape, 3))
+
+
 def _scenario(file: Any) -> dict[str, Any]:
     """Its values under full names."""
     sections = json_value(file.scenario.decode("utf-8"))
@@ -97,10 +110,11 @@ def _values(file: Any, name: str) -> FloatArray:
 
 
 def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
-    ski = ski or _ski(path, values)
+    ski, slope = ski or _ski(path, values), _slope(path, values)
     edge_angle = values["sledge.edge_angle_deg"]
     return Setting(
-        slope=_slope(path, values),
+        slope=slope,
+        course=_course(path, values, slope),
         ski=ski,
         edge_angle=edge_angle * DEGREE,
         stance_width=values["sledge.stance_width_m"],
@@ -123,12 +137,28 @@ def _ski(path: Path, values: dict[str, Any]) -> Ski:
     return read_ski(_found(path, values["ski.file"], "ski"))
 
 
-def _slope(path: Path, values: dict[str, Any]) -> Plane | Profile:
+def _slope(path: Path, values: dict[str, Any]) -> Slope:
     if values["slope.kind"] == "plane":
         return Plane(values["slope.angle_deg"] * DEGREE)
     if values["slope.kind"] == "grid":
-        raise no_replay_on_grid()
+        origin = {f"origin_{axis}": float(values.get(f"slope.origin_{axis}_m") or 0.0) for axis in "xy"}
+        smoothing = float(values.get("slope.smooth_m") or 0.0)
+        return read_terrain(_found(path, values["slope.grid"], "grid"), smoothing=smoothing, **origin)
     return read_profile(_found(path, values["slope.profile"], "profile"), gap=values["slope.profile_gap"] or "error")
+
+
+def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
+    """The course in the scenario's axes; gates are there to be looked at, and one whose file is gone is not shown."""
+    said = {name.partition(".")[2]: value for name, value in values.items() if name.startswith("course.")}
+    name, file = said.pop("name", None), said.pop("file", None)
+    if name is None and file is None:
+        return None
+    try:
+        place = name if name is not None else _found(path, file, "course")
+        course = read_course(place, **{key: value for key, value in said.items() if value is not None})
+    except ParameterError:
+        return None
+    return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
 
 
 def _found(path: Path, named: str, what: str) -> Path:

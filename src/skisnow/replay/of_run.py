@@ -3,26 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
-from ..scenario import Plane, Terrain
+from ..scenario import Plane, Profile, Terrain
 from ..units import DEGREE, N_PER_MM2, N_PER_MM3
 from .groove_times import groove_times
 from .quaternions import quaternions
-from .replay import Replay, ReplayGroove, ReplaySkis, ReplayTrack
+from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkis, ReplayTerrain, ReplayTrack
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from ..scenario import Profile
+    from ..course import Course
     from ..simulate.run import Run
     from ..ski import Ski
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
+Slope: TypeAlias = Plane | Profile | Terrain
+
+_AROUND: Final = 30.0
+"""How far around a run measured heights are shown (m); farther out the slope goes on evenly."""
+_STEP: Final = 0.5
+"""Between their places (m): a screen shows no more."""
+_MOST_PLACES: Final = 40_000
+"""Of a long run they are farther apart, so that a replay stays below a megabyte."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,17 +45,20 @@ class Setting:
         Of the snow's lines along the path (m).
     edge_angle, stance_width, centre_of_mass_height
         Of the sledge (rad, m, m).
+    course
+        Whose gates are shown, in the scenario's axes; None: there is none.
     facts
         Lines of name and value for the reader.
     """
 
-    slope: Plane | Profile
+    slope: Slope
     ski: Ski
     edge_angle: float
     stance_width: float
     centre_of_mass_height: float
     line_spacing: float
     facts: tuple[tuple[str, str], ...]
+    course: Course | None = None
 
 
 def replay_of_run(
@@ -68,27 +79,18 @@ def replay_of_run(
     track
         A measured track in the run's axes, shown beside.
     gates
-        (g, 2) x and y of the poles of gates (m), red and blue by turns; they stand on the snow.
+        (g, 2) x and y of the poles of gates (m), red and blue by turns; they stand on the snow. Left out: the turning
+        poles of the run's course, where it has one.
 
     Raises
     ------
     ParameterError
-        The run has not even a first moment, its boots move, the gates are no pairs of finite numbers, or it went over
-        a grid, whose surface a replay cannot show.
+        The run has not even a first moment, or the gates are no pairs of finite numbers.
     """
-    require_still(run.boots_by)
     setting = _setting(run)
-    found = assembled(_arrays(run), setting, title=title, track=track)
+    boots = None if run.boots_by is None or run.boots is None else moving_boots(run.boots.place, run.boots.axes)
+    found = assembled(_arrays(run), setting, title=title, track=track, boots=boots)
     return found if gates is None else replace(found, gates=_gates(gates, setting.slope))
-
-
-def require_still(boots_by: str | None) -> None:
-    """Refuse a run whose boots move: the replay draws skis where the sledge has them."""
-    if boots_by is not None:
-        raise ParameterError(
-            f"the boots of this run are {boots_by}, and a replay shows skis that stay where the sledge has them. Take "
-            "the figures of the report, or the boots' poses in run.nc"
-        )
 
 
 def _arrays(run: Run) -> dict[str, FloatArray]:
@@ -105,8 +107,6 @@ def _arrays(run: Run) -> dict[str, FloatArray]:
 
 def _setting(run: Run) -> Setting:
     scenario = run.scenario
-    if isinstance(scenario.slope, Terrain):
-        raise no_replay_on_grid()
     contact, sledge = scenario.contact, scenario.sledge
     stress = contact.snow.failure_shear_stress
     facts = facts_of(
@@ -125,14 +125,7 @@ def _setting(run: Run) -> Setting:
         centre_of_mass_height=sledge.centre_of_mass[1],
         line_spacing=run.numbers["line_spacing_m"],
         facts=facts,
-    )
-
-
-def no_replay_on_grid() -> ParameterError:
-    """Why a run over a grid has no replay."""
-    return ParameterError(
-        'a replay shows planes and profiles; this run went over a grid (slope.kind = "grid"). Its track from above, '
-        "depths and forces stand in the run's report"
+        course=scenario.course,
     )
 
 
@@ -150,18 +143,25 @@ def facts_of(
 
 
 def assembled(
-    arrays: Mapping[str, FloatArray], setting: Setting, *, title: str, track: ReplayTrack | None = None
+    arrays: Mapping[str, FloatArray],
+    setting: Setting,
+    *,
+    title: str,
+    track: ReplayTrack | None = None,
+    boots: ReplayBoots | None = None,
 ) -> Replay:
     """A replay from a run's arrays, named as in run.nc with vectors in one, and its setting."""
     if not len(arrays["time"]):
         raise ParameterError(f"{title} has no moment to show: it ended before it began")
     with np.errstate(divide="ignore"):
         curvature = 1.0 / arrays["turn_radius"]
+    slope, course = setting.slope, setting.course
     return Replay(
         title=title,
         facts=setting.facts,
-        tilt=setting.slope.angle if isinstance(setting.slope, Plane) else 0.0,
-        profile=None if isinstance(setting.slope, Plane) else _profile(setting.slope),
+        tilt=slope.angle if isinstance(slope, Plane) else 0.0,
+        profile=_profile(slope) if isinstance(slope, Profile) else None,
+        terrain=_terrain(slope, arrays["place"]) if isinstance(slope, Terrain) else None,
         centre_of_mass_height=setting.centre_of_mass_height,
         time=arrays["time"],
         place=arrays["place"],
@@ -170,9 +170,10 @@ def assembled(
         curvature=np.nan_to_num(curvature),
         heading=arrays["heading"],
         depth=arrays["depth"],
-        skis=_skis(arrays, setting),
+        skis=_skis(arrays, setting, boots),
         groove=_groove(arrays, setting.line_spacing),
-        track=None if track is None else _on_the_snow(track, setting.slope),
+        track=None if track is None else _on_the_snow(track, slope),
+        gates=None if course is None else _gates([gate.turning for gate in course.gates], slope),
     )
 
 
@@ -183,26 +184,47 @@ def _profile(slope: Profile) -> FloatArray:
     return np.column_stack([x, slope.heights(x)])
 
 
-def _gates(places: npt.ArrayLike, slope: Plane | Profile) -> FloatArray:
+def _terrain(slope: Terrain, path: FloatArray) -> ReplayTerrain:
+    """The heights around a run, at places close enough that they look smooth, and not too many."""
+    surface = slope.surface
+    low, high = (path[:, :2].min(axis=0) - _AROUND, path[:, :2].max(axis=0) + _AROUND)
+    step = max(_STEP, float(np.sqrt(np.prod(high - low) / _MOST_PLACES)))
+    x, y = (low[axis] + step * np.arange(int(np.ceil((high[axis] - low[axis]) / step)) + 1) for axis in (0, 1))
+    height = np.array([surface.heights(each, y) for each in x])
+    terms = np.column_stack([np.ones(height.size), np.repeat(x - x.mean(), len(y)), np.tile(y - y.mean(), len(x))])
+    plane = np.linalg.lstsq(terms, height.ravel(), rcond=None)[0]
+    return ReplayTerrain(x=x, y=y, height=height, grade=(float(plane[1]), float(plane[2])))
+
+
+def moving_boots(place: FloatArray, axes: FloatArray) -> ReplayBoots:
+    """Boots from their places (n, 2, 3) in m and axes (n, 2, 3, 3) as rows: ahead, left across the base, off it."""
+    turns = [quaternions(axes[:, boot].swapaxes(-1, -2)) for boot in range(axes.shape[1])]
+    return ReplayBoots(place=place, attitude=np.stack(turns, axis=1))
+
+
+def _gates(places: npt.ArrayLike, slope: Slope) -> FloatArray:
     """Feet of poles on the snow."""
     found = np.asarray(places, dtype=float)
     if found.ndim != 2 or found.shape[1] != 2 or not np.isfinite(found).all():
         raise ParameterError(f"gates are pairs of x and y in m; given is an array of shape {found.shape}")
-    return np.column_stack([found, _heights(slope, found[:, 0])])
+    return np.column_stack([found, _heights(slope, found)])
 
 
-def _heights(slope: Plane | Profile, x: FloatArray) -> FloatArray:
-    return np.zeros(len(x)) if isinstance(slope, Plane) else slope.heights(x)
+def _heights(slope: Slope, place: FloatArray) -> FloatArray:
+    """Heights (k,) of the snow at places whose first two numbers are x and y (k, 2 or 3)."""
+    if isinstance(slope, Terrain):
+        return slope.surface.heights(place[:, 0], place[:, 1])
+    return np.zeros(len(place)) if isinstance(slope, Plane) else slope.heights(place[:, 0])
 
 
-def _on_the_snow(track: ReplayTrack, slope: Plane | Profile) -> ReplayTrack:
+def _on_the_snow(track: ReplayTrack, slope: Slope) -> ReplayTrack:
     """A height that was not measured is that of the snow."""
     place = np.array(track.place, dtype=float)
-    place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], _heights(slope, place[:, 0]))
+    place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], _heights(slope, place))
     return ReplayTrack(name=track.name, place=place, time=track.time)
 
 
-def _skis(arrays: Mapping[str, FloatArray], setting: Setting) -> ReplaySkis:
+def _skis(arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots | None) -> ReplaySkis:
     ski, station = setting.ski, arrays["station"]
     at = ski.at(np.clip(station, float(ski.station[-1]), float(ski.station[0])))
     side = setting.stance_width / 2.0
@@ -216,6 +238,7 @@ def _skis(arrays: Mapping[str, FloatArray], setting: Setting) -> ReplaySkis:
         twist=arrays["twist"],
         edge_depth=arrays["edge_depth"],
         force_per_length=arrays["force_per_length"],
+        boots=boots,
     )
 
 

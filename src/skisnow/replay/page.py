@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from .replay import ReplayTrack
 
 MODULES: Final = (
-    "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow_tile.js", "snow.js",
-    "grid.js", "relief.js", "groove.js", "sledge.js", "skis.js", "labels.js", "landmarks.js", "force_arrows.js",
-    "plume.js", "cameras.js", "sharpness.js", "controls.js", "mini_map.js", "takeaway.js", "stage.js", "replay.js",
+    "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow_tile.js", "quads.js",
+    "snow.js", "grid.js", "relief.js", "groove.js", "sledge.js", "skis.js", "labels.js", "landmarks.js",
+    "force_arrows.js", "plume.js", "cameras.js", "sharpness.js", "controls.js", "mini_map.js", "takeaway.js",
+    "stage.js", "replay.js",
 )  # fmt: skip
 """The program, each file before those that import it."""
 STYLE: Final = "replay.css"

@@ -20,6 +20,53 @@ SKI_NAMES: Final = ("left", "right")
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class ReplayBoots:
+    """Boots that move against the sledge: place (n, 2, 3) in space (m), and (n, 2, 4) unit quaternion w, x, y, z.
+
+    The quaternion turns x ahead, y left across the base and z off it into space.
+    """
+
+    place: FloatArray
+    attitude: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class ReplayTerrain:
+    """A slope of measured heights around a run.
+
+    Attributes
+    ----------
+    x, y
+        (p,) and (q,) evenly rising places (m).
+    height
+        (p, q) of the snow there (m), straight between.
+    grade
+        Mean dz/dx and dz/dy: beyond the places the snow is drawn going on so.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    height: FloatArray
+    grade: tuple[float, float]
+
+    def heights(self, x: npt.ArrayLike, y: npt.ArrayLike) -> FloatArray:
+        """Heights (m) of the drawn snow at places x, y (m)."""
+        (u, i, within_x), (v, j, within_y) = _cell(self.x, x), _cell(self.y, y)
+        below, above = ((1.0 - v) * self.height[k, j] + v * self.height[k, j + 1] for k in (i, i + 1))
+        near = (1.0 - u) * below + u * above
+        beyond_x, beyond_y = np.asarray(x, dtype=float) - within_x, np.asarray(y, dtype=float) - within_y
+        return np.asarray(near + self.grade[0] * beyond_x + self.grade[1] * beyond_y)
+
+
+def _cell(places: FloatArray, at: npt.ArrayLike) -> tuple[FloatArray, npt.NDArray[np.int64], FloatArray]:
+    """Share of the way to the next place, number of the place, and where one is, held within the ends."""
+    within = np.clip(np.asarray(at, dtype=float), places[0], places[-1])
+    number = np.clip(np.searchsorted(places, within, side="right") - 1, 0, len(places) - 2)
+    share = (within - places[number]) / (places[number + 1] - places[number])
+    return share, number, within
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ReplaySkis:
     """Two equal skis on a sledge; station (m) tip to tail, index of histories: time, ski (0 left, 1 right), station.
 
@@ -37,6 +84,8 @@ class ReplaySkis:
         (n, 2, m) of the edge that is down below the undisturbed surface; negative: above it (m).
     force_per_length
         (n, 2, m) of the snow along its normal (N/m).
+    boots
+        Where they move, they say where the skis are; None: middle and edge angle do.
     """
 
     station: FloatArray
@@ -48,6 +97,7 @@ class ReplaySkis:
     twist: FloatArray
     edge_depth: FloatArray
     force_per_length: FloatArray
+    boots: ReplayBoots | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -121,10 +171,12 @@ class Replay:
     title, facts
         In words: what it is, and lines of name and value for the reader.
     tilt
-        Angle of the shown plane's x axis below the horizontal (rad): a plane's inclination; 0 on a profile, whose axes
-        are horizontal and vertical.
+        Angle of the shown plane's x axis below the horizontal (rad): a plane's inclination; 0 on a profile and a
+        terrain, whose axes are horizontal and vertical.
     profile
-        (p, 2) distance and height of a measured slope (m), or None: the plane z = 0.
+        (p, 2) distance and height of a measured slope (m), or None.
+    terrain
+        Measured heights over the place, or None; without it and a profile the slope is the plane z = 0.
     centre_of_mass_height
         Above the bases (m).
     time
@@ -159,3 +211,4 @@ class Replay:
     groove: ReplayGroove
     track: ReplayTrack | None = None
     gates: FloatArray | None = None
+    terrain: ReplayTerrain | None = None

@@ -34,14 +34,24 @@ def ski_edges(replay: Replay, frame: int, *, exaggeration: float = 1.0) -> Float
     b the width, φ the twist. The stations do not come nearer as a ski bends.
     """
     skis = replay.skis
-    ahead = np.array([1.0, 0.0, 0.0])
-    across, away = base_lateral(skis.edge_angle), base_normal(skis.edge_angle)
+    place, across, away, ahead = _boots(replay, frame)
     twist = exaggeration * skis.twist[frame][..., None]
     height = skis.base_height + exaggeration * skis.bending[frame]
-    middle = skis.middle[:, None, :] + skis.station[:, None] * ahead + height[..., None] * away
-    half = skis.half_width[:, None] * (np.cos(twist) * across - np.sin(twist) * away)
-    edges = np.stack([middle + half, middle - half], axis=2)
-    return np.asarray(replay.place[frame] + edges @ rotation(replay.attitude[frame]).T)
+    middle = place[:, None, :] + skis.station[:, None] * ahead[:, None] + height[..., None] * away[:, None]
+    half = skis.half_width[:, None] * (np.cos(twist) * across[:, None] - np.sin(twist) * away[:, None])
+    return np.stack([middle + half, middle - half], axis=2)
+
+
+def _boots(replay: Replay, frame: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Place of each boot (2, 3) in space (m), and its axes across the base to the left, off it, and ahead."""
+    skis = replay.skis
+    if skis.boots is not None:
+        axes = np.stack([rotation(each).T for each in skis.boots.attitude[frame]])
+        return skis.boots.place[frame], axes[:, 1], axes[:, 2], axes[:, 0]
+    turn = rotation(replay.attitude[frame])
+    own = (base_lateral(skis.edge_angle), base_normal(skis.edge_angle), np.array([1.0, 0.0, 0.0]))
+    across, away, ahead = (np.broadcast_to(turn @ axis, (len(skis.middle), 3)) for axis in own)
+    return replay.place[frame] + skis.middle @ turn.T, across, away, ahead
 
 
 def nearest_frame(replay: Replay, time: float) -> int:

@@ -39,6 +39,10 @@ ROLLS: Final = 0.7
 """Share of the roll inertia that counts in the pendulum's rate (modelling assumption)."""
 TURN_MORE: Final = 1.3
 """Greatest acceleration with what balance asks, over the greatest planned one (modelling assumption)."""
+BEND: Final = 0.8
+"""Distance (m) before and behind at which the slope's bend is looked at (modelling assumption)."""
+MOST_PRESSED: Final = 2.0
+"""Greatest acceleration (m/s²) by the slope's bend that the control counts with (modelling assumption)."""
 SLOWEST: Final = 2.0
 """Speed (m/s) with which the lag is computed at least (modelling assumption)."""
 STEEPEST: Final = 1.1
@@ -134,8 +138,19 @@ class BalancedSkier:
         if isinstance(slope, Plane):
             self._gravity, self._downhill = gravity * math.cos(slope.angle), gravity * math.sin(slope.angle)
         else:
-            self._gravity, self._downhill = gravity * float(normal[2]), -gravity * float(down_and_left(normal)[0][2])
+            self._gravity = gravity * float(normal[2]) + self._pressed(x, y)
+            self._downhill = -gravity * float(down_and_left(normal)[0][2])
         return normal
+
+    def _pressed(self, x: float, y: float) -> float:
+        """Acceleration off the snow (m/s²) that the slope's own bend gives at the present speed; at most 2 m/s²."""
+        if not self.records:
+            return 0.0
+        seen = self.records[-1].seen
+        ahead = np.array([math.cos(seen.course), math.sin(seen.course)])
+        behind, before = (normals_of(self.scenario.slope, *(np.array([x, y]) + d * ahead)) for d in (-BEND, BEND))
+        bend = float((behind - before)[:2] @ ahead) / (2.0 * BEND)
+        return max(-MOST_PRESSED, min(MOST_PRESSED, seen.speed**2 * bend))
 
     def _steering(self) -> Steering:
         course, start = self.scenario.course, self.scenario.start

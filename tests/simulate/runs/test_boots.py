@@ -10,7 +10,7 @@ import pytest
 
 from skisnow import BootMoment, BootPose, Boots, Run, Scenario, scenario, simulate
 from skisnow.errors import ParameterError
-from skisnow.replay import replay_of_run
+from skisnow.replay import replay_of_run, ski_edges
 from skisnow.scenario.boots_file import read_boots
 from skisnow.simulate.boots_table import boots_text, write_boots
 
@@ -78,8 +78,14 @@ def test_a_function_moves_the_boots_and_the_lean_follows_the_legs() -> None:
     assert "retract" in run.boots_by
     lean = np.arcsin(run.attitude[:, 2, 1])
     assert np.degrees(lean[-1]) == pytest.approx(-np.degrees(0.05 / 0.5), abs=1.0)
-    with pytest.raises(ParameterError, match="skis that stay where the sledge has them"):
-        replay_of_run(run)
+    replay = replay_of_run(run)
+    at_boot = int(np.argmin(np.abs(replay.skis.station)))
+    for frame in (0, len(run.time) // 2, -1):  # the run's own edges under the boots
+        edges = ski_edges(replay, frame)[:, at_boot]
+        apart = np.linalg.norm(edges - run.skis.track[frame][:, None], axis=-1).min(axis=1)
+        assert apart.max() < abs(replay.skis.station[at_boot]) + 1e-3
+    # the sledge leans and both skis lie on the snow; skis that stayed on the sledge would be 5 cm apart in height
+    assert np.ptp(ski_edges(replay, -1)[:, at_boot, :, 2].mean(axis=1)) < 0.002
     with pytest.raises(ParameterError, match="must give 2 BootPose"):
         simulate(flat, boots=lambda _: [])
 

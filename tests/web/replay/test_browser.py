@@ -14,6 +14,7 @@ import pytest
 from skisnow.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_replay
 from skisnow.scenario import Profile
 
+from ...replay.test_terrain_and_boots import X, Y, hills, over, run_with_boots
 from ...report.runs import circle_run
 from .browsers import Watched, drawing_in_software, slowly
 
@@ -243,7 +244,7 @@ def test_the_groove_is_as_deep_as_the_slider_says(seen: Watched) -> None:
 
 def test_the_groove_is_deepest_where_the_edge_is(seen: Watched) -> None:
     """An edge angle of 30° to the left: base and wall share the width as cos² and sin², the wall left of the base."""
-    assert seen.does("return replay.stage.groove.mesh.material.uniforms.bottom.value") == pytest.approx(0.5)
+    assert seen.does("return [...new Set(replay.stage.groove.mesh.geometry.attributes.lowest.array)]") == [0.5]
 
 
 def test_forces_are_arrows_and_numbers_on_demand(seen: Watched, replay: Replay) -> None:
@@ -396,6 +397,35 @@ def test_a_measured_slope_is_drawn_as_it_falls(browser: Any, tmp_path: Path) -> 
         for view in VIEWS:
             seen.does(f"replay.seek(2.0); replay.look('{view}')")
             assert coloured(seen.picture()) > 300, view
+        assert seen.complaints == []
+    finally:
+        seen.close()
+
+
+def test_moving_boots_over_measured_heights(browser: Any, tmp_path: Path) -> None:
+    """Skis stand where the boots have them, on a mesh of the heights; brackets and shadows go with them."""
+    run = run_with_boots()
+    replay = replay_of_run(replace(run, scenario=over(hills(X[:, None], Y)).scenario), gates=GATES)
+    assert replay.terrain is not None
+    seen = Watched(browser, write_replay(replay, tmp_path / "terrain.html").as_uri())
+    try:
+        for ski in (0, 1):
+            found = np.array(seen.does(f"return replay.edgesAt({replay.time[3]}, {ski}, 1)"))
+            assert found.transpose(1, 0, 2) == pytest.approx(ski_edges(replay, 3)[ski], abs=2e-5)
+        mesh = np.array(seen.does("return [...replay.stage.surface.geometry.attributes.position.array]")).reshape(-1, 3)
+        assert len(mesh) == (len(replay.terrain.x) + 2) * (len(replay.terrain.y) + 2)
+        assert mesh[:, 2] == pytest.approx(replay.terrain.heights(*mesh[:, :2].T), abs=1e-4)
+        bracket, boot = seen.does(
+            """replay.seek(replay.end);
+               const { place } = replay.run.arrays, sledge = replay.stage.skis.group.children[4];
+               sledge.updateMatrixWorld(true);
+               const at = replay.stage.space.worldToLocal(sledge.children[0].getWorldPosition(sledge.position.clone()));
+               return [at.toArray(), [...replay.run.arrays.boot_place.values.slice(-6, -3)]];"""
+        )
+        assert bracket == pytest.approx(boot, abs=1e-4)
+        for view in VIEWS:
+            seen.does(f"replay.seek(2.0); replay.look('{view}')")
+            assert coloured(seen.picture()) > 100, view
         assert seen.complaints == []
     finally:
         seen.close()

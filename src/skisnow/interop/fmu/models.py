@@ -81,6 +81,10 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
     """The sledge of a scenario on its flexible skis."""
     if scenario.boots is not None:
         raise ParameterError("boots.file: an FMU's boots stay where the sledge has them; leave boots.file out")
+    if scenario.skier is not None:
+        raise ParameterError(
+            "skier: an FMU holds a sledge, whose boots stay where they are; take a scenario without one"
+        )
     setup = laid_out(scenario)
     _require_own_laws(setup.snow)
     dynamics, outputs = setup.dynamics, list[Variable]()

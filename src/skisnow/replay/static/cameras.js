@@ -1,7 +1,7 @@
 // Where one looks from: behind the run, the boot, above, along the edge, or freely around the sledge.
 
 import * as THREE from "./three.module.min.js";
-import { poseAt, surfaceHeight } from "./motion.js";
+import { bootPose, poseAt, surfaceHeight } from "./motion.js";
 
 export const VIEWS = ["chase", "boot", "above", "edge", "free"];
 const UPRIGHT = new THREE.Vector3(0, 0, 1);
@@ -63,7 +63,7 @@ export class Follower {
       pose.place[1] - CHASE.behind * zoom * y + side * x,
       0,
     ];
-    from[2] = surfaceHeight(this.run, from[0]) + CHASE.height * zoom;
+    from[2] = surfaceHeight(this.run, from[0], from[1]) + CHASE.height * zoom;
     this.#look(from, offset(pose, CHASE.ahead, 0, 0), UPRIGHT);
   }
 
@@ -93,12 +93,12 @@ export class Follower {
 
   edge(pose) {
     const zoom = this.zoom.edge;
-    const middle = this.run.arrays.middle.values;
-    const side = middle[3 * this.outer + 1];
+    const { place, forward } = bootPose(this.run, pose, this.outer);
+    const boot = { place, forward, left: pose.left, up: pose.up };
     const tail = this.run.arrays.station.values.at(-1);
-    const from = offset(pose, tail - 0.55 * zoom, side + Math.sign(side) * 0.16 * zoom, 0);
-    from[2] = surfaceHeight(this.run, from[0]) + 0.2 * zoom;
-    this.#look(from, offset(pose, 0.35, side, 0.02), UPRIGHT);
+    const from = offset(boot, tail - 0.55 * zoom, (this.outer === 0 ? 1 : -1) * 0.16 * zoom, 0);
+    from[2] = surfaceHeight(this.run, from[0], from[1]) + 0.2 * zoom;
+    this.#look(from, offset(boot, 0.35, 0, 0.02), UPRIGHT);
   }
 
   free(pose) {

@@ -57,7 +57,8 @@ function lines(run, kind) {
   });
   const own = (at) => kind.every === COARSE.every || at % COARSE.every !== 0;
   const chains = steps(y0, y1, kind.every).filter(own).map((y) => steps(x0, x1, hills(run) ? 0.5 : 5).map((x) => [x, y]));
-  for (const x of steps(x0, x1, kind.every).filter(own)) chains.push(steps(y0, y1, 5).map((y) => [x, y]));
+  const aside = run.arrays.terrain_height ? 0.5 : 5; // a profile is straight across
+  for (const x of steps(x0, x1, kind.every).filter(own)) chains.push(steps(y0, y1, aside).map((y) => [x, y]));
   const mesh = chained(run, chains, kind);
   mesh.material = new THREE.ShaderMaterial({
     vertexShader: LINES.vertex,
@@ -87,7 +88,7 @@ function chained(run, chains, { width }) {
     chain.forEach(([x, y], i) => {
       const first = names.position.length / 3;
       for (const side of [-1, 1]) {
-        names.position.push(x, y, surfaceHeight(run, x));
+        names.position.push(x, y, surfaceHeight(run, x, y));
         names.beside.push(...sideways);
         names.corner.push(side, 0);
       }

@@ -2,7 +2,7 @@
 
 import { depthColour, TRACK } from "./colours.js";
 import { largest } from "./binary.js";
-import { between, surfaceHeight } from "./motion.js";
+import { between, edgeAngle, surfaceNormal } from "./motion.js";
 import { relief } from "./relief.js";
 import { hills, ribbon } from "./snow.js";
 
@@ -19,7 +19,7 @@ export function groove(run, { most, colour = null, order = 3 }) {
   const hidden = hills(run);
   const mesh = colour
     ? ribbon(pieces, { least: 1.6, order, hidden })
-    : relief(pieces, { edgeAngle: run.edge_angle, least: 2.4, order, hidden });
+    : relief(pieces, { least: 2.4, order, hidden });
   const times = run.arrays.groove_time.values; // rising
   return {
     mesh,
@@ -65,32 +65,26 @@ function piece(run, i, beside, most, colour) {
   return {
     middle: middle.values.subarray(3 * i, 3 * i + 3),
     beside: Array.from(across, (part) => (part * width.values[i]) / 2),
-    along: reach(run, across, beside.map((j) => middle.values.subarray(3 * j, 3 * j + 3)), middle.values[3 * i]),
+    along: reach(run, across, beside.map((j) => middle.values.subarray(3 * j, 3 * j + 3)), middle.values.subarray(3 * i, 3 * i + 2)),
     deep: depth.values[i],
+    edgeAngle: edgeAngle(run, Math.round(run.arrays.groove_ski.values[i]), run.arrays.groove_time.values[i]),
     colour: colour ?? depthColour(depth.values[i], most, run.colours),
   };
 }
 
 /** Half of a piece's length ahead: towards its neighbours, or straight across its own line where they lie elsewhere. */
-function reach(run, across, [before, after], x) {
+function reach(run, across, [before, after], place) {
   const way = [0, 1, 2].map((axis) => after[axis] - before[axis]);
   const [long, aside] = [Math.hypot(...way), way.reduce((sum, part, axis) => sum + part * across[axis], 0)];
   const half = run.groove_spacing / 2;
   if (long > half && long < 8 * half && Math.abs(aside) < 0.3 * long) {
     return way.map((part) => (part * half) / Math.sqrt(long * long - aside * aside));
   }
-  const normal = surfaceNormal(run, x);
+  const normal = surfaceNormal(run, ...place);
   return [0, 1, 2].map((axis) => {
     const [j, k] = [(axis + 1) % 3, (axis + 2) % 3];
     return half * (across[j] * normal[k] - across[k] * normal[j]);
   });
-}
-
-function surfaceNormal(run, x) {
-  if (!run.arrays.profile) return [0, 0, 1];
-  const slope = (surfaceHeight(run, x + 0.1) - surfaceHeight(run, x - 0.1)) / 0.2;
-  const size = Math.hypot(1, slope);
-  return [-slope / size, 0, 1 / size];
 }
 
 /** A measured track as a line, and `placeAt(time)`, null where its times are not known. */

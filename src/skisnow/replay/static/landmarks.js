@@ -1,7 +1,7 @@
 // What stands around: poles every 10 m, gates where there are, an arrow along the fall line, hills at the horizon.
 
 import { sprite } from "./labels.js";
-import { surfaceHeight } from "./motion.js";
+import { surfaceGrade, surfaceHeight } from "./motion.js";
 import { extent, flat } from "./snow.js";
 import * as THREE from "./three.module.min.js";
 
@@ -48,7 +48,7 @@ function polePlaces(run) {
   const [xs, ys] = [round(x0, x1), round(y0, y1)];
   const across = xs.length * ys.length > MOST ? [ys[0], ys.at(-1)] : ys;
   const found = [];
-  for (const x of xs) for (const y of across) if (isClear(path, x, y)) found.push([x, y, surfaceHeight(run, x)]);
+  for (const x of xs) for (const y of across) if (isClear(path, x, y)) found.push([x, y, surfaceHeight(run, x, y)]);
   return found;
 }
 
@@ -81,9 +81,11 @@ export function fallLine(run) {
     show(pose) {
       const side = 1.15;
       const [x, y] = [pose.place[0] + side * pose.left[0] + 0.5 * pose.forward[0], pose.place[1] + side * pose.left[1] + 0.5 * pose.forward[1]];
-      const here = surfaceHeight(run, x);
-      group.position.set(x, y, here);
-      arrow.rotation.y = -Math.atan2(surfaceHeight(run, x + 0.5) - here, 0.5);
+      group.position.set(x, y, surfaceHeight(run, x, y));
+      const [ahead, aside] = surfaceGrade(run, x, y, 0.25);
+      const way = run.arrays.terrain_height ? Math.atan2(-aside, -ahead) : 0; // else it is x
+      group.rotation.z = way;
+      arrow.rotation.y = -Math.atan2(ahead * Math.cos(way) + aside * Math.sin(way), 1);
     },
   };
 }

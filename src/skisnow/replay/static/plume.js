@@ -1,6 +1,6 @@
 // A plume at the loaded edges: drawn, not computed with. It is the thicker the larger the force of the snow times the speed.
 
-import { poseAt, row, sections } from "./motion.js";
+import { edgeAngle, poseAt, row, sections } from "./motion.js";
 import * as THREE from "./three.module.min.js";
 
 const NUMBER = 160;
@@ -83,7 +83,7 @@ function source(run, time, ski) {
   }
   const speed = row(run.arrays.speed.values, pose.at, 1)[0];
   const found = sections(run, pose, ski, 1);
-  const side = run.edge_angle >= 0 ? 1 : -1;
+  const side = edgeAngle(run, ski, time) >= 0 ? 1 : -1;
   const half = run.arrays.half_width.values[most];
   const outward = pose.left.map((part) => side * part);
   return {

@@ -1,6 +1,7 @@
 // The groove in relief: a shader finds where a look meets the groove's cross section below the snow.
 
 import * as THREE from "./three.module.min.js";
+import { quads } from "./quads.js";
 import { flat, shades, SUN } from "./snow.js";
 
 const SHADER = {
@@ -13,7 +14,8 @@ const SHADER = {
     uniform float height;    // of the picture in pixels
     uniform float least;     // width in pixels
     uniform float times;     // depth and width are drawn so often
-    uniform float bottom;    // where it is deepest: -1 right edge, 1 left edge
+    attribute float lowest;  // where it is deepest: -1 right edge, 1 left edge
+    attribute float level;   // 1: a flat ski's, with a level floor
     uniform vec3 sun;        // world
     varying vec3 hue;
     varying vec3 look;       // from the eye: left, up
@@ -22,7 +24,11 @@ const SHADER = {
     varying float place;     // from the middle to the left (m)
     varying float half_width;
     varying float depth;
+    varying float bottom;
+    varying float boxed;
     void main() {
+      bottom = lowest;
+      boxed = level;
       vec4 middle = modelViewMatrix * vec4(position, 1.0);
       float pixel = 2.0 * max(-middle.z, 0.01) / (projectionMatrix[1][1] * height);
       float size = max(length(beside), 1e-9);
@@ -44,8 +50,6 @@ const SHADER = {
     }`,
   fragment: `
     precision highp float;
-    uniform float bottom;
-    uniform float boxed;     // 1: a flat ski's, with a level floor
     uniform vec3 horizon;
     uniform vec3 snow;
     varying vec3 hue;
@@ -55,6 +59,8 @@ const SHADER = {
     varying float place;
     varying float half_width;
     varying float depth;
+    varying float bottom;
+    varying float boxed;
     float floor_at(float u) { // depth, as a share of the deepest, at u from -1 to 1
       float wall = u < bottom ? (u + 1.0) / (bottom + 1.0) : (1.0 - u) / (1.0 - bottom);
       return clamp(boxed > 0.5 ? 10.0 * (1.0 - abs(u)) : wall, 0.0, 1.0);
@@ -90,42 +96,23 @@ const SHADER = {
 
 /**
  * Pieces of a groove as rectangles on the snow in which one looks down to the floor: middle, half across to the left,
- * half ahead, depth and colour. `edgeAngle` (rad, positive: the left edge is down) says where it is deepest.
+ * half ahead, depth and colour. Its `edgeAngle` (rad, positive: the left edge is down) says where it is deepest.
  */
-export function relief(pieces, { edgeAngle, least, order, hidden }) {
-  const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
-  const sizes = { position: 3, beside: 3, along: 3, tint: 3, corner: 2, deep: 1 };
-  const names = Object.fromEntries(Object.keys(sizes).map((name) => [name, []]));
-  const indices = [];
-  for (const piece of pieces) {
-    const first = names.deep.length;
-    indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
-    for (const corner of corners) {
-      names.position.push(...piece.middle);
-      names.beside.push(...piece.beside);
-      names.along.push(...piece.along);
-      names.tint.push(...piece.colour.map((part) => part / 255));
-      names.corner.push(...corner);
-      names.deep.push(piece.deep);
-    }
-  }
-  const geometry = new THREE.BufferGeometry();
-  for (const [name, size] of Object.entries(sizes)) {
-    geometry.setAttribute(name, new THREE.Float32BufferAttribute(names[name], size));
-  }
-  geometry.setIndex(indices);
+export function relief(pieces, { least, order, hidden }) {
+  const own = pieces.map((piece) => ({
+    ...piece, lowest: deepestAt(piece.edgeAngle), level: isFlat(piece.edgeAngle) ? 1 : 0,
+  }));
   const material = new THREE.ShaderMaterial({
     vertexShader: SHADER.vertex,
     fragmentShader: SHADER.fragment,
     uniforms: {
       ...shades(), height: { value: 720 }, least: { value: least }, times: { value: 1 }, sun: { value: SUN },
-      bottom: { value: deepestAt(edgeAngle) }, boxed: { value: isFlat(edgeAngle) ? 1 : 0 },
     },
     side: THREE.DoubleSide,
     depthWrite: false,
     depthTest: hidden,
   });
-  return flat(new THREE.Mesh(geometry, material), order);
+  return flat(new THREE.Mesh(quads(own, ["deep", "lowest", "level"]), material), order);
 }
 
 const isFlat = (angle) => Math.abs(Math.sin(angle)) < 0.05;

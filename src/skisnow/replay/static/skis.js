@@ -43,6 +43,7 @@ export function skis(run, { most, ghost = false }) {
       }
       sledge.matrix.makeBasis(...[pose.forward, pose.left, pose.up].map((axis) => new THREE.Vector3(...axis)));
       sledge.matrix.setPosition(...pose.place);
+      if (run.arrays.boot_place) sledge.userData.stand(pose);
       if (this.isSunny) shade.cast(pose, sun);
       return pose;
     },
@@ -146,9 +147,9 @@ function castShadow(mesh, run, found, sun) {
   for (let j = 0; j < half.length; j++) {
     [1, -1].forEach((side, c) => {
       const edge = [0, 1, 2].map((i) => found[9 * j + i] + side * half[j] * found[9 * j + 3 + i]);
-      const high = Math.max(edge[2] - surfaceHeight(run, edge[0]), 0) / sun[2];
+      const high = Math.max(edge[2] - surfaceHeight(run, edge[0], edge[1]), 0) / sun[2];
       const [x, y] = [edge[0] - high * sun[0], edge[1] - high * sun[1]];
-      positions.setXYZ(2 * j + c, x, y, surfaceHeight(run, x));
+      positions.setXYZ(2 * j + c, x, y, surfaceHeight(run, x, y));
     });
   }
   positions.needsUpdate = true;

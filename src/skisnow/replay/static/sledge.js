@@ -3,7 +3,7 @@
 
 import * as THREE from "./three.module.min.js";
 import { largest } from "./binary.js";
-import { surfaceHeight } from "./motion.js";
+import { bootPose, poseAt, surfaceHeight, surfaceNormal } from "./motion.js";
 import { hills } from "./snow.js";
 
 export const SHADOW = 0x93a7bb;
@@ -25,30 +25,40 @@ export function sledgeMesh(run, ghost) {
     parent.add(mesh);
     return mesh;
   };
-  const middle = run.arrays.middle.values;
   const thick = largest(run.arrays.thickness.values);
-  const tops = [0, 1].map((ski) => {
-    const base = new THREE.Vector3(...middle.subarray(3 * ski, 3 * ski + 3));
-    group.add(bracket(add, base, run.edge_angle, thick));
-    return base.add(upAlong(run.edge_angle, thick + BRACKET.height));
-  });
+  const brackets = [0, 1].map(() => bracket(add, thick));
+  group.add(...brackets);
   const mass = new THREE.Vector3(0, 0, run.centre_of_mass_height);
-  frame(add, tops, mass);
+  const span = frame(add, mass);
   weights(add, mass);
   group.traverse((each) => {
     each.renderOrder = ghost ? 8 : 5;
   });
+  /** Put the brackets where the boots are, and the tubes between them and the mass. */
+  group.userData.stand = (pose) => {
+    const back = matrixOf(pose.place, [pose.forward, pose.left, pose.up]).invert();
+    const ends = brackets.map((each, ski) => {
+      const boot = bootPose(run, pose, ski);
+      const matrix = back.clone().multiply(matrixOf(boot.place, [boot.forward, boot.across, boot.away]));
+      matrix.decompose(each.position, each.quaternion, each.scale);
+      return JOINTS.map((x) => new THREE.Vector3(x, 0, thick + BRACKET.height).applyMatrix4(matrix));
+    });
+    span(ends);
+  };
+  group.userData.stand(poseAt(run, run.arrays.time.values[0]));
   return group;
 }
 
 const BRACKET = { long: 0.3, top: 0.12, width: 0.05, height: 0.085 };
-const upAlong = (angle, size) => new THREE.Vector3(0, size * Math.sin(angle), size * Math.cos(angle));
+const JOINTS = [-0.045, 0.045]; // m ahead of the boot, on each bracket
+
+function matrixOf(place, axes) {
+  return new THREE.Matrix4().makeBasis(...axes.map((axis) => new THREE.Vector3(...axis))).setPosition(...place);
+}
 
 /** A plate on the ski and a bracket that grows narrower upwards, square to the ski's base. */
-function bracket(add, base, angle, thick) {
+function bracket(add, thick) {
   const turned = new THREE.Group();
-  turned.position.copy(base);
-  turned.rotation.x = -angle;
   const { long, top, width, height } = BRACKET;
   add(new THREE.BoxGeometry(long, 0.062, 0.012), TUBE, turned).position.z = thick + 0.006;
   const side = new THREE.Shape([[-0.42 * long, 0], [0.42 * long, 0], [top / 2, height], [-top / 2, height]].map(
@@ -60,17 +70,20 @@ function bracket(add, base, angle, thick) {
   return turned;
 }
 
-/** Two tubes across from bracket to bracket, and four up to the mass. */
-function frame(add, tops, mass) {
-  for (const x of [-0.045, 0.045]) {
-    const ends = tops.map((top) => top.clone().add(new THREE.Vector3(x, 0, 0)));
-    add(tube(ends[0], ends[1], 0.013), TUBE);
-    for (const end of ends) {
-      const joint = add(new THREE.SphereGeometry(0.019, 12, 8), STEEL);
-      joint.position.copy(end);
-      add(tube(end, mass, 0.009), TUBE);
-    }
-  }
+/** Two tubes across from bracket to bracket, and four up to the mass; put between the brackets' joints by what is returned. */
+function frame(add, mass) {
+  const across = JOINTS.map(() => tube(add, 0.013));
+  const joints = [0, 1].map(() => JOINTS.map(() => add(new THREE.SphereGeometry(0.019, 12, 8), STEEL)));
+  const up = [0, 1].map(() => JOINTS.map(() => tube(add, 0.009)));
+  return (ends) => {
+    JOINTS.forEach((_, i) => {
+      stretch(across[i], ends[0][i], ends[1][i]);
+      for (const ski of [0, 1]) {
+        joints[ski][i].position.copy(ends[ski][i]);
+        stretch(up[ski][i], ends[ski][i], mass);
+      }
+    });
+  };
 }
 
 /** Three discs on a spindle; the middle of the middle one is the centre of mass. */
@@ -85,11 +98,14 @@ function weights(add, mass) {
   disc(0.018, 0.13, 0, PALE);
 }
 
-function tube(from, to, radius) {
+const tube = (add, radius) => add(new THREE.CylinderGeometry(radius, radius, 1, 10), TUBE);
+
+/** A tube of length 1 from one place to another. */
+function stretch(mesh, from, to) {
   const way = to.clone().sub(from);
-  const geometry = new THREE.CylinderGeometry(radius, radius, way.length(), 10);
-  const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 1, 0), way.normalize());
-  return geometry.applyQuaternion(turn).translate(...from.clone().add(to).multiplyScalar(0.5).toArray());
+  mesh.scale.set(1, way.length(), 1);
+  mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), way.normalize());
+  mesh.position.copy(from).add(to).multiplyScalar(0.5);
 }
 
 /** The sledge's shadow: all of it laid flat on the snow along the light. */
@@ -103,15 +119,15 @@ export function slopeShadow(run, sledge) {
     if (each.isMesh) each.material = material;
     each.frustumCulled = false;
   });
+  const pairs = sledge.children.map((each, i) => [each, mesh.children[i]]);
   const onto = new THREE.Matrix4();
   return {
     mesh,
     /** `sun`: towards it, in the run's axes. */
     cast(pose, sun) {
       const [x, y] = pose.place;
-      const here = surfaceHeight(run, x);
-      const slope = hills(run) ? (surfaceHeight(run, x + 0.2) - surfaceHeight(run, x - 0.2)) / 0.4 : 0;
-      const normal = new THREE.Vector3(-slope, 0, 1).normalize();
+      const here = surfaceHeight(run, x, y);
+      const normal = new THREE.Vector3(...surfaceNormal(run, x, y, 0.2));
       const light = new THREE.Vector3(...sun);
       const down = normal.dot(light);
       const [a, b] = [light.toArray(), normal.toArray()];
@@ -123,6 +139,11 @@ export function slopeShadow(run, sledge) {
         entry(2, 0), entry(2, 1), entry(2, 2), off * a[2],
         0, 0, 0, 1,
       );
+      for (const [each, its] of run.arrays.boot_place ? pairs : []) {
+        its.position.copy(each.position);
+        its.quaternion.copy(each.quaternion);
+        its.scale.copy(each.scale);
+      }
       mesh.matrix.multiplyMatrices(onto, sledge.matrix);
     },
   };

@@ -1,5 +1,7 @@
 // The slope: one light surface in the sun, fading into the sky; and what is drawn flat on it.
 
+import { surfaceHeight } from "./motion.js";
+import { quads } from "./quads.js";
 import { snowTile } from "./snow_tile.js";
 import * as THREE from "./three.module.min.js";
 
@@ -79,17 +81,12 @@ const RIBBON = {
 };
 
 /** Whether a slope may hide something of itself. */
-export const hills = (run) => Boolean(run.arrays.profile);
+export const hills = (run) => Boolean(run.arrays.profile ?? run.arrays.terrain_height);
 
 /** The surface of a run's slope, drawn behind everything. */
 export function surface(run) {
-  const points = profilePoints(run);
-  const [low, high] = extent(run.arrays.place.values, 1);
-  const positions = [];
-  const indices = [];
-  for (const [x, z] of points) positions.push(x, low - FAR, z, x, high + FAR, z);
-  for (let i = 0; i < points.length - 1; i++) indices.push(2 * i, 2 * i + 2, 2 * i + 1, 2 * i + 1, 2 * i + 2, 2 * i + 3);
   const geometry = new THREE.BufferGeometry();
+  const { positions, indices } = woven(...(run.arrays.terrain_height ? terrainPlaces(run) : slopePlaces(run)));
   geometry.setAttribute("position", new THREE.Float32BufferAttribute(positions, 3));
   geometry.setIndex(indices);
   const material = new THREE.ShaderMaterial({
@@ -102,6 +99,34 @@ export function surface(run) {
     depthTest: hills(run), // a plane hides nothing, and drawing is quicker so
   });
   return flat(new THREE.Mesh(geometry, material), 1);
+}
+
+/** Triangles between rows of places x and columns of places y; `height(x, y)` of the snow. */
+function woven(xs, ys, height) {
+  const positions = [];
+  const indices = [];
+  xs.forEach((x, i) => {
+    ys.forEach((y, j) => {
+      positions.push(x, y, height(x, y));
+      const [here, next] = [i * ys.length + j, (i + 1) * ys.length + j];
+      if (i + 1 < xs.length && j + 1 < ys.length) indices.push(here, next, here + 1, here + 1, next, next + 1);
+    });
+  });
+  return { positions, indices };
+}
+
+/** A terrain's own places, and far out. */
+function terrainPlaces(run) {
+  const reach = (places) => [places[0] - FAR, ...places, places.at(-1) + FAR];
+  const [xs, ys] = ["terrain_x", "terrain_y"].map((name) => reach(Array.from(run.arrays[name].values)));
+  return [xs, ys, (x, y) => surfaceHeight(run, x, y)];
+}
+
+/** A plane's or a profile's: the same height all along y. */
+function slopePlaces(run) {
+  const points = new Map(profilePoints(run));
+  const [low, high] = extent(run.arrays.place.values, 1);
+  return [[...points.keys()], [low - FAR, high + FAR], (x) => points.get(x)];
 }
 
 export const shade = (colour) => ({ value: new THREE.Vector3(...colour).divideScalar(255) });
@@ -165,25 +190,6 @@ export function sky() {
  * than `least` pixels, so that a groove of millimetres is seen from above.
  */
 export function ribbon(pieces, { least = 2, order = 3, hidden = false } = {}) {
-  const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
-  const names = { position: [], beside: [], along: [], tint: [], corner: [] };
-  const indices = [];
-  for (const piece of pieces) {
-    const first = names.position.length / 3;
-    indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
-    for (const corner of corners) {
-      names.position.push(...piece.middle);
-      names.beside.push(...piece.beside);
-      names.along.push(...piece.along);
-      names.tint.push(...piece.colour.map((part) => part / 255));
-      names.corner.push(...corner);
-    }
-  }
-  const geometry = new THREE.BufferGeometry();
-  for (const [name, values] of Object.entries(names)) {
-    geometry.setAttribute(name, new THREE.Float32BufferAttribute(values, name === "corner" ? 2 : 3));
-  }
-  geometry.setIndex(indices);
   const material = new THREE.ShaderMaterial({
     vertexShader: RIBBON.vertex,
     fragmentShader: RIBBON.fragment,
@@ -192,5 +198,5 @@ export function ribbon(pieces, { least = 2, order = 3, hidden = false } = {}) {
     depthWrite: false,
     depthTest: hidden, // by hills; else drawn in the order given, before the skis
   });
-  return flat(new THREE.Mesh(geometry, material), order);
+  return flat(new THREE.Mesh(quads(pieces), material), order);
 }

@@ -38,8 +38,8 @@ EVERY_S: Final = 1.0
 OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name", "ski.file")
 """Keys that the menus of snow and ski give."""
-OF_COURSE: Final = "course."
-"""Keys of a course: gates are read from files."""
+IN_FILES_ALONE: Final = ("course.", "skier.")
+"""Keys of a course and of a skier: files and the command line give them."""
 WITH_FILES: Final = ("slope.kind", "slope.profile_gap", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m")
 """Keys that go with files of the machine that the lab runs on: those are for the command line."""
 BASIC: Final = (
@@ -230,7 +230,7 @@ def _expert() -> list[str]:
     from ...scenario.keys import SCENARIO_KEYS
 
     elsewhere = (*BASIC, *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS)
-    return [name for name in SCENARIO_KEYS if name not in elsewhere and not name.startswith(OF_COURSE)]
+    return [name for name in SCENARIO_KEYS if name not in elsewhere and not name.startswith(IN_FILES_ALONE)]
 
 
 def _duration(seconds: float) -> str:

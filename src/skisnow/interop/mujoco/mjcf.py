@@ -1,0 +1,171 @@
+"""A ski as MJCF: rigid segments on hinges with its compliance in bending and torsion, or a rigid one to look at."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ...errors import ParameterError
+from ...files import write_file
+from ...ski import Ski
+from ...ski.beam.clamped import CLAMP_LENGTH
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+SEGMENTS: Final = 20
+"""Of a ski, without the part that the binding holds (modelling assumption)."""
+THICKNESS: Final = 0.01
+"""Of the boxes that are drawn (m); nothing is computed with it (modelling assumption)."""
+POINTS: Final = 400
+"""Of the integrals along a segment."""
+
+
+def ski_mjcf(
+    ski: Ski,
+    *,
+    segments: int = SEGMENTS,
+    clamp_length: float = CLAMP_LENGTH,
+    damping: float = 0.0,
+    free: bool = True,
+) -> str:
+    """The text of a model of a ski.
+
+    Parameters
+    ----------
+    ski
+        Its shape, EI, GJ and mass are taken.
+    segments
+        Of the chains before and behind the binding together, ≥ 4.
+    clamp_length
+        That the binding holds straight (m), > 0.
+    damping
+        Of each hinge over its stiffness (s).
+    free
+        Whether the middle is free in space, or fixed to it.
+
+    Raises
+    ------
+    ParameterError
+        A number is out of its range.
+
+    Notes
+    -----
+    Axes: x ahead, y left, z up; the site ``boot`` lies on the base. Each hinge has the compliance of the ski between
+    the middles of the segments that it joins. The free shape (camber, shovel) has no stress. Boxes are to be seen
+    alone: they collide with nothing.
+    """
+    if segments < 4:
+        raise ParameterError(f"ski_mjcf: segments is {segments!r}; it must be 4 or more")
+    length = float(ski.station[0] - ski.station[-1])
+    if not 0.0 < clamp_length < length:
+        raise ParameterError(f"ski_mjcf: clamp_length is {clamp_length!r} m; it must be above 0 and below {length:g}")
+    if not (np.isfinite(damping) and damping >= 0.0):
+        raise ParameterError(f"ski_mjcf: damping is {damping!r} s; it must be 0 or more")
+    half, (tip, tail) = clamp_length / 2.0, (float(ski.station[0]), float(ski.station[-1]))
+    front = round(segments * (tip - half) / (length - clamp_length))
+    chains = (
+        _chain(ski, "front", np.linspace(half, tip, front + 1), damping),
+        _chain(ski, "rear", np.linspace(-half, tail, segments - front + 1), damping),
+    )
+    return f"""<mujoco model="{_quoted(ski.name)}">
+ <compiler angle="radian" autolimits="true"/>
+ <option integrator="implicitfast"/>
+ <worldbody>
+  <light pos="0 0 3"/>
+  <body name="ski" pos="0 0 0.5">
+   {"<freejoint/>" if free else ""}
+   <site name="boot" size="0.01"/>
+   {_inertial(ski, -half, half)}
+   {_box(ski, -half, half)}
+   {"".join(chains)}
+  </body>
+ </worldbody>
+</mujoco>
+"""
+
+
+def write_ski_mjcf(ski: Ski, path: str | Path, *, segments: int = SEGMENTS) -> Path:
+    """Write `ski_mjcf` of a ski as a file that MuJoCo opens.
+
+    Raises
+    ------
+    ParameterError
+        The name does not end in .xml, or the number is out of its range.
+    OutputError
+        The place cannot be written.
+    """
+    if Path(path).suffix.lower() != ".xml":
+        raise ParameterError(f"{path} does not end in .xml, as MJCF does; name it so")
+    write_file(path, ski_mjcf(ski, segments=segments))
+    return Path(path)
+
+
+def rigid_ski_geoms(ski: Ski, *, segments: int = SEGMENTS) -> str:
+    """Boxes of an unbent ski around its boot, without mass, to be seen in a body of one's own."""
+    places = np.linspace(float(ski.station[0]), float(ski.station[-1]), segments + 1)
+    return "\n".join(_box(ski, near, far) for near, far in pairwise(places.tolist()))
+
+
+def _chain(ski: Ski, name: str, end: FloatArray, damping: float) -> str:
+    """Segments one in the other, from the binding outwards; each body's frame is level at its inner end."""
+    middle = (end[:-1] + end[1:]) / 2.0
+    opened, before = "", (0.0, 0.0)
+    for i, (near, far) in enumerate(pairwise(end.tolist())):
+        inner = end[0] if i == 0 else middle[i - 1]
+        at = ski.at(_points(inner, middle[i]))
+        place = near, float(ski.at(near).base_height)
+        opened += f'<body name="{name} {i}" pos="{place[0] - before[0]!r} 0 {place[1] - before[1]!r}">\n'
+        before = place
+        for what, axis, along in (
+            ("bend", "0 1 0", at.bending_stiffness),
+            ("twist", "1 0 0", at.torsional_stiffness),
+        ):
+            stiffness = 1.0 / (abs(float(middle[i] - inner)) * float(np.mean(1.0 / along)))
+            opened += (
+                f'<joint name="{name} {i} {what}" axis="{axis}" stiffness="{stiffness!r}" '
+                f'damping="{damping * stiffness!r}"/>\n'
+            )
+        opened += _inertial(ski, near, far, place) + _box(ski, near, far, place)
+    return opened + "</body>" * len(middle)
+
+
+def _inertial(ski: Ski, near: float, far: float, origin: tuple[float, float] = (0.0, 0.0)) -> str:
+    """Mass, middle and inertia of the ski between two stations, in axes through a place along it and its height."""
+    place = _points(near, far)
+    at = ski.at(place)
+    mass = at.mass_per_length * abs(far - near) / POINTS
+    whole = float(mass.sum())
+    middle, height = float(mass @ place / whole), float(mass @ at.base_height / whole)
+    roll = float(mass @ at.width**2 / 12.0)
+    pitch = float(mass @ (place - middle) ** 2)
+    return (
+        f'<inertial pos="{middle - origin[0]!r} 0 {height - origin[1]!r}" mass="{whole!r}" '
+        f'diaginertia="{roll!r} {pitch!r} {pitch + roll!r}"/>\n'
+    )
+
+
+def _box(ski: Ski, near: float, far: float, origin: tuple[float, float] = (0.0, 0.0)) -> str:
+    low, high = sorted((near, far))
+    middle = (low + high) / 2.0
+    at = ski.at(np.array([low, middle, high]))
+    heights, width = at.base_height, float(at.width[1])
+    pitch = -float(np.arctan2(heights[2] - heights[0], high - low))
+    up = float(heights[0] + heights[2]) / 2.0 + THICKNESS / 2.0 - origin[1]
+    return (
+        f'<geom type="box" contype="0" conaffinity="0" mass="0" pos="{middle - origin[0]!r} 0 {up!r}" '
+        f'euler="0 {pitch!r} 0" size="{(high - low) / 2.0!r} {width / 2.0!r} {THICKNESS / 2.0!r}" '
+        'rgba="0.75 0.2 0.15 1"/>\n'
+    )
+
+
+def _points(near: float, far: float) -> FloatArray:
+    """Middles of equal pieces between two stations."""
+    return np.asarray(near + (np.arange(POINTS) + 0.5) / POINTS * (far - near))
+
+
+def _quoted(name: str) -> str:
+    return name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")

@@ -1,0 +1,148 @@
+"""Markers of a motion capture, and their text files (.trc)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ...errors import ParameterError
+from ...files import write_file
+from ...given import plain_text
+from ...shown import Facts, Shown, amount
+from .table import MOST_BYTES, require_rising
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+METRES: Final = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
+"""Of a unit of length that a file may name."""
+_HEAD: Final = 5  # lines before the first row: file, keys, values, names, axes
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Markers(Shown):
+    """Places of markers over time.
+
+    Attributes
+    ----------
+    time
+        (n,), rising (s).
+    names
+        Of the k markers.
+    place
+        (n, k, 3) in the laboratory's axes (m); not a number where a marker was not seen.
+    rate
+        Frames a second (Hz).
+
+    Raises
+    ------
+    ParameterError
+        Shapes do not fit, times do not rise, or a name is there twice.
+    """
+
+    time: FloatArray
+    names: tuple[str, ...]
+    place: FloatArray
+    rate: float
+
+    def __post_init__(self) -> None:
+        require_rising("markers", self.time)
+        if np.shape(self.place) != (len(self.time), len(self.names), 3):
+            raise ParameterError(
+                f"markers: place has shape {np.shape(self.place)}; it must be {(len(self.time), len(self.names), 3)}"
+            )
+        if len(set(self.names)) < len(self.names):
+            raise ParameterError("markers: a name is there twice; each marker needs one of its own")
+        if not (np.isfinite(self.rate) and self.rate > 0.0):
+            raise ParameterError(f"markers: rate is {self.rate!r} Hz; it must be above 0")
+
+    def _facts(self) -> Facts:
+        return Facts(f"{len(self.names)} markers, {len(self.time)} frames at {amount(self.rate, 'Hz')}")
+
+    def of(self, name: str) -> FloatArray:
+        """Places of one marker, (n, 3) (m).
+
+        Raises
+        ------
+        ParameterError
+            There is none of this name.
+        """
+        if name not in self.names:
+            raise ParameterError(f"there is no marker {name}; there are {', '.join(self.names)}")
+        return self.place[:, self.names.index(name)]
+
+
+def read_trc(path: str | Path) -> Markers:
+    """Read a .trc file; empty cells are markers that were not seen.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, its head is none, its unit is not m, cm or mm, or a cell holds no number; file, line,
+        marker and value are named.
+    """
+    lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
+    if len(lines) < _HEAD or not lines[0].startswith("PathFileType"):
+        raise ParameterError(f"{path} does not begin with PathFileType and a head of five lines, as a .trc file does")
+    head = dict(zip(lines[1].split(), lines[2].split(), strict=False))
+    unit = head.get("Units", "")
+    if unit not in METRES:
+        raise ParameterError(f"{path}, line 3: Units is {unit!r}; it must be one of {', '.join(METRES)}")
+    names = tuple(word.strip() for word in lines[3].split("\t")[2:] if word.strip())
+    rows = [(i + 1, line) for i, line in enumerate(lines[_HEAD:], start=_HEAD) if line.strip()]
+    numbers = [_row(path, number, line, names) for number, line in rows]
+    try:
+        rate = float(head.get("DataRate", "nan"))
+        table = np.array(numbers).reshape(-1, 1 + 3 * len(names))
+        return Markers(table[:, 0], names, METRES[unit] * table[:, 1:].reshape(-1, len(names), 3), rate)
+    except (ParameterError, ValueError) as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> list[float]:
+    """Time, then three numbers for each marker; the frame's number is passed over."""
+    cells = [cell.strip() for cell in line.split("\t")]
+    wanted = 2 + 3 * len(names)
+    cells += [""] * (wanted - len(cells))
+    if any(cells[wanted:]):
+        raise ParameterError(f"{path}, line {number}: more cells than {len(names)} markers have")
+    values = []
+    for place, cell in enumerate(cells[1:wanted]):
+        what = "Time" if place == 0 else f"{names[(place - 1) // 3]} {'XYZ'[(place - 1) % 3]}"
+        try:
+            values.append(float(cell) if cell or place == 0 else np.nan)
+        except ValueError:
+            raise ParameterError(f"{path}, line {number}, {what}: {cell!r} is no number; write one") from None
+    return values
+
+
+def write_trc(markers: Markers, path: str | Path) -> None:
+    """Write a .trc file in metres, numbers with all their digits; cells of markers not seen are empty.
+
+    Raises
+    ------
+    ParameterError
+        The name ends otherwise.
+    OutputError
+        The place cannot be written.
+    """
+    path = Path(path)
+    if path.suffix.lower() != ".trc":
+        raise ParameterError(f"{path} does not end in .trc; name it so")
+    n, k = len(markers.time), len(markers.names)
+    rate = repr(float(markers.rate))
+    lines = [
+        f"PathFileType\t4\t(X/Y/Z)\t{path.name}",
+        "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames",
+        f"{rate}\t{rate}\t{n}\t{k}\tm\t{rate}\t1\t{n}",
+        "Frame#\tTime\t" + "\t".join(f"{name}\t\t" for name in markers.names).rstrip("\t"),
+        "\t\t" + "\t".join(f"{axis}{number}" for number in range(1, k + 1) for axis in "XYZ"),
+        "",
+    ]
+    for number, (time, row) in enumerate(zip(markers.time.tolist(), markers.place, strict=True), start=1):
+        cells = ("" if np.isnan(value) else repr(value) for value in row.ravel().tolist())
+        lines.append("\t".join((str(number), repr(time), *cells)))
+    write_file(path, "\n".join(lines) + "\n")

@@ -1,0 +1,145 @@
+"""Tables of motion (.mot) and storage (.sto): a head up to ``endheader``, names of columns, numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ...errors import ParameterError
+from ...files import write_file
+from ...given import plain_text
+from ...shown import Facts, Shown, amount
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+ENDINGS: Final = (".mot", ".sto")
+MOST_BYTES: Final = 1 << 28
+_HEAD_END: Final = "endheader"
+_CLOCK: Final = "time"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class MotionTable(Shown):
+    """Columns over time.
+
+    Attributes
+    ----------
+    time
+        (n,), rising (s).
+    columns
+        By name, (n,) each; what they are says their name.
+    in_degrees
+        Whether angles are in degrees; else in radians.
+    name
+        That the head begins with.
+    head
+        Other keys of the head, as they stand there.
+
+    Raises
+    ------
+    ParameterError
+        A column has not a number for each time, or times do not rise.
+    """
+
+    time: FloatArray
+    columns: Mapping[str, FloatArray]
+    in_degrees: bool = True
+    name: str = "motion"
+    head: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        require_rising("table", self.time)
+        for name, values in self.columns.items():
+            if np.shape(values) != np.shape(self.time):
+                raise ParameterError(f"column {name} has shape {np.shape(values)}, time {np.shape(self.time)}")
+
+    def _facts(self) -> Facts:
+        return Facts(f"{len(self.columns)} columns, {len(self.time)} rows to {amount(float(self.time[-1]), 's')}")
+
+
+def require_rising(what: str, time: FloatArray) -> None:
+    """ParameterError where there is no time, or one that does not rise."""
+    if np.ndim(time) != 1 or not len(time):
+        raise ParameterError(f"{what}: time has shape {np.shape(time)}; there must be one row or more")
+    if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
+        row = int(np.argmin(np.append(True, np.diff(time) > 0.0)))
+        raise ParameterError(f"{what}: time of row {row + 1} is {time[row]:g} s; it must be finite and rise")
+
+
+def read_motion(path: str | Path) -> MotionTable:
+    """Read a .mot or .sto file.
+
+    Raises
+    ------
+    ParameterError
+        The file cannot be read, has no head or no column ``time``, or a cell holds no number; file, row, column and
+        value are named.
+    """
+    lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
+    ends = next((i for i, line in enumerate(lines) if line.strip().lower() == _HEAD_END), None)
+    if ends is None or ends + 1 >= len(lines):
+        raise ParameterError(f"{path} has no line {_HEAD_END} with a table behind it; a .mot or .sto file has one")
+    head = dict(_key(line) for line in lines[1:ends] if "=" in line)
+    names = lines[ends + 1].split()
+    if not names or names[0].lower() != _CLOCK or len(set(names)) < len(names):
+        raise ParameterError(f"{path}, line {ends + 2}: the columns must begin with {_CLOCK}, each name once")
+    first = ends + 2
+    rows = [(i + 1, line.split()) for i, line in enumerate(lines[first:], start=first) if line.strip()]
+    said = _whole(head.get("nRows"))
+    if said is not None and said != len(rows):
+        raise ParameterError(f"{path}: the head says nRows={said}, there are {len(rows)}; the file is cut or joined")
+    numbers = np.array([_numbers(path, number, cells, names) for number, cells in rows]).reshape(-1, len(names))
+    degrees = head.get("inDegrees", "yes").strip().lower() != "no"
+    others = {key: value for key, value in head.items() if key not in ("nRows", "nColumns", "inDegrees", "version")}
+    try:
+        columns = {name: numbers[:, place] for place, name in enumerate(names) if place}
+        return MotionTable(numbers[:, 0], columns, degrees, lines[0].strip() or Path(path).stem, others)
+    except ParameterError as error:
+        raise ParameterError(f"{path}: {error}") from error
+
+
+def _key(line: str) -> tuple[str, str]:
+    key, _, value = line.partition("=")
+    return key.strip(), value.strip()
+
+
+def _whole(word: str | None) -> int | None:
+    return int(word) if word is not None and word.isdecimal() else None
+
+
+def _numbers(path: str | Path, number: int, cells: list[str], names: list[str]) -> list[float]:
+    if len(cells) != len(names):
+        raise ParameterError(f"{path}, line {number}: {len(cells)} cells stand under {len(names)} names of columns")
+    values = []
+    for name, cell in zip(names, cells, strict=True):
+        try:
+            values.append(float(cell))
+        except ValueError:
+            raise ParameterError(f"{path}, line {number}, column {name}: {cell!r} is no number; write one") from None
+    return values
+
+
+def write_motion(table: MotionTable, path: str | Path) -> None:
+    """Write a .mot or .sto file, numbers with all their digits.
+
+    Raises
+    ------
+    ParameterError
+        The name ends otherwise.
+    OutputError
+        The place cannot be written.
+    """
+    if Path(path).suffix.lower() not in ENDINGS:
+        raise ParameterError(f"{path} ends in none of {', '.join(ENDINGS)}; name it so")
+    names = [_CLOCK, *table.columns]
+    rows = np.column_stack([table.time, *table.columns.values()]).tolist()
+    keys = {"version": "1", "nRows": str(len(rows)), "nColumns": str(len(names)), **table.head}
+    keys["inDegrees"] = "yes" if table.in_degrees else "no"
+    lines = [table.name, *(f"{key}={value}" for key, value in keys.items()), _HEAD_END, "\t".join(names)]
+    lines += ["\t".join(map(repr, row)) for row in rows]
+    write_file(path, "\n".join(lines) + "\n")

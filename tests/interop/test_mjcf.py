@@ -1,0 +1,52 @@
+"""A ski as MJCF, without MuJoCo: the text's numbers."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow import read_ski
+from skisnow.cli import main
+from skisnow.errors import ParameterError
+from skisnow.interop.mujoco import rigid_ski_geoms, ski_mjcf
+
+
+def test_compliances_and_masses_of_the_hinges_add_up(tmp_path: Path) -> None:
+    ski, path = read_ski("carver"), tmp_path / "ski.xml"
+    assert main(["export", "mjcf", "carver", "--out", str(path)]) == 0
+    root = ET.fromstring(path.read_text(encoding="utf-8"))
+    along = np.linspace(ski.station[-1], ski.station[0], 20_001)
+    at = ski.at(along)
+    mass = sum(float(each.attrib["mass"]) for each in root.iter("inertial"))
+    assert mass == pytest.approx(np.trapezoid(at.mass_per_length, along), rel=1e-6)
+    bend = [1.0 / float(each.attrib["stiffness"]) for each in root.iter("joint") if "front" in each.attrib["name"]
+            and "bend" in each.attrib["name"]]  # fmt: skip
+    front = along > 0.15
+    # from the binding to the middle of the last segment
+    whole = np.trapezoid(1.0 / at.bending_stiffness[front], along[front])
+    last = (along > along[-1] - 0.5 * (along[-1] - 0.15) / len(bend)) & front
+    assert sum(bend) == pytest.approx(whole - np.trapezoid(1.0 / at.bending_stiffness[last], along[last]), rel=1e-3)
+    assert [each.attrib["name"] for each in root.iter("site")] == ["boot"]
+
+
+def test_what_cannot_be_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ski = read_ski("carver")
+    for change, words in (
+        ({"segments": 2}, "segments is 2"),
+        ({"clamp_length": 3.0}, "clamp_length is 3.0 m"),
+        ({"damping": -1.0}, "damping is -1.0 s"),
+    ):
+        with pytest.raises(ParameterError, match=words):
+            ski_mjcf(ski, **change)
+    assert main(["export", "mjcf", "carver", "--out", str(tmp_path / "ski.txt")]) == 1
+    assert "does not end in .xml" in capsys.readouterr().err
+
+
+def test_a_rigid_ski_is_boxes_that_touch_nothing() -> None:
+    boxes = ET.fromstring(f"<ski>{rigid_ski_geoms(read_ski('slalom'), segments=10)}</ski>")
+    assert len(boxes) == 10
+    assert {box.attrib["contype"] for box in boxes} == {"0"}
+    assert {box.attrib["mass"] for box in boxes} == {"0"}

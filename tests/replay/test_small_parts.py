@@ -1,0 +1,36 @@
+"""Small parts of a replay by hand: triangles of a strip, pieces of groove of a single moment, kinds of arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skisnow.replay.binary import KEPT
+from skisnow.replay.groove_times import groove_times
+from skisnow.replay.meshes import _strips
+from skisnow.replay.quaternions import quaternions
+
+
+def test_a_strip_between_two_sections_is_two_triangles_that_face_the_same_way() -> None:
+    """Corners 0 and 1 of the first section, 2 and 3 of the second: each triangle goes round in the same sense."""
+    triangles = _strips(2, 2, [(0, 1)])
+    assert triangles.tolist() == [[0, 2, 1], [1, 2, 3]]
+    place = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]])
+    a, b, c = (place[triangles[:, i]] for i in range(3))
+    along, aside = b - a, c - a
+    twice_area = along[:, 0] * aside[:, 1] - along[:, 1] * aside[:, 0]
+    assert twice_area.tolist() == [1.0, 1.0]
+
+
+def test_pieces_of_groove_of_a_single_moment_have_its_time() -> None:
+    track = np.array([[[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]])
+    when, ski = groove_times(np.array([[0.5, -0.9, 0.0], [0.0, 3.0, 0.0]]), np.array([7.0]), track)
+    assert (when.tolist(), ski.tolist()) == ([7.0, 7.0], [1, 0])
+
+
+def test_every_array_has_a_kind_and_a_unit_that_readers_know() -> None:
+    assert {each.type for each in KEPT.values()} == {"float32", "uint16"}
+    assert {each.unit for each in KEPT.values()} == {"1", "m", "m/s", "1/m", "rad", "s", "N/m"}
+
+
+def test_no_matrices_are_no_quaternions() -> None:
+    assert quaternions(np.zeros((0, 3, 3))).shape == (0, 4)
