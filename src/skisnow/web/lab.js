@@ -34,7 +34,6 @@
     isLost = false;
     fieldsets().forEach((each) => (each.disabled = false));
     document.documentElement.classList.remove("not-connected");
-    document.documentElement.lang = language; // the framework has set its own meanwhile
     if (left?.isConnected) left.focus();
     left = null;
     if (!watched) begun();
@@ -344,6 +343,11 @@
     telling.get(once)();
   }
 
+  /** The page's language, whenever the framework sets its own. */
+  function speak() {
+    if (document.documentElement.lang !== language) document.documentElement.lang = language;
+  }
+
   // The other language shows what is shown now, whatever the page was opened with.
   function comesBack(event) {
     const link = event.target.closest?.("a.language");
@@ -356,7 +360,8 @@
   window.addEventListener("input", () => setTimeout(save), true);
   window.addEventListener("pagehide", save);
   window.addEventListener("pageshow", () => goingTo && location.reload()); // come back to by the browser's button
-  document.documentElement.lang = language;
+  speak();
+  new MutationObserver(speak).observe(document.documentElement, { attributeFilter: ["lang"] });
   document.documentElement.style.setProperty("--not-stored", JSON.stringify(SAID.refused));
   document.documentElement.classList.add("not-connected");
   tellHolding();
