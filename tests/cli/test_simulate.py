@@ -113,7 +113,7 @@ def test_a_folder_never_holds_two_runs(tmp_path: Path, monkeypatch: pytest.Monke
     def contents() -> dict[str, bytes]:
         return {str(each.relative_to(tmp_path)): each.read_bytes() for each in tmp_path.rglob("*") if each.is_file()}
 
-    def interrupted_here(*_: object) -> None:
+    def interrupted_here(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     (tmp_path / "mine.txt").write_text("mine", encoding="utf-8")
