@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,9 @@ from skisnow import scenario, simulate
 from skisnow.interop.opensim import Markers, MotionTable, read_motion, read_trc, write_motion, write_trc
 from skisnow.simulate.boots_table import write_boots
 
-opensim: Any = pytest.importorskip("opensim", reason="OpenSim is not installed: pip install 'skisnow[peers]'")
+with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):  # where it begins a log
+    opensim: Any = pytest.importorskip("opensim", reason="OpenSim is not installed: pip install 'skisnow[peers]'")
+    opensim.Logger.removeFileSink()
 
 TIME: npt.NDArray[np.float64] = np.array([0.0, 0.01, 0.02, 0.03, 0.04])
 

@@ -12,6 +12,7 @@ from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
 from .out_folder import ready
 from .progress import Progress
+from .scheduler import add_scheduler, scheduler_of
 from .words import MOST_RESAMPLES, MOST_WORKERS, seed_number, whole_number
 
 MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
@@ -70,6 +71,7 @@ def _add_ways(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: all cores"
     )
+    add_scheduler(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -127,6 +129,7 @@ def _identified(options: argparse.Namespace) -> Identification:
             clock_is_free=None if options.clock is None else options.clock == "free",
             rng=np.random.default_rng(options.seed),
             workers=options.workers,
+            executor=scheduler_of(options),
             checkpoint=None if options.out is None else options.out / KEPT,
             restart=not options.resume,
             progress=progress,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ..errors import ParameterError
 from .ending import Ended, ending_is_an_interrupt
 from .progress import Progress
+from .scheduler import add_scheduler, scheduler_of
 from .words import MOST_WORKERS, whole_number
 
 if TYPE_CHECKING:
@@ -24,45 +25,100 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="carved turns or simulated runs over a grid or a sample of inputs, as one table",
         description="Run a study. Its table goes where STUDY.toml says; an interrupted one goes on when started again.",
     )
-    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="what varies, what is fixed, and `out`")
+    about = "what varies, what is fixed, and `out`; with --merge the parts"
+    parser.add_argument("study", type=Path, nargs="+", metavar="STUDY.toml", help=about)
     parser.add_argument(
         "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
     )
+    add_scheduler(parser)
+    parts = parser.add_mutually_exclusive_group()
+    shard = "compute one of n parts, for the jobs of an array: every n-th point, into a file beside the table"
+    parts.add_argument("--shard", metavar="i/n", help=shard)
+    merge = "put parts together to this table: skisnow study --merge TABLE PART PART …"
+    parts.add_argument("--merge", type=Path, metavar="TABLE", help=merge)
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a map of the table: .png, .svg or .pdf")
     about = "radius over edge angle, or where the edge loses grip; left out: radius"
     parser.add_argument("--map", choices=("radius", "grip"), default="radius", help=about)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run, parser=parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run or finish the study; 1 if not one of its points could be asked."""
+    """Run, finish or put together the study; 1 if not one of its points could be asked."""
+    if options.merge is not None:
+        return _merge(options)
+    if len(options.study) > 1:
+        options.parser.error("one STUDY.toml is taken; several files are the parts of --merge TABLE")
+    (file,) = options.study
     if options.figure is not None:
         from ..report.figures.figure_file import require_drawable
 
         require_drawable(options.figure)
-    from ..study import read_study, run_study
+    from ..study import read_study
 
-    study = read_study(options.study)
+    study = read_study(file)
+    if options.shard is not None:
+        return _shard(options, study)
+    return _whole(options, study)
+
+
+def _whole(options: argparse.Namespace, study: Study) -> int:
+    from ..study import run_study
+
     if options.figure is not None and "turn_radius_boot_m" not in study.columns:
         raise ParameterError("--figure draws maps of carved turns; for simulated runs leave it out and use the table")
+    executor = scheduler_of(options)
     _tell_state(study)
     try:
         with ending_is_an_interrupt(), Progress() as progress:
-            table = run_study(study, workers=options.workers, progress=_Pace(progress))
+            table = run_study(study, workers=options.workers, executor=executor, progress=_Pace(progress))
     except KeyboardInterrupt as stopped:
-        ended = isinstance(stopped, Ended)
-        print(
-            f"\nskisnow: {'ended' if ended else 'interrupted'}; finished points are kept in", end=" ", file=sys.stderr
-        )
-        print(f"{study.partial}.\nThe same command goes on with them.", file=sys.stderr)
-        return 143 if ended else 130
+        return _stopped(stopped, study.partial)
     _tell(study.out, table)
-    if table.tally().failed == len(table.rows):
-        print(f"skisnow: not one point could be asked; {study.out} was not written.", file=sys.stderr)
+    if _none_was_asked(study.out, table):
         return 1
     if options.figure is not None:
         _draw(options, table)
     return 0
+
+
+def _shard(options: argparse.Namespace, study: Study) -> int:
+    from ..study import Shard, run_shard
+
+    if options.figure is not None:
+        raise ParameterError("--figure needs the whole table; draw it when the parts are put together")
+    shard = Shard.of(options.shard)
+    executor = scheduler_of(options)
+    try:
+        with ending_is_an_interrupt(), Progress() as progress:
+            place = run_shard(study, shard, workers=options.workers, executor=executor, progress=_Pace(progress))
+    except KeyboardInterrupt as stopped:
+        return _stopped(stopped, shard.place(study))
+    print(f"{place}: points {len(shard.points(len(study.points)))} of {len(study.points)}")
+    return 0
+
+
+def _merge(options: argparse.Namespace) -> int:
+    from ..study import merge_shards
+
+    if options.figure is not None or options.scheduler is not None:
+        options.parser.error("--merge computes nothing: it takes a table and the files that --shard left, and no more")
+    table = merge_shards(options.merge, options.study)
+    _tell(options.merge, table)
+    return 1 if _none_was_asked(options.merge, table) else 0
+
+
+def _stopped(stopped: KeyboardInterrupt, place: Path) -> int:
+    ended = isinstance(stopped, Ended)
+    print(f"\nskisnow: {'ended' if ended else 'interrupted'}; finished points are kept in", end=" ", file=sys.stderr)
+    print(f"{place}.\nThe same command goes on with them.", file=sys.stderr)
+    return 143 if ended else 130
+
+
+def _none_was_asked(place: Path, table: StudyTable) -> bool:
+    if table.tally().failed < len(table.rows):
+        return False
+    print(f"skisnow: not one point could be asked; {place} was not written.", file=sys.stderr)
+    return True
 
 
 def _tell_state(study: Study) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 import platform
 import time
@@ -9,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 from ..compiled import core
@@ -68,8 +70,19 @@ def computed(function: PointFunction, points: Sequence[Numbered]) -> Done:
     return Done(rows, (time.perf_counter() - start) / max(len(rows), 1))
 
 
-def computed_elsewhere(packed: bytes, asked: Identity, points: Sequence[Numbered]) -> Done:
+def computed_elsewhere(packed: bytes, asked: Identity, folder: str, points: Sequence[Numbered]) -> Done:
     """The rows of some points by a function that was sent; a worker keeps the last few that it was sent.
+
+    Parameters
+    ----------
+    packed
+        The function, pickled.
+    asked
+        Which skisnow sent it.
+    folder
+        Where relative paths start there; where there is such a folder it becomes the worker's, too.
+    points
+        With their numbers.
 
     Raises
     ------
@@ -80,11 +93,13 @@ def computed_elsewhere(packed: bytes, asked: Identity, points: Sequence[Numbered
         raise SkisnowError(
             f"the worker on {platform.node()} has {own_identity()}, this computer has {asked}. Install the same on both"
         )
-    return computed(_unpacked(packed), points)
+    return computed(_unpacked(packed, folder), points)
 
 
 @lru_cache(maxsize=4)
-def _unpacked(packed: bytes) -> Any:
+def _unpacked(packed: bytes, folder: str) -> Any:
+    if Path(folder).is_dir() and folder != str(Path.cwd()):
+        os.chdir(folder)
     function = pickle.loads(packed)
     if isinstance(function, NeedsFiles):
         function.require_files()

@@ -15,12 +15,14 @@ from concurrent.futures import (
     ThreadPoolExecutor,
 )
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Final
 
 from ..errors import SkisnowError
 from .chunk import Done, Numbered, PointFunction, computed, computed_elsewhere, own_identity
 from .worker_process import begin_worker, interrupts_ignored
 
+LOST: Final = "the scheduler was lost, or gave the work up"
 LARGEST_FOR_A_PIPE: Final = 64
 """Points; their rows stay well below the 64 kB that a pipe takes in one piece."""
 LARGEST: Final = 10_000
@@ -45,7 +47,10 @@ class Crew(ABC):
         """What an error that is none of the function means, in words; None: it is passed on."""
         if isinstance(error, BrokenExecutor):
             return "a worker process ended unexpectedly, perhaps for lack of memory"
-        return "the scheduler was lost, or gave the work up" if isinstance(error, CancelledError) else None
+        return LOST if isinstance(error, CancelledError) else None
+
+    def require_alive(self) -> None:  # noqa: B027 - most have nothing to look after
+        """Called now and then while chunks are waited for; raises where none will come."""
 
     @abstractmethod
     def end(self, *, at_once: bool) -> None:
@@ -139,7 +144,7 @@ class GivenCrew(Crew):
         close: Callable[[], None] | None = None,
     ) -> None:
         self._packed, self._executor, self._size, self._close = pickle.dumps(function), executor, size, close
-        self._identity = own_identity()
+        self._identity, self._folder = own_identity(), str(Path.cwd())
 
     def size(self) -> int:
         """As it says."""
@@ -147,7 +152,7 @@ class GivenCrew(Crew):
 
     def submit(self, points: list[Numbered]) -> Future[Done]:
         """Hand out a chunk."""
-        return self._executor.submit(computed_elsewhere, self._packed, self._identity, points)
+        return self._executor.submit(computed_elsewhere, self._packed, self._identity, self._folder, points)
 
     def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - its owner knows how to end it
         """Close what was opened for it."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -12,7 +13,7 @@ from ..errors import ParameterError, SkisnowError
 from ..given import read_toml
 from ..inputs import nearest
 from .chunk import PointFunction
-from .crews import Crew, GivenCrew
+from .crews import LOST, Crew, GivenCrew
 
 BATCH_SYSTEMS: Final = {
     "slurm": "SLURMCluster",
@@ -29,6 +30,8 @@ _NOT_LOADED: Final = ("Can't get attribute", "deserializ")
 """What Python and Dask say where a function is not there."""
 WAIT_S: Final = 30.0
 """How long (s) a scheduler may take to answer, where the file does not say."""
+AWAY_S: Final = 10.0
+"""How long (s) a scheduler may be away in the middle of the work (modelling assumption)."""
 COUNTED_EVERY_S: Final = 1.0
 """Workers come and go; how many there are is asked for so often (modelling assumption: asking takes milliseconds)."""
 
@@ -204,13 +207,21 @@ class _DaskCrew(GivenCrew):
     def __init__(self, function: PointFunction, client: Any, close: Callable[[], None] | None) -> None:
         super().__init__(function, client.get_executor(pure=False), self._threads, close)
         self._client = client
-        self._counted, self._at = 1, -COUNTED_EVERY_S
+        self._counted, self._at, self._last_seen = 1, -COUNTED_EVERY_S, time.monotonic()
 
     def _threads(self) -> int:
         if time.monotonic() - self._at > COUNTED_EVERY_S:
-            self._counted = sum(self._client.nthreads().values())
+            with suppress(Exception):  # it does not answer: `require_alive` says so after a while
+                self._counted = sum(self._client.nthreads(callback_timeout=COUNTED_EVERY_S).values())
             self._at = time.monotonic()
         return self._counted
+
+    def require_alive(self) -> None:
+        """Refuse to wait for a scheduler that has been away for long; one that breaks for a moment comes back."""
+        if self._client.status == "running":
+            self._last_seen = time.monotonic()
+        elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":
+            raise SkisnowError(LOST)
 
     def told(self, error: Exception) -> str | None:
         """What an error of Dask means."""

@@ -11,13 +11,15 @@ from typing import Final, Self
 
 from ..errors import ParameterError, SkisnowError
 from .chunk import Done, Numbered, PointFunction
-from .crews import Crew, ProcessCrew
+from .crews import LOST, Crew, ProcessCrew
 from .executors import ExecutorLike, crew_of
 from .kept_rows import NumberedText, row_text
 
 CHUNK_SECONDS: Final = 0.25
 """Work that is handed over at once, and that a kill loses (modelling assumption: handing over costs 1 ms here, 10 ms to
 another computer)."""
+LOOKED_AFTER_S: Final = 2.0
+"""While nothing comes it is looked so often whether anything can (modelling assumption)."""
 
 
 class Pool:
@@ -99,13 +101,15 @@ class Pool:
                     chunk = list(islice(points, min(fair, left)))
                     left -= len(chunk)
                     self._running.add(crew.submit(chunk))
-                ended, self._running = wait(self._running, return_when=FIRST_COMPLETED)
+                ended, self._running = wait(self._running, LOOKED_AFTER_S, return_when=FIRST_COMPLETED)
+                if not ended:
+                    crew.require_alive()
                 for future in ended:
                     done = future.result()
                     size = max(1, min(crew.largest, int(CHUNK_SECONDS / max(done.seconds_per_point, 1e-9))))
                     yield done.rows
         except Exception as error:
-            told = crew.told(error)
+            told = str(error) if isinstance(error, SkisnowError) and str(error) == LOST else crew.told(error)
             if told is None:
                 raise
             raise SkisnowError(f"{told}; {self._advice}") from error

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -14,13 +13,14 @@ from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, Ended, StepControl
 from ..dynamics.motion import LONGEST_STEP
-from ..errors import ParameterError, RangeWarning
+from ..errors import ParameterError
 from ..forces.friction import LinearFriction
 from ..geometry.surfaces import Grid
 from ..scenario import Plane, Scenario, SnowMap
 from ..scenario.slope_surface import down_and_left, heights_of, normals_of, reach_of, surface_of
 from ..ski.beam.clamped import clamped
 from ..skier import BalancedSkier
+from ..snow.measured_range import without_range_warnings
 from .moving_boots import BootControl, BootDrive, TableControl
 from .sledge.body import sledge_body
 
@@ -237,8 +237,7 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
 
 def _snow(scenario: Scenario, laws: Laws) -> SnowField:
     contact = scenario.contact
-    with warnings.catch_warnings():  # a scenario has its own words for friction that is unlikely
-        warnings.simplefilter("ignore", RangeWarning)
+    with without_range_warnings():  # a scenario has its own words for friction that is unlikely
         friction = LinearFriction(friction_at_rest=contact.friction, friction_slope=contact.friction_by_speed)
     over_place = contact.snow_map
     carries_side_force = laws.penetration is not None and laws.penetration.along_base_normal

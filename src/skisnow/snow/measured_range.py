@@ -5,10 +5,12 @@ Outside its range a relation is computed and the reader is warned; nothing is cl
 
 from __future__ import annotations
 
+import threading
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +18,8 @@ import numpy.typing as npt
 from ..errors import RangeWarning
 
 T = TypeVar("T")
+_ONE_AT_A_TIME: Final = threading.RLock()
+"""What becomes of warnings is a setting of the whole process."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,11 +83,19 @@ class MeasuredRange:
 
 
 def with_range_warnings(act: Callable[[], T]) -> tuple[T, tuple[str, ...]]:
-    """What an act gives and its range warnings; any other warning is passed on."""
-    with warnings.catch_warnings(record=True) as caught:
+    """What an act gives and its range warnings; any other warning is passed on. One thread at a time."""
+    with _ONE_AT_A_TIME, warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         value = act()
     for other in caught:
         if not issubclass(other.category, RangeWarning):
             warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)
     return value, tuple(str(each.message) for each in caught if issubclass(each.category, RangeWarning))
+
+
+@contextmanager
+def without_range_warnings() -> Iterator[None]:
+    """Range warnings are not shown meanwhile. One thread at a time."""
+    with _ONE_AT_A_TIME, warnings.catch_warnings():
+        warnings.simplefilter("ignore", RangeWarning)
+        yield

@@ -5,10 +5,22 @@ The package can be called: `skisnow.study(…)` is `skisnow.study.run_study`.
 
 from ..callable_packages import make_callable
 from .run import StudyState, run_study, study_state
+from .shards import Shard, merge_shards, run_shard
 from .study import Study
 from .study_file import read_study
 from .table import StudyTable, read_table
 
-__all__ = ["Study", "StudyState", "StudyTable", "read_study", "read_table", "run_study", "study_state"]
+__all__ = [
+    "Shard",
+    "Study",
+    "StudyState",
+    "StudyTable",
+    "merge_shards",
+    "read_study",
+    "read_table",
+    "run_shard",
+    "run_study",
+    "study_state",
+]
 
 make_callable(__name__, ".run", "run_study")

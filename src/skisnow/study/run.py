@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from ..errors import OutputError, ParameterError
 from ..files import cannot_write
@@ -41,18 +41,29 @@ def study_state(study: Study) -> StudyState:
     ParameterError
         A file that is no study's table stands in its place: it is not replaced.
     """
-    return _standing(study, None)[0]
-
-
-def _standing(study: Study, fingerprint: str | None) -> tuple[StudyState, StudyTable | None]:
     if not study.out.exists():
+        return StudyState.NEW
+    return standing(study.out, study.subject.keys, study.fingerprint(), len(study.points))[0]
+
+
+def standing(
+    out: Path, keys: Mapping[str, Quantity], fingerprint: str, points: int
+) -> tuple[StudyState, StudyTable | None]:
+    """What stands at the place of a table, and the table where it is one.
+
+    Raises
+    ------
+    ParameterError
+        As of `study_state`.
+    """
+    if not out.exists():
         return StudyState.NEW, None
     try:
-        table = read_table(study.out, study.subject.keys, varied=study.varied)
+        table = read_table(out, keys)
     except ParameterError as error:
         raise ParameterError(f"{error}. It is not replaced: name another place in out, or move it away") from error
     found = table.tally()
-    same = found.rows == len(study.points) and found.studies == {fingerprint or study.fingerprint()}
+    same = found.rows == points and found.studies == {fingerprint}
     return (StudyState.FINISHED if same else StudyState.ANOTHER), table
 
 
@@ -107,20 +118,19 @@ def run_study(
     writer_of(study.out)
     fingerprint = study.fingerprint()
     before = _stamp(study.out)
-    state, table = _standing(study, fingerprint)
+    state, table = standing(study.out, study.subject.keys, fingerprint, len(study.points))
     if state is StudyState.FINISHED and table is not None:
         if study.partial.exists():  # a kill between writing the one and removing the other
             kept_rows(study, study.partial, fingerprint).remove()
-        return table
+        return replace(table, varied=study.varied)
     kept = kept_rows(study, study.partial, fingerprint)
     try:
         if _stamp(study.out) != before:
             raise OutputError(f"{study.out} was just written by another run. Start again to see its table")
         rows = StudyRows.of(study)
         compute_missing(study.points, rows, kept, workers=workers, executor=executor, progress=progress)
-        if state is StudyState.ANOTHER and any_answer(kept):
-            _move(study.out, study.place_for_previous())
-        found = written(study.out, kept, fingerprint, study.subject.keys)
+        previous = study.place_for_previous() if state is StudyState.ANOTHER else None
+        found = written(study.out, kept, fingerprint, study.subject.keys, previous=previous)
         kept.remove()
     finally:
         kept.close()
@@ -134,8 +144,37 @@ def kept_rows(study: Study, path: Path, fingerprint: str, **about: str) -> KeptR
     return KeptRows.opened(path, fingerprint, columns=study.columns[:-1], about=about)
 
 
-def written(out: Path, kept: KeptRows, fingerprint: str, keys: Mapping[str, Quantity]) -> StudyTable:
-    """The table of all kept rows; it is not written if no point could be asked.
+class FinishedRows(Protocol):
+    """The rows of all points of a study."""
+
+    columns: tuple[str, ...] | None
+
+    def __len__(self) -> int:
+        """How many there are."""
+        ...
+
+    def values(self) -> Iterator[list[Any]]:
+        """The values of the columns of each."""
+        ...
+
+
+def written(
+    out: Path, kept: FinishedRows, fingerprint: str, keys: Mapping[str, Quantity], *, previous: Path | None = None
+) -> StudyTable:
+    """The table of all rows; it is not written if no point could be asked.
+
+    Parameters
+    ----------
+    out
+        Its place.
+    kept
+        The rows.
+    fingerprint
+        For the column `study`.
+    keys
+        The study's inputs.
+    previous
+        Where a table in its place goes; None: there is none.
 
     Raises
     ------
@@ -145,7 +184,9 @@ def written(out: Path, kept: KeptRows, fingerprint: str, keys: Mapping[str, Quan
     columns = (*(kept.columns or ()), "study")
     rows = _Rows(kept, columns, fingerprint)
     stored = None
-    if any_answer(kept):
+    if any(row[columns.index("outcome")] != FAILED for row in kept.values()):
+        if previous is not None:
+            _move(out, previous)
         begins = write_table(out, columns, rows)
         stored = None if rows.held is not None else stored_rows(out, keys, begins)
     elif len(kept) > MOST_ROWS_HELD:
@@ -159,15 +200,10 @@ def written(out: Path, kept: KeptRows, fingerprint: str, keys: Mapping[str, Quan
     return StudyTable(columns, found, (), rows.counted)
 
 
-def any_answer(kept: KeptRows) -> bool:
-    """Whether a point could be asked."""
-    return any(row["outcome"] != FAILED for _, row in kept.rows())
-
-
 class _Rows:
     """Rows as lists of values; with each beginning they are counted, and held where they are few, anew."""
 
-    def __init__(self, kept: KeptRows, columns: tuple[str, ...], fingerprint: str) -> None:
+    def __init__(self, kept: FinishedRows, columns: tuple[str, ...], fingerprint: str) -> None:
         self._kept, self._columns, self._fingerprint = kept, columns, fingerprint
         self.counted = Tally()
         self.held: list[Row] | None = None

@@ -101,11 +101,7 @@ class Study(Shown):
 
     def place_for_previous(self) -> Path:
         """Where another study's table goes that stands in this one's place: a name that is free."""
-        place, count = self.out.with_name(f"{self.out.stem}.previous{self.out.suffix}"), 1
-        while place.exists():
-            count += 1
-            place = self.out.with_name(f"{self.out.stem}.previous-{count}{self.out.suffix}")
-        return place
+        return place_for_previous(self.out)
 
     def fingerprint(self) -> str:
         """Sixteen hexadecimal digits that change with any point, any file that points name, and skisnow's version."""
@@ -119,3 +115,12 @@ class Study(Shown):
         for path in self.subject.files(points):
             digest.update(b"\0" + (path.read_bytes() if is_file(path) else b"absent"))
         return digest.hexdigest()[:16]
+
+
+def place_for_previous(out: Path) -> Path:
+    """Where a table of another study goes: a name beside its own that is free."""
+    place, count = out.with_name(f"{out.stem}.previous{out.suffix}"), 1
+    while place.exists():
+        count += 1
+        place = out.with_name(f"{out.stem}.previous-{count}{out.suffix}")
+    return place

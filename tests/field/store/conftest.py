@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shutil
+import sqlite3
 from collections.abc import Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import pytest
@@ -30,11 +32,20 @@ def empty_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+@contextmanager
+def opened(place: Path | str) -> Iterator[Store]:
+    """A store in a file that is held open besides: else its log is put away behind each piece of work."""
+    with Store.open(place) as store, closing(sqlite3.connect(place)) as beside:
+        beside.execute("SELECT * FROM journal").fetchall()
+        yield store
+
+
 @pytest.fixture(params=["file", "server"])
 def store(request: pytest.FixtureRequest, empty_file: Path, tmp_path: Path) -> Iterator[Store]:
     """An empty store, in a file or on the server."""
     if request.param == "file":
-        yield Store.open(shutil.copy(empty_file, tmp_path / "store.sqlite3"))
+        with opened(shutil.copy(empty_file, tmp_path / "store.sqlite3")) as store:
+            yield store
         return
     with Store.open(request.getfixturevalue("server").emptied()) as store:
         yield store

@@ -28,6 +28,7 @@ from skisnow.field.store import (
 )
 from skisnow.field.store.engine import writing
 
+from .conftest import opened
 from .test_corrected_export import PLAIN, correction, kept, standing
 from .test_journal import TOML, reading
 from .test_store import FILES, contents, write
@@ -74,13 +75,13 @@ class Laptop:
 
 @pytest.fixture
 def ada(empty_file: Path, tmp_path: Path) -> Iterator[Laptop]:
-    with Store.open(shutil.copy(empty_file, tmp_path / "ada.sqlite3")) as store:
+    with opened(shutil.copy(empty_file, tmp_path / "ada.sqlite3")) as store:
         yield Laptop("Ada", store)
 
 
 @pytest.fixture
 def bo(empty_file: Path, tmp_path: Path) -> Iterator[Laptop]:
-    with Store.open(shutil.copy(empty_file, tmp_path / "bo.sqlite3")) as store:
+    with opened(shutil.copy(empty_file, tmp_path / "bo.sqlite3")) as store:
         yield Laptop("Bo", store)
 
 
@@ -167,7 +168,7 @@ def conflict_of_corrections(ada: Laptop, bo: Laptop, group: Store) -> str:
     return id_
 
 
-@pytest.mark.parametrize(("side", "depth"), [("here", "1.25"), ("there", "1.75")])
+@pytest.mark.parametrize(("side", "depth"), [("here", "1.25"), pytest.param("there", "1.75", marks=pytest.mark.slow)])
 def test_a_reading_corrected_differently(ada: Laptop, bo: Laptop, group: Store, side: Side, depth: str) -> None:
     id_ = conflict_of_corrections(ada, bo, group)
     for _ in range(2):  # as often as one likes: nothing is carried over, and all else is
@@ -205,7 +206,7 @@ def test_a_choice_that_was_made_can_be_made_otherwise(ada: Laptop, bo: Laptop, g
     assert bo.depths(id_, "1") == ["1.8", "2.25"]
 
 
-@pytest.mark.parametrize("side", ["here", "there", "both"])
+@pytest.mark.parametrize("side", ["both", *(pytest.param(side, marks=pytest.mark.slow) for side in ("here", "there"))])
 def test_cancelled_here_and_changed_there(ada: Laptop, bo: Laptop, group: Store, side: Side) -> None:
     id_ = shared(ada, bo, group)
     ada.change(id_, "1", cells={"depth_mm": "1.75"}, why="misheard")
@@ -224,7 +225,12 @@ def test_cancelled_here_and_changed_there(ada: Laptop, bo: Laptop, group: Store,
 
 
 @pytest.mark.parametrize(
-    ("side", "tests"), [("here", {"2": "7"}), ("there", {"2": "4"}), ("both", {"2": "4", "2 (2)": "7"})]
+    ("side", "tests"),
+    [
+        pytest.param("here", {"2": "7"}, marks=pytest.mark.slow),
+        ("there", {"2": "4"}),
+        ("both", {"2": "4", "2 (2)": "7"}),
+    ],
 )
 def test_a_number_given_twice(ada: Laptop, bo: Laptop, group: Store, side: Side, tests: dict[str, str]) -> None:
     """Both crews went on counting offline."""
@@ -265,7 +271,7 @@ def test_a_series_that_both_went_on_with(ada: Laptop, bo: Laptop, group: Store) 
     assert ada.depths(id_, "1") == bo.depths(id_, "1") == ["1.5", "2.25", "3"]
 
 
-@pytest.mark.parametrize(("side", "place"), [("here", "Bo's"), ("there", "Ada's")])
+@pytest.mark.parametrize(("side", "place"), [("here", "Bo's"), pytest.param("there", "Ada's", marks=pytest.mark.slow)])
 def test_a_campaign_described_differently(ada: Laptop, bo: Laptop, group: Store, side: Side, place: str) -> None:
     id_ = shared(ada, bo, group)
     for laptop in (ada, bo):

@@ -1,0 +1,61 @@
+"""The page about clusters: its job script and its files are such as they are taken."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from skisnow.cli import build_parser
+from skisnow.parallel.dask_cluster import scheduler_of
+from skisnow.study import Shard
+
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "cluster.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return [part.split("```")[0] for part in PAGE.split(f"```{language}\n")[1:]]
+
+
+def test_job_script_asks_for_each_part_once() -> None:
+    (script,) = blocks("bash")
+    options = dict(re.findall(r"^#SBATCH --([a-z-]+)=(\S+)$", script, re.MULTILINE))
+    assert set(options) == {"job-name", "array", "ntasks", "cpus-per-task", "mem", "time"}
+    first, last = map(int, options["array"].split("-"))
+    (command,) = [line for line in script.splitlines() if line.startswith("skisnow")]
+    words = []
+    for number in range(first, last + 1):
+        line = command.replace("$SLURM_ARRAY_TASK_ID", str(number)).replace("$SLURM_CPUS_PER_TASK", "16")
+        asked = build_parser().parse_args(line.replace('"', "").split()[1:])
+        assert asked.workers == int(options["cpus-per-task"])
+        words.append(Shard.of(asked.shard))
+    numbers = sorted(number for shard in words for number in shard.points(1000))
+    assert numbers == list(range(1000))
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+def test_job_script_is_one_of_bash() -> None:
+    (script,) = blocks("bash")
+    assert subprocess.run(["bash", "-n"], input=script.encode(), check=False).returncode == 0
+
+
+def test_files_of_schedulers_are_read(tmp_path: Path) -> None:
+    found = []
+    for text in blocks("toml"):
+        path = tmp_path / "scheduler.toml"
+        path.write_text(text, encoding="utf-8")
+        found.append(scheduler_of(path))
+    assert [(each.address, each.system, each.jobs) for each in found] == [
+        ("tls://host:8786", None, 1),
+        (None, "slurm", 4),
+    ]
+
+
+def test_commands_of_the_page_are_taken() -> None:
+    commands = [line for block in blocks("") for line in block.splitlines() if line.startswith("skisnow ")]
+    assert len(commands) == 5
+    for line in commands:
+        assert build_parser().parse_args(line.split()[1:]).run
