@@ -122,13 +122,15 @@ def test_a_side_force_that_goes_as_the_force_on_the_base(boot_is_free: bool) -> 
     compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, by_reaction=True, boot_is_free=boot_is_free))
 
 
+@pytest.mark.slow
 def test_federolfs_law() -> None:
     """p = 2 A ε + B beyond the ramp, which bends where the groove does, too."""
     law = MeanPressurePoint(pressure_slope=0.034e9, pressure_offset=0.35e6, unloading_ratio=10.0)
     compare(replace(base(), hardness=0.15e9, unloading_ratio=5.0, penetration=law, clamp_length=0.3))
 
 
-@pytest.mark.parametrize("exponent", [pytest.param(0.6, marks=pytest.mark.slow), 1.7])
+@pytest.mark.slow
+@pytest.mark.parametrize("exponent", [0.6, 1.7])
 def test_another_exponent(exponent: float) -> None:
     law = Power(1e6 / 5e-3**exponent, exponent, unloading_ratio=8.0)
     compare(replace(base(), unloading_ratio=5.0, penetration=law, clamp_length=0.3))
@@ -140,7 +142,13 @@ def test_a_hardness_that_grows_with_the_edge_angle() -> None:
     compare(replace(base(), unloading_ratio=10.0, penetration=law, clamp_length=0.3))
 
 
-@pytest.mark.parametrize("law", [AngleShear(0.35e6, 0.6), Deepening(0.1e6, 1e-3)], ids=["angle", "depth"])
+@pytest.mark.parametrize(
+    "law",
+    [
+        pytest.param(AngleShear(0.35e6, 0.6), id="angle"),
+        pytest.param(Deepening(0.1e6, 1e-3), marks=pytest.mark.slow, id="depth"),
+    ],
+)
 def test_a_strength_that_is_not_the_same_along_the_edge(law: AngleShear | Deepening) -> None:
     """Where the ski twists, and where it is deeper, it draws as much more or less of the side force."""
     compare(replace(base(), unloading_ratio=10.0, shear=law, clamp_length=0.3))

@@ -156,6 +156,7 @@ def built(folder: Path, html: Path) -> None:
     subprocess.run(build, check=True, capture_output=True)
 
 
+@pytest.mark.slow
 def test_nobody_is_barred_from_wide_pages_of_the_documentation(plain: Page, tmp_path: Path) -> None:
     """Two of them, built alone; links to others lead nowhere."""
     docs = tmp_path / "docs"

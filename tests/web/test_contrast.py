@@ -53,6 +53,7 @@ def test_lines_are_told_apart_by_colour_and_dashes_alone() -> None:
         assert contrast(f"rgb({red}, {green}, {blue})", "rgb(255, 255, 255)") >= 3.0
 
 
+@pytest.mark.slow
 def test_all_text_stands_out(page: Page, served: Served) -> None:
     create(page, served)
     enter_series(page, "1")

@@ -175,6 +175,7 @@ def unpacked(download: Download, place: Path) -> Path:
     return place
 
 
+@pytest.mark.slow
 def test_a_day(page: Page, served: Served, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     describe(page, served)
     with Store.open(served.store) as store:

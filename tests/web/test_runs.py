@@ -37,6 +37,7 @@ def test_jobs_are_kept_in_their_order_and_cancelled_before_they_begin(tmp_path: 
     assert [job.state for job in Runs(tmp_path).jobs()] == ["waiting", "cancelled"]
 
 
+@pytest.mark.slow
 def test_a_run_that_the_server_was_killed_in_is_begun_again(page: Page, served: Served) -> None:
     page.goto(f"{served.address}simulate")
     page.get_by_label("Ends after (s)", exact=True).fill("0.2")
@@ -129,6 +130,7 @@ def pressed_while_it_goes_on(page: Page, button: Locator) -> None:
     page.mouse.up()
 
 
+@pytest.mark.slow
 def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> None:
     page.goto(f"{served.address}simulate")
     page.get_by_label("Ends after (s)", exact=True).fill("60")

@@ -94,7 +94,7 @@ def test_a_series_while_the_lab_stands_still(page: Page, served: Served, seconds
     assert page.evaluate(UNANSWERED) == []
 
 
-@of_seconds(2.0)
+@of_seconds()
 def test_a_campaign_is_described_while_the_lab_stands_still(page: Page, served: Served, seconds: float) -> None:
     """A hand goes on by Tab and Enter: into a row that is not there yet, then into the first series."""
     page.goto(f"{served.address}describe")
@@ -288,7 +288,7 @@ def test_a_campaign_that_is_described_while_the_lab_is_killed_is_begun_once(page
     has_text(page.get_by_label("Name of the campaign", exact=True), "")
 
 
-@pytest.mark.parametrize("was_stored", [False, True])
+@pytest.mark.parametrize("was_stored", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_a_test_that_was_sent_when_the_lab_was_killed_is_stored_once(
     page: Page, served: Served, was_stored: bool
 ) -> None:

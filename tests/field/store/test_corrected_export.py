@@ -9,6 +9,7 @@ import pytest
 from skisnow.errors import StoreError
 from skisnow.field import read_campaign
 from skisnow.field.store import Journals, NewEntry, OvertakenError, Store, export_corrected, replayed, stored_tables
+from skisnow.field.store.entry_rows import file_uid
 
 TOML = """name = "Kept"
 [[tool]]
@@ -95,6 +96,17 @@ def test_decimal_commas_and_corrections_that_came_with_the_campaign(store: Store
     lines = (tmp_path / "out" / "corrections.csv").read_text(encoding="utf-8").splitlines()
     assert lines[1] == EARLIER.splitlines()[1]
     assert [line.split(",")[2:4] for line in lines[2:]] == [["5", "depth_mm"], ["5", "depth_mm"], ["6", "depth_mm"]]
+
+
+def test_corrections_come_test_by_test_in_the_order_in_which_they_were_made(store: Store, tmp_path: Path) -> None:
+    place = tmp_path / "kept"
+    id_ = kept(store, place, PLAIN.encode())
+    by_name = sorted("12", key=lambda name: file_uid(id_, "penetration.csv", name))
+    for name in reversed(by_name):  # not the order of what the entries of the file are called
+        row = {"1": "3/depth_mm", "2": "6/depth_mm"}[name]
+        Journals(store).correct(id_, correction(name, {row: "2.25"}), seen=0, standing=standing(place, name))
+    export_corrected(store, id_, tmp_path / "out")
+    assert [each.experiment for each in read_campaign(tmp_path / "out").corrections] == by_name[::-1]
 
 
 def test_what_was_undone_is_not_exported(store: Store, tmp_path: Path) -> None:

@@ -81,6 +81,7 @@ def pictures_later(seen: Watched) -> None:
     )
 
 
+@pytest.mark.slow
 def test_every_view_shows_snow_and_loaded_skis(seen: Watched) -> None:
     seen.does("replay.seek(2.0)")
     pictures = []
@@ -274,6 +275,7 @@ def test_effects_step_down_where_the_machine_is_slow_and_stay_where_it_was_chose
     assert seen.does(quick + read) == [0.5, 0]
 
 
+@pytest.mark.slow
 def test_the_groove_grows_and_can_be_hidden(fresh: Watched) -> None:
     fresh.does("replay.look('above'); replay.nearer(8); replay.show('ghost', false); replay.show('track', false)")
     counts = []
@@ -384,6 +386,7 @@ def test_picture_and_film_are_files(fresh: Watched, tmp_path: Path) -> None:
     assert len(content) > 5000
 
 
+@pytest.mark.slow
 def test_a_measured_slope_is_drawn_as_it_falls(browser: Any, tmp_path: Path) -> None:
     """A profile of 20 %: the run lies on it, and the horizon is level."""
     x = np.linspace(-30.0, 60.0, 91)

@@ -110,6 +110,7 @@ def test_numbers_as_they_are_typed() -> None:
         number_of("nan", "it")
 
 
+@pytest.mark.slow
 def test_a_track_is_added_and_drawn_beside_a_run(served: Any, page: Any, tmp_path: Path) -> None:
     kept(served.store.parent / "lab", "turn")
     (tmp_path / "wrong <b>.gpx").write_bytes(b"<gpx>")

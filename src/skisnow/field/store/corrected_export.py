@@ -118,9 +118,14 @@ def _records(data: bytes) -> list[list[str]]:
 
 
 def _rows(entries: Iterable[JournalEntry]) -> Iterator[dict[str, str]]:
-    for test in replayed(entries).tests.values():
+    """Test by test, in the order in which they were first corrected."""
+    for test in sorted(replayed(entries).tests.values(), key=_first_by_hand):
         if test.rows:
             yield from _rows_of(test)
+
+
+def _first_by_hand(test: ReplayedTest) -> str:
+    return min((entry.uid for entry in test.history if not entry.is_from_file), default="")
 
 
 def _rows_of(test: ReplayedTest) -> Iterator[dict[str, str]]:
