@@ -38,8 +38,8 @@ def run_balance(run: Run) -> Figure:
     sides.set_ylabel("side force (N)\nto the left +")
     for axes in (leans, loads, sides):
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
-    leans.legend(loc="upper left", ncols=3, fontsize=6.5, framealpha=0.9, edgecolor="none")
-    loads.legend(loc="upper left", ncols=2, fontsize=6.5, framealpha=0.9, edgecolor="none")
+    for axes in (leans, loads):
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2, frameon=False)
     sides.set_xlabel("time (s)")
     sides.set_xlim(float(run.time[0]), float(run.time[-1]))
     figure.align_ylabels()
