@@ -17,7 +17,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .PHONY: help demo test test-repeating test-all test-minimum coverage lint tidy sanitize docs bench lock sbom clean
 
 help:
-	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, with reports in $(DEMO)/"
+	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, and a slalom to watch, in $(DEMO)/"
 	@echo "make test      the tests that take minutes, not hours"
 	@echo "make test-all  those and the long ones"
 	@echo "make test-minimum  the quick tests with the oldest versions that pyproject.toml allows"
@@ -73,9 +73,11 @@ demo: $(VENV)/.skisnow
 	$(BIN)/skisnow reference $(DEMO)/campaign --seed $(SEED)
 	$(BIN)/skisnow analyse $(DEMO)/campaign --out $(DEMO)/results
 	$(BIN)/skisnow turn $(DEMO)/campaign --site C $(TURN) --out $(DEMO)/turn
+	$(BIN)/skisnow simulate slalom-20-gates --set solver.method=fast --out $(DEMO)/slalom --replay
 	@echo "To enter tests and look at turns in a browser: $(BIN)/skisnow serve"
 	@echo
-	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser."
+	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser,"
+	@echo "and $(DEMO)/slalom/replay.html: a skier through twenty gates, in three dimensions."
 
 test: $(VENV)/.skisnow-dev
 	$(BIN)/python -m pytest $(QUICK)
