@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 # without windows it takes a quarter of the computing that the whole browser takes
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium-headless-shell", "chromium", "chromium-browser"))), None)
 MISSING = [name for name in ("nicegui", "playwright") if importlib.util.find_spec(name) is None]
-PATIENCE_MS = 60_000  # on a busy machine; no time is asserted
+PATIENCE_MS = 150_000  # as long as a page of the lab itself waits for an answer; no time is asserted
 DRAWING_MS = 180_000  # all figures of a report
 
 

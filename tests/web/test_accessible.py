@@ -16,7 +16,6 @@ from skisnow.cli import main
 from ..report.runs import circle_run
 from .conftest import Served, follow, ready, settled
 from .replay.test_lab_page import kept
-from .test_carve_page import ANSWERED_MS
 from .test_day import create, enter_series
 from .test_kept import imported
 
@@ -119,7 +118,7 @@ def test_nobody_is_barred_from_a_page_of_the_lab(page: Page, served: Served) -> 
         page.set_viewport_size({"width": width, "height": 844})
         for place, shown in places.items():
             page.goto(place)
-            page.locator(shown).first.wait_for(timeout=ANSWERED_MS)
+            page.locator(shown).first.wait_for()
             page.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
             if not place.endswith(("nowhere", "run=a-run")):
                 ready(page)

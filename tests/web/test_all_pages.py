@@ -11,7 +11,6 @@ from skisnow.web.pages import PAGES
 
 from .conftest import Served, settled
 from .replay.test_lab_page import kept
-from .test_carve_page import ANSWERED_MS
 from .test_contrast import COLOURS, LEAST, contrast
 from .test_entering import NAME_OF
 
@@ -38,7 +37,7 @@ def opened(page: Page, served: Served, name: str) -> None:
     for run in ("2026-02-01-100000-a-run-with-quite-a-long-name", "other"):
         kept(lab, run)
     page.goto(f"{served.address}{name}")
-    page.locator(READY[name]).first.wait_for(timeout=ANSWERED_MS)
+    page.locator(READY[name]).first.wait_for()
     page.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
     settled(page)
 

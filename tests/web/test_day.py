@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from playwright.sync_api import Download, Locator, Page
 
-ANSWERED_MS = 60_000  # on a busy machine
 
 SERIES = {
     "1": ("30", ("1.5", "22.5", "2.6", "3.0")),  # the second one is a typing error for 2.15
@@ -126,7 +125,7 @@ def carve(page: Page, served: Served) -> None:
     """The radius beside the sliders is the library's."""
     page.goto(f"{served.address}carve")
     headline = page.get_by_role("region", name="Carved radius")
-    headline.get_by_text("carved radius").wait_for(timeout=ANSWERED_MS)
+    headline.get_by_text("carved radius").wait_for()
     ready(page)
     slider = page.get_by_role("slider", name="Edge angle (°)")
     slider.focus()
@@ -145,7 +144,7 @@ def simulate(page: Page, served: Served) -> dict[str, Any]:
     page.get_by_text("Snow: H_V = ").wait_for()  # until then it is being analysed, and nothing begins
     page.get_by_label("Ends after (s)", exact=True).fill("0.1")
     page.get_by_role("button", name="Simulate").press("Enter")
-    page.get_by_role("link", name="Watch").wait_for(timeout=ANSWERED_MS)
+    page.get_by_role("link", name="Watch").wait_for()
     (place,) = (served.store.parent / "lab").glob("*/summary.json")
     summary: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
     return summary

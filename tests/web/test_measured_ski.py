@@ -16,7 +16,6 @@ from skisnow.web.lab_skis import LabSkis
 from skisnow.web.settings import Limits
 
 from .conftest import Served, fill
-from .test_carve_page import ANSWERED_MS
 
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
@@ -122,6 +121,6 @@ def test_a_ski_maker_sees_what_five_per_cent_do(page: Page, served: Served) -> N
     page.get_by_role("button", name="Save in the lab").click()
     page.get_by_role("link", name="Carve both side by side").click()
     radii = page.get_by_role("region", name="Carved radius").locator(".value")
-    radii.nth(1).wait_for(timeout=ANSWERED_MS)
+    radii.nth(1).wait_for()
     first, second = (float(re.findall(r"([\d.]+) m", each)[0]) for each in radii.all_inner_texts())
     assert second == pytest.approx(first / 1.05, rel=0.02)  # about as the sidecut radius

@@ -14,7 +14,6 @@ from skisnow.ski import read_ski, ski_named
 from skisnow.web.lab_skis import LabSkis, ski_of_texts
 
 from .conftest import Served, has_text
-from .test_carve_page import ANSWERED_MS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -77,7 +76,7 @@ def test_factors_and_values_at_stations_are_drawn_and_saved(page: Page, served: 
     page.goto(f"{served.address}carve")
     page.get_by_label("Compared with").click()
     page.get_by_role("option", name="soft waist").click()
-    page.get_by_role("columnheader", name="soft waist").wait_for(timeout=ANSWERED_MS)
+    page.get_by_role("columnheader", name="soft waist").wait_for()
     told = page.get_by_role("region", name="Carved radius").locator(".value")
     told.nth(1).wait_for()
     assert len({words.split("carved radius")[1] for words in told.all_inner_texts()}) == 2
