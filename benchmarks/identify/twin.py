@@ -42,11 +42,11 @@ class Case:
 
 
 THREE: Final = Case(
-    "three parameters", 20.0, {"friction.mu_0": 0.03, "friction.mu_1_s_per_m": 0.002, "drag.drag_area_m2": 0.5}
+    "three parameters", 4.0, {"friction.mu_0": 0.03, "friction.mu_1_s_per_m": 0.002, "drag.drag_area_m2": 0.5}
 )
 SIX: Final = Case(
     "six parameters",
-    60.0,
+    8.0,
     {
         **THREE.truth,
         "snow.S_f_N_per_mm2": 0.4,
