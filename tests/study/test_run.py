@@ -26,13 +26,6 @@ edge_angle_deg = [0, 30, 95]
 """
 
 
-@pytest.fixture
-def study_file(tmp_path: Path) -> Path:
-    path = tmp_path / "study.toml"
-    path.write_text(TEXT, encoding="utf-8")
-    return path
-
-
 def test_rows_are_the_equilibria_in_the_order_of_the_grid(study_file: Path) -> None:
     study = read_study(study_file)
     table = run_study(study, workers=1)

@@ -26,13 +26,6 @@ edge_angle_deg = [30, 45, 95]
 """
 
 
-@pytest.fixture
-def study_file(tmp_path: Path) -> Path:
-    path = tmp_path / "study.toml"
-    path.write_text(TEXT, encoding="utf-8")
-    return path
-
-
 def whole(study_file: Path) -> bytes:
     table = read_study(study_file).out
     run_study(study_file, workers=1)

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from .announced import announced
-from .words import Parser, whole_number
+from .words import Parser, add_changes, whole_number
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -32,14 +32,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--contact", action="store_true", help="the contact of rigid skis: poses in, forces and moments out"
     )
     fmu.add_argument("--skis", type=int, choices=(1, 2), help="with --contact: one ski, or a pair; left out: 2")
-    fmu.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        dest="changes",
-        metavar="section.key=value",
-        help="another value for one key, several times for several; the section may be left out",
-    )
+    add_changes(fmu)
     fmu.set_defaults(run=_fmu, parser=fmu)
     mjcf = kinds.add_parser(
         "mjcf",

@@ -14,6 +14,7 @@ from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
 from .out_folder import ready
 from .progress import Progress
+from .words import add_changes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,14 +34,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Simulate a scenario: a built-in one by its name, or a TOML file. Ctrl-C ends a run and keeps it.",
     )
     parser.add_argument("scenario", nargs="?", metavar="NAME|FILE", help="left out with --list")
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        dest="changes",
-        metavar="section.key=value",
-        help="another value for one key, several times for several; the section may be left out",
-    )
+    add_changes(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json, track.csv, run.nc and a report")
     replay = "with --out: also write replay.html, the run in three dimensions, which opens without network"
     parser.add_argument("--replay", action="store_true", help=replay)

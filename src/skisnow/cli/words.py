@@ -56,6 +56,18 @@ def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:
     )
 
 
+def add_changes(parser: argparse.ArgumentParser) -> None:
+    """Let a command take other values for keys of its scenario."""
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        dest="changes",
+        metavar="section.key=value",
+        help="another value for one key, several times for several; the section may be left out",
+    )
+
+
 def _meant(name: str, options: Iterable[str]) -> str:
     by_small = {option.lower(): option for option in sorted(options)}
     like = difflib.get_close_matches(name.lower(), by_small, n=1, cutoff=0.6)

@@ -13,7 +13,7 @@ from ...errors import ParameterError
 from ...files import write_file
 from ...given import plain_text
 from ...shown import Facts, Shown, amount
-from .table import MOST_BYTES, require_rising
+from .table import MOST_BYTES, number_of, require_rising
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -112,10 +112,7 @@ def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> li
     values = []
     for place, cell in enumerate(cells[1:wanted]):
         what = "Time" if place == 0 else f"{names[(place - 1) // 3]} {'XYZ'[(place - 1) % 3]}"
-        try:
-            values.append(float(cell) if cell or place == 0 else np.nan)
-        except ValueError:
-            raise ParameterError(f"{path}, line {number}, {what}: {cell!r} is no number; write one") from None
+        values.append(number_of(cell, f"{path}, line {number}, {what}") if cell or place == 0 else np.nan)
     return values
 
 

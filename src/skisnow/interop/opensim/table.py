@@ -115,13 +115,15 @@ def _whole(word: str | None) -> int | None:
 def _numbers(path: str | Path, number: int, cells: list[str], names: list[str]) -> list[float]:
     if len(cells) != len(names):
         raise ParameterError(f"{path}, line {number}: {len(cells)} cells stand under {len(names)} names of columns")
-    values = []
-    for name, cell in zip(names, cells, strict=True):
-        try:
-            values.append(float(cell))
-        except ValueError:
-            raise ParameterError(f"{path}, line {number}, column {name}: {cell!r} is no number; write one") from None
-    return values
+    return [number_of(cell, f"{path}, line {number}, column {name}") for name, cell in zip(names, cells, strict=True)]
+
+
+def number_of(cell: str, where: str) -> float:
+    """The number of a cell; ``where`` it stands, for the message."""
+    try:
+        return float(cell)
+    except ValueError:
+        raise ParameterError(f"{where}: {cell!r} is no number; write one") from None
 
 
 def write_motion(table: MotionTable, path: str | Path) -> None:

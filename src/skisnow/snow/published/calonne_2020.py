@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...units import MM
+from .proksch_2015 import density_of_form
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -32,9 +33,7 @@ def snow_density(median_force: FloatArray, element_size: FloatArray) -> FloatArr
     >>> round(float(snow_density(np.array(1.0), np.array(0.5e-3))), 2)
     319.35
     """
-    log_force, size_mm = np.log(median_force), element_size / MM
-    density: FloatArray = 295.8 + 65.1 * log_force - 43.2 * size_mm * log_force + 47.1 * size_mm
-    return density
+    return density_of_form((295.8, 65.1, -43.2, 47.1), median_force, element_size)
 
 
 def specific_surface_area(median_force: FloatArray, element_size: FloatArray) -> FloatArray:

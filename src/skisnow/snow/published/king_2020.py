@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...units import MM
+from .proksch_2015 import density_of_form
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -33,9 +34,7 @@ def snow_density_a(median_force: FloatArray, element_size: FloatArray) -> FloatA
     >>> round(float(snow_density_a(np.array(1.0), np.array(0.5e-3))), 3)
     271.535
     """
-    log_force, size_mm = np.log(median_force), element_size / MM
-    density: FloatArray = 315.61 + 46.94 * log_force - 43.94 * size_mm * log_force - 88.15 * size_mm
-    return density
+    return density_of_form((315.61, 46.94, -43.94, -88.15), median_force, element_size)
 
 
 def snow_density_b(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
@@ -44,6 +43,4 @@ def snow_density_b(median_force: FloatArray, element_size: FloatArray) -> FloatA
     >>> round(float(snow_density_b(np.array(1.0), np.array(0.5e-3))), 3)
     269.865
     """
-    log_force, size_mm = np.log(median_force), element_size / MM
-    density: FloatArray = 312.54 + 50.27 * log_force - 50.26 * size_mm * log_force - 85.35 * size_mm
-    return density
+    return density_of_form((312.54, 50.27, -50.26, -85.35), median_force, element_size)

@@ -34,8 +34,20 @@ def snow_density(median_force: FloatArray, element_size: FloatArray) -> FloatArr
     >>> round(float(snow_density(np.array(1.0), np.array(0.5e-3))), 2)
     335.49
     """
+    return density_of_form((420.47, 102.47, -121.15, -169.96), median_force, element_size)
+
+
+def density_of_form(
+    coefficients: tuple[float, float, float, float], median_force: FloatArray, element_size: FloatArray
+) -> FloatArray:
+    """A + b ln F + c L ln F + d L in kg/m³: the form that others fitted to other snow; F in N, L in mm in it.
+
+    >>> float(density_of_form((1.0, 2.0, 4.0, 8.0), np.array(1.0), np.array(0.5e-3)))
+    5.0
+    """
+    at_1_newton, by_force, by_both, by_size = coefficients
     log_force, size_mm = np.log(median_force), element_size / MM
-    density: FloatArray = 420.47 + 102.47 * log_force - 121.15 * size_mm * log_force - 169.96 * size_mm
+    density: FloatArray = at_1_newton + by_force * log_force + by_both * size_mm * log_force + by_size * size_mm
     return density
 
 
