@@ -14,7 +14,7 @@ from ..simulate.run_summary import summary_dict
 from ..simulate.track_table import write_track
 from ..staging import staged, tidied
 from .pictures import picture_files
-from .run_report import FIGURES, OF_COURSE, REPLAY, write_run_report
+from .run_report import FIGURES, FURTHER, REPLAY, write_run_report
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..simulate.run import Run
 
 SUMMARY, GATES = "summary.json", "gates.csv"
-_STALE: Final = (*picture_files((*FIGURES, OF_COURSE)), GATES, REPLAY, "replay.glb")
+_STALE: Final = (*picture_files((*FIGURES, *FURTHER)), GATES, REPLAY, "replay.glb")
 _MOMENTS: Final = "replay-*s.glb"
 
 

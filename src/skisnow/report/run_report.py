@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 Json = dict[str, Any]
 FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
-OF_COURSE: Final = "course"
-"""The one that a run with a course has beside them."""
+FURTHER: Final = ("course", "balance")
+"""Those that a run with a course, and one with a skier, has beside them."""
 REPLAY: Final = "replay.html"
 """The run in three dimensions, where that was asked for."""
 
@@ -73,7 +73,7 @@ def write_run_report(
     report = progress or _silent
     report("run.nc")
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
-    pictures = write_pictures(run_drawings(run), folder / "figures", every=(*FIGURES, OF_COURSE), progress=report)
+    pictures = write_pictures(run_drawings(run), folder / "figures", every=(*FIGURES, *FURTHER), progress=report)
     report("report.html")
     write_file(folder / "report.html", run_page(run, summary, pictures, has_replay=(folder / REPLAY).is_file()))
     return folder / "report.html"
@@ -86,6 +86,7 @@ def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], 
         Section("outcome", "Outcome", key=outcome_sentences(run), pictures=by_name.get("track", ())),
         *_course_section(run, by_name),
         Section("motion", "Speed, heading, turn radius", pictures=by_name.get("motion", ())),
+        *_balance_section(by_name),
         Section("along-skis", "Along the skis", pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())]),
         Section("energies", "Energies", pictures=by_name.get("energies", ()), tables=[energies_table(dict(summary))]),
     ]
@@ -106,21 +107,41 @@ def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[
     return [Section("gates", "Gates", words=words, pictures=by_name.get("course", ()), tables=[gates_table(result)])]
 
 
+def _balance_section(by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
+    pictures = by_name.get("balance")
+    return [Section("balance", "Balance of the skier", pictures=pictures)] if pictures else []
+
+
 def _header(run: Run, *, has_replay: bool) -> Header:
     scenario, ratio = run.scenario, run.scenario.contact.unloading_ratio
     facts = [
         ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}")),
         ("Source of the snow", scenario.contact.snow.source),
         *_laws(run),
-        ("Skis", f"{scenario.ski.name}, edge angle {significant(scenario.sledge.edge_angle / DEGREE)}°"),
+        ("Skis", f"{scenario.ski.name}, {_edged(run)}"),
         ("Computed", f"skisnow {version('skisnow')}"),
         *([("Replay", _LINK)] if has_replay else []),
     ]  # fmt: skip
-    return Header("A simulated run of a sledge on two flexible skis", _title(run), facts, headline=_headline(run))
+    who = "sledge" if scenario.skier is None else "skier"
+    return Header(f"A simulated run of a {who} on two flexible skis", _title(run), facts, headline=_headline(run))
+
+
+def _edged(run: Run) -> str:
+    if run.scenario.skier is not None:
+        return "edged by the skier"
+    return f"edge angle {significant(run.scenario.sledge.edge_angle / DEGREE)}°"
 
 
 def _headline(run: Run) -> Markup:
-    """The turn's radius, or the speed of a run that is nearly straight, with what it is for nine tenths of the time."""
+    """Gates and the time through them; else the turn's radius, or the speed where it is nearly straight."""
+    result = run_gates(run)
+    times = [] if result is None else [time for time in result.times if time is not None]
+    if result is not None and len(times) > 1:
+        return prose(
+            "{value} between the first and the last gate that was reached; {passed} of {all} gates passed.",
+            value=Markup("<strong>{:.2f} s</strong>").format(times[-1] - times[0]),
+            passed=str(result.passed), all=str(len(result.times)),
+        )  # fmt: skip
     radii = [run.turn_radius_quantile(share) for share in (0.05, 0.5, 0.95)]
     if all(radius is not None and np.isfinite(radius) for radius in radii):
         return _middle("Turn radius", "m", [float(radius) for radius in radii if radius is not None])

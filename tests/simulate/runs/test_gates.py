@@ -97,6 +97,8 @@ def test_folder_of_a_run_has_its_gates(straight: Run, tmp_path: Path) -> None:
     assert summary["gate_times_s"] == [float(row["time_s"]) for row in rows]
     assert float(rows[1]["split_s"]) == pytest.approx(float(rows[1]["time_s"]) - float(rows[0]["time_s"]))
     assert [row["outcome"] for row in rows] == ["passed"] * 3
+    through = summary["gate_times_s"][-1] - summary["gate_times_s"][0]
+    assert f"<strong>{through:.2f} s</strong> between the first and the last gate that was reached" in page
 
 
 def test_a_course_of_the_catalogue_or_of_a_file_is_read_with_the_scenario(tmp_path: Path) -> None:
