@@ -23,6 +23,7 @@ INSIDE = {
     "replay": "a run in three dimensions",
     "identify": "friction, drag and snow from tracks",
     "study": "grids and samples of carves and runs",
+    "racing": "the quickest line",
     "simulate": "the run of a sledge on two skis, and how exact it is",
     "skier": "plans of turns, balance",
     "carve": "a ski in equilibrium",

@@ -19,7 +19,7 @@ DESCRIPTION = {
     "Name of the campaign": "A morning on the race slope",
     "Place": "upper part, north side",
     "Observers, with commas between": "Ada, Bo",
-    "Loads of the disc set (N), with blanks between": "12 92 172 252 332 412 492",
+    "Disc loads (N), with blanks between": "12 92 172 252 332 412 492",
     "Step of the depth gauge (mm)": "0.01",
     "Uncertainty of the load (N)": "0.5",
     "Uncertainty of the moment (N m)": "0.5",

@@ -77,6 +77,7 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
         skisnow.BootPose.of(np.zeros(3), 0.5), skisnow.BootMoment(0.0, 0.01, 0.0, np.zeros(3), np.eye(3), np.zeros(6),
                                                                   np.zeros((2, 6, 3)), np.zeros((2, 6))),
         skisnow.Boots(np.arange(4.0), np.zeros((4, 2, 3)), np.tile(np.eye(3), (4, 2, 1, 1))),
+        skisnow.quickest_line(skisnow.scenario("slalom-20-gates"), model="point", evaluations=1, workers=1),
         skisnow.Store(folder / "store", None),  # type: ignore[arg-type]
     )  # fmt: skip
     return {type(each).__name__: each for each in made}

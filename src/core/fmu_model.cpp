@@ -109,6 +109,7 @@ Situation FmuContact::situation(double time) {
 }
 
 void FmuContact::meet(double time) {
+  if (!contact_) return;  // before begin() there is none
   const Situation at = situation(time);
   double* to = output();
   for (const Reaction& each : contact_->force(at)) to = std::copy_n(each.moment, 3, std::copy_n(each.force, 3, to));

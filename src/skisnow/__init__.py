@@ -39,6 +39,8 @@ The public names, loaded when first used. Verbs act, nouns are what comes out of
     Friction, drag and snow from tracks, photo-cell times or tracks left in the snow.
 ``study``, ``read_study``, ``Study``, ``StudyTable``, ``run_batch``
     One question over a grid or a sample of its inputs; one function over many points, on all cores.
+``quickest_line``, ``QuickestLine``
+    The quickest line through a course.
 ``SnowField``, ``SnowContact``, ``Runner``, ``ContactForces``
     History-dependent snow, and any body of one's own in it.
 ``regress``
@@ -63,6 +65,7 @@ if TYPE_CHECKING:
     from .identify import Identification
     from .identify.identifying import identify
     from .parallel.batch import run_batch
+    from .racing import QuickestLine, quickest_line
     from .report import TurnChain, write_report
     from .scenario import (
         Air,
@@ -115,6 +118,7 @@ __all__ = [
     "Identification",
     "Plane",
     "Profile",
+    "QuickestLine",
     "Refinement",
     "RigidSledge",
     "Run",
@@ -145,6 +149,7 @@ __all__ = [
     "in_slope_frame",
     "published_names",
     "published_snow",
+    "quickest_line",
     "read_campaign",
     "read_course",
     "read_ski",
@@ -177,6 +182,7 @@ _PACKAGES = {
     "field.store": ("Store",),
     "identify": ("Identification",),
     "parallel.batch": ("run_batch",),
+    "racing": ("QuickestLine", "quickest_line"),
     "report": ("TurnChain", "write_report"),
     "scenario": (
         "Air",

@@ -115,6 +115,30 @@ def test_out_writes_the_json_and_the_figure(straight: Path, tmp_path: Path, caps
     assert (folder / "track_comparison.eps").read_bytes().startswith(b"%!PS-Adobe")
 
 
+def test_two_runs_through_one_course_are_compared_gate_by_gate(straight: Path, tmp_path: Path, capsys: Printed) -> None:
+    folders = []
+    for name, time in (("mine", 2.25), ("theirs", 2.0)):
+        folders.append(tmp_path / name)
+        folders[-1].mkdir()
+        (folders[-1] / "track.csv").write_text(straight.read_text(encoding="utf-8"), encoding="utf-8")
+        rows = f"gate,outcome,time_s,x_m,y_m\n1,passed,1.0,10,0\n2,passed,{time},20,1\n"
+        (folders[-1] / "gates.csv").write_text(rows, encoding="utf-8")
+    out = tmp_path / "out"
+    found = answer([str(each) for each in folders] + ["--out", str(out)], capsys)
+    assert [(row["gate"], row["gap_s"], row["lost_s"]) for row in found["gates"]] == [
+        ("1", 0.0, 0.0),
+        ("2", 0.25, 0.25),
+    ]
+    assert (out / "gate_gaps.csv").read_text(encoding="utf-8").splitlines()[2] == "2,passed,2.25,passed,2.0,0.25,0.25"
+    assert "0.25 s behind" in (out / "report.html").read_text(encoding="utf-8")
+    assert (out / "gate_gaps.pdf").read_bytes().startswith(b"%PDF")
+    assert main(["compare", *map(str, folders)]) == 0
+    assert "crosses gate 2 0.25 s behind" in capsys.readouterr().out
+    (folders[0] / "gates.csv").unlink()
+    assert "gates" not in answer([str(each) for each in folders] + ["--out", str(out)], capsys)
+    assert not list(out.glob("gate_gaps*")) + list(out.glob("report.html"))
+
+
 @pytest.mark.parametrize("azimuth", [0, 90])
 def test_latitude_and_longitude_come_into_the_slopes_frame(azimuth: int, tmp_path: Path, capsys: Printed) -> None:
     """A run due north, or east, over y m on the map is y/cos 10° long on a slope of 10°; no heights: it lies on it."""

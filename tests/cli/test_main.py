@@ -281,7 +281,7 @@ def test_an_interrupted_rewrite_leaves_the_earlier_report_whole(
     assert main(["analyse", str(campaign), "--out", str(out), "--resamples", "100"]) == 0
     before = {name: (out / name).read_bytes() for name in files_below(out)}
 
-    def interrupted(*_: object) -> None:
+    def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("skisnow.report.write.page", interrupted)

@@ -59,6 +59,13 @@ def test_a_second_run_and_a_track_stand_in_the_page(folder: Path, tmp_path: Path
     assert sorted(each.name for each in folder.iterdir()) == ["run.nc"]
 
 
+@pytest.mark.parametrize("words", [["{}"], ["--ghost", "{}"]])
+def test_a_second_run_is_the_ghost_of_the_first(folder: Path, words: list[str], tmp_path: Path) -> None:
+    named = [word.format(folder) for word in words]
+    assert main(["replay", str(folder), *named, "--out", str(tmp_path / "new")]) == 0
+    assert held_replay(tmp_path / "new" / "replay.html", "ghost") == replay_bytes(replay_of_file(folder))
+
+
 def test_a_track_in_latitude_and_longitude_needs_the_fall_line(folder: Path, tmp_path: Path, capsys: Printed) -> None:
     """South is down: 0.0001° of latitude are 11.1 m along the fall line."""
     track = tmp_path / "measured.gpx"
@@ -81,6 +88,7 @@ def test_a_track_in_latitude_and_longitude_needs_the_fall_line(folder: Path, tmp
         (["--starts-at-s", "2"], "name it with --track"),
         (["--exaggeration", "21"], "allowed is a number from 1 to 20"),
         (["--moment-s", "x"], "x"),
+        (["other", "--ghost", "another"], "one second run is shown"),
     ],
 )
 def test_wrong_words_are_refused_before_anything_is_read(words: list[str], said: str, capsys: Printed) -> None:

@@ -6,16 +6,20 @@ import json
 import math
 from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import jsonschema
 import numpy as np
 import pytest
 
 import skisnow
-from skisnow.estimate.snow_micro_pen import evaluate_profile
+from skisnow.estimate.snow_micro_pen import SnowMicroPenAnalysis, evaluate_profile
 from skisnow.field import read_snow_micro_pen
+from skisnow.field.snow_micro_pen import SnowMicroPenProfile
 from skisnow.field.snow_micro_pen_records import SnowMicroPenSettings
 from skisnow.field.snow_surface import snow_surface
+from skisnow.snow.penetrometer_relations import PENETROMETER_RELATIONS
 from skisnow.units import MM
 
 from ..field.recordings import AIR_N, LONG, SHORT, built, plain_snow, recording
@@ -59,6 +63,106 @@ def test_numbers_are_those_of_the_instrument_s_own_program(name: str) -> None:
             windows.specific_surface_area,
         )
         np.testing.assert_allclose(own, NUMBERS[name][relation], rtol=1e-6)
+
+
+def made(force: np.ndarray[tuple[int], np.dtype[np.float64]], step: float = 1e-5) -> SnowMicroPenProfile:
+    """A recording with a sample every hundredth of a millimetre, by a tip of 5 mm."""
+    return cast("Any", SimpleNamespace(
+        force=force, depth=step * np.arange(len(force)), sample_distance=step, tip_diameter=5e-3,
+    ))  # fmt: skip
+
+
+def test_a_stated_surface_leaves_the_air_before_it() -> None:
+    """30 mm of air with a spike, then 2 N and in the last millimetre 9 N; the median of the air is taken off."""
+    force = np.concatenate((np.full(3000, 0.05), np.full(2900, 2.0), np.full(101, 9.0)))
+    force[1000:1100] = 40.0
+    found = evaluate_profile(made(force), SnowMicroPenSettings(subtract_air_force=True), surface=0.03)
+    assert (found.flags, found.is_used, found.surface, found.air_force) == ((), True, 0.03, 0.05)
+    assert found.reach == pytest.approx(0.03)
+    assert (found.mean_force, found.median_force) == pytest.approx(((24.0 * 2.0 + 9.0) / 25.0 - 0.05, 1.95))
+    kept = evaluate_profile(made(force), SnowMicroPenSettings(), surface=0.03)
+    assert kept.mean_force == pytest.approx(found.mean_force + 0.05)
+    without_air = evaluate_profile(made(force[3000:]), SnowMicroPenSettings(), surface=0.0)
+    assert (without_air.air_force, without_air.mean_force) == pytest.approx((0.0, kept.mean_force))
+
+
+def test_a_recording_must_reach_the_lower_depth() -> None:
+    """30 mm below the surface: the sample there is the last that it needs."""
+    for more, flags in ((3000, ("too_short",)), (3001, ())):
+        found = evaluate_profile(made(np.full(100 + more, 1.0)), SnowMicroPenSettings(), surface=1e-3)
+        assert found.flags == flags
+        assert math.isfinite(found.mean_force) is not bool(flags)
+    both = evaluate_profile(made(np.full(200, 1.0)), SnowMicroPenSettings(), surface=1e-3, is_cancelled=True)
+    assert both.flags == ("cancelled", "too_short")
+    assert {windows.n for windows in both.windows.values()} == {0}
+
+
+def test_without_noise_there_is_no_microstructure() -> None:
+    """Of a force that does not change, and of one that is not above 0 or mostly 0; the mean force is known."""
+    scatter = np.random.default_rng(1).normal(size=4000)
+    spikes = np.where(np.arange(4000) % 3 == 0, np.abs(scatter), 0.0)  # a median of 0, which no relation takes
+    for force in (np.full(4000, 2.0), -1.0 - 0.1 * np.abs(scatter), spikes):
+        found = evaluate_profile(made(force), SnowMicroPenSettings(), surface=0.0)
+        assert found.mean_force == pytest.approx(force[500:3000].mean())
+        for windows in found.windows.values():
+            assert windows.n == 0
+            assert math.isnan(windows.snow_density)
+            assert math.isnan(windows.element_size)
+
+
+def test_elements_are_as_large_as_the_tip_has_ruptures() -> None:
+    """λ L³ is the area of the tip: 2^(2/3) times the size for twice the width; ruptures follow the force."""
+    force = 2.0 + 0.1 * np.random.default_rng(2).normal(size=4000)
+    one, wide, strong = (
+        evaluate_profile(cast("Any", each), SnowMicroPenSettings(), surface=0.0)
+        for each in (made(force), SimpleNamespace(**vars(made(force)) | {"tip_diameter": 1e-2}), made(2.0 * force))
+    )
+    for name, windows in one.windows.items():
+        # f₀ = (3/2) κ₂/κ₁ and λ = (4/3) κ₁²/(κ₂ δ): noise of 0.1 N about 2 N
+        assert windows.rupture_force == pytest.approx(1.5 * 0.01 / 2.0, rel=0.1)
+        intensity = 4.0 / 3.0 * 4.0 / (0.01 * windows.deflection)
+        assert windows.element_size**3 == pytest.approx(0.25 * math.pi * 25e-6 / intensity, rel=0.1)
+        assert wide.windows[name].element_size == pytest.approx(2.0 ** (2.0 / 3.0) * windows.element_size)
+        assert strong.windows[name].rupture_force == pytest.approx(2.0 * windows.rupture_force)
+        assert strong.windows[name].element_size == pytest.approx(windows.element_size)
+
+
+def test_windows_begin_half_a_window_apart() -> None:
+    """In 25 mm: one, and another for each half of one that is left. Those without noise do not count."""
+    force = 2.0 + 0.1 * np.random.default_rng(2).normal(size=4000)
+    found = evaluate_profile(made(force), SnowMicroPenSettings(), surface=0.0)
+    for name, windows in found.windows.items():
+        size = round(PENETROMETER_RELATIONS[name].window / 1e-5)
+        assert windows.n == 1 + (2500 - size) // round(size / 2)
+    force[500:1700] = 2.0
+    fewer = evaluate_profile(made(force), SnowMicroPenSettings(), surface=0.0)
+    for name, windows in fewer.windows.items():
+        half = round(PENETROMETER_RELATIONS[name].window / 1e-5) // 2
+        within = (1200 - 2 * half) // half + 1
+        assert windows.n == found.windows[name].n - within
+
+
+def test_a_place_has_the_recordings_of_its_spot_else_of_its_site() -> None:
+    recordings = cast("Any", SimpleNamespace(site=("A", "A", "A", "B", "C"), spot=("1", "1", "2", "", "9")))
+    found = SnowMicroPenAnalysis(recordings, ())
+    values = np.array([1.0, 3.0, 8.0, 5.0, math.nan])
+    places = [("A", "1"), ("A", "2"), ("A", ""), ("A", "7"), ("B", "1"), ("B", ""), ("C", "9"), ("D", "")]
+    means = found.at(tuple(site for site, _ in places), tuple(spot for _, spot in places), values)
+    assert means == pytest.approx([2.0, 8.0, 4.0, 4.0, 5.0, 5.0, math.nan, math.nan], nan_ok=True)
+
+
+def test_what_is_not_used_has_no_number_but_is_counted() -> None:
+    recordings = cast("Any", SimpleNamespace(settings=SnowMicroPenSettings()))
+    force = 2.0 + 0.1 * np.random.default_rng(2).normal(size=4000)
+    evaluated = [
+        evaluate_profile(made(force), SnowMicroPenSettings(), surface=0.0, is_cancelled=each) for each in (False, True)
+    ]
+    found = SnowMicroPenAnalysis(recordings, tuple(evaluated))
+    assert "1 of 2 recordings used" in repr(found)
+    assert found.mean_force == pytest.approx([evaluated[0].mean_force, math.nan], nan_ok=True)
+    density = evaluated[0].windows[SnowMicroPenSettings().relation].snow_density
+    assert found.snow_density == pytest.approx([density, math.nan], nan_ok=True)
+    assert math.isfinite(evaluated[1].mean_force)
 
 
 def test_surfaces_of_the_recordings() -> None:

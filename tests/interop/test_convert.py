@@ -69,7 +69,7 @@ def test_a_site_of_a_campaign_becomes_caaml(campaign: Path, tmp_path: Path, caps
     (force,) = pit.forces
     assert force.force.mean() == pytest.approx(2.0, rel=0.02)
     assert force.depth[0] == pytest.approx(0.0005, abs=1e-5)
-    assert (pit.latitude_deg, pit.longitude_deg) == (-45.5, 170.25)
+    assert (pit.latitude_deg, pit.longitude_deg, pit.elevation) == (-45.5, 170.25, 2120.0)
 
 
 def test_a_pit_becomes_snowex_tables(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -161,6 +163,81 @@ def test_markers_that_tell_no_pose_are_refused() -> None:
         boots_of_markers(Markers(TIME, markers.names, unseen, 100.0), one, one)
 
 
+def test_axes_with_z_up_need_no_turn() -> None:
+    """The same boots in axes whose y points to the left and whose z points up."""
+    markers, _ = captured(0.3)
+    x, y, z = np.moveaxis(markers.place, 2, 0)
+    upright = Markers(TIME, markers.names, np.stack([x, -z, y], axis=2), 100.0)
+    given = [BootMarkers(f"{s}heel", f"{s}toe", f"{s}left", (0.1, 0.02, -0.05)) for s in "LR"]
+    one = boots_of_markers(markers, given[0], given[1], slope_angle=0.3)
+    other = boots_of_markers(upright, given[0], given[1], up="z", slope_angle=0.3)
+    assert other.place == pytest.approx(one.place, abs=1e-15)
+    assert other.axes == pytest.approx(one.axes, abs=1e-15)
+    assert (one.frame, one.source) == ("slope", "markers")
+    with pytest.raises(ParameterError, match="up is 'x'; it must be 'y' or 'z'"):
+        boots_of_markers(markers, given[0], given[1], up="x")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"time": np.zeros(0), "place": np.zeros((0, 2, 3))}, r"markers: time has shape \(0,\); there must be one row"),
+        ({"time": np.zeros((2, 1))}, r"markers: time has shape \(2, 1\)"),
+        ({"time": np.array([0.0, np.nan])}, "markers: time of row 2 is nan s"),
+        ({"time": np.array([0.1, 0.1])}, "markers: time of row 2 is 0.1 s; it must be finite and rise"),
+        ({"place": np.zeros((2, 3, 3))}, r"place has shape \(2, 3, 3\); it must be \(2, 2, 3\)"),
+        ({"names": ("a", "a")}, "a name is there twice"),
+        ({"rate": 0.0}, r"rate is 0\.0 Hz; it must be above 0"),
+        ({"rate": np.inf}, "rate is inf Hz"),
+    ],
+)
+def test_markers_that_do_not_fit_are_refused(changes: dict[str, object], words: str) -> None:
+    sound = {"time": np.array([0.0, 0.1]), "names": ("a", "b"), "place": np.zeros((2, 2, 3)), "rate": 10.0}
+    assert repr(Markers(**sound)).endswith("2 markers, 2 frames at 10 Hz>")  # type: ignore[arg-type]
+    with pytest.raises(ParameterError, match=words):
+        Markers(**sound | changes)  # type: ignore[arg-type]
+
+
+def test_tables_that_do_not_fit_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match=r"column a has shape \(3,\), time \(4,\)"):
+        MotionTable(TIME, {"b": np.zeros(4), "a": np.zeros(3)})
+    table = MotionTable(TIME, {"b": np.zeros(4)})
+    assert repr(table).endswith("1 columns, 4 rows to 0.03 s>")
+    with pytest.raises(ParameterError, match=r"a\.txt ends in none of \.mot, \.sto; name it so"):
+        write_motion(table, tmp_path / "a.txt")
+    with pytest.raises(ParameterError, match=r"a\.csv does not end in \.trc; name it so"):
+        write_trc(captured(0.0)[0], tmp_path / "a.csv")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_heads_are_read_and_written_as_other_programs_have_them(tmp_path: Path) -> None:
+    """Degrees where nothing else is said; a missing name is the file's; rows are counted only where they are."""
+    (tmp_path / "own.mot").write_text("\nunits=N\nendheader\ntime\ta\n0\t1\n\n", encoding="utf-8")
+    found = read_motion(tmp_path / "own.mot")
+    assert (found.name, found.in_degrees, dict(found.head)) == ("own", True, {"units": "N"})
+    write_motion(found, tmp_path / "again.mot")
+    assert (tmp_path / "again.mot").read_text(encoding="utf-8").splitlines() == [
+        "own", "version=1", "nRows=1", "nColumns=2", "units=N", "inDegrees=yes", "endheader", "time\ta", "0.0\t1.0",
+    ]  # fmt: skip
+    for text, words in (
+        ("a\nendheader\n", "has no line endheader with a table behind it"),
+        ("a\nendheader\n\n", "line 3: the columns must begin with time"),
+        ("a\nendheader\ntime\tb\tb\n0\t1\t1\n", "line 3: the columns must begin with time, each name once"),
+    ):
+        (tmp_path / "own.mot").write_text(text, encoding="utf-8")
+        with pytest.raises(ParameterError, match=words):
+            read_motion(tmp_path / "own.mot")
+    (tmp_path / "two.trc").write_text("\n".join(TRC.splitlines()[:4]), encoding="utf-8")
+    with pytest.raises(ParameterError, match="a head of five lines"):
+        read_trc(tmp_path / "two.trc")
+    markers = captured(0.0)[0]
+    write_trc(markers, tmp_path / "six.trc")
+    head = (tmp_path / "six.trc").read_text(encoding="utf-8").splitlines()
+    assert head[2].split("\t") == ["100.0", "100.0", "4", "6", "m", "100.0", "1", "4"]
+    assert head[4].split("\t")[2:6] == ["X1", "Y1", "Z1", "X2"]
+    assert [row.split("\t")[0] for row in head[6:]] == ["1", "2", "3", "4"]
+
+
 def test_files_are_converted_by_their_endings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "a.mot").write_text(MOT, encoding="utf-8")
     (tmp_path / "two.trc").write_text(TRC, encoding="utf-8")
@@ -193,13 +270,35 @@ def test_markers_of_c3d(tmp_path: Path) -> None:
     found = read_c3d(tmp_path / "a.c3d")
     assert (found.names, found.rate) == (markers.names, 100.0)
     assert found.place == pytest.approx(markers.place, abs=1e-6)  # c3d has single precision
-    assert np.diff(found.time) == pytest.approx(0.01)
+    first = made["header"]["points"]["first_frame"]
+    assert found.time == pytest.approx((first + np.arange(4)) / 100.0)
     (tmp_path / "b.c3d").write_bytes(b"no markers")
     with pytest.raises(ParameterError, match=r"cannot be read as \.c3d"):
         read_c3d(tmp_path / "b.c3d")
 
 
+def test_what_a_c3d_file_holds_becomes_metres_and_seconds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever ezc3d reads: frames count from the first one's number; points beyond the names are no markers."""
+    (tmp_path / "a.c3d").write_bytes(b"read by another")
+    points = np.arange(24.0).reshape(4, 3, 2)
+    point: dict[str, dict[str, list[str]]] = {"LABELS": {"value": ["heel", "toe"]}, "UNITS": {"value": ["cm"]}}
+    read = {
+        "parameters": {"POINT": point},
+        "header": {"points": {"frame_rate": 50.0, "first_frame": 5}},
+        "data": {"points": points},
+    }
+    monkeypatch.setitem(sys.modules, "ezc3d", SimpleNamespace(c3d=lambda _: read))
+    found = read_c3d(tmp_path / "a.c3d")
+    assert (found.names, found.rate, found.time.tolist()) == (("heel", "toe"), 50.0, [0.1, 0.12])
+    for frame, marker, axis in np.ndindex(2, 2, 3):
+        assert found.place[frame, marker, axis] == pytest.approx(1e-2 * points[axis, marker, frame])
+    for labels, unit, words in (([], "mm", "it has 0 markers in 'mm'"), (["a"], "inch", "it has 1 markers in 'inch'")):
+        point |= {"LABELS": {"value": labels}, "UNITS": {"value": [unit]}}
+        with pytest.raises(ParameterError, match=words):
+            read_c3d(tmp_path / "a.c3d")
+
+
 def test_without_ezc3d_a_sentence_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "ezc3d", None)
+    monkeypatch.setitem(sys.modules, "ezc3d", None)
     with pytest.raises(ParameterError, match="which is not installed"):
         read_c3d(tmp_path / "a.c3d")

@@ -51,10 +51,10 @@ ALONE = {"OPENBLAS_NUM_THREADS": "1", "DASK_DISTRIBUTED__ADMIN__LOW_LEVEL_LOG_LE
 
 
 class Cluster:
-    """A scheduler and its workers."""
+    """A scheduler and its workers; `further`: options of them all."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, *further: str) -> None:
+        self._folder, self._further = folder, further
         place = folder / "scheduler.json"
         self.scheduler = self._started("dask_scheduler", "--port", "0", "--scheduler-file", str(place))
         self.file = place
@@ -62,14 +62,14 @@ class Cluster:
         wait_for(place.exists)
         self.address = __import__("json").loads(place.read_text(encoding="utf-8"))["address"]
 
-    def hire(self, count: int) -> None:
+    def hire(self, count: int, security: Any = None) -> None:
         """Start workers, and wait until they are there."""
         begun = len(self.workers)
         self.workers += [
             self._started("dask_worker", self.address, "--nthreads", "1", "--no-nanny") for _ in range(count)
         ]
         distributed = importlib.import_module("distributed")
-        with distributed.Client(self.address) as client:
+        with distributed.Client(self.address, security=security) as client:
             client.wait_for_workers(begun + count, timeout=120)
 
     def kill(self, process: subprocess.Popen[bytes]) -> None:
@@ -85,6 +85,7 @@ class Cluster:
     def _started(self, program: str, *words: str) -> subprocess.Popen[bytes]:
         log = (self._folder / f"{program}.log").open("ab")
         command = [sys.executable, "-m", f"distributed.cli.{program}", *words, "--no-dashboard", "--host", "127.0.0.1"]
+        command += self._further
         with log:
             return subprocess.Popen(command, cwd=self._folder, stdout=log, stderr=log, env={**os.environ, **ALONE})
 
@@ -221,7 +222,8 @@ def test_certificates_are_passed_through(tmp_path: Path) -> None:
     path.write_text('address = "tls://a:1"\n[tls]\nca_file = "ca.pem"\ncert = "c.pem"\nkey = "k.pem"', encoding="utf-8")
     security = _security(scheduler_of(path).tls)
     assert security.require_encryption is True
-    assert (security.tls_ca_file, security.tls_client_cert, security.tls_worker_key) == ("ca.pem", "c.pem", "k.pem")
+    files = (security.tls_ca_file, security.tls_client_cert, security.tls_worker_key)
+    assert files == tuple(str(tmp_path / name) for name in ("ca.pem", "c.pem", "k.pem"))
     assert _security(None) is None
 
 

@@ -178,7 +178,7 @@ SLURM = '[slurm]\njobs = 4\ncores = 16\nmemory = "32GB"\nwalltime = "02:00:00"\n
         ('address = "tcp://a:1"\nwait_s = 0', "wait_s is 0; it must be a number above 0"),
         ('address = "tls://a:1"\ntls = 3', "it must be a table, begun by the line"),
         ('address = "tls://a:1"\n[tls]\nca = "a.pem"', "tls.ca is no key"),
-        ('address = "tls://a:1"\n[tls]\nca_file = 3', "it must be the path of a file"),
+        ('address = "tls://a:1"\n[tls]\nca_file = 3', "it must be the path of a PEM file"),
         ("slurm = 3", "slurm is 3; it must be a table"),
         (SLURM.replace("4", "0"), "slurm.jobs is 0; it must be a whole number"),
         (SLURM.replace("cores = 16\n", ""), "slurm.cores is missing"),
@@ -200,5 +200,6 @@ def test_the_file_of_a_scheduler_is_read(tmp_path: Path) -> None:
     assert dask_cluster.is_plain(path)
     path.write_text('address = "tls://a:1"\nwait_s = 5\n[tls]\nca_file = "ca.pem"\ncert = "own.pem"', encoding="utf-8")
     asked = dask_cluster.scheduler_of(path)
-    assert (asked.address, asked.wait_s, asked.tls) == ("tls://a:1", 5, {"ca_file": "ca.pem", "cert": "own.pem"})
+    assert (asked.address, asked.wait_s) == ("tls://a:1", 5)
+    assert asked.tls == {"ca_file": str(tmp_path / "ca.pem"), "cert": str(tmp_path / "own.pem")}
     assert [dask_cluster.is_plain(each) for each in (path, "tcp://a:1", "tls://a:1")] == [False, True, False]

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import sys
+from contextlib import nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -204,6 +207,41 @@ def test_geotiff_lies_as_on_its_map(tmp_path: Path) -> None:
 
 
 def test_geotiff_without_its_package_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "rasterio", None)
+    monkeypatch.setitem(sys.modules, "rasterio", None)
     with pytest.raises(ParameterError, match=r'pip install "skisnow\[geotiff\]"'):
         read_terrain(written(tmp_path, "", "heights.tif"))
+
+
+@pytest.mark.parametrize("east", [1.0, -1.0])
+@pytest.mark.parametrize("north", [1.0, -1.0])
+def test_rows_and_columns_of_a_geotiff_may_run_either_way(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, east: float, north: float
+) -> None:
+    """An eighth of the column's x and half of the row's y, whichever the file begins with; of any reader."""
+    x, y = 101.0 + 2.0 * np.arange(3)[:: int(east)], 51.0 + 2.0 * np.arange(2)[:: int(north)]
+    steps = {"a": 2.0 * east, "b": 0.0, "c": x[0] - east, "d": 0.0, "e": 2.0 * north, "f": y[0] - north}
+    metres = SimpleNamespace(is_geographic=False, linear_units_factor=("metre", 1.0), linear_units="metre")
+    file = SimpleNamespace(
+        read=lambda band, masked: np.ma.array(0.125 * x[None, :] + 0.5 * y[:, None], mask=(band != 1) or not masked),
+        transform=SimpleNamespace(**steps),
+        crs=metres,
+    )
+    reader = SimpleNamespace(open=lambda _: nullcontext(file), errors=SimpleNamespace(RasterioError=OSError))
+    monkeypatch.setitem(sys.modules, "rasterio", reader)
+    path = written(tmp_path, "", "heights.tif")
+    found = read_terrain(path)
+    assert (found.x.tolist(), found.y.tolist()) == ([101.0, 103.0, 105.0], [51.0, 53.0])
+    assert found.height.tolist() == [[0.125 * a + 0.5 * b for b in (51.0, 53.0)] for a in (101.0, 103.0, 105.0)]
+    file.crs = None  # nothing is said: metres
+    assert read_terrain(path).x.tolist() == found.x.tolist()
+    for changes, told in (
+        ({"is_geographic": True}, "its coordinates are degrees"),
+        ({"linear_units_factor": ("foot", 0.3048), "linear_units": "foot"}, "its coordinates are in foot"),
+    ):
+        file.crs = SimpleNamespace(**vars(metres) | changes)
+        with pytest.raises(ParameterError, match=told):
+            read_terrain(path)
+    for name in ("b", "d"):
+        file.crs, file.transform = None, SimpleNamespace(**steps | {name: 0.5})
+        with pytest.raises(ParameterError, match="its rows do not run east"):
+            read_terrain(path)

@@ -9,9 +9,12 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from skisnow import BootMoment, BootPose
+from skisnow.errors import ParameterError
+from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import read_scenario
 from skisnow.simulate import run_setup
-from skisnow.simulate.run_setup import Setup, laid_out
+from skisnow.simulate.run_setup import Setup, _drive, _strength_share, laid_out
 
 from ..carve.synthetic import plain_ski
 from .runs.sledges import load, scenario
@@ -60,6 +63,33 @@ def test_in_soft_snow_an_element_is_four_and_a_half_centimetres_long() -> None:
     found = laid_out(read_scenario("carved-46m", changes={"snow.H_V_N_per_mm3": 0.02})).numbers
     assert 1.8 / found["elements"] == pytest.approx(0.045)
     assert found["line_spacing_m"] == 0.02
+
+
+def test_boots_are_moved_by_one_alone() -> None:
+    """A function, the table of the scenario (which holds the body in the slope's frame), or nothing."""
+
+    def control(_: BootMoment) -> list[BootPose]:
+        return []
+
+    def asked(*, frame: str = "", by: Any = None) -> Any:
+        boots = cast("Any", SimpleNamespace(frame=frame)) if frame else None
+        return _drive(cast("Any", SimpleNamespace(boots=boots, skier=None)), by)
+
+    assert asked() is None
+    assert (asked(by=control).control, asked(by=control).held) == (control, False)
+    assert (asked(frame="sledge").held, asked(frame="slope").held) == (False, True)
+    with pytest.raises(ParameterError, match=r"by boots\.file and by a function; give one of them"):
+        asked(frame="sledge", by=control)
+
+
+def test_the_strength_over_the_place_is_a_share_of_its_mean() -> None:
+    strength = Grid.along([0.0, 10.0], [0.3e6, 0.5e6])
+    for known, mean in ((None, 0.4e6), (strength, None)):
+        assert _strength_share(cast("Any", SimpleNamespace(failure_shear_stress=known, mean_stress=mean))) == 1.0
+    assert _strength_share(None) == 1.0
+    share = _strength_share(cast("Any", SimpleNamespace(failure_shear_stress=strength, mean_stress=0.4e6)))
+    assert isinstance(share, Grid)
+    assert share.values_at(np.array([0.0, 5.0, 10.0]), np.zeros(3)) == pytest.approx([0.75, 1.0, 1.25])
 
 
 def test_a_stiffness_factor_multiplies_both_stiffnesses() -> None:

@@ -39,12 +39,14 @@ class Served:
     """A server process on a store, which can be killed and started again at the same address.
 
     The command takes seconds to load what it needs, so one process loads that and brings forth all servers; with
-    `as_command` a server is started as a person does. Pictures of a report are empty but with `are_drawn`.
+    `as_command` a server is started as a person does, with `further` words. Pictures of a report are empty but with
+    `are_drawn`.
     """
 
     store: Path
     as_command: bool = False
     are_drawn: bool = False
+    further: tuple[str, ...] = ()
     address: str = ""
     process: BaseProcess | subprocess.Popen[str] | None = field(default=None, repr=False)
     was_killed: bool = False
@@ -62,6 +64,7 @@ class Served:
 
     def _by_command(self, port: int) -> str:
         command = [sys.executable, "-m", "skisnow", "serve", "--port", str(port), "--store", str(self.store)]
+        command += self.further
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         assert self.process.stdout is not None
         with self.process.stdout as told:
@@ -101,7 +104,7 @@ class Served:
     def is_as_started(self) -> bool:
         """Whether no test has killed it, and nothing that one has left is still computed."""
         alive = not isinstance(self.process, subprocess.Popen) and self.process is not None and self.process.is_alive()
-        jobs = (json.loads(place.read_text(encoding="utf-8")) for place in self.lab.glob("*/job.json"))
+        jobs = (json.loads(place.read_text(encoding="utf-8")) for place in self.lab.rglob("job.json"))
         return alive and not self.was_killed and all(job["state"] not in {"waiting", "running"} for job in jobs)
 
     def empty(self) -> None:

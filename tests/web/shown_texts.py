@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import skisnow.web
-from skisnow.web.catalogue import LEAST_LETTERS
+from skisnow.language.catalogue import LEAST_LETTERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,9 +27,7 @@ _UNREAD: Final = """
 """
 UNREAD_CALLS: Final = frozenset(_UNREAD.split())
 """What is handed to these is read by programs, or was translated before."""
-NO_PAGES: Final = frozenset(
-    {"addresses.py", "catalogue.py", "guard.py", "local_time.py", "server.py", "replay/__init__.py"}
-)
+NO_PAGES: Final = frozenset({"addresses.py", "guard.py", "local_time.py", "server.py", "replay/__init__.py"})
 """Files whose words are printed where the lab was started, answered to programs, or the names of months."""
 NO_WORDS: Final = frozenset(
     {
@@ -40,6 +38,12 @@ NO_WORDS: Final = frozenset(
         "\n[screening]\nexclude = {}\n",
         'attachment; filename="analysis.zip"',
         'attachment; filename="campaign-{}.zip"',
+        'attachment; filename="study.zip"',
+        "default-src 'none'; style-src 'unsafe-inline'; sandbox",
+        'out = "{}"',
+        "scenario = {}",
+        ", log = true",
+        "is being written by another run",  # looked for in what the command says
         "attachment; filename*=UTF-8''{}.glb",
         "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; sandbox",
         "beside above",  # classes of the stylesheet
@@ -56,7 +60,7 @@ MADE_OF_KINDS: Final = {
     "test {} was made with the {} {}: leave that name as it is, and give another {} an entry of its own",
     "Import {}",
     "{}, {} used; {}, {} used.",
-    ", if shear is tested there too",
+    ", if sheared there",
 }
 """Put together from few words: the catalogue has each whole, as other languages bend them."""
 _WORD: Final = re.compile(r"[A-Za-zÀ-ž]{2,}")

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
+import json
 import shutil
 import subprocess
 import sys
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 from skisnow.cli import main
+from skisnow.study import run_study
 
 from ..report.runs import circle_run
 from .conftest import Served, follow, ready, settled
 from .replay.test_lab_page import kept
 from .test_day import create, enter_series
 from .test_kept import imported
+from .test_studies import TURNS
 
 if importlib.util.find_spec("axe_playwright_python") is None:
     pytest.skip("axe-core is not installed: pip install axe-playwright-python", allow_module_level=True)
@@ -88,8 +93,20 @@ def test_nobody_is_barred_from_where_the_token_is_asked(plain: Page) -> None:
     assert barred(plain) == []
 
 
+def studied(lab: Path, folder: Path) -> str:
+    """Put a study that is done into the lab; its name."""
+    studies = importlib.import_module("skisnow.web.studies").Studies(folder)
+    job = studies.ask_for(TURNS)
+    place = studies.folder / job.name
+    run_study(place / "study.toml", workers=1)
+    (place / "map.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"/>', encoding="utf-8")
+    (place / "job.json").write_text(json.dumps(asdict(replace(job, state="done"))), encoding="utf-8")
+    shutil.copytree(studies.folder, lab / "studies")
+    return str(job.name)
+
+
 @pytest.mark.slow
-def test_nobody_is_barred_from_a_page_of_the_lab(page: Page, served: Served) -> None:
+def test_nobody_is_barred_from_a_page_of_the_lab(page: Page, served: Served, tmp_path: Path) -> None:
     imported(page, served)
     follow(page, "Correct")
     page.get_by_role("heading", name="Tests").wait_for()
@@ -110,6 +127,8 @@ def test_nobody_is_barred_from_a_page_of_the_lab(page: Page, served: Served) -> 
         f"{served.address}skis": "td",
         f"{served.address}carve": "td",
         f"{served.address}simulate": "summary",
+        f"{served.address}study": ".range",
+        f"{served.address}study/{studied(served.lab, tmp_path)}": "tbody td",
         f"{served.address}replay": ".card",
         f"{served.address}replay/show?run=a-run": "canvas",
         f"{served.address}nowhere": "h1",

@@ -21,6 +21,7 @@ READY = {
     "skis": "td",
     "carve": "td",
     "simulate": "summary",
+    "study": ".range",
     "replay": ".card",
 }
 

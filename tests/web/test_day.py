@@ -67,7 +67,7 @@ def describe(page: Page, served: Served) -> None:
             "Name of the campaign": 'The day <b>"of" & tests</b>',
             "Place": "a slope",
             "Observers, with commas between": "Ada, Bo",
-            "Loads of the disc set (N), with blanks between": " ".join(LOADS),
+            "Disc loads (N), with blanks between": " ".join(LOADS),
             "Step of the depth gauge (mm)": "0.01",
             "Uncertainty of the moment (N m)": "0,5",
             "Name of tool 1": "ski piece",

@@ -264,8 +264,13 @@ def test_a_phone_and_the_names_of_all_fields(page: Page, served: Served) -> None
         fields = page.locator("input:visible, select:visible, button:visible")
         nameless = [each for each in fields.all() if not each.evaluate(NAME_OF)]
         assert nameless == [], place
+        assert page.evaluate(CUT) == [], place
 
 
+CUT = """[...document.querySelectorAll(".q-field__label")]
+    .filter((each) => each.clientWidth && each.checkVisibility() && each.scrollWidth > each.clientWidth + 1)
+    .map((each) => each.textContent)"""
+"""The labels of fields that are longer than their fields."""
 NAME_OF = """element => element.getAttribute('aria-label') || element.innerText?.trim()
   || [...(element.labels || [])].map(label => label.innerText.trim()).join(' ')"""
 

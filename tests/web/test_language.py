@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import http.client
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
@@ -17,25 +16,28 @@ if "nicegui" in MISSING:
 
 from skisnow.carve.result import REMEDIES
 from skisnow.errors import ParameterError
-from skisnow.field import QUALITY_FLAGS, write_reference
-from skisnow.field.reading import FilesInMemory
+from skisnow.field import QUALITY_FLAGS
 from skisnow.field.store import Journals, Store
 from skisnow.field.store.description import Description, description_text
+from skisnow.language import Catalogue, catalogue, languages
+from skisnow.language.catalogue import DECIMAL, read_catalogue
+from skisnow.language.known import FOLDER
 from skisnow.report.ski_drawing import ski_drawing
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
-from skisnow.web.analysing import N_FIGURES, Choice, Numbers, figure, numbers_of
-from skisnow.web.catalogue import Catalogue, read_catalogue
-from skisnow.web.language import FOLDER, catalogue, languages
-from skisnow.web.pages.simulate import BASIC, _expert
+from skisnow.web.pages.simulate import basic, expert
 from skisnow.web.scenario_fields import called, range_words
+from skisnow.web.study_asked import CARVE, study_keys
 
 from .shown_texts import MADE_OF_KINDS, shown_texts
 from .test_day import PLATE, TOOL, VALUES
+from .test_entering import CUT
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
+SKIER = {"skier.steers": "turns"}
+"""Values of a scenario that has one: its form has every key."""
 GERMAN = Catalogue(read_catalogue(FOLDER / "de.po"))
 
 
@@ -53,10 +55,13 @@ def test_every_text_of_the_lab_has_its_german_one() -> None:
 
 
 def test_what_the_library_says_on_a_page_has_its_german_text() -> None:
-    keys = [SCENARIO_KEYS[name] for name in (*BASIC, *_expert())]
+    keys = [SCENARIO_KEYS[name] for name in (*basic(SKIER), *expert(SKIER))]
+    keys += [SCENARIO_KEYS[name] for name in basic({}) if name not in basic(SKIER)]
     assert [key.name for key in keys if not key.label] == []
     texts = [called(key) for key in keys] + [range_words(key) for key in keys]
     texts += [word for key in keys for word in key.choices]
+    studied = study_keys(CARVE).values()
+    texts += [called(key) for key in studied] + [range_words(key) for key in studied]
     texts += [flag.sentence for flag in QUALITY_FLAGS.values()]
     texts += [f"carver: {outcome.replace('_', ' ')}, {remedy}." for outcome, remedy in REMEDIES.items() if remedy]
     texts += list(ski_drawing(read_ski("carver")).facts)
@@ -81,7 +86,7 @@ def test_messages_are_translated_with_the_messages_in_them() -> None:
 
 def test_a_further_language_is_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "it.po").write_text('msgid "English"\nmsgstr "Italiano"\n', encoding="utf-8")
-    monkeypatch.setattr("skisnow.web.language.FOLDER", tmp_path)
+    monkeypatch.setattr("skisnow.language.known.FOLDER", tmp_path)
     for each in (languages, catalogue):
         each.cache_clear()
     assert languages() == {"en": "English", "it": "Italiano"}
@@ -134,29 +139,12 @@ def test_a_series_is_entered_in_german(chromium: Browser, served: Served, watche
     page.keyboard.type("1,5\n2,o\n")
     page.locator(".reading.refused").get_by_text("Tiefe (mm) ist eine Zahl ab 0; '2,o' steht da").wait_for()
     page.get_by_text("gespeichert", exact=True).wait_for()
-    page.get_by_role("button", name="Rückgängig: eingegeben: 1.5 mm unter 20 N").wait_for()
-    english = {text for text in read_catalogue(FOLDER / "de.po") if GERMAN.translated(text) != text}
+    page.get_by_role("button", name="Rückgängig: eingegeben: 1,5 mm unter 20 N").wait_for()
+    english = {text for text in read_catalogue(FOLDER / "de.po") if GERMAN.translated(text) != text and text != DECIMAL}
     assert english.intersection(map(str.strip, page.locator("body").inner_text().splitlines())) == set()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert page.evaluate(CUT) == []
     page.get_by_role("link", name="English").click()
     page.get_by_label("Depth under 20 N (mm)").wait_for()  # the same series, and what was typed is there
     context.close()
     assert watched.errors == []
-
-
-@pytest.mark.slow
-def test_an_analysis_has_its_german_texts(tmp_path: Path) -> None:
-    """What stands between the tags of tables, sentences and captions, but for the names that users gave."""
-    write_reference(tmp_path / "campaign", seed=1)
-    files = {each.name: each.read_bytes() for each in (tmp_path / "campaign").iterdir()}
-    numbers = numbers_of(FilesInMemory(files), Choice())
-    assert isinstance(numbers, Numbers)
-    drawn = filter(None, (figure(numbers.analysis, number) for number in range(N_FIGURES)))
-    shown = [each[:5000] for each in numbers.tables.values()] + list(numbers.key_results)
-    shown += [each.caption for each in drawn]
-    left = set()
-    for html in shown:
-        if GERMAN.translated(html) == html:
-            between = {each.strip() for each in re.findall(r">([^<>]+)<", f">{html}<")}
-            left |= {each for each in between if re.search("[A-Za-z]{3}", each) and GERMAN.translated(each) == each}
-    assert {each for each in left if "linear" not in each and "deg" not in each} == {"layered", "plate 100 mm"}

@@ -53,7 +53,7 @@ def test_readings_stay_under_their_loads_when_the_discs_change(page: Page, serve
     create(page, served)
     enter_series(page, "2")
     id_ = described(page, served)
-    fill(page, {"Loads of the disc set (N), with blanks between": "10 20 30 40 60 80"})
+    fill(page, {"Disc loads (N), with blanks between": "10 20 30 40 60 80"})
     send(page)
     page.get_by_role("heading", name="New series").wait_for()
     page.goto(f"{page.url.split('?')[0]}?table=penetration.csv&test=2")

@@ -103,7 +103,7 @@ def test_a_campaign_is_described_while_the_lab_stands_still(page: Page, served: 
     page.evaluate("window.isSamePage = true")
     with stopped(served, seconds):
         page.keyboard.type("ce")
-        page.get_by_label("Loads of the disc set (N), with blanks between", exact=True).press("Control+a")
+        page.get_by_label("Disc loads (N), with blanks between", exact=True).press("Control+a")
         page.keyboard.type("20 40 60")
         page.get_by_role("button", name="Another tool").press("Enter")
         page.keyboard.type("disc\n50\n40\n")
@@ -129,7 +129,7 @@ def test_a_campaign_is_described_while_the_lab_stands_still(page: Page, served: 
 
 def test_all_rows_outlive_a_reload_and_a_kill(page: Page, served: Served) -> None:
     page.goto(f"{served.address}describe")
-    fill(page, {"Name of the campaign": "one", "Loads of the disc set (N), with blanks between": "20 40"})
+    fill(page, {"Name of the campaign": "one", "Disc loads (N), with blanks between": "20 40"})
     fill(page, {"Name of tool 1": "piece", "Length (mm) of tool 1": "200", "Width (mm) of tool 1": "62"})
     for name, length in (("round", "50"), ("third", "70")):
         page.get_by_role("button", name="Another tool").press("Enter")

@@ -115,7 +115,7 @@ def test_what_is_typed_while_another_scenario_is_drawn_finds_its_field(page: Pag
     page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
     page.locator("fieldset.redrawn:disabled").first.wait_for()  # nothing can be pressed or filled by another way
-    for _ in range(3):
+    for _ in range(4):
         page.keyboard.press("Tab")
     page.keyboard.type("12.5")
     answers.let_go()

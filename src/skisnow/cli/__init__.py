@@ -32,6 +32,7 @@ def build_parser() -> argparse.ArgumentParser:
         identify,
         man,
         new,
+        race,
         reference,
         replay,
         serve,
@@ -51,8 +52,8 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
     every = (
-        new, check, analyse, store, reference, carve, simulate, replay, turn, study, track, compare, identify, export,
-        convert, serve, completion, man,
+        new, check, analyse, store, reference, carve, simulate, replay, turn, study, race, track, compare, identify,
+        export, convert, serve, completion, man,
     )  # fmt: skip
     for command in every:
         command.add_parser(commands)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .out_folder import ready
-from .words import MOST_RESAMPLES, seed_number, whole_number
+from .words import MOST_RESAMPLES, add_language, seed_number, whole_number
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -22,6 +22,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         default="extended",
         help="the ski piece with its continuation below the rim of its base, or the paper's plain wedge",
     )
+    add_language(parser)
     parser.add_argument("--json", action="store_true", help="print results.json instead of the summary")
     parser.add_argument("--seed", type=seed_number, help="seed of the bootstrap, a whole number from 0 on")
     parser.add_argument(
@@ -54,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
         if options.out is not None:
             from ..report import write_report
 
-            write_report(analysis, options.out, progress=progress)
+            write_report(analysis, options.out, language=options.language, progress=progress)
     if options.json:
         print(results_json(analysis.results).decode("utf-8"), end="")
         return 0

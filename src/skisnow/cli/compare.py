@@ -1,4 +1,4 @@
-"""``skisnow compare``: how far a simulated track is from a measured one."""
+"""``skisnow compare``: how far a simulated track is from a measured one, and who is where first at gates."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 from .announced import announced
 from .out_folder import ready
-from .words import add_fall_line_azimuth, number
+from .words import add_fall_line_azimuth, add_language, number
 
 if TYPE_CHECKING:
+    from ..course.gate_gaps import GateGap
     from ..track.comparison import Comparison
     from ..track.projection import GeodeticPoint
     from ..track.track import Track
@@ -25,7 +26,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "compare",
         help="distances between a simulated and a measured track",
         description="Compare a simulated track with a measured one: largest, mean and rms distance by nearest place, "
-        "at equal arc length and at equal time.",
+        "at equal arc length and at equal time. Of two folders with a gates.csv of the same course also the time that "
+        "was lost from gate to gate.",
     )
     track = "a track file, or the folder of a run with its track.csv"
     parser.add_argument("simulated", type=Path, metavar="SIMULATED", help=track)
@@ -50,8 +52,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("--from-above", action="store_true", help="leave the heights out")
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="write compare.json and the figure (PNG, SVG, PDF, EPS)"
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="write compare.json and the figure (PNG, SVG, PDF, EPS); of gates their table, figure and report.html too",
     )
+    add_language(parser)
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
     parser.set_defaults(run=run, parser=parser)
 
@@ -63,9 +69,11 @@ def run(options: argparse.Namespace) -> int:
     if options.out is not None:
         ready(options.out)
     found = _compared(options)
+    from ..course.gate_gaps import gap_rows, gate_gaps
     from ..track.comparison_dict import comparison_dict
 
-    answer = comparison_dict(found)
+    gaps = gate_gaps(options.simulated, options.measured)
+    answer = comparison_dict(found) | ({} if gaps is None else {"gates": gap_rows(gaps)})
     for text in found.warnings:
         print(f"warning: {text}", file=sys.stderr)
     text = json.dumps(answer, ensure_ascii=False, allow_nan=False, indent=1)
@@ -75,8 +83,12 @@ def run(options: argparse.Namespace) -> int:
         from ..report.compare_summary import compare_summary
 
         print(compare_summary(answer), flush=True)
+        if gaps is not None:
+            from ..report.gaps_report import gaps_text
+
+            print(f"\n{gaps_text(gaps, found.names)}", flush=True)
     if options.out is not None:
-        _write(options.out, found, text)
+        _write(options.out, found, text, options.language, gaps)
     return 0
 
 
@@ -121,13 +133,19 @@ def _in_slope(track: Track, options: argparse.Namespace) -> Track:
     )
 
 
-def _write(folder: Path, found: Comparison, text: str) -> None:
+def _write(folder: Path, found: Comparison, text: str, language: str, gaps: tuple[GateGap, ...] | None) -> None:
     from ..files import write_file
     from ..report.figures.track_comparison import comparison_drawing
+    from ..report.gaps_report import FILES, write_gaps
     from ..report.pictures import write_pictures
     from ..staging import staged
 
     with staged(folder, last="compare.json") as stage:
+        stage.stale += FILES
+        if gaps is not None:
+            write_gaps(gaps, found.names, stage.path)
         write_file(stage.path / "compare.json", f"{text}\n")
-        write_pictures(map(comparison_drawing, [found]), stage.path, every=())
+        write_pictures(
+            map(comparison_drawing, [found]), stage.path, every=(), language=language, names=frozenset(found.names)
+        )
     print(f"Figure: {folder / 'track_comparison.png'}, and as SVG, PDF and EPS", file=sys.stderr)

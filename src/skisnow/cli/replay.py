@@ -21,11 +21,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = commands.add_parser(
         "replay",
         help="a simulated run in three dimensions: a page that plays, glTF models",
-        description="Write replay.html of a run that was simulated with --out, a second run or a measured track over "
+        description="Write replay.html of a run that was simulated with --out, a second run or a measured track beside "
         "it, and the run or a moment of it as a glTF model.",
     )
     parser.add_argument("folder", type=Path, metavar="RUN", help="the folder of a run, with its run.nc")
-    parser.add_argument("--over", type=Path, metavar="RUN", help="a second run, laid over it translucent")
+    parser.add_argument("other", type=Path, nargs="?", metavar="OTHER", help="a second run, as its ghost")
+    parser.add_argument("--ghost", "--over", dest="ghost", type=Path, metavar="RUN", help="the same")
     parser.add_argument("--track", type=Path, metavar="FILE", help="a measured track to stand beside it")
     add_fall_line_azimuth(parser, "for a track in latitude and longitude")
     parser.add_argument(
@@ -60,13 +61,16 @@ def run(options: argparse.Namespace) -> int:
     """Read the run and write what was asked for."""
     if options.track is None and (options.fall_line_azimuth_deg is not None or options.starts_at_s):
         options.parser.error("--fall-line-azimuth-deg and --starts-at-s place a track: name it with --track")
+    if options.other is not None and options.ghost is not None:
+        options.parser.error("one second run is shown: name it behind the first one or with --ghost")
+    second = options.other or options.ghost
     with announced(f"reading {options.folder}"):
         from ..replay import replay_of_file
 
         shown = replay_of_file(options.folder, title=options.title)
         if options.track is not None:
             shown = replay_of_file(options.folder, title=options.title, track=_beside(options, shown))
-        ghost = None if options.over is None else replay_of_file(options.over)
+        ghost = None if second is None else replay_of_file(second)
     for place in _written(options, shown, ghost):
         print(place, flush=True)
     return 0

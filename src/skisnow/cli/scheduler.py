@@ -23,15 +23,27 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
         It is no scheduler, its file cannot be read, or Dask is not installed.
     """
     asked: str | None = options.scheduler
-    if asked is None or asked in LOCAL:
-        return asked
-    from ..errors import ParameterError
-    from ..parallel.dask_cluster import is_plain, require_scheduler
+    if asked is not None and asked not in LOCAL and options.workers is not None:
+        from ..errors import ParameterError
 
-    if options.workers is not None:
         raise ParameterError(
             "--workers counts processes of this computer; a scheduler has its own. Leave one of them out"
         )
+    return checked_scheduler(asked)
+
+
+def checked_scheduler(asked: str | None) -> str | None:
+    """The same of what was given to the option.
+
+    Raises
+    ------
+    ParameterError
+        As of `scheduler_of`.
+    """
+    if asked is None or asked in LOCAL:
+        return asked
+    from ..parallel.dask_cluster import is_plain, require_scheduler
+
     require_scheduler(asked)
     if is_plain(asked):
         told = "what is sent to the workers is not encrypted, and whoever reaches it can run programs on them"

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from ..errors import ParameterError
+from .scheduler import add_scheduler, checked_scheduler
 from .words import whole_number
 
 
@@ -35,6 +36,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="PATH",
         help="file of the store, or postgresql://USER@HOST/DATABASE (default: the user's own file)",
     )
+    add_scheduler(parser)
     parser.set_defaults(run=run)
 
 
@@ -55,11 +57,12 @@ def run(options: argparse.Namespace) -> int:
     if options.certificate is None and options.certificate_key is not None:
         raise ParameterError("--certificate-key goes with --certificate")
     certificate = None if options.certificate is None else Certificate(options.certificate, options.certificate_key)
+    scheduler = checked_scheduler(options.scheduler)
     place = store_place(options.store) if options.store is not None else default_path()
     beside = default_path() if isinstance(place, ServerAddress) else place  # runs stay here
     with Store.open(place) as store:
         serve(
-            Lab(store, beside.parent / "lab"),
+            Lab(store, beside.parent / "lab", scheduler=scheduler),
             host=options.host,
             port=options.port,
             token=options.token,

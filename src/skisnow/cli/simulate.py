@@ -14,7 +14,7 @@ from .announced import announced
 from .ending import Ending, ending_is_an_interrupt
 from .out_folder import ready
 from .progress import Progress
-from .words import add_changes
+from .words import add_changes, add_language
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,6 +37,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_changes(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json, track.csv, run.nc and a report")
     replay = "with --out: also write replay.html, the run in three dimensions, which opens without network"
+    add_language(parser)
     parser.add_argument("--replay", action="store_true", help=replay)
     boots = "write poses of the boots, and force and moment on each, as .csv, .mot or .sto"
     parser.add_argument("--boots-out", type=Path, metavar="FILE", help=boots)
@@ -141,12 +142,14 @@ def _tell(
         write_boots(found, options.boots_out)
         print(f"Boots: {options.boots_out}", file=sys.stderr)
     if options.out is not None:
-        _write(options.out, found, summary, replay_title=asked.title if options.replay else None)
+        _write(options, found, summary, replay_title=asked.title if options.replay else None)
 
 
-def _write(folder: Path, found: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
+def _write(options: argparse.Namespace, found: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
     from ..report.run_folder import write_run
     from ..report.run_report import REPLAY
+
+    folder: Path = options.out
 
     def replay(place: Path) -> None:
         if replay_title is not None:
@@ -156,7 +159,12 @@ def _write(folder: Path, found: Run, summary: dict[str, Any], *, replay_title: s
 
     with Progress() as progress:
         page = write_run(
-            found, folder, summary=summary, beside=replay, progress=lambda doing: progress(f"writing {doing}")
+            found,
+            folder,
+            summary=summary,
+            beside=replay,
+            language=options.language,
+            progress=lambda doing: progress(f"writing {doing}"),
         )
     print(f"Report: {page}", file=sys.stderr)
     if replay_title is not None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .announced import announced
 from .out_folder import ready
 from .progress import Progress
-from .words import number
+from .words import add_language, number
 
 if TYPE_CHECKING:
     import argparse
@@ -52,6 +52,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="with --course: check the course against the rules of this discipline",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF, EPS) and track.json")
+    add_language(parser)
     parser.add_argument("--json", action="store_true", help="print track.json alone to standard output")
     parser.set_defaults(run=run, parser=parser)
 
@@ -90,7 +91,9 @@ def run(options: argparse.Namespace) -> int:
         from ..report.track_report import write_track_report
 
         with Progress() as progress:
-            written = write_track_report(summary, options.out, values=values, gates=result, progress=progress)
+            written = write_track_report(
+                summary, options.out, values=values, gates=result, language=options.language, progress=progress
+            )
         print(f"Figures: {written.parent / 'figures'}", file=sys.stderr)
     return 0
 

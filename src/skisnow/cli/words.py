@@ -8,6 +8,8 @@ import math
 import re
 from typing import TYPE_CHECKING, Any, Final
 
+from ..language import ENGLISH, codes
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
@@ -53,6 +55,16 @@ def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:
         type=number("degrees", lowest=-360, highest=360),
         metavar="DEG",
         help=f"compass direction in which the slope falls: {why}",
+    )
+
+
+def add_language(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says which language a report is in."""
+    parser.add_argument(
+        "--language",
+        choices=codes(),
+        default=ENGLISH,
+        help="of the page and the figures that --out writes; files that programs read stay as they are (left out: en)",
     )
 
 

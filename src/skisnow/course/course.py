@@ -78,26 +78,32 @@ class Course(Shown):
     ] = "given as numbers"
     discipline: Annotated[
         Discipline | None,
-        Quantity("course.discipline", "whose rules the course is checked against; left out: no rules"),
+        Quantity(
+            "course.discipline", "whose rules the course is checked against; left out: no rules", label="discipline"
+        ),
     ] = None
     latitude_deg: Annotated[
         float | None,
         Quantity(
             "course.latitude_deg",
             "latitude (WGS84) of x = y = 0, for a course in degrees; left out: the first gate",
+            label="latitude of the origin",
             lowest=-90.0,
             highest=90.0,
         ),
     ] = None
     longitude_deg: Annotated[
         float | None,
-        Quantity("course.longitude_deg", "longitude of it", lowest=-180.0, highest=180.0),
+        Quantity(
+            "course.longitude_deg", "longitude of it", label="longitude of the origin", lowest=-180.0, highest=180.0
+        ),
     ] = None
     fall_line_azimuth_deg: Annotated[
         float | None,
         Quantity(
             "course.fall_line_azimuth_deg",
             "compass direction of x, for a course in degrees; such a course needs it in a scenario",
+            label="direction of the fall line",
             lowest=-360.0,
             highest=360.0,
         ),

@@ -76,12 +76,9 @@ class MovingPoint:
     def _crossing(self, i: int, origin: FloatArray, along: FloatArray, across: FloatArray) -> Crossing:
         step = float(self.time[i + 1] - self.time[i])
         first, last = (float((self.place[j] - origin) @ along) for j in (i, i + 1))
+        rates = (step * float(self.velocity[j] @ along) for j in (i, i + 1))
         forward = last >= 0.0
-        low, high = 0.0, 1.0
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            ahead = float((self._at(i, middle)[0] - origin) @ along) >= 0.0
-            low, high = (low, middle) if ahead is forward else (middle, high)
+        high = _reached(first, last, *rates)
         place, velocity = self._at(i, high)
         straight = first / (first - last)
         return Crossing(
@@ -99,3 +96,14 @@ class MovingPoint:
         place = e * e * (1.0 + 2.0 * f) * before + f * f * (3.0 - 2.0 * f) * behind + f * e * e * v - f * f * e * w
         rate = 6.0 * f * e * (behind - before) + e * (1.0 - 3.0 * f) * v + f * (3.0 * f - 2.0) * w
         return place, rate / h
+
+
+def _reached(first: float, last: float, rate: float, last_rate: float) -> float:
+    """Share of an interval at which Hermite's cubic from `first` to `last` changes its sign as they do."""
+    low, high, forward = 0.0, 1.0, last >= 0.0
+    for _ in range(HALVINGS):
+        f = 0.5 * (low + high)
+        e = 1.0 - f
+        place = e * e * (1.0 + 2.0 * f) * first + f * f * (3.0 - 2.0 * f) * last + f * e * (e * rate - f * last_rate)
+        low, high = (low, f) if (place >= 0.0) is forward else (f, high)
+    return high

@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..shown import ShownFields
-from ..statistics.bounded import non_negative_fits
+from ..statistics.bounded import condensed, non_negative_fits
 from .hardness import DEFINITIONS, hardness_of_all_readings
 from .layering import layering
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, end_columns, fit_model
@@ -40,6 +40,10 @@ BoolArray = npt.NDArray[np.bool_]
 
 FEWEST_READINGS: Final = 4
 """A series needs so many readings for its offset to be fitted: two parameters, and two degrees of freedom left."""
+_EXACT_SHARE: Final = 1e-6
+"""Of the median variance of a reading; none is taken to be smaller (modelling assumption)."""
+_BLOCK: Final = 8192
+"""Readings whose columns fit a core's cache."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -124,7 +128,8 @@ def fit_models_with_depth_errors(
             if np.allclose(ends, previous, rtol=1e-6, atol=0.0):
                 break
             previous = ends
-        fits.append(fit_model(readings, basis, model, weights=weight)[0])
+        of_load = condensed(basis.columns, readings.load, weights=weight)
+        fits.append(fit_model(readings, basis, model, of_load))
         weights[model] = weight
     return tuple(fits), weights
 
@@ -132,10 +137,13 @@ def fit_models_with_depth_errors(
 def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: FloatArray) -> FloatArray:
     """End values of a weighted fit by its normal equations: good enough before the final factorised fit."""
     projection, fixed = basis.projection(model), basis.offset(model)
-    # column by column: a weighted copy of all columns would cost more in memory traffic than the sums do
-    columns = basis.columns.T
-    weighted = (column * weight for column in columns)
-    products = np.array([[*(w @ column for column in columns), w @ load] for w in weighted])
+    products = np.zeros((4, 5))
+    for first in range(0, len(load), _BLOCK):
+        part = slice(first, first + _BLOCK)
+        columns = basis.columns[part].T
+        weighted = columns * weight[part]
+        products[:, :4] += weighted @ columns.T
+        products[:, 4] += weighted @ load[part]
     gram, moment = products[:, :4], products[:, 4] - products[:, :4] @ fixed
     fitted = non_negative_fits((projection.T @ gram @ projection)[None], (moment @ projection)[None])[0]
     return fixed + projection @ fitted
@@ -152,7 +160,9 @@ def _weights(
     readings: Readings, force: FloatArray, force_slope: FloatArray, uncertainty: ReadingUncertainty, scatter: float
 ) -> FloatArray:
     variance = (scatter * force) ** 2 + uncertainty.load**2 + (force_slope * uncertainty.depth) ** 2
-    if not np.any(variance > 0):
+    least, most = float(variance.min()), float(variance.max())
+    if most <= 0.0:
         return np.ones(readings.n)
-    floor = 1e-6 * float(np.median(variance[variance > 0]))  # a reading of force 0 must not count as exact
-    return 1.0 / np.maximum(variance, floor)
+    if least < _EXACT_SHARE * most:  # a reading of force 0 must not count as exact
+        variance = np.maximum(variance, _EXACT_SHARE * float(np.median(variance[variance > 0])))
+    return 1.0 / variance

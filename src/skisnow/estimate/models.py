@@ -8,13 +8,14 @@ values at the two ends of that range: non-negative at both ends is non-negative 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from ..shown import ShownFields
-from ..statistics.bounded import non_negative_fit
+from ..statistics.bounded import Condensed, condensed
 from .hardness import DEFINITIONS
 
 if TYPE_CHECKING:
@@ -130,8 +131,7 @@ class EndBasis:
 
     def projection(self, model: Model) -> FloatArray:
         """(4, p): how the fitted parameters of a model make the four end values."""
-        blocks = [_block(term, self.flat, start) for term, start in ((model.a, 0), (model.b, 2))]
-        return np.hstack(blocks)
+        return _projection(model.a, model.b, self.flat)
 
     def offset(self, model: Model) -> FloatArray:
         """The end values that a model fixes: b = 1 in the row where nothing is fitted."""
@@ -147,14 +147,16 @@ class EndBasis:
         return np.stack((a0, a1, b0, b1), axis=-1)
 
 
-def _block(term: Term, flat: bool, start: int) -> FloatArray:
-    columns = {"none": 0, "one": 0, "constant": 1, "linear": 1 if flat else 2}[term]
-    block = np.zeros((4, columns))
-    if columns == 1:
-        block[start : start + 2, 0] = 1.0
-    elif columns == 2:
-        block[start, 0] = block[start + 1, 1] = 1.0
-    return block
+@cache
+def _projection(a: Term, b: Term, flat: bool) -> FloatArray:
+    block = {"none": np.zeros((2, 0)), "one": np.zeros((2, 0)), "constant": np.ones((2, 1)), "linear": np.eye(2)}
+    if flat:
+        block["linear"] = block["constant"]
+    of_a, of_b = block[a], block[b]
+    made = np.zeros((4, of_a.shape[1] + of_b.shape[1]))
+    made[:2, : of_a.shape[1]], made[2:, of_a.shape[1] :] = of_a, of_b
+    made.flags.writeable = False  # shared by all who ask
+    return made
 
 
 def end_basis(readings: Readings, hardness: FloatArray) -> EndBasis:
@@ -174,20 +176,17 @@ def end_columns(readings: Readings, hardness: FloatArray, of_a: FloatArray, of_b
     return np.stack((Ha * (1.0 - t), Ha * t, Hb * (1.0 - t), Hb * t)).T
 
 
-def fit_model(
-    readings: Readings, basis: EndBasis, model: Model, *, weights: FloatArray | None = None
-) -> tuple[ModelFit, FloatArray]:
-    """Least-squares fit of one row to all readings (Eqn 6); returns the fit and the four end values."""
-    design, fixed = basis.columns @ basis.projection(model), basis.columns @ basis.offset(model)
-    ends, bound, n_parameters = basis.offset(model), np.zeros(4, dtype=bool), 0
-    if design.shape[1]:
-        fit = non_negative_fit(design, readings.load - fixed, weights=weights)
-        projection = basis.projection(model)
-        ends = ends + projection @ fit.coefficients
-        bound = (projection @ fit.at_bound.astype(float)) > 0
-        n_parameters = fit.rank if basis.flat else model.n_parameters
+def fit_model(readings: Readings, basis: EndBasis, model: Model, of_load: Condensed) -> ModelFit:
+    """Least-squares fit of one row to all readings (Eqn 6), of which `of_load` holds the basis and the loads."""
+    projection, ends = basis.projection(model), basis.offset(model)
+    bound, n_parameters = np.zeros(4, dtype=bool), 0
+    if model.n_parameters:
+        found = of_load.solved(projection, ends)
+        bound = (projection @ (found.coefficients == 0.0)) > 0
+        ends = ends + projection @ found.coefficients
+        n_parameters = found.rank if basis.flat else model.n_parameters
     residual = basis.columns @ ends - readings.load
-    return _row(readings, basis, model, ends, bound, n_parameters, residual), ends
+    return _row(readings, basis, model, ends, bound, n_parameters, residual)
 
 
 def _row(
@@ -247,7 +246,8 @@ def _bounds(model: Model, basis: EndBasis, bound: npt.NDArray[np.bool_]) -> tupl
 def fit_models(readings: Readings, hardnesses: dict[str, FloatArray]) -> tuple[ModelFit, ...]:
     """Fit the nine candidate models; ``hardnesses`` gives H of each series (SI) by definition."""
     bases = {symbol: end_basis(readings, hardnesses[symbol]) for symbol in DEFINITIONS}
-    return tuple(fit_model(readings, bases[model.hardness], model)[0] for model in MODELS)
+    of_load = {symbol: condensed(basis.columns, readings.load) for symbol, basis in bases.items()}
+    return tuple(fit_model(readings, bases[model.hardness], model, of_load[model.hardness]) for model in MODELS)
 
 
 FEWEST_SERIES: Final = 4

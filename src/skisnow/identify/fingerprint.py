@@ -4,26 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
-from dataclasses import fields, is_dataclass
+from collections.abc import Sequence
 from importlib.metadata import version
 
-import numpy as np
-
+from ..content import pieces_of
 from ..scenario.given import GivenScenario
 from ..scenario.reading import files_of
 from .track_positions import Measured
-
-
-def _pieces(thing: object) -> Iterator[bytes]:
-    """What an object is made of, down to numbers and texts: the same for the same content."""
-    if is_dataclass(thing) and not isinstance(thing, type):
-        yield type(thing).__qualname__.encode()
-        for each in fields(thing):
-            if each.init:
-                yield from _pieces(getattr(thing, each.name))
-    else:
-        yield thing.tobytes() if isinstance(thing, np.ndarray) else repr(thing).encode()
 
 
 def fingerprint(given: GivenScenario, tracks: Sequence[Measured]) -> str:
@@ -35,7 +22,7 @@ def fingerprint(given: GivenScenario, tracks: Sequence[Measured]) -> str:
     before = " ".join(sorted(given.before_results))
     digest = hashlib.sha256(f"{version('skisnow')} {values} {before}".strip().encode())
     if given.base is not None:
-        for piece in _pieces(given.base):
+        for piece in pieces_of(given.base):
             digest.update(piece)
     for path in files_of(given):
         if path != given.file:

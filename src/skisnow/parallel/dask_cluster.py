@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ssl
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -68,18 +69,22 @@ def require_scheduler(scheduler: str | Path) -> None:
     Raises
     ------
     ParameterError
-        Dask is not installed, or the address or the file cannot be read.
+        Dask is not installed, or the address, the file or a certificate cannot be read.
     """
     asked = scheduler_of(scheduler)
     _distributed()
+    _require_certificates(asked.tls or {})
     if asked.system is not None:
         _jobqueue()
 
 
 def is_plain(scheduler: str | Path) -> bool:
     """Whether what is sent there travels unencrypted, and anybody who reaches it may run programs."""
-    asked = scheduler_of(scheduler)
-    return not asked.tls and not (asked.address or "").startswith(("tls://", "wss://"))
+    return not _is_encrypted(scheduler_of(scheduler))
+
+
+def _is_encrypted(asked: SchedulerFile) -> bool:
+    return bool(asked.tls) or (asked.address or "").startswith(("tls://", "wss://"))
 
 
 def scheduler_of(scheduler: str | Path) -> SchedulerFile:
@@ -98,12 +103,12 @@ def scheduler_of(scheduler: str | Path) -> SchedulerFile:
             ".toml, threads or processes"
         )
     try:
-        return _of_table(read_toml(scheduler))
+        return _of_table(read_toml(scheduler), Path(scheduler).parent)
     except ParameterError as error:
         raise ParameterError(f"{scheduler}: {error}" if str(scheduler) not in str(error) else str(error)) from error
 
 
-def _of_table(table: Mapping[str, Any]) -> SchedulerFile:
+def _of_table(table: Mapping[str, Any], folder: Path) -> SchedulerFile:
     known = ("address", "wait_s", "tls", *BATCH_SYSTEMS)
     for key in table:
         if key not in known:
@@ -116,7 +121,7 @@ def _of_table(table: Mapping[str, Any]) -> SchedulerFile:
     wait = table.get("wait_s", WAIT_S)
     if isinstance(wait, bool) or not isinstance(wait, int | float) or not wait > 0:
         raise ParameterError(f"wait_s is {wait!r}; it must be a number above 0")
-    tls = _tls(table.get("tls"))
+    tls = _tls(table.get("tls"), folder)
     if place == "address":
         if not isinstance(table[place], str) or "://" not in table[place]:
             raise ParameterError(f'address is {table[place]!r}; it must be a text such as "tcp://host:8786"')
@@ -138,7 +143,8 @@ def _of_batch_system(system: str, given: object, wait: float, tls: Mapping[str, 
     return SchedulerFile(None, wait, tls, system, {"processes": options["cores"], **options}, jobs)
 
 
-def _tls(given: object) -> Mapping[str, str] | None:
+def _tls(given: object, folder: Path) -> Mapping[str, str] | None:
+    """The table of certificates, its paths from the folder that they start at."""
     if given is None:
         return None
     if not isinstance(given, dict):
@@ -147,8 +153,12 @@ def _tls(given: object) -> Mapping[str, str] | None:
         if key not in TLS_KEYS:
             raise ParameterError(f"tls.{key} is no key of a scheduler. {nearest(key, TLS_KEYS)}")
         if not isinstance(value, str):
-            raise ParameterError(f"tls.{key} is {value!r}; it must be the path of a file")
-    return given
+            raise ParameterError(f"tls.{key} is {value!r}; it must be {_meaning(key)}")
+    return {key: value if key == "ciphers" else str(folder / value) for key, value in given.items()}
+
+
+def _meaning(key: str) -> str:
+    return "a text, as OpenSSL writes ciphers" if key == "ciphers" else "the path of a PEM file"
 
 
 def crew_of_scheduler(scheduler: str | Path, function: PointFunction) -> Crew:
@@ -172,11 +182,40 @@ def crew_of_scheduler(scheduler: str | Path, function: PointFunction) -> Crew:
     try:
         client = distributed.Client(asked.address, timeout=asked.wait_s, security=_security(asked.tls), name="skisnow")
     except (OSError, ValueError, TypeError) as error:
-        raise SkisnowError(
-            f"no scheduler answers at {asked.address} ({error}). Start one with `dask scheduler`, and workers with "
-            "`dask worker`; both print their address"
-        ) from error
+        raise SkisnowError(_unanswered(asked, error)) from error
     return crew_of_client(client, function, close=lambda: _closed(client))
+
+
+def _require_certificates(tls: Mapping[str, str]) -> None:
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    what = ""
+    try:
+        if what := tls.get("ca_file", ""):
+            context.load_verify_locations(what)
+        if what := tls.get("cert", ""):
+            context.load_cert_chain(what, tls.get("key"), password=_no_password)
+    except (OSError, ssl.SSLError, ValueError) as error:
+        raise ParameterError(
+            f"{what}: no certificate can be read ({error}). [tls] needs PEM files: ca_file, the authority; cert and "
+            "key, a certificate that it signed and its private key"
+        ) from error
+
+
+def _no_password() -> str:
+    """Workers ask nobody for a password."""
+    raise ValueError("the private key has a password")
+
+
+def _unanswered(asked: SchedulerFile, error: Exception) -> str:
+    if _is_encrypted(asked):
+        return (
+            f"no connection to the scheduler at {asked.address} ({error}). It runs with certificates: is it there, is "
+            "its certificate signed by ca_file, and does it accept cert and key of [tls]"
+        )
+    return (
+        f"no scheduler answers at {asked.address} ({error}). Start one with `dask scheduler`, and workers with "
+        "`dask worker`; both print their address"
+    )
 
 
 def batch_cluster(asked: SchedulerFile) -> Any:

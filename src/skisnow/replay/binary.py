@@ -22,10 +22,14 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..given import GivenError, json_value
 from .colours import COLOURS, drawn_thickness
-from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkis, ReplayTerrain, ReplayTrack
+from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
+from .skier import JOINTS
+from .skier_shapes import skier_parts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from .skier_shapes import Part
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -74,11 +78,16 @@ KEPT: Final[dict[str, _Kept]] = {
     "track_place": _Kept(_EXACT, "m"),
     "track_time": _Kept(_EXACT, "s"),
     "gate_place": _Kept(_EXACT, "m"),
+    "gate_time": _Kept(_EXACT, "s"),
     "boot_place": _Kept(_EXACT, "m"),
     "boot_attitude": _Kept(_EXACT, "1"),
     "terrain_x": _Kept(_EXACT, "m"),
     "terrain_y": _Kept(_EXACT, "m"),
     "terrain_height": _Kept(_EXACT, "m"),
+    "skier_joints": _Kept(_COARSE, "m"),
+    "skier_vertices": _Kept(_COARSE, "m"),
+    "skier_colours": _Kept(_COARSE, "1"),
+    "skier_triangles": _Kept(_COARSE, "1"),
 }
 """Every array that a file may hold. Those in uint16 are off by half a step at most: 1/131070 of the array's range."""
 
@@ -143,10 +152,12 @@ def at_moments(replay: Replay, kept: npt.NDArray[np.int64]) -> Replay:
     }
     if skis.boots is not None:
         along["boots"] = ReplayBoots(place=skis.boots.place[kept], attitude=skis.boots.attitude[kept])
-    over = {
+    over: dict[str, Any] = {
         name: getattr(replay, name)[kept]
         for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
     }
+    if replay.skier is not None:
+        over["skier"] = replace(replay.skier, joints=replay.skier.joints[kept])
     return replace(replay, skis=replace(skis, **along), **over)
 
 
@@ -163,12 +174,24 @@ def _arrays(replay: Replay) -> dict[str, FloatArray]:
         found[f"groove_{name}"] = getattr(groove, name)
     if replay.track is not None:
         found |= {"track_place": replay.track.place, "track_time": replay.track.time}
-    found["gate_place"] = replay.gates
+    found |= {"gate_place": replay.gates, "gate_time": replay.gate_times}
     if skis.boots is not None:
         found |= {"boot_place": skis.boots.place, "boot_attitude": skis.boots.attitude}
     if replay.terrain is not None:
         found |= {f"terrain_{name}": getattr(replay.terrain, name) for name in ("x", "y", "height")}
+    if replay.skier is not None:
+        found |= {"skier_joints": replay.skier.joints} | _shape_arrays(skier_parts(replay.skier.height))
     return {name: np.asarray(values, dtype=float) for name, values in found.items() if values is not None}
+
+
+def _shape_arrays(parts: list[Part]) -> dict[str, FloatArray]:
+    """Meshes of the skier's parts one after the other; triangles count from each part's first vertex."""
+    meshes = [part.mesh for part in parts]
+    return {
+        "skier_vertices": np.concatenate([each.vertices for each in meshes]),
+        "skier_colours": np.concatenate([each.colours for each in meshes]),
+        "skier_triangles": np.concatenate([each.pieces for each in meshes]).astype(float),
+    }
 
 
 def _words(replay: Replay) -> dict[str, Any]:
@@ -183,7 +206,18 @@ def _words(replay: Replay) -> dict[str, Any]:
         "colours": COLOURS,
         **({} if replay.terrain is None else {"terrain_grade": list(replay.terrain.grade)}),
         "track_name": None if replay.track is None else replay.track.name,
+        **({} if replay.skier is None else {"skier": _skier_words(replay.skier)}),
     }
+
+
+def _skier_words(skier: ReplaySkier) -> dict[str, Any]:
+    """The body's height, the names of its joints, and each part with its joints and the size of its mesh."""
+    parts = [
+        {"name": each.name, "start": each.start, "end": each.end, "vertices": len(each.mesh.vertices),
+         "triangles": len(each.mesh.pieces)}
+        for each in skier_parts(skier.height)
+    ]  # fmt: skip
+    return {"height": skier.height, "joints": list(JOINTS), "parts": parts}
 
 
 def _packed(kept: _Kept, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
@@ -197,7 +231,7 @@ def _packed(kept: _Kept, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
         numbers = np.rint((values - lowest) / (step or 1.0)).astype("<u2")
         description |= {"lowest": lowest, "step": step}
         back = lowest + step * numbers
-    description["error"] = float(np.abs(back - values).max()) if values.size else 0.0
+    description["error"] = float(np.nan_to_num(np.abs(back - values)).max()) if values.size else 0.0
     content = numbers.tobytes()
     return content + b"\0" * (-len(content) % 4), description
 
@@ -222,6 +256,9 @@ def _rebuilt(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay
     if "terrain_height" in arrays:
         grade = header["terrain_grade"]
         terrain = ReplayTerrain(**some("x", "y", "height", before="terrain_"), grade=(grade[0], grade[1]))
+    skier = None
+    if "skier_joints" in arrays:
+        skier = ReplaySkier(height=header["skier"]["height"], joints=arrays["skier_joints"])
     track = None
     if "track_place" in arrays:
         track = ReplayTrack(name=header["track_name"], place=arrays["track_place"], time=arrays.get("track_time"))
@@ -238,5 +275,7 @@ def _rebuilt(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay
         ),
         track=track,
         gates=arrays.get("gate_place"),
+        gate_times=arrays.get("gate_time"),
         terrain=terrain,
+        skier=skier,
     )

@@ -1,4 +1,4 @@
-"""A moment of a replay as a glTF model in one binary file (GLB): snow, both skis, the groove so far."""
+"""A moment of a replay as a glTF model in one binary file (GLB): snow, both skis, the skier, the groove so far."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from .glb import Glb
 from .meshes import groove_mesh, ski_mesh, snow_mesh, upright
 from .replay import SKI_NAMES
 from .shape import nearest_frame
+from .skier_shapes import skier_mesh
 
 if TYPE_CHECKING:
     from .replay import Replay
@@ -27,6 +28,8 @@ def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> b
     named = {"snow": snow_mesh(replay)}
     for ski, name in enumerate(SKI_NAMES):
         named[f"{name} ski"] = ski_mesh(replay, frame, ski, exaggeration)
+    if replay.skier is not None:
+        named["skier"] = skier_mesh(replay, frame)
     made = replay.groove.time <= replay.time[frame]
     if made.any():
         named["groove"] = groove_mesh(replay, made)

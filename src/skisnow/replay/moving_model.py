@@ -1,7 +1,8 @@
-"""A whole replay as a glTF model that moves, in one binary file (GLB): skis that bend and twist, a groove that grows.
+"""A whole replay as a glTF model that moves, in one binary file (GLB): skis, a skier, a groove that grows.
 
 Each ski is a mesh with a skin: one joint for each station, which carries its cross section along. So a moment needs a
-place and an attitude for each station, and not a shape of the whole mesh, as morph targets would.
+place and an attitude for each station, and not a shape of the whole mesh, as morph targets would. A skier is a mesh for
+each part of the body, which moves as a whole.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from .colours import round_above
 from .glb import Glb
 from .meshes import CORNERS, grid_mesh, groove_mesh, snow_mesh, surface_heights, unloaded_ski_mesh, upright
 from .replay import SKI_NAMES
+from .skier import JOINTS
+from .skier_shapes import part_poses, skier_parts
 
 if TYPE_CHECKING:
     from .replay import Replay, ReplayBoots
@@ -41,16 +44,18 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     Metres; y is up as glTF 2.0 wants it, the run's own axes are those of the node ``run``. The one animation, ``run``,
     begins at 0 with the first moment and has a key at every moment, at most 100 a second; between them places go
     straight and attitudes by the shortest turn. The node ``sledge`` has the middle between the boots; below it each ski
-    has one joint for each station, from tip to tail. Nothing of the skis stays the same but their colours, which glTF
-    2.0 cannot move: they tell the mean force over the run. Each part of the groove has scale 0 until it is made, as
-    section 3.5.3 of the specification hides what is not to be seen. A camera goes along.
+    has one joint for each station, from tip to tail, and a skier one node for each part of the body. Nothing of the
+    skis stays the same but their colours, which glTF 2.0 cannot move: they tell the mean force over the run. Each part
+    of the groove has scale 0 until it is made, as section 3.5.3 of the specification hides what is not to be seen. A
+    camera goes along.
     """
     shown = _told_apart(thinned(replay))
     model = Glb()
     clock = model.array(shown.time, bounds=True)
     course = model.array(shown.place)
-    skis = [node for ski in range(2) for node in _ski(model, shown, ski, exaggeration, clock)]
-    sledge = model.node("sledge", translation=shown.place[0], rotation=_xyzw(shown)[0], children=skis)
+    boots, body = _skier(model, shown, clock)
+    skis = [node for ski in range(2) for node in _ski(model, shown, ski, exaggeration, clock, boots[ski : ski + 1])]
+    sledge = model.node("sledge", translation=shown.place[0], rotation=_xyzw(shown)[0], children=[*skis, *body])
     model.move(sledge, "translation", clock, course)
     model.move(sledge, "rotation", clock, model.array(_xyzw(shown)))
     ground = {"snow": snow_mesh(shown), "grid": grid_mesh(shown)}
@@ -91,8 +96,25 @@ def _about(axis: int, angle: FloatArray | float) -> FloatArray:
     return found
 
 
-def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int) -> tuple[int, int]:
-    """A ski: the node on the sledge that carries its joints, and the node with its mesh.
+def _skier(model: Glb, replay: Replay, clock: int) -> tuple[list[int], list[int]]:
+    """A skier: the nodes of both boots, which stand on the skis, and those of the body's parts on the sledge."""
+    boots: list[int] = []
+    body: list[int] = []
+    for part in [] if replay.skier is None else skier_parts(replay.skier.height):
+        mesh = model.mesh(part.name, part.mesh)
+        if replay.skier is None or part.start not in JOINTS:
+            boots.append(model.node(part.name, mesh=mesh))
+            continue
+        place, turn = part_poses(replay.skier, part)
+        turn = np.roll(turn, -1, axis=1)
+        body.append(model.node(part.name, mesh=mesh, translation=place[0], rotation=turn[0]))
+        model.move(body[-1], "translation", clock, model.array(place))
+        model.move(body[-1], "rotation", clock, model.array(turn))
+    return boots, body
+
+
+def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int, on_it: list[int]) -> tuple[int, int]:
+    """A ski: the node on the sledge that carries its joints and what stands on it, and the node with its mesh.
 
     The joints alone place a mesh with a skin (section 3.7.3.2), wherever its node is. It is on the sledge because some
     viewers look once how far the mesh reaches from its node, and draw it while that is in the picture.
@@ -110,7 +132,7 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int) 
     moved = None if skis.boots is None else _on_the_sledge(replay, skis.boots, ski)
     if moved is not None:
         boot = {"translation": moved[0][0], "rotation": moved[1][0]}
-    carrier = model.node(f"{name}, boot", children=joints, **boot)
+    carrier = model.node(f"{name}, boot", children=[*joints, *on_it], **boot)
     if moved is not None:
         model.move(carrier, "translation", clock, model.array(moved[0]))
         model.move(carrier, "rotation", clock, model.array(moved[1]))

@@ -15,8 +15,9 @@ from ..geometry.boot_axes import axes_of
 from ..given import GivenError, json_value
 from ..scenario import Plane, read_profile, read_terrain
 from ..ski import read_ski, ski_named
+from ..skier.segments import height_of
 from ..units import DEGREE
-from .of_run import Setting, assembled, facts_of, moving_boots
+from .of_run import Setting, assembled, facts_of, moving_boots, skis_words
 
 if TYPE_CHECKING:
     from ..course import Course
@@ -32,7 +33,13 @@ _PLAIN: Final = (
     "time", "speed", "heading", "turn_radius", "depth", "station", "bending", "twist", "edge_depth",
     "force_per_length", "attitude", "groove_width", "groove_depth", "groove_residual_depth",
 )  # fmt: skip
-_VECTORS: Final = {"place": "{}", "ski": "ski_{}", "groove": "groove_{}", "groove_left": "groove_left_{}"}
+_VECTORS: Final = {
+    "place": "{}",
+    "velocity": "velocity_{}",
+    "ski": "ski_{}",
+    "groove": "groove_{}",
+    "groove_left": "groove_left_{}",
+}
 
 
 def replay_of_file(
@@ -82,6 +89,8 @@ def _arrays(file: Any) -> dict[str, FloatArray]:
         name: np.stack([_values(file, pattern.format(axis)) for axis in "xyz"], axis=-1)
         for name, pattern in _VECTORS.items()
     }
+    if "centre_x" in file.variables:
+        vectors["centre"] = np.stack([_values(file, f"centre_{axis}") for axis in "xyz"], axis=-1)
     return plain | vectors
 
 
@@ -111,7 +120,7 @@ def _values(file: Any, name: str) -> FloatArray:
 
 def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
     ski, slope = ski or _ski(path, values), _slope(path, values)
-    edge_angle = values["sledge.edge_angle_deg"]
+    has_skier, edge_angle = values.get("skier.steers") is not None, values["sledge.edge_angle_deg"]
     return Setting(
         slope=slope,
         course=_course(path, values, slope),
@@ -125,9 +134,9 @@ def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, s
             hardness=values["snow.H_V_N_per_mm3"],
             stress=values["snow.S_f_N_per_mm2"],
             ratio=values["snow.unloading_ratio"],
-            ski=ski.name,
-            edge_angle=edge_angle,
+            skis=skis_words(ski.name, None if has_skier else edge_angle),
         ),
+        skier_height=height_of(values["sledge.mass_kg"], values["sledge.inertia_kg_m2"][0]) if has_skier else None,
     )
 
 

@@ -7,13 +7,18 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial.transform import Rotation
 
+from ..course import MovingPoint, passages
 from ..errors import ParameterError
 from ..scenario import Plane, Profile, Terrain
+from ..simulate.run_gates import feet_and_tips
+from ..skier.segments import height_of
 from ..units import DEGREE, N_PER_MM2, N_PER_MM3
 from .groove_times import groove_times
 from .quaternions import quaternions
-from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkis, ReplayTerrain, ReplayTrack
+from .replay import Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
+from .skier import replay_skier
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,6 +52,8 @@ class Setting:
         Of the sledge (rad, m, m).
     course
         Whose gates are shown, in the scenario's axes; None: there is none.
+    skier_height
+        Of the skier's body (m); None: a sledge.
     facts
         Lines of name and value for the reader.
     """
@@ -59,6 +66,7 @@ class Setting:
     line_spacing: float
     facts: tuple[tuple[str, str], ...]
     course: Course | None = None
+    skier_height: float | None = None
 
 
 def replay_of_run(
@@ -90,14 +98,16 @@ def replay_of_run(
     setting = _setting(run)
     boots = None if run.boots_by is None or run.boots is None else moving_boots(run.boots.place, run.boots.axes)
     found = assembled(_arrays(run), setting, title=title, track=track, boots=boots)
-    return found if gates is None else replace(found, gates=_gates(gates, setting.slope))
+    return found if gates is None else replace(found, gates=_gates(gates, setting.slope), gate_times=None)
 
 
 def _arrays(run: Run) -> dict[str, FloatArray]:
     """Under the names of run.nc, vectors in one."""
     skis, groove = run.skis, run.groove
+    centre = run.place if run.boots is None else run.boots.centre_of_mass
     return {
         "time": run.time, "place": run.place, "attitude": run.attitude, "speed": run.speed, "heading": run.heading,
+        "velocity": run.velocity, "centre": centre,
         "turn_radius": run.turn_radius, "depth": skis.depth, "ski": skis.track, "station": skis.station,
         "bending": skis.bending, "twist": skis.twist, "edge_depth": skis.edge_depth,
         "force_per_length": skis.force_per_length, "groove": groove.middle, "groove_left": groove.left,
@@ -114,8 +124,7 @@ def _setting(run: Run) -> Setting:
         hardness=contact.snow.snow_hardness / N_PER_MM3,
         stress=None if stress is None else stress / N_PER_MM2,
         ratio=contact.unloading_ratio,
-        ski=scenario.ski.name,
-        edge_angle=sledge.edge_angle / DEGREE,
+        skis=skis_words(scenario.ski.name, None if scenario.skier else sledge.edge_angle / DEGREE),
     )
     return Setting(
         slope=scenario.slope,
@@ -126,20 +135,26 @@ def _setting(run: Run) -> Setting:
         line_spacing=run.numbers["line_spacing_m"],
         facts=facts,
         course=scenario.course,
+        skier_height=height_of(sledge.mass, sledge.inertia[0]) if scenario.skier else None,
     )
 
 
 def facts_of(
-    *, outcome: str, hardness: float, stress: float | None, ratio: float, ski: str, edge_angle: float
+    *, outcome: str, hardness: float, stress: float | None, ratio: float, skis: str
 ) -> tuple[tuple[str, str], ...]:
-    """Lines for the reader; hardness H_V in N/mm³, stress S_f in N/mm², edge angle in degrees."""
+    """Lines for the reader; hardness H_V in N/mm³, stress S_f in N/mm²."""
     return (
         ("Outcome", outcome.replace("_", " ")),
         ("H_V", f"{hardness:.3g} N/mm³"),
         ("S_f", "not given" if stress is None else f"{stress:.3g} N/mm²"),
         ("k_u / H_V", f"{ratio:g}"),
-        ("Skis", f"{ski}, edge angle {edge_angle:.3g}°"),
+        ("Skis", skis),
     )
+
+
+def skis_words(ski: str, edge_angle: float | None) -> str:
+    """The skis and their edge angle (degrees); None: a skier sets it."""
+    return f"{ski}, edged by the skier" if edge_angle is None else f"{ski}, edge angle {edge_angle:.3g}°"
 
 
 def assembled(
@@ -174,7 +189,39 @@ def assembled(
         groove=_groove(arrays, setting.line_spacing),
         track=None if track is None else _on_the_snow(track, slope),
         gates=None if course is None else _gates([gate.turning for gate in course.gates], slope),
+        gate_times=None if course is None or len(arrays["time"]) < 2 else _gate_times(course, arrays, setting, boots),
+        skier=None if setting.skier_height is None else _skier(arrays, setting.skier_height, boots),
     )
+
+
+def _gate_times(
+    course: Course, arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots | None
+) -> FloatArray:
+    """Time from the first moment to each gate (s), as gates.csv has it; NaN where there is none."""
+    time, place = arrays["time"], arrays["place"]
+    if boots is not None:
+        feet, ahead = boots.place, _axes(boots)[..., 0]
+    else:
+        side = 0.5 * setting.stance_width * arrays["attitude"][:, :, 1]
+        feet, ahead = np.stack([place + side, place - side], axis=1), arrays["attitude"][:, None, :, 0]
+    tips = feet + float(setting.ski.station[0]) * ahead
+    middle = MovingPoint(time, place[:, :2], arrays["velocity"][:, :2])
+    found = passages(course, middle, feet_and_tips(time, feet, tips))
+    return np.array([np.nan if each is None else each - found.start_time for each in found.times])
+
+
+def _axes(boots: ReplayBoots) -> FloatArray:
+    """Axes (n, 2, 3, 3) of boots as columns."""
+    turns = Rotation.from_quat(np.roll(boots.attitude, -1, axis=-1).reshape(-1, 4))
+    return np.asarray(turns.as_matrix().reshape(*boots.attitude.shape[:2], 3, 3))
+
+
+def _skier(arrays: Mapping[str, FloatArray], height: float, boots: ReplayBoots | None) -> ReplaySkier | None:
+    """None where boots stand still: then nothing is known of a body."""
+    if boots is None:
+        return None
+    axes = boots.place, _axes(boots).swapaxes(-1, -2)
+    return replay_skier(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
 
 
 def _profile(slope: Profile) -> FloatArray:

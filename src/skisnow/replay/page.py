@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 
 MODULES: Final = (
     "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow_tile.js", "quads.js",
-    "snow.js", "grid.js", "relief.js", "groove.js", "sledge.js", "skis.js", "labels.js", "landmarks.js",
+    "snow.js", "grid.js", "relief.js", "groove.js", "sledge.js", "skier.js", "skis.js", "labels.js", "landmarks.js",
     "force_arrows.js", "plume.js", "cameras.js", "sharpness.js", "controls.js", "mini_map.js", "takeaway.js",
+    "gap.js",
     "stage.js", "replay.js",
 )  # fmt: skip
 """The program, each file before those that import it."""

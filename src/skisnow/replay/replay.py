@@ -31,6 +31,18 @@ class ReplayBoots:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class ReplaySkier:
+    """A skier in place of a sledge: the body's height (m), and its joints as they are drawn.
+
+    `joints` is (n, 17, 3) from the middle between the boots in the body's own axes (m), in the order of
+    `skisnow.replay.skier.JOINTS`.
+    """
+
+    height: float
+    joints: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ReplayTerrain:
     """A slope of measured heights around a run.
 
@@ -193,6 +205,10 @@ class Replay:
         A measured one beside, or None.
     gates
         (g, 3) feet of the poles of gates on the snow (m), one gate after the other, or None.
+    gate_times
+        (g,) from the run's first moment to each of them (s), NaN where its line was not crossed; None: not known.
+    skier
+        Where the run has one, or None.
     """
 
     title: str
@@ -211,4 +227,6 @@ class Replay:
     groove: ReplayGroove
     track: ReplayTrack | None = None
     gates: FloatArray | None = None
+    gate_times: FloatArray | None = None
     terrain: ReplayTerrain | None = None
+    skier: ReplaySkier | None = None

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from ..language import ENGLISH
 from .dates import days_words, moment_words
 from .number_formatting import counted, significant, whole
 from .sentences.caveats import caveats
@@ -16,6 +17,7 @@ from .sentences.key_results import headline, key_results
 from .sentences.penetration import procedures_compared, readings_used, seating_found, unloading_found
 from .sentences.regressions import regression_sentences
 from .table_html import table_html
+from .translated import translated_html
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -42,12 +44,19 @@ SECTIONS: Final = {
 _ONLY_WITH_PENETRATION: Final = ("law", "seating", "unloading")
 
 
-def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]) -> str:
+def page(
+    data: ReportData,
+    tables: Mapping[str, Table],
+    pictures: Sequence[Picture],
+    missing: Sequence[LeftOut],
+    *,
+    language: str = ENGLISH,
+) -> str:
     """The HTML of the whole report."""
     environment = Environment(
         loader=PackageLoader("skisnow.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
-    return environment.get_template("report.html").render(
+    english = environment.get_template("report.html").render(
         **_frame(data),
         **_words(data),
         tables=_Tables(tables),
@@ -56,6 +65,7 @@ def page(data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Pictu
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         matplotlib_version=version("matplotlib"),
     )
+    return translated_html(english, language, names=data.names)
 
 
 def tables_html(tables: Mapping[str, Table]) -> dict[str, Markup]:

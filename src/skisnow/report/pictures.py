@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..files import write_file
+from ..language import ENGLISH
 from .figures.drawing import FORMS, pictured
 from .figures.style import journal_style
+from .figures.translated import translate_figure
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence, Set
     from pathlib import Path
 
     from .figures.drawing import Drawing, Picture
@@ -25,6 +27,8 @@ def write_pictures(
     folder: Path,
     *,
     every: Sequence[str],
+    language: str = ENGLISH,
+    names: Set[str] = frozenset(),
     progress: Callable[[str], None] | None = None,
 ) -> list[Picture]:
     """Draw one after the other in the house style, and write each as PNG, SVG, PDF and EPS.
@@ -37,6 +41,8 @@ def write_pictures(
         Of the files; it is made where it is missing.
     every
         Names that such a report may have; files of those that are not drawn now are removed.
+    language, names
+        Of the figures, and what users wrote in them.
     progress
         Called with the name of each figure.
 
@@ -55,6 +61,7 @@ def write_pictures(
         for drawing in drawings:
             if progress is not None:
                 progress(f"figure {drawing.name}")
+            translate_figure(drawing.figure, language, names=names)
             pictures.append(pictured(drawing))
     for picture in pictures:
         write_picture(picture, folder)

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..estimate.observations import DENSITY_KEY
+from ..field import QUALITY_FLAGS
 from ..units import MM, N_PER_MM2, N_PER_MM3
 
 if TYPE_CHECKING:
@@ -79,6 +80,14 @@ class ReportData:
     def synthetic(self) -> bool:
         """Whether the word *synthetic* must stand wherever the numbers do."""
         return is_synthetic(self.campaign.name)
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """What the users of the campaign wrote, and codes: no words that another language has others for."""
+        campaign = self.campaign
+        tests = [each.experiment for each in (campaign.penetration, campaign.shear) if each is not None]
+        written = (campaign.name, campaign.place, *campaign.observers, *self.sites, *campaign.tools, *campaign.plates)
+        return frozenset((*written, *QUALITY_FLAGS, *(name for each in tests for name in each)))
 
     @property
     def penetration(self) -> list[Json]:

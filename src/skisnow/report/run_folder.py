@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ..course.gates_table import gates_csv
 from ..files import write_file
+from ..language import ENGLISH, require_language
 from ..scenario.plausibility import implausible_values
 from ..simulate.run_gates import run_gates
 from ..simulate.run_summary import summary_dict
@@ -32,6 +33,7 @@ def write_run(
     *,
     summary: Mapping[str, Any] | None = None,
     beside: Callable[[Path], None] | None = None,
+    language: str = ENGLISH,
     progress: Callable[[str], None] | None = None,
 ) -> Path:
     """Write all files beside the folder's own and move them into place: never those of two runs together.
@@ -46,6 +48,8 @@ def write_run(
         The contents of summary.json; left out: made from the run.
     beside
         Is given the folder in which all is made, for what else belongs to the run.
+    language
+        Of the page and the figures: en, or a language that there is a catalogue of (de).
     progress
         Called with a line of text now and then.
 
@@ -58,7 +62,10 @@ def write_run(
     ------
     OutputError
         A file cannot be written.
+    ParameterError
+        There are no texts of the language.
     """
+    require_language(language)
     folder, report = Path(folder), progress or _silent
     for sentence in tidied(folder):
         report(sentence)
@@ -71,7 +78,7 @@ def write_run(
         _write_gates(run, stage.path)
         if beside is not None:
             beside(stage.path)
-        page = write_run_report(run, contents, stage.path, progress=report)
+        page = write_run_report(run, contents, stage.path, language=language, progress=report)
     return folder / page.name
 
 

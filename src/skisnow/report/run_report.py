@@ -12,6 +12,8 @@ from markupsafe import Markup
 from ..course.gates_table import time_warnings
 from ..files import require_writable, write_file
 from ..json_number import json_number
+from ..language import ENGLISH
+from ..scenario.keys import SCENARIO_KEYS
 from ..simulate.run_gates import run_gates
 from ..simulate.run_summary import run_warnings
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
@@ -36,6 +38,8 @@ FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
 FURTHER: Final = ("course", "balance")
 """Those that a run with a course, and one with a skier, has beside them."""
+CHOICES: Final = frozenset(word for key in SCENARIO_KEYS.values() for word in key.choices)
+"""Words of a scenario's file: they are the same in every language."""
 REPLAY: Final = "replay.html"
 """The run in three dimensions, where that was asked for."""
 
@@ -43,7 +47,12 @@ _LINK: Final = Markup('<a href="{}">the run in three dimensions</a>').format(REP
 
 
 def write_run_report(
-    run: Run, summary: Mapping[str, Any], folder: str | Path, *, progress: Callable[[str], None] | None = None
+    run: Run,
+    summary: Mapping[str, Any],
+    folder: str | Path,
+    *,
+    language: str = ENGLISH,
+    progress: Callable[[str], None] | None = None,
 ) -> Path:
     """Write run.nc, figures/ and report.html.
 
@@ -55,6 +64,8 @@ def write_run_report(
         The contents of summary.json, with ``verification`` where the run was repeated.
     folder
         Made where it is missing. Other files in it stay; figures of an earlier run are replaced or removed.
+    language
+        Of the page and the figures: en, or a language that there is a catalogue of (de).
     progress
         Called with a line of text now and then.
 
@@ -73,13 +84,22 @@ def write_run_report(
     report = progress or _silent
     report("run.nc")
     write_run_file(run, summary["scenario"], folder / "run.nc", provenance=summary["provenance"])
-    pictures = write_pictures(run_drawings(run), folder / "figures", every=(*FIGURES, *FURTHER), progress=report)
+    every = (*FIGURES, *FURTHER)
+    pictures = write_pictures(run_drawings(run), folder / "figures", every=every, language=language, progress=report)
     report("report.html")
-    write_file(folder / "report.html", run_page(run, summary, pictures, has_replay=(folder / REPLAY).is_file()))
+    has_replay = (folder / REPLAY).is_file()
+    write_file(folder / "report.html", run_page(run, summary, pictures, has_replay=has_replay, language=language))
     return folder / "report.html"
 
 
-def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], *, has_replay: bool = False) -> str:
+def run_page(
+    run: Run,
+    summary: Mapping[str, Any],
+    pictures: Sequence[Picture],
+    *,
+    has_replay: bool = False,
+    language: str = ENGLISH,
+) -> str:
     """The HTML of a run's report; with a replay beside it a link leads there."""
     by_name = {picture.name: [picture] for picture in pictures}
     sections = [
@@ -96,7 +116,8 @@ def run_page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], 
         sections.append(Section("verification", "Computed again", tables=[verification_table(summary["verification"])]))
     sections.append(Section("scenario", "Scenario", tables=[scenario_table(summary["scenario"])]))
     sections.append(Section("provenance", "Provenance", words=provenance_sentences(run, summary)))
-    return sheet(_header(run, has_replay=has_replay), sections)
+    header = _header(run, has_replay=has_replay)
+    return sheet(header, sections, language=language, names=CHOICES | {run.scenario.ski.name})
 
 
 def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:

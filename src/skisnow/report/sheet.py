@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from ..language import ENGLISH
 from .table_html import table_html
+from .translated import translated_html
 
 if TYPE_CHECKING:
     from .figures.drawing import Picture
@@ -64,14 +66,16 @@ CITED: Final = (
 """What a reader cites of such a page: the program and the papers whose methods it has, as CITATION.cff has them."""
 
 
-def sheet(header: Header, sections: Sequence[Section]) -> str:
-    """The HTML."""
+def sheet(
+    header: Header, sections: Sequence[Section], *, language: str = ENGLISH, names: Set[str] = frozenset()
+) -> str:
+    """The HTML in a language; ``names`` are what users wrote."""
     environment = Environment(
         loader=PackageLoader("skisnow.report"), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
     pictures = [picture for section in sections for picture in section.pictures]
     every = [table for section in sections for table in section.tables]
-    return environment.get_template("sheet.html").render(
+    english = environment.get_template("sheet.html").render(
         header=header,
         sections=sections,
         version=version("skisnow"),
@@ -80,3 +84,4 @@ def sheet(header: Header, sections: Sequence[Section]) -> str:
         tables={table.name: table_html(table, number=number) for number, table in enumerate(every, start=1)},
         css=Markup(files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")),
     )
+    return translated_html(english, language, names=names)

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from markupsafe import Markup
 
-_SYMBOL: Final = re.compile(r"(?<![\w<>/])([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
+SYMBOL: Final = re.compile(r"(?<![\w<>/])([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
 _PERCENT: Final = re.compile(r"(?<=\d) %")
 _LATEX_SPECIAL: Final = {
     "\\": r"\textbackslash{}",
@@ -73,7 +73,7 @@ def prose(template: str, **values: Any) -> Markup:
 def html(text: str) -> Markup:
     """Our own words with their symbols set in HTML."""
     tied = _PERCENT.sub("\u00a0%", text)
-    return Markup(_SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", str(Markup.escape(tied))))
+    return Markup(SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", str(Markup.escape(tied))))
 
 
 def latex(text: str) -> str:
@@ -83,7 +83,7 @@ def latex(text: str) -> str:
     '$S_\\mathrm{f}$ in N/mm\\textsuperscript{2}'
     """
     pieces, end = [], 0
-    for found in _SYMBOL.finditer(text):
+    for found in SYMBOL.finditer(text):
         pieces += [latex_escaped(text[end : found.start()]), rf"${found[1]}_\mathrm{{{found[2]}}}$"]
         end = found.end()
     return "".join([*pieces, latex_escaped(text[end:])])

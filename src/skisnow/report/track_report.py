@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ..course.gates_table import gates_csv
 from ..files import require_writable, write_file
+from ..language import ENGLISH
 from ..staging import staged
 from ..track.summary import summary_dict
 from .figures.course_line import course_line
@@ -15,7 +16,7 @@ from .figures.drawing import Drawing
 from .figures.track_along import track_along
 from .figures.track_map import track_map
 from .pictures import picture_files, write_pictures
-from .symbols import prose
+from .symbols import figure_text, prose
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -35,6 +36,7 @@ def write_track_report(
     *,
     values: Mapping[str, Any] | None = None,
     gates: CourseResult | None = None,
+    language: str = ENGLISH,
     progress: Callable[[str], None] | None = None,
 ) -> Path:
     """Write figures/map, figures/along (each .png and .svg) and track.json.
@@ -49,6 +51,8 @@ def write_track_report(
         What goes into track.json; left out, what `summary_dict` gives.
     gates
         Of a course: then gates.csv and figures/course, the line over the gates with the speed as colour, too.
+    language
+        Of the figures: en, or a language that there is a catalogue of (de).
     progress
         Called with a line of text now and then.
 
@@ -71,8 +75,9 @@ def write_track_report(
         stage.stale += [*picture_files((*FIGURES, OF_COURSE)), "gates.csv"]
         if gates is not None:
             write_file(stage.path / "gates.csv", gates_csv(gates))
+        names = frozenset({figure_text(summary.track.name)})
         drawings, every = track_drawings(summary, gates), (*FIGURES, OF_COURSE)
-        write_pictures(drawings, stage.path / "figures", every=every, progress=progress)
+        write_pictures(drawings, stage.path / "figures", every=every, language=language, names=names, progress=progress)
         write_file(stage.path / "track.json", f"{text}\n")
     return folder / "track.json"
 

@@ -10,6 +10,7 @@ from ..errors import ParameterError
 from ..estimate import Analysis
 from ..estimate.results_text import results_json
 from ..files import write_file
+from ..language import ENGLISH, require_language
 from ..memory import paused_collector
 from ..staging import staged, tidied
 from .figures import figures_of
@@ -28,7 +29,13 @@ if TYPE_CHECKING:
 RESULTS: Final = "results.json"
 
 
-def write_report(analysis: Analysis, out: str | Path, *, progress: Callable[[str], None] | None = None) -> Path:
+def write_report(
+    analysis: Analysis,
+    out: str | Path,
+    *,
+    language: str = ENGLISH,
+    progress: Callable[[str], None] | None = None,
+) -> Path:
     """Write report.html, figures/, tables/ and results.json of an analysed campaign.
 
     All is made in a folder of its own inside ``out`` and moved into place at the end: an error or interruption before
@@ -41,6 +48,9 @@ def write_report(analysis: Analysis, out: str | Path, *, progress: Callable[[str
     out
         The folder; made where it is missing. Other files in it stay. Of an earlier report's tables and figures those
         that this campaign has no data for are removed, so that the folder tells of one campaign.
+    language
+        Of the page and the figures: en, or a language that there is a catalogue of (de). Tables and results.json, which
+        programs read, are the same in every language.
     progress
         Called with a line of text now and then.
 
@@ -52,7 +62,7 @@ def write_report(analysis: Analysis, out: str | Path, *, progress: Callable[[str
     Raises
     ------
     ParameterError
-        What is given is no analysis.
+        What is given is no analysis, or there are no texts of the language.
     OutputError
         A file cannot be written. results.json, moved last, says by its presence beside the others that all is there.
 
@@ -70,16 +80,17 @@ def write_report(analysis: Analysis, out: str | Path, *, progress: Callable[[str
             "a report is written of an analysis, into a folder: write_report(analyse(campaign), folder); given is a "
             f"{type(analysis).__name__}"
         )
+    require_language(language)
     report = progress or _silent
     out = Path(out)
     for sentence in tidied(out):
         report(sentence)
     with paused_collector(), staged(out, last=RESULTS) as stage:
-        stage.stale += _write(ReportData(analysis), stage.path, report)
+        stage.stale += _write(ReportData(analysis), stage.path, language, report)
     return out / "report.html"
 
 
-def _write(data: ReportData, stage: Path, report: Callable[[str], None]) -> list[str]:
+def _write(data: ReportData, stage: Path, language: str, report: Callable[[str], None]) -> list[str]:
     """Write all files below the stage; returns those of an earlier report that this campaign has no data for."""
     report("tables of the report")
     every_table = tables_of(data)
@@ -87,11 +98,11 @@ def _write(data: ReportData, stage: Path, report: Callable[[str], None]) -> list
     for table in tables.values():
         report(f"table {table.name}")
         _write_table(table, stage / "tables")
-    pictures, missing = figures_of(data, progress=report)
+    pictures, missing = figures_of(data, language=language, progress=report)
     for picture in pictures:
         write_picture(picture, stage / "figures")
     report("report.html")
-    write_file(stage / "report.html", page(data, tables, pictures, missing))
+    write_file(stage / "report.html", page(data, tables, pictures, missing, language=language))
     report("results.json")
     write_file(stage / RESULTS, results_json(data.results))
     stale = [f"tables/{stem}{ending}" for stem in _other_stems(every_table.values()) for ending in (".csv", ".tex")]

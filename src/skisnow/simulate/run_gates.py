@@ -62,19 +62,20 @@ def racer_parts(run: Run) -> dict[str, MovingPoint]:
     """Both feet and both ski tips, from above."""
     side, tip = run.scenario.sledge.stance_width / 2.0, float(run.scenario.ski.station[0])
     if run.boots is not None:
-        tips = run.boots.place + tip * run.boots.axes[:, :, 0]
-        points = {"foot": run.boots.place, "tip": tips}
-        return {
-            f"{name} {part}": MovingPoint(run.time, place[:, ski, :2])
-            for part, place in points.items()
-            for ski, name in enumerate(("left", "right"))
-        }
-    places = {
-        f"{name} {part}": np.array([ahead, left, 0.0])
-        for name, left in (("left", side), ("right", -side))
-        for part, ahead in (("foot", 0.0), ("tip", tip))
+        return feet_and_tips(run.time, run.boots.place, run.boots.place + tip * run.boots.axes[:, :, 0])
+    beside = np.array([[0.0, side, 0.0], [0.0, -side, 0.0]])
+    feet, tips = (run.place[:, None] + np.einsum("nab,kb->nka", run.attitude, each)
+                  for each in (beside, beside + np.array([tip, 0.0, 0.0])))  # fmt: skip
+    return feet_and_tips(run.time, feet, tips)
+
+
+def feet_and_tips(time: FloatArray, feet: FloatArray, tips: FloatArray) -> dict[str, MovingPoint]:
+    """What must cross the line of a gate, from the places (n, 2, 3) of feet and tips (m) at times (n,) (s)."""
+    return {
+        f"{name} {part}": MovingPoint(time, place[:, ski, :2])
+        for part, place in (("foot", feet), ("tip", tips))
+        for ski, name in enumerate(("left", "right"))
     }
-    return {name: MovingPoint(run.time, (run.place + run.attitude @ place)[:, :2]) for name, place in places.items()}
 
 
 def run_gates(run: Run) -> CourseResult | None:

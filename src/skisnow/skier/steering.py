@@ -42,6 +42,13 @@ class Steering(Protocol):
         """To the left (m/s²), where a carve in balance has so much of it."""
 
 
+class Line(Protocol):
+    """Lies over a course."""
+
+    def at(self, x: float) -> tuple[float, float, float]:
+        """Place aside (m), slope and second derivative (1/m) at a place down the slope (m)."""
+
+
 @dataclass(frozen=True, slots=True)
 class TurnsOverTime:
     """Turns to the left and to the right by turns, the first half a turn long, then straight on.
@@ -107,12 +114,17 @@ class LineThroughGates:
     def acceleration(self, at: Underway, carving: float) -> float:
         """That of the line, a time ahead, and what leads back to it."""
         del carving
-        sight, speed = self.sight, at.speed
-        turned = 0.5 * at.acceleration * sight / max(speed, 1.0)
-        x = at.x + sight * speed * math.cos(at.heading + turned)
-        y = at.y + sight * speed * math.sin(at.heading + turned)
-        aside, slope, bend = self.at(x)
-        along = math.atan(slope)
-        off, turn = (y - aside) * math.cos(along), at.heading + 2.0 * turned - along
-        back = -(self.stiffness**2) * off - 2.0 * self.stiffness * speed * math.sin(turn)
-        return speed**2 * bend * math.cos(along) ** 3 + back
+        return pursued(self, at, sight=self.sight, rate=self.stiffness)
+
+
+def pursued(line: Line, at: Underway, *, sight: float, rate: float) -> float:
+    """Acceleration to the left (m/s²) of a line, a time ahead (s), and what leads back to it at a rate (1/s)."""
+    speed = at.speed
+    turned = 0.5 * at.acceleration * sight / max(speed, 1.0)
+    x = at.x + sight * speed * math.cos(at.heading + turned)
+    y = at.y + sight * speed * math.sin(at.heading + turned)
+    aside, slope, bend = line.at(x)
+    along = math.atan(slope)
+    off, turn = (y - aside) * math.cos(along), at.heading + 2.0 * turned - along
+    back = -(rate**2) * off - 2.0 * rate * speed * math.sin(turn)
+    return speed**2 * bend * math.cos(along) ** 3 + back

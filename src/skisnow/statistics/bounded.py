@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..errors import ParameterError
-from .least_squares import BoolArray, FloatArray, as_predictors, as_response, pivoted_qr, rank_of
+from .least_squares import BoolArray, FloatArray, as_predictors, as_response
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -80,7 +80,7 @@ def non_negative_fit(
 
     Notes
     -----
-    The design is scaled by columns and factorised as QR; all sets of active bounds are solved in the p × p triangle.
+    The design is scaled by columns and factorised as QR; all sets of active bounds are solved in the triangle.
 
     Examples
     --------
@@ -92,20 +92,82 @@ def non_negative_fit(
     """
     y = as_response(response)
     A = as_predictors(design, len(y))
-    n, p = A.shape
-    _require_few(p)
-    root = _root_weights(weights, n)
-    weighted = A * root[:, None]
-    scale = np.linalg.norm(weighted, axis=0)
-    unit = np.where(scale > 0, scale, 1.0)
-    Q, R, order = pivoted_qr(weighted / unit)
-    triangle = np.empty_like(R)
-    triangle[:, order] = R
-    scaled = _best_support(triangle, Q.T @ (y * root), n)
-    coefficients = scaled / unit
-    residuals = y - A @ coefficients
-    sse = float(np.sum((root * residuals) ** 2))
-    return NonNegativeFit(coefficients, coefficients == 0.0, sse, residuals, rank_of(R, n))
+    found = condensed(A, y, weights=weights).solved()
+    residuals = y - A @ found.coefficients
+    sse = float(np.sum((_root_weights(weights, len(y)) * residuals) ** 2))
+    return NonNegativeFit(found.coefficients, found.coefficients == 0.0, sse, residuals, found.rank)
+
+
+class Solved(NamedTuple):
+    """Coefficients ≥ 0, exactly 0.0 on the bound, and the rank of the design."""
+
+    coefficients: FloatArray
+    rank: int
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """A design of p columns and a response as least squares see them: of their n rows no more than p + 1 are left.
+
+    Attributes
+    ----------
+    design
+        Shape (m, p), columns of length one or zero.
+    response
+        Shape (m,).
+    scale
+        Shape (p,): what the columns were divided by.
+    n
+        Rows that were condensed.
+    """
+
+    design: FloatArray
+    response: FloatArray
+    scale: FloatArray
+    n: int
+
+    def solved(self, projection: FloatArray | None = None, offset: FloatArray | None = None) -> Solved:
+        """Minimise ‖design (offset + projection β) - response‖ over β ≥ 0.
+
+        Parameters
+        ----------
+        projection
+            Shape (p, q), q from 1 to 6; None: β are the coefficients of the columns themselves.
+        offset
+            Shape (p,), coefficients that are given; None: none.
+        """
+        A, z = self.design * self.scale, self.response
+        z = z if offset is None else z - A @ offset
+        A = A if projection is None else A @ projection
+        _require_few(A.shape[1])
+        unit = _lengths(A)
+        found = _best_support(A / unit, z, self.n)
+        return Solved(found.coefficients / unit, found.rank)
+
+
+def condensed(design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.ArrayLike | None = None) -> Condensed:
+    """Factorise a design once for many fits to the same response; shapes and errors are those of `non_negative_fit`.
+
+    Examples
+    --------
+    >>> few = condensed([[1, 1], [2, 1], [3, 1]], [1, 3, 5])
+    >>> few.solved(np.array([[1.0], [0.0]])).coefficients.round(6).tolist()  # without the column of ones
+    [1.571429]
+    """
+    y = as_response(response)
+    A = as_predictors(design, len(y))
+    if weights is not None:
+        root = _root_weights(weights, len(y))
+        A, y = A * root[:, None], y * root
+    unit = _lengths(A)
+    few = np.asarray(np.linalg.qr(np.column_stack((A / unit, y)), mode="r"), dtype=float)
+    return Condensed(few[:, :-1], few[:, -1], unit, len(y))
+
+
+def _lengths(A: FloatArray) -> FloatArray:
+    """Of the columns, 1 where it is zero."""
+    length = np.linalg.norm(A, axis=0)
+    return np.where(length > 0, length, 1.0)
 
 
 def _require_few(p: int) -> None:
@@ -129,10 +191,14 @@ def _supports(p: int) -> tuple[tuple[int, ...], ...]:
     return (everything, *(s for size in range(p) for s in combinations(everything, size)))
 
 
-def _best_support(A: FloatArray, z: FloatArray, n: int) -> FloatArray:
-    """Minimise ‖A x - z‖ over x ≥ 0 for a small A with columns of length one or zero."""
-    best, least = np.zeros(A.shape[1]), np.inf
-    for support in _supports(A.shape[1]):
+def _best_support(A: FloatArray, z: FloatArray, n: int) -> Solved:
+    """Minimise ‖A x - z‖ over x ≥ 0 for a small A with columns of length one or zero, condensed from n rows."""
+    p = A.shape[1]
+    free, rank = _least_squares(A, z, n)
+    if rank == p and (free > 0.0).all():
+        return Solved(free, rank)
+    best, least = np.zeros(p), np.inf
+    for support in _supports(p)[1:]:
         x = _solved_on(A, z, support, n)
         if x is None:
             continue
@@ -140,10 +206,16 @@ def _best_support(A: FloatArray, z: FloatArray, n: int) -> FloatArray:
         gain[list(support)] = 0.0
         violation = max(float(np.max(gain, initial=0.0)), 0.0)
         if violation <= _KKT_TOLERANCE * (float(np.linalg.norm(z)) + float(np.sum(x))):
-            return x
+            return Solved(x, rank)
         if violation < least:
             best, least = x, violation
-    return best
+    return Solved(best, rank)
+
+
+def _least_squares(A: FloatArray, z: FloatArray, n: int) -> tuple[FloatArray, int]:
+    """The shortest least-squares solution, and the numerical rank."""
+    solution, _, rank, _ = np.linalg.lstsq(A, z, rcond=max(n, A.shape[1]) * np.finfo(float).eps)
+    return np.asarray(solution, dtype=float), int(rank)
 
 
 def _solved_on(A: FloatArray, z: FloatArray, support: tuple[int, ...], n: int) -> FloatArray | None:
@@ -151,13 +223,10 @@ def _solved_on(A: FloatArray, z: FloatArray, support: tuple[int, ...], n: int) -
     x = np.zeros(A.shape[1])
     if support:
         columns = list(support)
-        part = A[:, columns]
-        solution, _, rank, _ = np.linalg.lstsq(part, z, rcond=max(n, A.shape[1]) * np.finfo(float).eps)
-        if rank < len(columns):
+        solution, rank = _least_squares(A[:, columns], z, n)
+        if rank < len(columns) or not (solution > 0.0).all():
             return None
         x[columns] = solution
-        if not np.all(x[columns] > 0):
-            return None
     return x
 
 

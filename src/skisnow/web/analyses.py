@@ -34,11 +34,11 @@ MOST_CHOICES: Final = 4
 
 @dataclass(eq=False)
 class Analysed:
-    """Numbers of one choice under a key of their own, figures as far as drawn; None: there are no data for that one."""
+    """Numbers of one choice under a key of their own, figures by language as far as drawn; None: there are no data."""
 
     key: str
     numbers: Numbers
-    figures: list[Shown | None] = field(default_factory=list)
+    figures: dict[str, list[Shown | None]] = field(default_factory=dict)
     drawing: asyncio.Lock = field(default_factory=asyncio.Lock)
 
 
@@ -139,13 +139,13 @@ class Analyses:
             raise StoreError(f"The store has no campaign with the id {id_!r}; the list of campaigns names all.")
         return counts[id_]
 
-    async def figures(self, analysed: Analysed) -> AsyncIterator[Shown]:
+    async def figures(self, analysed: Analysed, language: str) -> AsyncIterator[Shown]:
         """The figures one after another, each as soon as it is drawn, whoever had it drawn."""
-        numbers = analysed.numbers
+        numbers, drawn = analysed.numbers, analysed.figures.setdefault(language, [])
         for number in range(N_FIGURES):
             async with analysed.drawing:
-                if number == len(analysed.figures):
-                    analysed.figures.append(await self._worker.do(figure, numbers.analysis, number))
-            shown = analysed.figures[number]
+                if number == len(drawn):
+                    drawn.append(await self._worker.do(figure, numbers.analysis, number, language))
+            shown = drawn[number]
             if shown is not None:
                 yield shown

@@ -16,9 +16,11 @@ from ..report import write_report
 from ..report.figures import DRAWERS
 from ..report.figures.drawing import Drawing, svg_of
 from ..report.figures.style import journal_style, site_styles
+from ..report.figures.translated import translate_figure
 from ..report.page import tables_html
 from ..report.report_data import ReportData
 from ..report.sentences.key_results import key_results
+from ..report.symbols import figure_text
 from ..report.tables import tables_of
 
 if TYPE_CHECKING:
@@ -61,6 +63,11 @@ class Numbers:
         return self.analysis.results
 
     @property
+    def names(self) -> frozenset[str]:
+        """What users wrote, which no language has other words for."""
+        return ReportData(self.analysis).names
+
+    @property
     def excluding(self) -> frozenset[str]:
         """Codes of the quality flags that leave an experiment out."""
         return self.analysis.campaign.excluding
@@ -95,13 +102,14 @@ def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
     return Numbers(analysis, tuple(map(str, key_results(data))), shown)
 
 
-def figure(analysis: Analysis, number: int) -> Shown | None:
+def figure(analysis: Analysis, number: int, language: str) -> Shown | None:
     """Draw one of the report's figures, counted from 0, of what `numbers_of` gave; None: there are no data for it."""
     data = ReportData(analysis)
     with journal_style():
         drawn = DRAWERS[number](data, site_styles(data))
         if not isinstance(drawn, Drawing):
             return None
+        translate_figure(drawn.figure, language, names=frozenset(map(figure_text, data.names)))
         return Shown(drawn.name, drawn.alt, str(drawn.whole_caption), svg_of(drawn))
 
 
@@ -109,9 +117,9 @@ def ready() -> None:
     """Draw nothing: a process that was asked for this has what it needs to draw."""
 
 
-def write_whole_report(analysis: Analysis, out: str) -> None:
+def write_whole_report(analysis: Analysis, out: str, language: str) -> None:
     """Write the report with its tables, figures and results.json."""
-    write_report(analysis, Path(out))
+    write_report(analysis, Path(out), language=language)
 
 
 def choosable_flags() -> dict[str, str]:

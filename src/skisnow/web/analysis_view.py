@@ -13,12 +13,12 @@ from nicegui import ui
 from ..report.number_formatting import counted
 from .analysing import Choice, Numbers, Refusal, choosable_flags
 from .error_pages import error_sentence
-from .language import said
+from .language import language_of, said
 from .layout import heading, sentence
 from .worded import Words, html_words, named
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
+    from collections.abc import Awaitable, Callable, Set
     from typing import TypeAlias
 
     from nicegui.events import ValueChangeEventArguments
@@ -118,7 +118,7 @@ class AnalysisView:
     async def _draw(self, found: Analysed, asked: int) -> None:
         """Show each figure as it comes; those of another choice stay until then."""
         begun = False
-        async for shown in self._analyses.figures(found):
+        async for shown in self._analyses.figures(found, language_of(self._figures.client)):
             if self._is_old(asked):
                 return
             if not begun:
@@ -127,7 +127,7 @@ class AnalysisView:
                     heading("Figures")
                 begun = True
             with self._figures:
-                _figure(shown)
+                _figure(shown, found.numbers.names)
         if not self._is_old(asked):
             self._status.set_text(_counts(found.numbers))
 
@@ -139,11 +139,11 @@ class AnalysisView:
             with ui.element("ul").classes("results"):
                 for words in found.key_results:
                     with ui.element("li"):
-                        html_words(words)
+                        html_words(words, found.names)
             for warning in found.results["penetration"]["warnings"]:
                 sentence(warning, "quiet")
             if FIRST_TABLE in found.tables:
-                _table(found.tables[FIRST_TABLE])
+                _table(found.tables[FIRST_TABLE], found.names)
 
     def _show_tables(self, found: Numbers) -> None:
         self._tables.clear()
@@ -152,9 +152,9 @@ class AnalysisView:
                 if name == FIRST_TABLE:
                     continue
                 if name in LONG_TABLES:
-                    _behind(LONG_TABLES[name], partial(_table, html))
+                    _behind(LONG_TABLES[name], partial(_table, html, found.names))
                 else:
-                    _table(html)
+                    _table(html, found.names)
 
     def _show_choices(self, found: Numbers) -> None:
         with self._choices:
@@ -217,8 +217,8 @@ def _behind(words: str, fill: Callable[[], None]) -> None:
     details.on("toggle", opened)
 
 
-def _table(html: str) -> None:
-    html_words(html)
+def _table(html: str, names: Set[str]) -> None:
+    html_words(html, names)
 
 
 def _counts(found: Numbers) -> str:
@@ -230,11 +230,11 @@ def _counts(found: Numbers) -> str:
     )
 
 
-def _figure(shown: Shown) -> None:
+def _figure(shown: Shown, names: Set[str]) -> None:
     data = b64encode(shown.svg.encode()).decode("ascii")
     with ui.element("figure"):
         image = ui.element("img")
         image.props["src"] = f"data:image/svg+xml;base64,{data}"
-        image.props["alt"] = shown.alt
+        image.props["alt"] = said(shown.alt)
         with ui.element("figcaption"):
-            html_words(shown.caption)
+            html_words(shown.caption, names)

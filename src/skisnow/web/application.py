@@ -11,9 +11,10 @@ from nicegui import app as pages_app
 from nicegui import ui
 from starlette.responses import FileResponse, RedirectResponse, Response
 
+from ..language import languages
 from .error_pages import add_error_pages, log_to
 from .guard import Access, Guard
-from .language import COOKIE, languages
+from .language import COOKIE
 from .layout import KEEPING, LANGUAGE, SCRIPT, STYLES
 from .pages import INNER, PAGES
 from .patience import RECONNECT_S, use_heartbeat

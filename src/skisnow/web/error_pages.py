@@ -12,8 +12,9 @@ from nicegui import app, ui
 from starlette.responses import HTMLResponse, Response
 
 from ..errors import FieldDataError, ParameterError, SkisnowError, StoreError
+from ..language import ENGLISH, catalogue
 from .guard import STATUS
-from .language import ENGLISH, catalogue, language_of_request, said
+from .language import language_of_request, said
 from .layout import framed, sentence
 
 if TYPE_CHECKING:

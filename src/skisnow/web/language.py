@@ -2,40 +2,18 @@
 
 from __future__ import annotations
 
-from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
 
 from nicegui import Client, ui
 
-from .catalogue import Catalogue, read_catalogue
+from ..language import ENGLISH, catalogue, languages
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from starlette.requests import Request
 
-FOLDER: Final = Path(__file__).parent / "languages"
-ENGLISH: Final = "en"
 COOKIE: Final = "skisnow-language"
-NAME: Final = "English"
-"""What a language calls itself: in a catalogue the translation of this word."""
 _OF_PAGES: Final = WeakKeyDictionary[Client, str]()
-
-
-@cache
-def languages() -> Mapping[str, str]:
-    """What each language calls itself, by its code; a further one is one more file."""
-    return {ENGLISH: NAME} | {
-        place.stem: catalogue(place.stem).translated(NAME) for place in sorted(FOLDER.glob("*.po"))
-    }
-
-
-@cache
-def catalogue(code: str) -> Catalogue:
-    """The words of a language; English has none."""
-    return Catalogue({} if code == ENGLISH else read_catalogue(FOLDER / f"{code}.po"))
 
 
 def language_asked(chosen: str | None, accepted: str) -> str:
@@ -75,5 +53,6 @@ def language_of_request(request: Request) -> str:
 
 
 def said(text: str, client: Client | None = None) -> str:
-    """A text in the language of the page."""
-    return catalogue(language_of(client)).translated(text)
+    """A text in the language of the page, its numbers as there."""
+    words = catalogue(language_of(client))
+    return words.with_numbers(words.translated(text))

@@ -11,7 +11,8 @@ from urllib.parse import quote
 
 from nicegui import ui
 
-from .language import language_of, languages, said
+from ..language import languages
+from .language import language_of, said
 from .pages import PAGES
 from .worded import Words, named
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
@@ -43,6 +44,16 @@ def analysis(kind: str, id_: str) -> str:
 def export(kind: str, id_: str) -> str:
     """Where a campaign's zip comes from."""
     return f"/export/{kind}/{id_}.zip"
+
+
+def plain_stem(called: str, otherwise: str) -> str:
+    """A file's name without folder and ending, in letters that a folder has on every system.
+
+    >>> plain_stem("Hang 3/Übungs lauf.gpx", "track"), plain_stem("雪.csv", "course")
+    ('bungs-lauf', 'course')
+    """
+    stem = PurePosixPath(called.replace("\\", "/")).name.rsplit(".", 1)[0]
+    return re.sub(r"[^A-Za-z0-9]+", "-", stem).strip("-")[:40] or otherwise
 
 
 def required_id(said: str) -> str:

@@ -31,17 +31,37 @@ def estimated_s(folder: Path, jobs: list[Job], values: Mapping[str, Any]) -> flo
     values
         Of the scenario, by key.
     """
-    simulated = _simulated_s(values)
+    simulated = simulated_s(values)
     if simulated is None:
         return None
-    told = [found for job in jobs if (found := _told(folder, job)) is not None][:LOOKED_AT]
-    alike = [each for each in told if each.method == values.get("solver.method")]
-    slowness = sum(each.wall for each in alike) / sum(each.simulated for each in alike) if alike else SLOWNESS
+    told = _last(folder, jobs)
     around = sum(each.took - each.wall for each in told) / len(told) if told else AROUND_S
-    return slowness * simulated + around
+    return slowness(folder, jobs, values.get("solver.method")) * simulated + around
 
 
-def _simulated_s(values: Mapping[str, Any]) -> float | None:
+def slowness(folder: Path, jobs: list[Job], method: object) -> float:
+    """Computing time over simulated time of the last runs with this method."""
+    alike = [each for each in _last(folder, jobs) if each.method == method]
+    return sum(each.wall for each in alike) / sum(each.simulated for each in alike) if alike else SLOWNESS
+
+
+def duration_words(seconds: float) -> str:
+    """In words, as exact as it is known.
+
+    >>> duration_words(42.0), duration_words(600.0), duration_words(20_000.0)
+    ('40 s', '10 min', '6 h')
+    """
+    if seconds < 90.0:
+        return f"{max(5, 5 * round(seconds / 5))} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 120 else f"{round(minutes / 60)} h"
+
+
+def _last(folder: Path, jobs: list[Job]) -> list[_Told]:
+    return [found for job in jobs if (found := _told(folder, job)) is not None][:LOOKED_AT]
+
+
+def simulated_s(values: Mapping[str, Any]) -> float | None:
     """How long the run goes on (s): its duration, or its length at the speed of the start, the shorter one."""
     duration, length, speed = (values.get(key) for key in ("run.duration_s", "run.length_m", "start.speed_m_per_s"))
     ends = [float(duration)] if duration else []

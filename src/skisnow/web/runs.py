@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 from ..errors import ParameterError
 from ..files import write_file
 from ..given import GivenError, read_json
+from ..language import ENGLISH
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -40,7 +41,7 @@ class Job:
     """One simulation: its folder's name, the scenario, changed keys, when it was asked for (UTC), how it stands.
 
     ``given`` is what was given with it by name, in words; its paths say nothing to a reader. ``took_s`` is how long it
-    took from start to report, once it is done.
+    took from start to report, once it is done; ``language`` is that of the report.
     """
 
     name: str
@@ -51,10 +52,23 @@ class Job:
     said: str = ""
     given: str = ""
     took_s: float = 0.0
+    language: str = ENGLISH
 
 
 class Runs:
-    """The queue and the history."""
+    """The queue and the history.
+
+    Attributes
+    ----------
+    folder
+        Where the folders of the jobs are.
+    progress
+        What the running job said last.
+    kind
+        Of the jobs.
+    """
+
+    kind: type[Job] = Job
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -69,7 +83,7 @@ class Runs:
         found = []
         for place in self.folder.glob(f"*/{JOB}"):
             with contextlib.suppress(GivenError, TypeError):  # its folder is being taken away, or it is damaged
-                found.append(Job(**read_json(place)))
+                found.append(self.kind(**read_json(place)))
         return sorted(found, key=lambda job: job.asked_at, reverse=True)
 
     def ask(
@@ -79,6 +93,7 @@ class Runs:
         *,
         files: Mapping[str, Beside] | None = None,
         given: str = "",
+        language: str = ENGLISH,
     ) -> Job:
         """Put a simulation at the end of the queue; it is on the disk when this returns.
 
@@ -93,15 +108,16 @@ class Runs:
             later changes nothing of what was asked.
         given
             See `Job`.
+        language
+            Of the run's report.
         """
         now = datetime.now(UTC)
-        plain = re.sub(r"[^A-Za-z0-9-]", "-", scenario)
-        name = f"{now:%Y-%m-%d-%H%M%S}-{plain}-{secrets.token_hex(2)}"
+        name = new_name(scenario, now)
         every = dict(changes)
         for key, (file, content) in (files or {}).items():
             write_file(self.folder / name / file, content)
             every[key] = str((self.folder / name / file).absolute())
-        job = Job(name, scenario, every, now.isoformat(), given=given)
+        job = Job(name, scenario, every, now.isoformat(), given=given, language=language)
         self._keep(job)
         return job
 
@@ -145,14 +161,9 @@ class Runs:
         self._keep(replace(job, state="running"))
         self._running, self.progress = job.name, "starting"
         begun = time.monotonic()
-        changes = [word for key, value in job.changes.items() for word in ("--set", f"{key}={value}")]
         self._process = await asyncio.create_subprocess_exec(
             *COMMAND,
-            "simulate",
-            job.scenario,
-            *changes,
-            "--out",
-            str(self.folder / job.name),
+            *self._command(job),
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.PIPE,
             env={**os.environ, "SKISNOW_PROGRESS_LINES": "1"},
@@ -164,8 +175,17 @@ class Runs:
         cancelled = self._cancelling == job.name
         self._process, self._running, self._cancelling, self.progress = None, "", "", ""
         if not self._ended:
-            over = self._over(job, last, cancelled=cancelled)
-            self._keep(replace(over, took_s=time.monotonic() - begun if over.state == "done" else 0.0))
+            self._keep(await self._ended_as(job, last, time.monotonic() - begun, cancelled=cancelled))
+
+    def _command(self, job: Job) -> list[str]:
+        """What is computed, in words of the command line."""
+        changes = [word for key, value in job.changes.items() for word in ("--set", f"{key}={value}")]
+        return ["simulate", job.scenario, *changes, "--language", job.language, "--out", str(self.folder / job.name)]
+
+    async def _ended_as(self, job: Job, last: str, took_s: float, *, cancelled: bool) -> Job:
+        """How a job stands whose process has ended with these last words."""
+        over = self._over(job, last, cancelled=cancelled)
+        return replace(over, took_s=took_s if over.state == "done" else 0.0)
 
     async def _listen(self, process: asyncio.subprocess.Process) -> str:
         last = ""
@@ -173,8 +193,12 @@ class Runs:
         while line := await process.stderr.readline():
             last = line.decode("utf-8", "replace").strip()
             if not self._cancelling:
-                self.progress = last
+                self.progress = self._told(last)
         return last[-LAST_WORDS:]
+
+    def _told(self, line: str) -> str:
+        """What is shown of a line that the running job has said."""
+        return line
 
     def _over(self, job: Job, last: str, *, cancelled: bool) -> Job:
         summary = self.folder / job.name / "summary.json"
@@ -188,4 +212,10 @@ class Runs:
         return replace(job, state="done", said=f"{words}. {found['remedy']}".strip())
 
     def _keep(self, job: Job) -> None:
+        """Write down how a job stands."""
         write_file(self.folder / job.name / JOB, json.dumps(asdict(job), ensure_ascii=False, indent=1))
+
+
+def new_name(what: str, now: datetime) -> str:
+    """Of a folder that nobody else has: when (UTC), and what for."""
+    return f"{now:%Y-%m-%d-%H%M%S}-{re.sub(r'[^A-Za-z0-9-]', '-', what)}-{secrets.token_hex(2)}"

@@ -16,7 +16,7 @@ from .worded import named
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    from ..inputs import Quantity
+    from ..inputs import InputValue, Quantity
     from .worded import TypedField
 
     InputField: TypeAlias = TypedField | ui.select | ui.switch
@@ -113,24 +113,31 @@ class ScenarioField:
         """Whether something else stands there than the scenario has."""
         return self.text != self.before
 
-    def check(self) -> None:
-        """Refuse what cannot be, as far as the field alone tells; it is said at the field.
+    def check(self) -> InputValue:
+        """Refuse what cannot be, as far as the field alone tells; it is said at the field. Gives the value.
 
         Raises
         ------
         ParameterError
             What stands there is no value of this input.
         """
-        from ..scenario.given import change_of
-
         self.refuse("")
         try:
             if not self.text:
-                raise ParameterError(f"{self.key.name} is empty; the scenario has {self.before}")
-            self.key.in_range(change_of(f"{self.key.name}={self.text}")[1])
+                raise ParameterError(f"{self.key.name} is empty; {self.where} has {self.before}")
+            return self.key.in_range(self.typed_value())
         except ParameterError as error:
             self.refuse(in_labels(str(error), self.key))
             raise
+
+    where = "the scenario"
+    """What has the value that stands there at first."""
+
+    def typed_value(self) -> object:
+        """What stands there, as a file would have it."""
+        from ..scenario.given import change_of
+
+        return change_of(f"{self.key.name}={self.text}")[1]
 
     def refuse(self, fault: str) -> None:
         """Say at the field why it is refused; nothing: it is not."""

@@ -34,8 +34,21 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Lab:
-    """The open store, the folder that runs are kept in, and the limits; handed to each page's ``add_page``."""
+    """What is handed to each page's ``add_page``.
+
+    Attributes
+    ----------
+    store
+        Open.
+    runs
+        The folder that runs are kept in.
+    limits
+        Of uploads.
+    scheduler
+        Who computes studies, as ``skisnow study --scheduler`` takes it; None: this machine.
+    """
 
     store: Store
     runs: Path
     limits: Limits = field(default_factory=Limits)
+    scheduler: str | None = None

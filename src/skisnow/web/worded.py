@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
-from markupsafe import escape
 from nicegui import ui
 
-from .language import said
+from ..report.translated import translated_html
+from .language import language_of, said
 
 if TYPE_CHECKING:
+    from collections.abc import Set
     from typing import TypeVar
 
     Shown = TypeVar("Shown", bound=ui.element)
-
-LONGEST: Final = 3000
-"""Of a sentence in HTML (letters); what is longer is a table."""
-_BETWEEN_TAGS: Final = re.compile(r">([^<>]*[^<>\s][^<>]*)<")
-_LABELLED: Final = re.compile(r'aria-label="([^"]*)"')
 
 
 class Words(ui.label):
@@ -52,15 +47,14 @@ def named(element: Shown, name: str) -> Shown:
     return element
 
 
-def html_words(html: str) -> ui.html:
-    """HTML of the reports, in which all that users wrote is escaped: what stands between its tags is translated."""
-    whole = said(html) if len(html) < LONGEST else html
-    if whole == html:
-        whole = _BETWEEN_TAGS.sub(lambda found: f">{_kept_blanks(found[1])}<", f">{html}<")[1:-1]
-        whole = _LABELLED.sub(lambda found: f'aria-label="{escape(said(found[1]))}"', whole)
-    return ui.html(whole, sanitize=False)
+def html_words(html: str, names: Set[str] = frozenset()) -> ui.html:
+    """HTML of the reports, in which all that users wrote is escaped, in the language of the page.
 
-
-def _kept_blanks(text: str) -> str:
-    inner = text.strip()
-    return text.replace(inner, said(inner))
+    Parameters
+    ----------
+    html
+        In English.
+    names
+        What users wrote and is no word of ours.
+    """
+    return ui.html(translated_html(html, language_of(), names=names), sanitize=False)

@@ -7,7 +7,10 @@ export const VIEWS = ["chase", "boot", "above", "edge", "free"];
 const UPRIGHT = new THREE.Vector3(0, 0, 1);
 const NEAREST = 0.15;
 const FARTHEST = 15;
-const CHASE = { behind: 2.9, height: 1.35, outward: 0.7, ahead: 1.5, lag: 0.7 }; // m, and s that the camera comes after
+const CHASE = { behind: 2.9, height: 1.35, outward: 0.7, ahead: 1.5, up: 0, lag: 0.7 }; // m, and s that the camera comes after
+const CHASE_SKIER = { ...CHASE, behind: 4.4, height: 1.9, outward: 1.1, up: 0.45 };
+const BOOT = { behind: 0.7, height: 1.05 }; // m
+const BOOT_SKIER = { behind: -0.35, height: 0.75 }; // before the knees, which would hide the skis
 
 /** A camera that follows a run shown in `space`, whose axes may be tilted against the horizon. */
 export class Follower {
@@ -19,6 +22,9 @@ export class Follower {
     this.zoom = { chase: 1, boot: 1, above: 1, edge: 1, free: 1 };
     this.around = { azimuth: -2.4, height: 0.42 };
     this.outer = outerSki(run);
+    this.behind = run.skier ? CHASE_SKIER : CHASE;
+    this.overBoot = run.skier ? BOOT_SKIER : BOOT;
+    this.middle = run.skier ? 0.5 : 0; // m above the skis that one looks at when turning about
   }
 
   resize(width, height) {
@@ -39,7 +45,7 @@ export class Follower {
   }
 
   #setFree() {
-    const target = this.#world(this.pose.place);
+    const target = this.#world(offset(this.pose, 0, 0, this.middle));
     const from = this.camera.position.clone().sub(target);
     this.around.azimuth = Math.atan2(from.y, from.x);
     this.around.height = Math.atan2(from.z, Math.hypot(from.x, from.y));
@@ -57,14 +63,15 @@ export class Follower {
     const zoom = this.zoom.chase;
     const [x, y] = this.#heading(pose);
     const turning = Math.sign(pose.left[0] * x + pose.left[1] * y) || (this.outer === 1 ? 1 : -1);
-    const side = -turning * CHASE.outward * zoom;
+    const { behind, height, outward, ahead, up } = this.behind;
+    const side = -turning * outward * zoom;
     const from = [
-      pose.place[0] - CHASE.behind * zoom * x - side * y,
-      pose.place[1] - CHASE.behind * zoom * y + side * x,
+      pose.place[0] - behind * zoom * x - side * y,
+      pose.place[1] - behind * zoom * y + side * x,
       0,
     ];
-    from[2] = surfaceHeight(this.run, from[0], from[1]) + CHASE.height * zoom;
-    this.#look(from, offset(pose, CHASE.ahead, 0, 0), UPRIGHT);
+    from[2] = surfaceHeight(this.run, from[0], from[1]) + height * zoom;
+    this.#look(from, offset(pose, ahead, 0, up), UPRIGHT);
   }
 
   /** Where the skis have pointed of late, on the slope. */
@@ -80,7 +87,8 @@ export class Follower {
 
   boot(pose) {
     const zoom = this.zoom.boot;
-    const from = offset(pose, -0.7 * zoom, 0, 1.05 * zoom);
+    const { behind, height } = this.overBoot;
+    const from = offset(pose, -behind * zoom, 0, height * zoom);
     this.#look(from, offset(pose, 0.95, 0, 0), UPRIGHT);
   }
 
@@ -104,7 +112,7 @@ export class Follower {
   free(pose) {
     const { azimuth, height } = this.around;
     const distance = FREE_DISTANCE * this.zoom.free;
-    const target = this.#world(pose.place);
+    const target = this.#world(offset(pose, 0, 0, this.middle));
     const way = new THREE.Vector3(
       Math.cos(azimuth) * Math.cos(height), Math.sin(azimuth) * Math.cos(height), Math.sin(height),
     );

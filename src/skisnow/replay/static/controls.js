@@ -1,12 +1,14 @@
 // The words, buttons and sliders around the picture: made once, each with a name that a screen reader says.
 
 import { css, GHOST, gradient, TRACK } from "./colours.js";
+import { edgeAngle } from "./motion.js";
 import { SETTINGS } from "./sharpness.js";
 
 export const MOST_RELIEF = 30;
 export const SPEEDS = [[1, "true speed"], [0.5, "half speed"], [0.25, "a quarter"], [0.1, "a tenth"]];
 export const VIEW_NAMES = { chase: "From behind", boot: "From the boot", above: "From above", edge: "Along the edge", free: "Free" };
 const ARROWS = "Arrows: orange, force per length; purple, force of a whole ski";
+const SKIER = "Skier: boots, lean and centre of mass as computed; knees, trunk's bend, head, arms and poles assumed";
 export const FORCE_TITLE = "Force of the snow on the ski (N/mm)";
 const KEYS = [
   ["Space", "play or pause"], ["← →", "a twentieth of a second; with Shift half a second"], ["Home End", "start, end"],
@@ -100,8 +102,8 @@ export function laidOut(root, parts, run) {
   );
 }
 
-/** The legend of force and groove, with units. */
-export function fillLegend(element, scales, colours) {
+/** The legend of force and groove, with units, and what of a skier is drawn by assumption. */
+export function fillLegend(element, scales, colours, hasSkier) {
   const bar = (kind, title, ticks) => {
     const marks = ticks.map((text) => made("span", { textContent: text }));
     return made("div", { className: "replay-scale" },
@@ -114,6 +116,7 @@ export function fillLegend(element, scales, colours) {
     scales.staysNothing
       ? made("span", { textContent: "Elastic snow: no groove stays; the line is where the skis went" })
       : bar("depth", "Permanent groove depth (mm)", ticksOf(scales.depth * 1000)),
+    ...(hasSkier ? [made("span", { className: "replay-note", textContent: SKIER })] : []),
     made("span", { className: "replay-arrows", hidden: true, textContent: ARROWS }),
   );
 }
@@ -124,19 +127,27 @@ function ticksOf(most) {
 
 const SIDES = ["left", "right"];
 
+/** Mean edge angle of both skis, and to which side. */
+function edged(run, time) {
+  const angle = (90 / Math.PI) * (edgeAngle(run, 0, time) + edgeAngle(run, 1, time));
+  return Math.abs(angle) < 0.5 ? "flat" : `${Math.abs(angle).toFixed(0)}° ${SIDES[angle > 0 ? 0 : 1]}`;
+}
+
 /**
  * What is told of a moment, as {name, text, large, words}: the numbers that matter first and large. `outer` is the ski
- * that carries more; `forces` (N) of both skis are told where they are shown.
+ * that carries more; `gap` is told of two runs through gates, `forces` (N) of both skis where they are shown.
  */
-export function readings(run, pose, { row, outer, forces = null }) {
+export function readings(run, pose, { row, outer, gap = null, forces = null }) {
   const of = (name, size = 1) => row(run.arrays[name].values, pose.at, size);
   const curvature = of("curvature")[0];
   const radius = Math.abs(curvature) < 1e-3 ? "straight" : `${(1 / Math.abs(curvature)).toFixed(1)} m ${SIDES[curvature > 0 ? 0 : 1]}`;
   const depths = Array.from(of("depth", 2), (depth) => (depth > 0 ? `${(1000 * depth).toFixed(1)} mm` : "above the snow"));
-  const depth = (ski, large) => ({ name: `Depth at ${SIDES[ski]} boot`, text: depths[ski], large });
+  const depth = (ski, large) => ({ name: `Depth at ${SIDES[ski]} boot`, text: depths[ski], large: large && !run.skier });
   const lines = [
     { name: "Speed", text: `${of("speed")[0].toFixed(2)} m/s`, large: true },
     { name: "Turn radius", text: radius, large: true },
+    ...(run.skier ? [{ name: "Edge angle", text: edged(run, pose.time), large: true }] : []),
+    ...(gap ? [{ ...gap, large: true }] : []),
     depth(outer, true),
     depth(1 - outer, false),
     { name: "Time", text: `${pose.time.toFixed(2)} s`, large: false },

@@ -4,6 +4,7 @@ import { decoded } from "./binary.js";
 import { VIEWS } from "./cameras.js";
 import { controls, fillLegend, FORCE_TITLE, laidOut, made, MOST_RELIEF, readings } from "./controls.js";
 import { wholeForces } from "./force_arrows.js";
+import { gapAt } from "./gap.js";
 import { miniMap } from "./mini_map.js";
 import { edges, row } from "./motion.js";
 import { MOST_EFFECTS, Sharpness, STILL } from "./sharpness.js";
@@ -35,8 +36,8 @@ class Player {
     this.map = miniMap(run);
     this.parts.map = this.map.canvas;
     laidOut(root, this.parts, run);
-    const times = run.arrays.time.values;
-    [this.start, this.end] = [times[0], times[times.length - 1]];
+    this.start = run.arrays.time.values[0];
+    this.end = this.start + Math.max(...[run, ghost].filter(Boolean).map(duration)); // both begin together
     Object.assign(this, { time: this.start, playing: false, rate: 1, exaggeration: 1, relief: RELIEF, frames: 0, film: null });
     this.shown = { groove: true, forces: false, ghost: true, track: true };
     this.flat = document.createElement("canvas");
@@ -57,7 +58,7 @@ class Player {
   #fill() {
     const { parts } = this;
     Object.assign(parts.time, { min: this.start, max: this.end, step: 0.01, value: this.start });
-    fillLegend(parts.legend, this.stage.scales, this.run.colours);
+    fillLegend(parts.legend, this.stage.scales, this.run.colours, Boolean(this.run.skier));
     if (!filmType()) {
       parts.film.disabled = true;
       parts.film.title = "This browser records no film.";
@@ -88,7 +89,8 @@ class Player {
     const pose = this.stage.draw(this.time, this.exaggeration);
     this.frames += 1;
     const forces = this.shown.forces ? wholeForces(this.run, pose.at) : null;
-    this.lines = readings(this.run, pose, { row, outer: this.stage.follower.outer, forces });
+    const gap = gapAt(this.run, this.ghost, this.time);
+    this.lines = readings(this.run, pose, { row, outer: this.stage.follower.outer, gap, forces });
     this.#tell();
     this.map.show(pose.place);
     if (this.film) this.#compose();
@@ -97,15 +99,15 @@ class Player {
   #tell() {
     const { parts } = this;
     if (parts.readings.children.length !== this.lines.length) {
-      this.values = this.lines.map(() => made("dd"));
+      this.words = this.lines.map(() => [made("dt"), made("dd")]);
       parts.readings.replaceChildren(
-        ...this.lines.map(({ name, large }, i) =>
-          made("div", { className: large ? "replay-large" : "replay-small" }, made("dt", { textContent: name }), this.values[i]),
-        ),
+        ...this.lines.map(({ large }, i) => made("div", { className: large ? "replay-large" : "replay-small" }, ...this.words[i])),
       );
     }
-    this.lines.forEach(({ text }, i) => {
-      if (this.values[i].textContent !== text) this.values[i].textContent = text;
+    this.lines.forEach(({ name, text }, i) => {
+      [name, text].forEach((words, part) => {
+        if (this.words[i][part].textContent !== words) this.words[i][part].textContent = words;
+      });
     });
     parts.time.value = this.time;
     parts.time.setAttribute("aria-valuetext", `${this.time.toFixed(2)} seconds`);
@@ -327,6 +329,8 @@ class Player {
     return edges(this.run, time, ski, exaggeration);
   }
 }
+
+const duration = (run) => run.arrays.time.values.at(-1) - run.arrays.time.values[0];
 
 function spread(down) {
   const [one, other] = [...down.values()];

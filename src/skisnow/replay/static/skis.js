@@ -1,8 +1,9 @@
-// Two skis and the sledge on them, as meshes that follow a run.
+// Two skis and the sledge or the skier on them, as meshes that follow a run.
 
 import * as THREE from "./three.module.min.js";
 import { forceColour, GHOST } from "./colours.js";
 import { poseAt, row, sections, surfaceHeight } from "./motion.js";
+import { skierMesh } from "./skier.js";
 import { SHADOW, sledgeMesh, slopeShadow } from "./sledge.js";
 import { hills, SUN } from "./snow.js";
 
@@ -14,15 +15,15 @@ const CORNERS = [
   [-1, 1, "side"], [-1, 0, "side"], // right wall
 ];
 
-/** Both skis of a run with their sledge. `show(time, exaggeration)` moves them and returns the pose. */
+/** Both skis of a run with who rides them. `show(time, exaggeration)` moves them and returns the pose. */
 export function skis(run, { most, ghost = false }) {
   const group = new THREE.Group();
   const parts = [0, 1].map((ski) => skiMesh(run, ski, ghost));
   const shadows = [0, 1].map(() => shadowMesh(run, ghost));
-  const sledge = sledgeMesh(run, ghost ? tone(GHOST) : null);
-  const shade = slopeShadow(run, sledge);
+  const rider = (run.skier ? skierMesh : sledgeMesh)(run, ghost ? tone(GHOST) : null);
+  const shade = slopeShadow(run, rider);
   const sun = sunOnSlope(run);
-  group.add(...shadows, ...parts, sledge);
+  group.add(...shadows, ...parts, rider);
   if (!ghost) group.add(shade.mesh);
   return {
     group,
@@ -41,9 +42,9 @@ export function skis(run, { most, ghost = false }) {
         if (!ghost) colourMesh(parts[ski], run, pose, ski, most);
         castShadow(shadows[ski], run, found, this.isSunny ? sun : [0, 0, 1]);
       }
-      sledge.matrix.makeBasis(...[pose.forward, pose.left, pose.up].map((axis) => new THREE.Vector3(...axis)));
-      sledge.matrix.setPosition(...pose.place);
-      if (run.arrays.boot_place) sledge.userData.stand(pose);
+      rider.matrix.makeBasis(...[pose.forward, pose.left, pose.up].map((axis) => new THREE.Vector3(...axis)));
+      rider.matrix.setPosition(...pose.place);
+      if (run.arrays.boot_place) rider.userData.stand(pose);
       if (this.isSunny) shade.cast(pose, sun);
       return pose;
     },

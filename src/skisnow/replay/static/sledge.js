@@ -52,7 +52,8 @@ export function sledgeMesh(run, ghost) {
 const BRACKET = { long: 0.3, top: 0.12, width: 0.05, height: 0.085 };
 const JOINTS = [-0.045, 0.045]; // m ahead of the boot, on each bracket
 
-function matrixOf(place, axes) {
+/** From a frame at a place with three axes into space. */
+export function matrixOf(place, axes) {
   return new THREE.Matrix4().makeBasis(...axes.map((axis) => new THREE.Vector3(...axis))).setPosition(...place);
 }
 

@@ -113,8 +113,9 @@ export class Stage {
     if (this.arrows.group.visible) this.arrows.show(pose, this.skis.sections);
     if (this.effects > 1) this.plume.show(time);
     if (this.ghost) {
-      this.ghostSkis.show(time, exaggeration);
-      this.ghostGroove.grow(time);
+      const its = time - this.run.arrays.time.values[0] + this.ghost.arrays.time.values[0]; // both begin together
+      this.ghostSkis.show(its, exaggeration);
+      this.ghostGroove.grow(its);
     }
     this.#mark(time);
     this.follower.follow(pose);

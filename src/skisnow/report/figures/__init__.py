@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ...language import ENGLISH
+from ..symbols import figure_text
 from .drawing import Drawing, LeftOut, Picture, pictured
 from .force_depth import force_depth
 from .hardness_density import hardness_density
@@ -17,6 +19,7 @@ from .stress_angle import stress_angle
 from .stress_density import stress_density
 from .stress_hardness import stress_hardness
 from .style import journal_style, site_styles
+from .translated import translate_figure
 from .unloading_ratios import unloading_ratios
 
 if TYPE_CHECKING:
@@ -45,11 +48,12 @@ RECORDING_DRAWERS = (hardness_mean_force,)
 
 
 def figures_of(
-    data: ReportData, *, progress: Callable[[str], None] | None = None
+    data: ReportData, *, language: str = ENGLISH, progress: Callable[[str], None] | None = None
 ) -> tuple[list[Picture], list[LeftOut]]:
     """All figures that the campaign has data for, and why the others are left out."""
     pictures: list[Picture] = []
     missing: list[LeftOut] = []
+    names = frozenset(map(figure_text, data.names))
     with journal_style():
         styles = site_styles(data)
         for draw in (*DRAWERS, *RECORDING_DRAWERS) if data.campaign.snow_micro_pen else DRAWERS:
@@ -57,6 +61,7 @@ def figures_of(
             if isinstance(drawn, Drawing):
                 if progress:
                     progress(f"figure {drawn.name}")
+                translate_figure(drawn.figure, language, names=names)
                 pictures.append(pictured(drawn))
             else:
                 missing.append(drawn)

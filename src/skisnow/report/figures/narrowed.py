@@ -40,6 +40,12 @@ def narrow(figure: Figure) -> None:
         _wrap(axes, int((WIDTH_MM / columns - _BESIDE_MM) / _LETTER_MM))
     if figure.get_suptitle():
         figure.suptitle(_broken(figure.get_suptitle(), int(WIDTH_MM / _LETTER_MM)), x=0.01, ha="left", fontsize=8.0)
+    legends_again(figure)
+    figure.set_layout_engine("constrained")
+
+
+def legends_again(figure: Figure) -> None:
+    """Lay the legends below a figure out again, with what stands in them now."""
     for legend in list(figure.legends):
         handles = list(legend.legend_handles)
         for handle, text in zip(handles, legend.get_texts(), strict=True):
@@ -47,7 +53,6 @@ def narrow(figure: Figure) -> None:
                 handle.set_label(text.get_text())
         legend.remove()
         legend_below(figure, [each for each in handles if each is not None])
-    figure.set_layout_engine("constrained")
 
 
 def _columns(panels: list[Axes]) -> int:

@@ -89,7 +89,7 @@ class SeriesForm:
                 last = before.get("tool")
                 tool = choice(label("tool"), tools, last if last in tools else next(iter(tools), None))
                 angle = field(label("edge_angle_deg"), before.get("edge_angle_deg", ""), numeric=True)
-                spot = field(label("spot") + ", if shear is tested there too", optional=True)
+                spot = field(label("spot") + ", if sheared there", optional=True)
             typed: dict[str, Field] = dict(zip(HEAD, (name, site, spot, tool, angle), strict=True))
             asking_button("Begin the series", lambda: self._begun(typed), "main")
         first = angle if site.value else site

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Final
 
-PAGES: Final = ("campaigns", "skis", "carve", "simulate", "replay")
+PAGES: Final = ("campaigns", "skis", "carve", "simulate", "study", "replay")
 """Modules of this folder, in the order of the navigation."""
 
-INNER: Final = ("describe", "enter", "correct", "analysis")
+INNER: Final = ("describe", "enter", "correct", "analysis", "study_table")
 """Modules of pages that are reached from another page."""

@@ -18,8 +18,8 @@ from ..analysing import ready, write_whole_report
 from ..analysis_view import AnalysisView, OpenAnalysis
 from ..error_pages import plain_page
 from ..fields import link
-from ..language import ENGLISH, language_of
-from ..layout import framed, sentence
+from ..language import language_of_request
+from ..layout import framed
 from ..names import entering, export, required_id
 from ..unpacking import files_below, write_zip
 from ..worker import Worker
@@ -60,14 +60,14 @@ def add_page(lab: Lab) -> None:
     @app.get("/report/{key}/report.html")
     async def report(request: Request, key: str) -> Response:
         page = open_pages.get(key)
-        if (folder := await _report(page, worker)) is None:
+        if (folder := await _report(page, worker, request)) is None:
             return _no_report(page, request)
         return FileResponse(folder / "report.html", headers={"content-security-policy": REPORT_POLICY})
 
     @app.get("/report/{key}/analysis.zip")
     async def everything(request: Request, key: str) -> Response:
         page = open_pages.get(key)
-        if page is None or (folder := await _report(page, worker)) is None or page.subject is None:
+        if page is None or (folder := await _report(page, worker, request)) is None or page.subject is None:
             return _no_report(page, request)
         headers = {"content-disposition": 'attachment; filename="analysis.zip"'}
         content = await run_in_threadpool(_packed, page.subject, folder)
@@ -90,15 +90,16 @@ def _no_report(page: OpenAnalysis | None, request: Request) -> Response:
     return plain_page("No such report", "Open the analysis of the campaign again.", 404, request)
 
 
-async def _report(page: OpenAnalysis | None, worker: Worker) -> Path | None:
-    """A folder with the report of what is chosen on a page; one for each choice, written when it is first wanted."""
+async def _report(page: OpenAnalysis | None, worker: Worker, request: Request) -> Path | None:
+    """A folder with the report of what is chosen on a page, in its language; written when it is first wanted."""
     if page is not None:
         await page.settled.wait()
     if page is None or page.subject is None or page.analysed is None:
         return None
-    out, numbers = page.subject.place / f"report-{page.analysed.key}", page.analysed.numbers
+    language, numbers = language_of_request(request), page.analysed.numbers
+    out = page.subject.place / f"report-{page.analysed.key}-{language}"
     if not (out / "results.json").is_file():  # written last
-        await worker.do(write_whole_report, numbers.analysis, str(out))
+        await worker.do(write_whole_report, numbers.analysis, str(out), language)
     return out
 
 
@@ -112,5 +113,3 @@ def _links(kind: str, id_: str, key: str) -> None:
         everything = link("Download everything", "#")
         everything.on("click.prevent", lambda: ui.download(f"/report/{key}/analysis.zip"))
         link("Export the campaign", export(kind, id_))
-    if language_of() != ENGLISH:
-        sentence("Figures and the report are in English.", "quiet")

@@ -119,7 +119,7 @@ class DescriptionForm:
         sentence("What is left empty counts as 0, and the report says so.", "quiet")
         loads = " ".join(f"{load:g}" for load in given.get("load_steps_N", ()))
         with ui.element("div").classes("fields"):
-            self._loads = field("Loads of the disc set (N), with blanks between", loads, wide=True)
+            self._loads = field("Disc loads (N), with blanks between", loads, wide=True)
             self._numbers = {key: field(words, _shown(given.get(key)), numeric=True) for key, words in NUMBERS.items()}
         self._tools = _Entries("Tools", "tool", given.get("tool", ()))
         self._plates = _Entries("Plates of the shear test", "plate", given.get("plate", ()))

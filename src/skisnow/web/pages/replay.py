@@ -11,7 +11,7 @@ from ...report.number_formatting import counted
 from ..fields import link
 from ..language import said
 from ..layout import framed, heading, sentence
-from ..replay.addresses import LIST, SHOW, RunFolders, add_addresses, show_address
+from ..replay.addresses import GATES, LIST, SHOW, RunFolders, add_addresses, show_address
 from ..replay.tracks import LARGEST_BYTES, MOST_POINTS, TrackFolders
 from ..replay.uploads import UPLOAD, add_uploads
 from ..worded import Words, named
@@ -80,6 +80,8 @@ def _together(names: list[str], tracks: list[str], track: str) -> None:
         _select("track", "Measured track beside it", [NONE, *tracks], track or NONE)
         with ui.element("button").props("type=submit").classes("act main"):
             Words("Watch together")
+        with ui.element("button").props(f'type=submit formaction="{GATES}"').classes("act"):
+            Words("Compare times at gates")
 
 
 def _select(key: str, text: str, names: list[str], chosen: str) -> None:

@@ -11,11 +11,13 @@ from ...replay.of_file import RUN_FILE
 from ..answering import redrawn_by
 from ..error_pages import error_sentence
 from ..fields import button, choice, link
+from ..job_list import JobList
+from ..lab_courses import UPLOAD, LabCourses, add_course_uploads
 from ..lab_skis import LabSkis
-from ..language import said
+from ..language import language_of
 from ..layout import framed, heading, sentence
 from ..replay.addresses import show_address
-from ..run_estimate import estimated_s
+from ..run_estimate import duration_words, estimated_s
 from ..runs import Job, Runs
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice
@@ -23,8 +25,9 @@ from ..snow_of_campaign import require_scenario, results_with
 from ..worded import Words, named
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Mapping
 
+    from ..job_list import Act
     from ..settings import Lab
     from ..snow_choice import ChosenSnow
 
@@ -32,14 +35,13 @@ PATH: Final = "/simulate"
 TITLE: Final = "Simulate"
 GIVEN: Final = "as in the scenario"
 NUMBERS: Final = "the numbers below"
-GIVEN_BY_NAME: Final = ("ski.file", "snow.results")
+GIVEN_BY_NAME: Final = ("ski.file", "course.file", "course.name", "snow.results")
+_FOR_COURSE: Final = "slalom-20-gates"
+"""The scenario that a course which was just uploaded is for, until another one is chosen."""
 SNOW_FILE: Final = "snow.json"
-EVERY_S: Final = 1.0
 OF_SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
-CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name", "ski.file")
-"""Keys that the menus of snow and ski give."""
-IN_FILES_ALONE: Final = ("course.", "skier.")
-"""Keys of a course and of a skier: files and the command line give them."""
+CHOSEN_ABOVE: Final = ("snow.results", "snow.site", "snow.published", "ski.name", "ski.file", "course.name")
+"""Keys that the menus of snow, ski and course give."""
 WITH_FILES: Final = ("slope.kind", "slope.profile_gap", "slope.smooth_m", "slope.origin_x_m", "slope.origin_y_m")
 """Keys that go with files of the machine that the lab runs on: those are for the command line."""
 BASIC: Final = (
@@ -56,6 +58,8 @@ BASIC: Final = (
     "run.length_m",
 )
 """What a first run is asked about; all else has a value that most runs keep."""
+BASIC_OF_SKIER: Final = ("skier.steers", "skier.turn_time_s", "skier.turns", "skier.pole_clearance_m")
+"""The same of a scenario with a skier."""
 SECTION_WORDS: Final = {
     "slope": "Slope",
     "snow": "Snow",
@@ -63,6 +67,8 @@ SECTION_WORDS: Final = {
     "drag": "Air drag",
     "sledge": "Sledge",
     "ski": "Ski",
+    "course": "Course",
+    "skier": "Skier",
     "start": "Start",
     "run": "End and output",
     "shear": "Shear",
@@ -75,27 +81,30 @@ def add_page(lab: Lab) -> None:
     runs = Runs(lab.runs)
     app.on_startup(lambda: background_tasks.create(runs.work(), name="runs"))
     app.on_shutdown(runs.end)
+    add_course_uploads(app, LabCourses(lab.runs))
 
     @ui.page(PATH)
-    def simulate() -> None:
+    def simulate(course: str = "") -> None:
         with framed("Simulate", here=PATH):
-            _Form(lab, runs)
-            history = _History(runs)
-        ui.timer(EVERY_S, history.show)
+            _Form(lab, runs, course)
+            _upload()
+            JobList(runs, _Card, "Nothing was simulated yet.")
 
 
 class _Form:
     """The inputs of a scenario; what differs from the scenario's own value is handed on."""
 
-    def __init__(self, lab: Lab, runs: Runs) -> None:
+    def __init__(self, lab: Lab, runs: Runs, course: str) -> None:
         from ...scenario import scenario_names
 
         self._runs = runs
-        self._skis = LabSkis(lab.runs)
+        self._skis, self._courses = LabSkis(lab.runs), LabCourses(lab.runs)
         self._fields: dict[str, ScenarioField] = {}
         names = list(scenario_names())
         with ui.element("div").classes("fields"):
-            self._scenario = choice("Scenario", names, names[0])
+            is_known = course in self._courses.names()
+            self._scenario = choice("Scenario", names, _FOR_COURSE if is_known else names[0])
+            self._course = choice("Course", [GIVEN, *self._courses.names()], course if is_known else GIVEN)
             self._ski = choice("Ski", [GIVEN, *self._skis.names()], GIVEN)
             self._snow = SnowChoice(lab, NUMBERS, self._other_snow)
         self._scenario.on_value_change(self._draw)
@@ -124,13 +133,16 @@ class _Form:
             made.element.on_value_change(self._tell_estimate)
 
         with self._basic:
-            for name in BASIC:
+            for name in basic(values):
                 add(name)
-        with self._expert, ui.element("details").classes("expert").props("open" if kept.keys() - set(BASIC) else ""):
+        with (
+            self._expert,
+            ui.element("details").classes("expert").props("open" if kept.keys() - set(basic(values)) else ""),
+        ):
             with ui.element("summary"):
                 Words("Expert inputs")
             for section in SECTIONS:
-                names = [name for name in SCENARIO_KEYS if name.startswith(f"{section}.") and name in _expert()]
+                names = [name for name in expert(values) if name.startswith(f"{section}.")]
                 if names:
                     heading(SECTION_WORDS[section], 3)
                     with ui.element("div").classes("inputs"):
@@ -168,7 +180,7 @@ class _Form:
                 values[name] = None
         values["solver.method"] = self._fields["solver.method"].text
         seconds = estimated_s(self._runs.folder, self._runs.jobs(), values)
-        self._estimate.set_text("" if seconds is None else f"Will take about {_duration(seconds)}.")
+        self._estimate.set_text("" if seconds is None else f"Will take about {duration_words(seconds)}.")
 
     async def ask(self) -> None:
         """Put the simulation into the queue, when its values can be read."""
@@ -201,6 +213,8 @@ class _Form:
             word = self._skis.word(ski)
             changes["ski.name" if word == ski else "ski.file"] = word
             given.append(f"ski: {ski}")
+        if self._course.value != GIVEN:
+            given.append(self._give_course(str(self._course.value), changes))
         files: dict[str, tuple[str, bytes]] = {}
         if snow is not None and snow.analysis is not None:
             results, words = await self._results(snow, scenario, changes)
@@ -210,7 +224,17 @@ class _Form:
             if snow is not None:
                 changes["snow.published"] = snow.published
             await run.io_bound(require_scenario, scenario, changes)
-        return self._runs.ask(scenario, changes, files=files, given="; ".join(given))
+        return self._runs.ask(
+            scenario, changes, files=files, given="; ".join(given), language=language_of(self._ski.client)
+        )
+
+    def _give_course(self, course: str, changes: dict[str, str]) -> str:
+        """Let the changes name a course; a skier goes through it unless something else was chosen. It in words."""
+        key, word = self._courses.change(course)
+        changes[key] = word
+        if "skier.steers" in self._fields:
+            changes.setdefault("skier.steers", "gates")
+        return f"course: {course}"
 
     async def _results(self, snow: ChosenSnow, scenario: str, changes: dict[str, str]) -> tuple[bytes, str]:
         """Let the changes name site and stress of a campaign's snow; the file of its results, and it in words."""
@@ -225,19 +249,44 @@ class _Form:
         return found
 
 
-def _expert() -> list[str]:
+def basic(values: Mapping[str, Any]) -> list[str]:
+    """Keys that a first run of a scenario with these values is asked about: a skier sets the edge angle itself."""
+    if not _has_skier(values):
+        return list(BASIC)
+    return [*BASIC_OF_SKIER, *(name for name in BASIC if name != "sledge.edge_angle_deg")]
+
+
+def expert(values: Mapping[str, Any]) -> list[str]:
+    """All other keys that the form has for such a scenario."""
     from ...scenario.given import PATH_KEYS
     from ...scenario.keys import SCENARIO_KEYS
 
-    elsewhere = (*BASIC, *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS)
-    return [name for name in SCENARIO_KEYS if name not in elsewhere and not name.startswith(IN_FILES_ALONE)]
+    elsewhere = {*basic(values), *CHOSEN_ABOVE, *WITH_FILES, *PATH_KEYS}
+    missing = ("sledge.edge_angle_deg",) if _has_skier(values) else ("skier.",)
+    return [name for name in SCENARIO_KEYS if name not in elsewhere and not name.startswith(missing)]
 
 
-def _duration(seconds: float) -> str:
-    """In words, as exact as it is known."""
-    if seconds < 90.0:
-        return f"{max(5, 5 * round(seconds / 5))} s"
-    return f"{round(seconds / 60)} min"
+def _has_skier(values: Mapping[str, Any]) -> bool:
+    return values.get("skier.steers") is not None
+
+
+def _upload() -> None:
+    """A form that takes a course in: plain HTML, so that it works by keyboard everywhere."""
+    with ui.element("details"):
+        with ui.element("summary"):
+            Words("Add a course")
+        sentence(
+            "CSV with the columns gate, x_m, y_m, side (left or right, where the pole is passed), in m down the fall "
+            "line and to the left; or GPX with a waypoint for each gate, which needs the compass direction of x under "
+            "Expert inputs. What was typed above is lost.",
+            "quiet",
+        )
+        with ui.element("form").props(f'method=post action="{UPLOAD}" enctype="multipart/form-data"').classes("acts"):
+            with ui.element("label").props("for=course-file"):
+                Words("Course")
+            ui.element("input").props("id=course-file name=file type=file required accept=.csv,.gpx")
+            with ui.element("button").props("type=submit").classes("act"):
+                Words("Add the course")
 
 
 def _in_labels(changes: dict[str, str]) -> str:
@@ -246,49 +295,17 @@ def _in_labels(changes: dict[str, str]) -> str:
     return ", ".join(f"{called(SCENARIO_KEYS[key])}: {value}" for key, value in changes.items())
 
 
-class _History:
-    """The queue and what was simulated. A card stays the same while its run goes on: a press on it is never lost."""
-
-    def __init__(self, runs: Runs) -> None:
-        self._runs = runs
-        self._cards: dict[str, _Card] = {}
-        heading("Queue and history")
-        self._nothing = sentence("Nothing was simulated yet.", "quiet")
-        self._place = ui.element("div")
-        self.show()
-
-    def show(self) -> None:
-        """Show what is so now."""
-        jobs = self._runs.jobs()
-        self._nothing.set_visibility(not jobs)
-        for name in self._cards.keys() - {job.name for job in jobs}:
-            self._cards.pop(name).place.delete()
-        for index, job in enumerate(jobs):
-            if job.name not in self._cards:
-                with self._place:
-                    self._cards[job.name] = card = _Card(self._runs, job, self._cancel)
-                card.place.move(target_index=index)
-            self._cards[job.name].show(job)
-
-    def _cancel(self, name: str) -> None:
-        try:
-            self._runs.cancel(name)
-        except ParameterError as error:
-            ui.notify(said(error_sentence(error)))
-        self.show()
-
-
 class _Card:
     """One run of the list, and what can be done with it."""
 
-    def __init__(self, runs: Runs, job: Job, cancel: Callable[[str], None]) -> None:
+    def __init__(self, runs: Runs, job: Job, act: Act) -> None:
         self._runs = runs
         with ui.element("section").classes("card") as self.place:
             heading(job.name, 3)
             self._words = sentence("", "quiet").props("aria-live=polite")
             self._progress = sentence("", "quiet progress")  # a number that rises each second is not read aloud
             with ui.element("div").classes("acts"):
-                self._cancel = named(button("Cancel", lambda: cancel(job.name)), f"Cancel {job.name}")
+                self._cancel = named(button("Cancel", lambda: act(runs.cancel, job.name)), f"Cancel {job.name}")
                 self._watch = named(link("Watch", show_address(job.name), "main"), f"Watch {job.name}")
 
     def show(self, job: Job) -> None:

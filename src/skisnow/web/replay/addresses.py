@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from ...errors import ParameterError
@@ -17,8 +18,10 @@ from ...replay.model import replay_model
 from ...replay.moving_model import moving_replay_model
 from ...replay.of_file import RUN_FILE, replay_of_file
 from ...replay.page import MODULES, STYLE, static_text
+from ...report.gaps_report import gaps_of_folders
 from ...ski import read_ski
 from ..confined import BOUNDS, confined
+from ..error_pages import plain_page
 from ..runs import JOB
 from .tracks import TrackFolders, track_on_slope
 
@@ -30,6 +33,7 @@ if TYPE_CHECKING:
 
 LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"
+GATES: Final = f"{LIST}/gates"
 FILES: Final = f"{LIST}/files"
 DATA: Final = f"{LIST}/data"
 MODEL: Final = f"{LIST}/model"
@@ -125,7 +129,14 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
             return PlainTextResponse(str(error), 404)
         return _model_file(content, name)
 
-    for address, answer in ((SHOW, show), (f"{FILES}/{{name}}", program_file)):
+    def gates(request: Request, run: str, ghost: str = "") -> Response:
+        try:
+            page = confined(BOUNDS, gaps_of_folders, runs.place(run), runs.place(ghost))
+        except ParameterError as error:
+            return plain_page("This cannot be shown", f"{str(error)[0].upper()}{str(error)[1:]}.", 404, request)
+        return HTMLResponse(page)
+
+    for address, answer in ((SHOW, show), (GATES, gates), (f"{FILES}/{{name}}", program_file)):
         app.add_api_route(address, answer, include_in_schema=False, response_model=None)
     models = ((f"{MODEL}/{{name}}.glb", model), (f"{MOVING_MODEL}/{{name}}.glb", moving_model))
     for address, of_run in ((f"{DATA}/{{name}}", data), *models):

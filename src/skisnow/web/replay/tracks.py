@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import secrets
 import shutil
 from dataclasses import asdict, dataclass, replace
@@ -18,6 +17,7 @@ from ...replay.replay import measured_track
 from ...track.read import SUFFIXES, read_track
 from ...track.slope_frame import in_slope_frame
 from ...units import DEGREE
+from ..names import plain_stem
 from ..typed import typed_number
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class TrackFolders:
             _copy(content, place)
             n_points = (count or points_of_track)(place, placing)
             write_file(made / ABOUT, json.dumps(asdict(placing), ensure_ascii=False, indent=1))
-            name = f"{_plain(placing.called)}-{secrets.token_hex(2)}"
+            name = f"{plain_stem(placing.called, 'track')}-{secrets.token_hex(2)}"
             made.rename(self._folder / name)
         finally:
             shutil.rmtree(made, ignore_errors=True)
@@ -211,9 +211,3 @@ def number_of(text: str, words: str) -> float | None:
         It is none.
     """
     return typed_number(words, text) if text.strip() else None
-
-
-def _plain(called: str) -> str:
-    """Letters that a folder has on every system."""
-    stem = PurePosixPath(called.replace("\\", "/")).name.rsplit(".", 1)[0]
-    return re.sub(r"[^A-Za-z0-9]+", "-", stem).strip("-")[:40] or "track"

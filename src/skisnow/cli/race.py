@@ -1,0 +1,183 @@
+"""``skisnow race``: the quickest line through a course, and what ski and snow are worth on it."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .announced import announced
+from .ending import Ended, ending_is_an_interrupt
+from .out_folder import ready
+from .progress import Progress
+from .scheduler import add_scheduler, scheduler_of
+from .words import MOST_WORKERS, add_changes, number, seed_number, whole_number
+
+if TYPE_CHECKING:
+    from ..racing import QuickestLine, RacingLine, Score, Worth
+    from ..scenario import Scenario
+
+KEPT, KEPT_WORTH = "evaluations.partial", "worth.partial"
+MOST_EVALUATIONS, MOST_GATES, MOST_SNOWS = 1_000_000, 1_000, 10_000
+
+
+def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "race",
+        help="the quickest line through a course, and what ski and snow are worth on it in time",
+        description="Search the quickest line (needs cmaes). Ctrl-C keeps what is finished; the same command goes on.",
+    )
+    parser.add_argument(
+        "scenario", metavar="NAME|FILE", help="a built-in scenario or a TOML file, with course and skier"
+    )
+    add_changes(parser)
+    parser.add_argument(
+        "--gates", type=whole_number(2, MOST_GATES), metavar="N", help="the first of the course; left out: all"
+    )
+    model = "a simulated run for each evaluation (left out), or a point with mass on the line, in milliseconds"
+    parser.add_argument("--model", choices=("skier", "point"), default="skier", help=model)
+    _add_search(parser)
+    _add_worth(parser)
+    parser.add_argument(
+        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; left out: one for each core"
+    )
+    add_scheduler(parser)
+    parser.add_argument("--json", action="store_true", help="print race.json alone to standard output")
+    parser.add_argument(
+        "--out", type=Path, required=True, metavar="DIR", help="write race.json, line.csv, evaluations.csv and figures"
+    )
+    parser.set_defaults(run=run)
+
+
+def _add_search(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--evaluations", type=whole_number(1, MOST_EVALUATIONS), default=300, metavar="N",
+        help="after which no new batch begins, of each window; 1: only the line that it begins from; left out: 300",
+    )  # fmt: skip
+    parser.add_argument(
+        "--window", type=whole_number(2, MOST_GATES), metavar="N",
+        help="search the turns of N gates at once, then move on; left out: all at once",
+    )  # fmt: skip
+    parser.add_argument(
+        "--step", type=whole_number(1, MOST_GATES), default=1, metavar="N", help="gates that a window moves on by"
+    )
+    parser.add_argument(
+        "--line", type=Path, metavar="LINE.csv", help="the line to begin from; left out: that of the skier itself"
+    )
+    parser.add_argument("--seed", type=seed_number, default=0, metavar="N", help="of every random number")
+
+
+def _add_worth(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--against", action="append", default=[], metavar="SKI", help="another ski on the same line, by name or file"
+    )
+    worth = "what a tenth more hardness, strength and less friction, 1 mm of waist and 5 %% of stiffness are worth"
+    parser.add_argument("--worth", action="store_true", help=worth)
+    parser.add_argument(
+        "--snows", type=whole_number(0, MOST_SNOWS), default=0, metavar="N",
+        help="compare also on N snows drawn from the intervals of H_V and S_f, the same for all",
+    )  # fmt: skip
+    parser.add_argument(
+        "--snow-spread", type=number("", lowest=0.0, highest=10.0, above=True), metavar="SHARE",
+        help="draw them from the value over 1 + SHARE to 1 + SHARE times it (95 %%), whatever was measured",
+    )  # fmt: skip
+
+
+def run(options: argparse.Namespace) -> int:
+    """Search, race again as the scenario says, compare, print, write; 1 where no line comes through."""
+    try:
+        with ending_is_an_interrupt():
+            found, checked, worth = _raced(options)
+    except KeyboardInterrupt as stopped:
+        ended = isinstance(stopped, Ended)
+        print(f"\nskisnow: {'ended' if ended else 'interrupted'}; finished races are kept in {options.out}.\n"
+              "The same command goes on with them.", file=sys.stderr)  # fmt: skip
+        return 143 if ended else 130
+    _tell(options, found, checked, worth)
+    return 1 if found.score.time is None else 0
+
+
+def _raced(options: argparse.Namespace) -> tuple[QuickestLine, list[tuple[str, Score]], tuple[Worth, ...]]:
+    with announced("loading"):
+        from ..racing import compared, drawn_for_race, quickest_line
+        from ..racing.search import require_cmaes
+
+        if options.evaluations > 1:
+            require_cmaes()
+        scenario, variants = _asked(options)
+        snow = scenario.contact.snow
+        snows = drawn_for_race(snow, options.snows, spread=options.snow_spread, seed=options.seed)
+        start = _start(options, scenario)
+    ready(options.out)
+    computing: dict[str, Any] = {"workers": options.workers, "executor": scheduler_of(options)}
+    with Progress() as progress:
+        found = quickest_line(
+            scenario.with_(method="fast"), gates=options.gates, model=options.model, start=start,
+            evaluations=options.evaluations, window=options.window, step=options.step, seed=options.seed,
+            checkpoint=options.out / KEPT, progress=progress, **computing,
+        )  # fmt: skip
+        checked = _checked(found, scenario, progress)
+        worth: tuple[Worth, ...] = ()
+        if variants:
+            worth = compared(
+                found.scenario, {name: each.with_(method="fast") for name, each in variants.items()}, found.line, snows,
+                model=options.model, checkpoint=options.out / KEPT_WORTH, progress=progress, **computing,
+            )  # fmt: skip
+    return found, checked, worth
+
+
+def _asked(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
+    """The scenario, and its variants by name."""
+    from ..racing import worth_changes
+    from ..scenario import scenario_file
+    from ..scenario.given import change_of
+
+    asked = scenario_file(options.scenario, changes=dict(change_of(word) for word in options.changes))
+    for text in asked.warnings:
+        print(f"warning: {text}", file=sys.stderr)
+    variants = {name: asked.scenario.with_(ski=name) for name in options.against}
+    if options.worth:
+        variants |= worth_changes(asked.scenario)
+    return asked.scenario, variants
+
+
+def _start(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None:
+    from ..racing import read_line
+    from ..racing.line import course_of
+
+    if options.line is None:
+        return None
+    return read_line(options.line, course_of(scenario), (scenario.start.x, scenario.start.y))
+
+
+def _checked(found: QuickestLine, scenario: Scenario, progress: Progress) -> list[tuple[str, Score]]:
+    """Both lines raced as the scenario says it, where the search raced by a quicker method."""
+    from ..racing.racers import Racer
+
+    if found.model == "point" or scenario.solver.method == "fast":
+        return []
+    racer, checked = Racer(scenario, found.model), []
+    for name, line in (("quickest line, computed as the scenario says", found.line), ("where it began", found.start)):
+        progress(f"racing again: {name}")
+        checked.append((name, racer.score(line)))
+    return checked
+
+
+def _tell(
+    options: argparse.Namespace, found: QuickestLine, checked: list[tuple[str, Score]], worth: tuple[Worth, ...]
+) -> None:
+    from ..report.race_folder import write_race
+    from ..report.race_summary import race_dict, race_summary, worth_summary
+
+    place = write_race(found, options.out, checked=checked, worth=worth)
+    if options.json:
+        contents = race_dict(found, checked, worth)
+        print(json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+    else:
+        print(race_summary(found, checked), flush=True)
+        if worth:
+            print(f"\n{worth_summary(worth)}", flush=True)
+    print(f"Race: {place}", file=sys.stderr)

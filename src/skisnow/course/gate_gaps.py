@@ -1,0 +1,107 @@
+"""Two ways through the same gates: the gap in time at each, and what was lost from gate to gate."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from ..errors import ParameterError
+
+GATES_FILE: Final = "gates.csv"
+APART: Final = 0.05
+"""Distance (m) between turning poles of two gates that are the same."""
+COLUMNS: Final = ("gate", "outcome", "time_s", "other_outcome", "other_time_s", "gap_s", "lost_s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GateGap:
+    """One gate of two runs.
+
+    Attributes
+    ----------
+    gate
+        Its name.
+    outcome, other_outcome
+        What became of it, as gates.csv has it.
+    time, other_time
+        (s) from the start of each; None: not crossed.
+    gap
+        Of the first run to the other one (s), positive: it is behind; None where one did not cross it.
+    lost
+        Gap less that at the gate before which both crossed, at first less 0 (s).
+    """
+
+    gate: str
+    outcome: str
+    other_outcome: str
+    time: float | None
+    other_time: float | None
+    gap: float | None
+    lost: float | None
+
+
+def gate_gaps(folder: Path, other: Path) -> tuple[GateGap, ...] | None:
+    """Gaps at the gates of two folders with a gates.csv; None where one has none, or the courses are not the same.
+
+    Raises
+    ------
+    ParameterError
+        A gates.csv cannot be read.
+    """
+    tables = [_rows(each / GATES_FILE) for each in (folder, other) if (each / GATES_FILE).is_file()]
+    if len(tables) < 2 or not _same_course(*tables):
+        return None
+    found, before = [], 0.0
+    for own, its in zip(*tables, strict=True):
+        time, other_time = own["time_s"], its["time_s"]
+        gap = None if time is None or other_time is None else time - other_time
+        found.append(
+            GateGap(
+                gate=own["gate"], outcome=own["outcome"], other_outcome=its["outcome"], time=time,
+                other_time=other_time, gap=gap, lost=None if gap is None else gap - before,
+            )
+        )  # fmt: skip
+        before = before if gap is None else gap
+    return tuple(found)
+
+
+def _same_course(one: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool:
+    def apart(own: dict[str, Any], its: dict[str, Any]) -> float:
+        return math.hypot(own["x_m"] - its["x_m"], own["y_m"] - its["y_m"])
+
+    return len(one) == len(other) and all(apart(own, its) <= APART for own, its in zip(one, other, strict=True))
+
+
+def _rows(place: Path) -> list[dict[str, Any]]:
+    try:
+        rows = list(csv.DictReader(io.StringIO(place.read_text(encoding="utf-8"))))
+        numbers = ("time_s", "x_m", "y_m")
+        return [row | {name: float(row[name]) if row[name] else None for name in numbers} for row in rows]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ParameterError(
+            f"{place} cannot be read as a table of gates ({error}). Simulate the run again with --out"
+        ) from error
+
+
+def gaps_csv(gaps: tuple[GateGap, ...]) -> str:
+    """A row for each gate under `COLUMNS`, nothing where there is no number."""
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(gap_rows(gaps))
+    return stream.getvalue()
+
+
+def gap_rows(gaps: tuple[GateGap, ...]) -> list[dict[str, Any]]:
+    """The same as values."""
+    return [
+        {
+            "gate": each.gate, "outcome": each.outcome, "time_s": each.time, "other_outcome": each.other_outcome,
+            "other_time_s": each.other_time, "gap_s": each.gap, "lost_s": each.lost,
+        }
+        for each in gaps
+    ]  # fmt: skip

@@ -1,0 +1,26 @@
+"""Races: the quickest line through a course, and what ski and snow are worth on it in time."""
+
+from __future__ import annotations
+
+from .line import LineTurn, RacingLine, follower_line
+from .line_file import read_line, write_line
+from .point import PointRacer
+from .quickest import QuickestLine, quickest_line
+from .score import Score
+from .worth import Worth, compared, drawn_for_race, worth_changes
+
+__all__ = [
+    "LineTurn",
+    "PointRacer",
+    "QuickestLine",
+    "RacingLine",
+    "Score",
+    "Worth",
+    "compared",
+    "drawn_for_race",
+    "follower_line",
+    "quickest_line",
+    "read_line",
+    "worth_changes",
+    "write_line",
+]

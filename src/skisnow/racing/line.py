@@ -1,0 +1,220 @@
+"""A line through gates by three numbers a turn: how far aside, how far along, and over how much of the way it turns."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
+from itertools import pairwise
+from typing import Final
+
+from ..course import Course
+from ..errors import ParameterError
+from ..scenario import Scenario, Skier
+from ..shown import Facts, Shown, ShownFields, amount
+from ..skier.steering import Underway, pursued
+
+LEAST_TURNING: Final = 0.2
+"""Least share of the way over which a turn may last: below, its curvature grows beyond any ski's."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class LineTurn(ShownFields):
+    """The turn at one gate.
+
+    Attributes
+    ----------
+    aside
+        Of the apex from the turning pole, to the side that is passed (m).
+    along
+        Of the apex from the pole down the course, over the way to the nearer of its neighbours: above 0 behind it.
+    turning
+        Share of half the way to the apexes before and behind over which the edges turn, 0.2 to 1: edging starts so far
+        before the apex and ends so far behind it; the rest is straight. 1: half waves.
+    """
+
+    aside: float
+    along: float = 0.0
+    turning: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class RacingLine(Shown):
+    """Turns with straights between them, from apex to apex.
+
+    Attributes
+    ----------
+    course
+        Its gates follow each other down the slope, x rising.
+    start
+        x, y (m) where it begins, down the slope.
+    turns
+        One for each gate.
+
+    Raises
+    ------
+    ParameterError
+        The number of turns is not that of gates, a turn is too short, or the apexes do not follow each other down the
+        slope.
+
+    See Also
+    --------
+    skisnow.quickest_line
+
+    Notes
+    -----
+    Of the way between two apexes the first turn ends at the share τ₁ and the next one begins at 1 - τ₂. The slope of
+    the line there is P sin(πu/(2τ₁)), P between, P sin(π(1 - u)/(2τ₂)), where P follows from the apexes. With τ = ½ it
+    is a half wave. The greatest edge angle follows from the curvature at the apex, π P/(2τ L).
+
+    References
+    ----------
+    The page docs/how-to/race.md.
+    """
+
+    course: Course
+    start: tuple[float, float]
+    turns: tuple[LineTurn, ...]
+    _x: list[float] = field(init=False)
+    _y: list[float] = field(init=False)
+    _share: list[float] = field(init=False)
+
+    def __post_init__(self) -> None:
+        gates = self.course.gates
+        if len(self.turns) != len(gates):
+            raise ParameterError(
+                f"the line has {len(self.turns)} turns and the course {len(gates)} gates; give one each"
+            )
+        way = ways(self.course, self.start)
+        x, y, share = [self.start[0]], [self.start[1]], [0.5]
+        for gate, turn, reach in zip(gates, self.turns, way, strict=True):
+            if not LEAST_TURNING <= turn.turning <= 1.0:
+                raise ParameterError(f"gate {gate.name}: turning is {turn.turning:g}; it must be from 0.2 to 1")
+            x.append(gate.turning[0] + turn.along * reach)
+            y.append(gate.turning[1] + (turn.aside if gate.side == "left" else -turn.aside))
+            share.append(0.5 * turn.turning)
+        for i, gate in enumerate(gates):
+            if not x[i + 1] > x[i]:
+                raise ParameterError(
+                    f"gate {gate.name}: its apex at x = {x[i + 1]:g} m does not lie below the one before, {x[i]:g} m; "
+                    "a line goes down the slope"
+                )
+        for name, values in (("_x", x), ("_y", y), ("_share", share)):
+            object.__setattr__(self, name, values)
+
+    @property
+    def apexes(self) -> list[tuple[float, float]]:
+        """Start and apexes, x and y (m)."""
+        return list(zip(self._x, self._y, strict=True))
+
+    @property
+    def breaks(self) -> list[float]:
+        """Places down the slope (m), rising, between which the line is smooth."""
+        found = []
+        for i in range(len(self._x) - 1):
+            way = self._x[i + 1] - self._x[i]
+            found += [self._x[i], self._x[i] + self._share[i] * way, self._x[i + 1] - self._share[i + 1] * way]
+        return [*found, self._x[-1]]
+
+    def at(self, x: float) -> tuple[float, float, float]:
+        """Place aside (m), slope and second derivative (1/m) of the line at a place down the slope (m)."""
+        i = bisect_right(self._x, x) - 1
+        if i < 0 or i >= len(self._x) - 1:
+            return self._y[max(i, 0)], 0.0, 0.0
+        way, rise = self._x[i + 1] - self._x[i], self._y[i + 1] - self._y[i]
+        first, last = self._share[i], self._share[i + 1]
+        steepest = rise / way / (1.0 - (1.0 - 2.0 / math.pi) * (first + last))
+        u = (x - self._x[i]) / way
+        if u < first:
+            aside, slope, bend = _wave(u, first, steepest, way)
+            return self._y[i] + aside, slope, bend
+        if u > 1.0 - last:
+            aside, slope, bend = _wave(1.0 - u, last, steepest, way)
+            return self._y[i + 1] - aside, slope, -bend
+        return self._y[i] + way * steepest * (2.0 * first / math.pi + u - first), steepest, 0.0
+
+    def greatest_curvature(self) -> float:
+        """At any apex (1/m)."""
+        return max(abs(self.at(x + side * 1e-9)[2]) for x in self._x for side in (-1.0, 1.0))
+
+    def _facts(self) -> Facts:
+        aside, along, turning = zip(*((each.aside, each.along, each.turning) for each in self.turns), strict=True)
+        rows = (
+            ("aside", f"{amount(min(aside), 'm')} to {amount(max(aside), 'm')}"),
+            ("along", f"{amount(min(along))} to {amount(max(along))}"),
+            ("turning", f"{amount(min(turning))} to {amount(max(turning))}"),
+        )
+        return Facts(f"{len(self.turns)} turns", rows)
+
+
+def _wave(u: float, share: float, steepest: float, way: float) -> tuple[float, float, float]:
+    """Aside (m), slope and bend (1/m) at the share u of the way from an apex, of a turn that ends at `share`."""
+    rate = math.pi / (2.0 * share)
+    sine, cosine = math.sin(rate * u), math.cos(rate * u)
+    return way * steepest / rate * (1.0 - cosine), steepest * sine, steepest * rate / way * cosine
+
+
+def ways(course: Course, start: tuple[float, float]) -> list[float]:
+    """Down the slope, from each gate to the nearer of its neighbours (m); the start is that of the first."""
+    x = [start[0], *(gate.turning[0] for gate in course.gates)]
+    before = [b - a for a, b in pairwise(x)]
+    return [min(pair) for pair in zip(before, [*before[1:], math.inf], strict=True)]
+
+
+@dataclass(frozen=True, slots=True)
+class FollowedLine:
+    """What a balanced skier steers by: a line, pursued as its numbers say."""
+
+    line: RacingLine
+    skier: Skier
+
+    def acceleration(self, at: Underway, carving: float) -> float:
+        """That of the line, a time ahead, and what leads back to it."""
+        del carving
+        return pursued(self.line, at, sight=self.skier.sight, rate=self.skier.line_rate)
+
+
+def course_of(scenario: Scenario) -> Course:
+    """Its course.
+
+    Raises
+    ------
+    ParameterError
+        It has none.
+    """
+    if scenario.course is None:
+        raise ParameterError("the scenario has no course; a race needs one: [course] name = or file =")
+    return scenario.course
+
+
+def skier_of(scenario: Scenario) -> Skier:
+    """Its skier.
+
+    Raises
+    ------
+    ParameterError
+        It has none.
+    """
+    if scenario.skier is None:
+        raise ParameterError('the scenario has no skier; a race needs one: [skier] steers = "gates"')
+    return scenario.skier
+
+
+def follower_line(scenario: Scenario) -> RacingLine:
+    """The line that a scenario's skier follows by itself: half waves past the poles at its clearance."""
+    course, aside = course_of(scenario), skier_of(scenario).pole_clearance
+    return RacingLine(course, (scenario.start.x, scenario.start.y), (LineTurn(aside=aside),) * len(course.gates))
+
+
+def with_numbers(line: RacingLine, numbers: Sequence[float], first: int) -> RacingLine:
+    """The same line with other numbers, three a turn, from a gate on."""
+    size = len(fields(LineTurn))
+    new = [LineTurn(aside=a, along=b, turning=c) for a, b, c in zip(*(iter(numbers),) * size, strict=True)]
+    turns = (*line.turns[:first], *new, *line.turns[first + len(new) :])
+    return RacingLine(line.course, line.start, turns)
+
+
+def cut(line: RacingLine, gates: int) -> RacingLine:
+    """Its first gates."""
+    return RacingLine(replace(line.course, gates=line.course.gates[:gates]), line.start, line.turns[:gates])

@@ -1,0 +1,88 @@
+"""A line as a table: one row a gate, its turn's numbers."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from ..course import Course
+from ..errors import ParameterError
+from ..files import write_file
+from .line import LineTurn, RacingLine
+
+COLUMNS: Final = ("gate", "aside_m", "along", "turning", "apex_x_m", "apex_y_m", "edging_from_x_m", "edging_to_x_m")
+
+
+def line_rows(line: RacingLine) -> list[list[str]]:
+    """The table's rows, without its head."""
+    rows = []
+    breaks = line.breaks
+    for i, (gate, turn) in enumerate(zip(line.course.gates, line.turns, strict=True)):
+        x, y = line.apexes[i + 1]
+        begins = breaks[3 * i + 2]
+        ends = breaks[3 * i + 4] if 3 * i + 4 < len(breaks) else x
+        numbers = (turn.aside, turn.along, turn.turning, x, y, begins, ends)
+        rows.append([gate.name, *(f"{number:.6g}" if j > 2 else repr(number) for j, number in enumerate(numbers))])
+    return rows
+
+
+def write_line(line: RacingLine, path: Path) -> None:
+    """Write a line as CSV.
+
+    Raises
+    ------
+    OutputError
+        The place cannot be written.
+    """
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([COLUMNS, *line_rows(line)])
+    write_file(path, text.getvalue())
+
+
+def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingLine:
+    """Read a line that `write_line` wrote, for the first gates of a course.
+
+    Parameters
+    ----------
+    path
+        CSV with gate, aside_m, along, turning; other columns are not read.
+    course
+        Has these gates, in this order, and perhaps more behind them.
+    start
+        x, y (m).
+
+    Raises
+    ------
+    ParameterError
+        It cannot be read, a column is missing, a cell is no number, or its gates are not the course's.
+    """
+    try:
+        rows = list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ParameterError(f"{path} cannot be read: {error}. Check the path") from error
+    missing = [name for name in COLUMNS[:4] if not rows or name not in rows[0]]
+    if missing:
+        raise ParameterError(f"{path}: the columns {', '.join(missing)} are missing, or there is no row")
+    names, own = [row["gate"] for row in rows], [gate.name for gate in course.gates[: len(rows)]]
+    if names != own:
+        raise ParameterError(f"{path}: its gates are {', '.join(names)}, those of the course {', '.join(own)}")
+    turns = tuple(
+        LineTurn(aside=_number(path, row, "aside_m"), along=_number(path, row, "along"),
+                 turning=_number(path, row, "turning"))
+        for row in rows
+    )  # fmt: skip
+    return RacingLine(replace(course, gates=course.gates[: len(turns)]), start, turns)
+
+
+def _number(path: Path, row: dict[str, str], name: str) -> float:
+    try:
+        value = float(row[name])
+    except (TypeError, ValueError):
+        value = math.nan
+    if not math.isfinite(value):
+        raise ParameterError(f"{path}, gate {row['gate']}: {name} is {row[name]!r}; give a number")
+    return value

@@ -1,0 +1,157 @@
+"""A point with mass on a line: a racer for a thousandth of the work, with exact solutions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..course import CourseResult, MovingPoint, passages
+from ..errors import ParameterError
+from ..scenario import Plane, Scenario
+from ..skier.steering import Line
+from .line import RacingLine, skier_of
+from .score import NOT_PASSED, Score, score_of
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+STEP: Final = 0.5
+"""Largest step down the slope (m): see the tests of convergence."""
+BEHIND: Final = 1.0
+"""Way (m) behind the last apex that is computed, so that the last gate is crossed."""
+SLOWEST: Final = 1e-3
+"""Speed (m/s) below which it has stopped."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PointRacer:
+    """A point that stays on its line, whatever the line.
+
+    Attributes
+    ----------
+    slope_angle
+        Of the plane (rad).
+    mass
+        (kg).
+    friction, friction_by_speed
+        μ = friction + friction_by_speed · v, of the load on the base.
+    drag
+        ρ c A/2 (kg/m).
+    speed
+        At the start (m/s).
+    least_radius
+        A tighter line cannot be skied (m); 0: any.
+    half_width
+        Of the racer (m): both sides have to pass a gate.
+    gravity
+        (m/s²).
+
+    Notes
+    -----
+    v dv/ds = g sin α cos χ - μ √((g cos α)² + a²) - ρ c A v²/(2 m), where a = κ v² + g sin α sin χ is what the
+    snow gives aside: the base bears the load of a carve in balance. Runge and Kutta's method of fourth order.
+    """
+
+    slope_angle: float
+    mass: float
+    friction: float
+    drag: float
+    speed: float
+    friction_by_speed: float = 0.0
+    least_radius: float = 0.0
+    half_width: float = 0.0
+    gravity: float = 9.81
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> PointRacer:
+        """That of a scenario: its mass with skis, friction, drag and start; its ski at the skier's greatest edge angle.
+
+        Raises
+        ------
+        ParameterError
+            The slope is no plane, or there is no skier.
+        """
+        if not isinstance(scenario.slope, Plane):
+            raise ParameterError("a point races on a plane; the scenario has a profile or a grid. Take the skier")
+        ski, air, contact = scenario.ski, scenario.air, scenario.contact
+        return cls(
+            slope_angle=scenario.slope.angle,
+            mass=scenario.sledge.mass + 2.0 * ski.mass,
+            friction=contact.friction,
+            friction_by_speed=contact.friction_by_speed,
+            drag=0.5 * air.density * air.drag_area,
+            speed=scenario.start.speed,
+            least_radius=ski.sidecut_radius_of_edge_line * math.cos(skier_of(scenario).greatest_edge),
+            half_width=0.5 * (scenario.sledge.stance_width + ski.waist_width),
+            gravity=scenario.gravity,
+        )
+
+    def rates(self, line: Line, x: float, square: float) -> tuple[float, float]:
+        """Of v² (m/s²) and of the time (s/m), down the slope at a place x (m), there v² (m²/s²)."""
+        _, slope, bend = line.at(x)
+        long = math.sqrt(1.0 + slope * slope)
+        cosine, sine = 1.0 / long, slope / long
+        down = self.gravity * math.sin(self.slope_angle)
+        speed = math.sqrt(max(square, SLOWEST**2))
+        aside = bend * cosine**3 * square + down * sine
+        load = math.hypot(self.gravity * math.cos(self.slope_angle), aside)
+        friction = (self.friction + self.friction_by_speed * speed) * load
+        return 2.0 * long * (down * cosine - friction - self.drag / self.mass * square), long / speed
+
+    def motion(self, line: Line, breaks: Sequence[float]) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Places down the slope (m), v² (m²/s²) and times (s), by breaks of the line; ends where it stops."""
+        x, square, time = breaks[0], self.speed**2, 0.0
+        rows = [(x, square, time)]
+        for low, high in pairwise(breaks):
+            count = math.ceil((high - low) / STEP - 1e-9)
+            for i in range(count):
+                x, step = low + i * (high - low) / count, (high - low) / count
+                square, time = self._stepped(line, x, square, time, step)
+                if not square > SLOWEST**2:
+                    return _columns(rows)
+                rows.append((x + step, square, time))
+        return _columns(rows)
+
+    def _stepped(self, line: Line, x: float, square: float, time: float, step: float) -> tuple[float, float]:
+        inside = 1e-9 * step  # a line bends differently before and behind a break
+        a, first = self.rates(line, x + inside, square)
+        b, second = self.rates(line, x + 0.5 * step, square + 0.5 * step * a)
+        c, third = self.rates(line, x + 0.5 * step, square + 0.5 * step * b)
+        d, fourth = self.rates(line, x + step - inside, square + step * c)
+        return (
+            square + step / 6.0 * (a + 2.0 * b + 2.0 * c + d),
+            time + step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth),
+        )
+
+    def raced(self, line: RacingLine) -> tuple[CourseResult | None, tuple[float, float]]:
+        """What becomes of the gates, and where it ends (m)."""
+        last = max(line.breaks[-1], line.course.gates[-1].turning[0])
+        x, square, time = self.motion(line, [*line.breaks, last + BEHIND])
+        if len(x) < 2:
+            return None, line.start
+        y, slope = np.array([line.at(float(each))[:2] for each in x]).T
+        ahead = np.stack([np.ones_like(slope), slope], axis=1) / np.sqrt(1.0 + slope**2)[:, None]
+        place, velocity = np.stack([x, y], axis=1), np.sqrt(square)[:, None] * ahead
+        left = self.half_width * np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
+        sides = {name: MovingPoint(time, place + sign * left) for name, sign in (("left", 1.0), ("right", -1.0))}
+        return passages(line.course, MovingPoint(time, place, velocity), sides), (float(x[-1]), float(y[-1]))
+
+    def score(self, line: RacingLine) -> Score:
+        """How good a line is; too tight a one fails."""
+        result, end = self.raced(line)
+        found = score_of(result, end, finished=True, words="finished")
+        tight = self.least_radius * line.greatest_curvature() - 1.0
+        if tight > 0.0:
+            failed = NOT_PASSED if found.time is not None else found.value
+            return Score(value=failed + tight, time=None, passed=found.passed, words="the line is too tight")
+        return found
+
+
+def _columns(rows: list[tuple[float, float, float]]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    x, square, time = np.array(rows).T
+    return x, square, time

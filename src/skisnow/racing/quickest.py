@@ -1,0 +1,259 @@
+"""The quickest line through a course."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..content import pieces_of
+from ..errors import ParameterError
+from ..parallel.executors import ExecutorLike, require_executor
+from ..parallel.kept_rows import KeptRows
+from ..parallel.pool import Pool, workers_in_force
+from ..scenario import Scenario
+from ..shown import Facts, Shown, amount
+from .line import RacingLine, course_of, cut, follower_line, with_numbers
+from .racers import LinePoint, Racer, RacerModel, ScoredLine, score_in, turns_in
+from .score import Score
+from .search import Evaluated, Evaluations, least_of, require_cmaes
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Progress: TypeAlias = Callable[[str], None]
+
+RANGES: Final = {"aside": (0.25, 1.75), "along": (-0.25, 0.25), "turning": (0.35, 1.0)}
+"""Of aside (m), along and turning, within which a line is looked for (modelling assumption: nearer to a pole than half
+a stance nobody passes)."""
+_WIDTH: Final = np.array([high - low for low, high in RANGES.values()])
+_LOW: Final = np.array([low for low, _ in RANGES.values()])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False, eq=False)
+class QuickestLine(Shown):
+    """A line that was searched for, beside the one that it began from.
+
+    Attributes
+    ----------
+    scenario
+        Whose course and skier; its course is cut to the gates that were raced through.
+    model
+        Who raced: "skier" or "point".
+    line, score
+        The best, and its time as the search computed it.
+    start, start_score
+        What the search began from: the follower's line, where no other was given.
+    history
+        Every evaluation.
+    seed
+        Of the search.
+
+    See Also
+    --------
+    skisnow.quickest_line
+    """
+
+    scenario: Scenario
+    model: RacerModel
+    line: RacingLine
+    score: Score
+    start: RacingLine
+    start_score: Score
+    history: tuple[Evaluated, ...]
+    seed: int
+
+    @property
+    def gained(self) -> float | None:
+        """Time (s) by which it is quicker than what the search began from; None where one of them fails."""
+        if self.score.time is None or self.start_score.time is None:
+            return None
+        return self.start_score.time - self.score.time
+
+    def _facts(self) -> Facts:
+        rows = (
+            ("began from", amount(self.start_score.time, "s") if self.start_score.time else self.start_score.words),
+            ("quicker by", amount(self.gained, "s")),
+            ("evaluations", str(len(self.history))),
+        )
+        time = self.score.words if self.score.time is None else amount(self.score.time, "s")
+        return Facts(f"{time} through {len(self.line.turns)} gates", rows)
+
+
+def quickest_line(
+    scenario: Scenario,
+    *,
+    gates: int | None = None,
+    model: RacerModel = "skier",
+    start: RacingLine | None = None,
+    evaluations: int = 300,
+    population: int | None = None,
+    spread: float = 0.15,
+    window: int | None = None,
+    step: int = 1,
+    seed: int = 0,
+    workers: int | None = None,
+    executor: ExecutorLike | None = None,
+    checkpoint: Path | None = None,
+    progress: Progress | None = None,
+) -> QuickestLine:
+    """Search the quickest line through a course: three numbers a turn, by CMA-ES.
+
+    Parameters
+    ----------
+    scenario
+        With a course and a skier. The search computes it as it is: give ``method="fast"`` for half of the work.
+    gates
+        Only the first of the course, 2 or more; None: all.
+    model
+        "skier": each evaluation is a simulated run; "point": a mass on the line, on a plane, 5 ms each.
+    start
+        Where the search begins; None: the line that the skier follows by itself.
+    evaluations
+        After which no new batch begins; of each window. 1: only the line where it begins, which needs no cmaes.
+    population
+        Evaluations of a batch; None: 4 + 3 ln n for n numbers.
+    spread
+        Standard deviation of the first batch over the range of each number, above 0 to 1.
+    window, step
+        Search the turns of so many gates at once, the turns before them as found, then move on by `step` gates; None:
+        all at once.
+    seed
+        Of every random number, from 0 on.
+    workers
+        Number of processes; None: one for each core. The line does not depend on it.
+    executor
+        What computes in place of processes of this computer, as of `skisnow.run_batch`.
+    checkpoint
+        File of finished evaluations, with which the same call goes on; None: nothing is kept.
+    progress
+        Called with a line of text now and then.
+
+    Returns
+    -------
+    QuickestLine
+        The best line of all evaluations, which never is slower than where it began.
+
+    Raises
+    ------
+    ParameterError
+        There is no course or no skier, a number is out of its range, cmaes is not installed, or the checkpoint is of
+        another search.
+
+    See Also
+    --------
+    skisnow.simulate
+    skisnow.time_gates
+
+    Notes
+    -----
+    A line that misses a gate, or on which the skier falls, counts as slower than any that does not, by what is missing.
+    The same call gives the same bits on the same machine, interrupted or not, whatever the number of workers.
+
+    References
+    ----------
+    * Hansen and Ostermeier (2001), "Completely derandomized self-adaptation in evolution strategies", Evolutionary
+      Computation 9(2), 159-195, doi 10.1162/106365601750190398.
+    * The page docs/how-to/race.md.
+    """
+    begun = _begun(scenario, gates, start)
+    count, (window, step) = len(begun.turns), _window(len(begun.turns), window, step)
+    _require(evaluations=evaluations, population=population, spread=spread)
+    if evaluations > 1:
+        require_cmaes()
+    require_executor(executor)
+    scenario = replace(scenario, course=begun.course)
+    racer = Racer(scenario, model)
+    tell = progress or _silent
+    settings = (evaluations, population, spread, window, step, seed)
+    kept = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
+    advice = "finished evaluations are kept. Start again, with fewer workers"
+    try:
+        with Pool(ScoredLine(racer), workers_in_force(workers), advice=advice, executor=executor) as pool:
+            made = Evaluations(pool, kept, [])
+            line = begun
+            for first in range(0, max(1, count - window + step), step):
+                part = cut(line, min(first + window, count))
+                found = _searched(made, part, first, evaluations, population, spread, seed, tell)
+                line = RacingLine(line.course, line.start, (*turns_in(found.row), *line.turns[len(part.turns) :]))
+    finally:
+        kept.close()
+    started = score_in(made.done[0].row) if window == count else racer.score(begun)
+    return QuickestLine(
+        scenario=scenario, model=model, line=RacingLine(begun.course, begun.start, turns_in(found.row)),
+        score=score_in(found.row), start=begun, start_score=started, history=tuple(made.done), seed=seed,
+    )  # fmt: skip
+
+
+def _searched(
+    made: Evaluations, part: RacingLine, first: int, count: int, population: int | None, spread: float, seed: int,
+    tell: Progress,
+) -> Evaluated:  # fmt: skip
+    """The least over the turns of a line from a gate on."""
+
+    def point_of(place: FloatArray) -> LinePoint:
+        numbers = (_LOW + place.reshape(-1, len(_LOW)) * _WIDTH).ravel().tolist()
+        return LinePoint(with_numbers(part, numbers, first), tuple(place.tolist()))
+
+    def told(done: int, least: float) -> None:
+        best = f"best {least:.3f} s" if least < 1000.0 else "no line through all gates yet"
+        tell(f"gates {first + 1} to {len(part.turns)}: {done} of {count} evaluations, {best}")
+
+    numbers = [[each.aside, each.along, each.turning] for each in part.turns[first:]]
+    place = np.clip((np.array(numbers) - _LOW) / _WIDTH, 0.0, 1.0).ravel()
+    return least_of(
+        made, point_of, place, count=count, population=population, spread=spread, seed=(seed, first), told=told
+    )
+
+
+def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> RacingLine:
+    course = course_of(scenario)
+    line = follower_line(scenario) if start is None else start
+    if start is not None and len(start.turns) != len(course.gates) and gates is None:
+        raise ParameterError(
+            f"the line to begin from has {len(start.turns)} turns and the course {len(course.gates)} gates; say gates="
+        )
+    for gate, turn in zip(course.gates, line.turns, strict=False):
+        for name, (low, high) in RANGES.items():
+            if not low <= getattr(turn, name) <= high:
+                raise ParameterError(
+                    f"gate {gate.name}: {name} is {getattr(turn, name):g}; a search begins within {low:g} to {high:g}"
+                )
+    count = len(course.gates) if gates is None else gates
+    if not 2 <= count <= len(line.turns):
+        raise ParameterError(f"gates is {count}; it must be from 2 to {len(line.turns)}")
+    return cut(line, count)
+
+
+def _window(gates: int, window: int | None, step: int) -> tuple[int, int]:
+    window = gates if window is None else window
+    if not 2 <= window <= gates:
+        raise ParameterError(f"window is {window}; it must be from 2 to the {gates} gates of the course")
+    if not 1 <= step <= window:
+        raise ParameterError(f"step is {step}; it must be from 1 to the window's {window} gates")
+    return window, step
+
+
+def _require(*, evaluations: int, population: int | None, spread: float) -> None:
+    if evaluations < 1:
+        raise ParameterError(f"evaluations is {evaluations}; at least 1 is needed")
+    if population is not None and population < 4:
+        raise ParameterError(f"population is {population}; at least 4 is needed")
+    if not 0.0 < spread <= 1.0:
+        raise ParameterError(f"spread is {spread:g}; it must be above 0 and at most 1")
+
+
+def _fingerprint(racer: Racer, begun: RacingLine, settings: Sequence[object]) -> str:
+    search = version("cmaes") if settings[0] != 1 else None
+    digest = hashlib.sha256(f"{version('skisnow')} {search} {tuple(settings)} {begun.apexes}".encode())
+    for piece in pieces_of((racer, begun.turns)):
+        digest.update(piece)
+    return digest.hexdigest()
+
+
+def _silent(_: str) -> None:
+    return

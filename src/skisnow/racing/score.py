@@ -1,0 +1,67 @@
+"""What a way through a course is worth to a search: its time, or by how much it fails."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from ..course import CourseResult
+from ..shown import ShownFields
+
+NOT_PASSED: Final = 1000.0
+"""What a gate that is not passed adds, so that any way that passes more gates is better (it moves no time)."""
+FARTHEST: Final = 100.0
+"""Distance (m) beyond which a failure is as bad as at it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Score(ShownFields):
+    """How good a line is.
+
+    Attributes
+    ----------
+    value
+        What is made small: the time (s) where all gates are passed; else above 1000, and the larger the more gates are
+        not passed, the farther they were missed, and the farther from the last one it ended.
+    time
+        From the start to the last gate (s); None where it fails.
+    passed
+        Gates.
+    words
+        How it ended.
+    """
+
+    value: float
+    time: float | None
+    passed: int
+    words: str
+
+
+def score_of(result: CourseResult | None, end: tuple[float, float], *, finished: bool, words: str) -> Score:
+    """The score of what became of the gates.
+
+    Parameters
+    ----------
+    result
+        None: there are not even two places.
+    end
+        x, y (m) where it ended.
+    finished
+        Whether it came through, by its own account.
+    words
+        How it ended.
+    """
+    if result is None:
+        return Score(value=float("inf"), time=None, passed=0, words=words)
+    last = result.passages[-1].time
+    if finished and result.fault is None and last is not None:
+        return Score(value=last - result.start_time, time=last - result.start_time, passed=result.passed, words=words)
+    beside = sum(
+        min(max(-each.clearance, 0.0), FARTHEST)
+        for each in result.passages
+        if each.outcome != "passed" and each.clearance is not None
+    )
+    left = max(0.0, result.course.gates[-1].turning[0] - end[0])
+    missed = max(1, len(result.passages) - result.passed)
+    fault = words if result.fault is None or not finished else result.fault.words
+    return Score(value=NOT_PASSED * missed + beside + min(left, FARTHEST), time=None, passed=result.passed, words=fault)

@@ -1,0 +1,172 @@
+"""A search by CMA-ES, batch by batch: the same numbers for the same seed, and no evaluation twice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import ParameterError
+from ..parallel.kept_rows import KeptRows, Row
+from ..parallel.pool import Pool
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Told: TypeAlias = Callable[[int, float], None]
+"""Takes the number of evaluations so far and the least value among them."""
+
+FAILED: Final = 1e6
+"""What a value that is not finite counts as."""
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluated:
+    """One evaluation.
+
+    Attributes
+    ----------
+    number
+        In the order of the search, from 0 on.
+    place
+        In the unit cube (n,).
+    row
+        What the function gave; `value` is made small.
+    """
+
+    number: int
+    place: tuple[float, ...]
+    row: Row
+
+    @property
+    def value(self) -> float:
+        """What is made small."""
+        return float(self.row["value"])
+
+
+@dataclass(slots=True)
+class Evaluations:
+    """Evaluates batches of places, on several processes, and keeps what is finished.
+
+    Attributes
+    ----------
+    pool
+        Computes rows of points (frozen numbers, place).
+    kept
+        Rows that are finished; each says its place.
+    done
+        All evaluations, in their order.
+    """
+
+    pool: Pool
+    kept: KeptRows
+    done: list[Evaluated]
+
+    def of(self, asked: Sequence[tuple[Any, FloatArray]]) -> Iterator[int]:
+        """Evaluate points, each with its place, telling how many are finished; at the end they stand in `done`."""
+        first = len(self.done)
+        points = {first + i: point for i, (point, _) in enumerate(asked)}
+        missing = [(number, point) for number, point in points.items() if number not in self.kept]
+        finished = len(points) - len(missing)
+        for rows in self.pool.rows(missing, len(missing)):
+            finished += self.kept.add(rows)
+            yield finished
+        for number, (_, place) in zip(points, asked, strict=True):
+            row = self.kept.row(number)
+            if row["place"] != place.tolist():
+                raise ParameterError(
+                    "a kept evaluation has another place than this search asks for: its numbers are of another machine "
+                    "or library. Remove the file to begin anew"
+                )
+            self.done.append(Evaluated(number, tuple(place.tolist()), row))
+
+
+def require_cmaes() -> Any:
+    """The package of the search.
+
+    Raises
+    ------
+    ParameterError
+        It is not installed.
+    """
+    try:
+        import cmaes
+    except ImportError as error:
+        raise ParameterError(
+            'a race needs the package cmaes, which is not installed: pip install "skisnow[racing]"'
+        ) from error
+    return cmaes
+
+
+def least_of(
+    evaluations: Evaluations,
+    point_of: Callable[[FloatArray], Any],
+    start: FloatArray,
+    *,
+    count: int,
+    population: int | None,
+    spread: float,
+    seed: Sequence[int],
+    told: Told,
+) -> Evaluated:
+    """Search the unit cube; the least of `count` evaluations or some more, the first of them at the start itself.
+
+    Parameters
+    ----------
+    evaluations
+        Where they are made.
+    point_of
+        From a place to what the function takes.
+    start
+        (n,) where it begins.
+    count
+        Evaluations after which no new batch begins.
+    population
+        Of a batch; None: 4 + 3 ln n.
+    spread
+        Standard deviation of the first batch, in shares of each range.
+    seed
+        Numbers from 0 on.
+    told
+        Called as evaluations come.
+
+    References
+    ----------
+    * Hansen and Ostermeier (2001), "Completely derandomized self-adaptation in evolution strategies", Evolutionary
+      Computation 9(2), 159-195, doi 10.1162/106365601750190398.
+    """
+    first = len(evaluations.done)
+
+    def found() -> list[Evaluated]:
+        return evaluations.done[first:]
+
+    def evaluate(batch: Sequence[FloatArray]) -> None:
+        for more in evaluations.of([(point_of(place), place) for place in batch]):
+            told(len(found()) + more, _least(found()).value if found() else FAILED)
+
+    evaluate([np.asarray(start, float)])
+    if count == 1:
+        return _least(found())
+    optimiser = _optimiser(start, population, spread, seed)
+    while len(found()) < count and not optimiser.should_stop():
+        batch = [optimiser.ask() for _ in range(optimiser.population_size)]
+        evaluate(batch)
+        optimiser.tell([(np.array(each.place), _finite(each.value)) for each in found()[-len(batch) :]])
+    return _least(found())
+
+
+def _optimiser(start: FloatArray, population: int | None, spread: float, seed: Sequence[int]) -> Any:
+    limits = np.tile([0.0, 1.0], (len(start), 1))
+    state = int(np.random.SeedSequence(list(seed)).generate_state(1)[0])
+    return require_cmaes().CMA(
+        mean=np.clip(start, 0.0, 1.0), sigma=spread, bounds=limits, seed=state, population_size=population
+    )
+
+
+def _least(found: Sequence[Evaluated]) -> Evaluated:
+    return min(found, key=lambda each: _finite(each.value))
+
+
+def _finite(value: float) -> float:
+    return value if np.isfinite(value) else FAILED

@@ -1,0 +1,232 @@
+"""What another ski, another snow or a millimetre is worth in time on one line, paired over the same snows."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from scipy.stats import qmc
+
+from ..content import pieces_of
+from ..errors import ParameterError
+from ..parallel.batch import run_batch
+from ..parallel.executors import ExecutorLike
+from ..parallel.kept_rows import KeptRows
+from ..scenario import Scenario
+from ..shown import Facts, Shown, amount
+from ..ski import Ski
+from ..snow import SnowProperties
+from ..snow.drawn import drawn_snows
+from .line import RacingLine
+from .racers import LinePoint, Racer, RacerModel, ScoredLine, score_in
+from .score import Score
+
+AS_IT_IS: Final = "as it is"
+"""The name of the scenario itself."""
+WIDER: Final = 1e-3
+"""What is added to the waist (m)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False, eq=False)
+class Worth(Shown):
+    """Times of one variant and of the scenario itself on the same snows.
+
+    Attributes
+    ----------
+    name
+        Of the variant.
+    scores, base
+        One for each snow, the first the scenario's own; `base`: of the scenario as it is.
+    """
+
+    name: str
+    scores: tuple[Score, ...]
+    base: tuple[Score, ...]
+
+    @property
+    def differences(self) -> npt.NDArray[np.float64]:
+        """Its time less that of the scenario as it is (s), of each snow on which both came through; below 0: faster."""
+        pairs = zip(self.scores, self.base, strict=True)
+        return np.array([a.time - b.time for a, b in pairs if a.time is not None and b.time is not None])
+
+    @property
+    def on_own_snow(self) -> float | None:
+        """The difference on the scenario's own snow (s); None where one of them fails there."""
+        first, base = self.scores[0].time, self.base[0].time
+        return None if first is None or base is None else first - base
+
+    @property
+    def mean(self) -> float | None:
+        """Of the differences (s)."""
+        found = self.differences
+        return float(found.mean()) if len(found) else None
+
+    @property
+    def deviation(self) -> float | None:
+        """Standard deviation of the differences over the snows (s); None of fewer than two."""
+        found = self.differences
+        return float(found.std(ddof=1)) if len(found) > 1 else None
+
+    @property
+    def faster(self) -> int:
+        """On how many snows it is faster."""
+        return int(np.sum(self.differences < 0.0))
+
+    def _facts(self) -> Facts:
+        rows = (
+            ("over the snows", f"{amount(self.mean, 's')} ± {amount(self.deviation, 's')}"),
+            ("faster on", f"{self.faster} of {len(self.differences)} snows"),
+        )
+        return Facts(f"{self.name}: {amount(self.on_own_snow, 's')}", rows)
+
+
+def compared(
+    scenario: Scenario,
+    others: Mapping[str, Scenario],
+    line: RacingLine,
+    snows: Sequence[SnowProperties],
+    *,
+    model: RacerModel = "skier",
+    workers: int | None = None,
+    executor: ExecutorLike | None = None,
+    checkpoint: Path | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[Worth, ...]:
+    """Race a scenario and variants of it on one line, on the same snows.
+
+    Parameters
+    ----------
+    scenario
+        As it is.
+    others
+        Variants by their names; what they change of the snow they change of each snow.
+    line
+        That all of them take.
+    snows
+        The scenario's own first, as `drawn_for_race` gives them.
+    model, workers, executor, checkpoint, progress
+        As of `quickest_line`.
+
+    Raises
+    ------
+    ParameterError
+        There is no snow or no variant, or the checkpoint is of another comparison.
+    """
+    if not snows or not others:
+        raise ParameterError("a comparison needs one snow or more, and one variant or more")
+    named = {AS_IT_IS: scenario, **others}
+    points = [_on(each, scenario, snow) for each in named.values() for snow in snows]
+    kept = None
+    if checkpoint is not None:
+        kept = KeptRows.opened(checkpoint, _fingerprint(points, line, model))
+    tell = progress or (lambda _: None)
+    try:
+        rows = run_batch(
+            points, ScoredScenario(line, model), kept=kept, workers=workers, executor=executor,
+            progress=lambda done, total: tell(f"race {done} of {total}"),
+        )  # fmt: skip
+    finally:
+        if kept is not None:
+            kept.close()
+    scores = [tuple(map(score_in, rows[i : i + len(snows)])) for i in range(0, len(rows), len(snows))]
+    base = scores[0]
+    return tuple(Worth(name=name, scores=found, base=base) for name, found in zip(others, scores[1:], strict=True))
+
+
+@dataclass(frozen=True, slots=True)
+class ScoredScenario:
+    """From a scenario to the row of its race on a line; for worker processes."""
+
+    line: RacingLine
+    model: RacerModel
+
+    def __call__(self, scenario: Scenario) -> dict[str, Any]:
+        """The score."""
+        return ScoredLine(Racer(scenario, self.model))(LinePoint(self.line, ()))
+
+
+def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, seed: int) -> list[SnowProperties]:
+    """A snow and so many drawn from what is not known of it: a Latin hypercube over H_V and S_f.
+
+    Parameters
+    ----------
+    snow
+        With intervals of H_V and S_f, or without.
+    count
+        Of drawn snows; 0: none.
+    spread
+        Where there is no interval: 95 % lie between the value over 1 + spread and its 1 + spread fold.
+    seed
+        From 0 on.
+
+    Raises
+    ------
+    ParameterError
+        An interval is not known and no spread is given.
+    """
+    if count == 0:
+        return [snow]
+    if spread is not None:
+        if not 0.0 < spread <= 10.0:
+            raise ParameterError(f"spread is {spread:g}; it must be above 0 and at most 10")
+        snow = replace(
+            snow,
+            snow_hardness_interval=_about(snow.snow_hardness, spread),
+            failure_shear_stress_interval=_about(snow.failure_shear_stress or 0.0, spread),
+        )
+    shares = qmc.LatinHypercube(2, rng=np.random.default_rng(seed)).random(count)
+    return [snow, *drawn_snows(snow, shares)]
+
+
+def worth_changes(scenario: Scenario) -> dict[str, Scenario]:
+    """What people ask about, by name: harder and stronger snow, a wider waist, a stiffer ski, less friction."""
+    snow, contact = scenario.contact.snow, scenario.contact
+    strength = snow.failure_shear_stress
+    harder = replace(snow, snow_hardness=1.1 * snow.snow_hardness, snow_hardness_interval=None)
+    stronger = replace(
+        snow, failure_shear_stress=None if strength is None else 1.1 * strength, failure_shear_stress_interval=None
+    )
+    return {
+        "H_V 10 % more": scenario.with_(snow=harder),
+        "S_f 10 % more": scenario.with_(snow=stronger),
+        "waist 1 mm more": scenario.with_(ski=wider(scenario.ski, WIDER)),
+        "stiffness 5 % more": replace(scenario, stiffness_factor=1.05 * scenario.stiffness_factor),
+        "friction 10 % less": replace(scenario, contact=replace(contact, friction=0.9 * contact.friction)),
+    }
+
+
+def wider(ski: Ski, more: float) -> Ski:
+    """A ski whose waist has so much more width (m), falling to none at the ends of its sidecut."""
+    along = np.clip((ski.station - ski.sidecut_middle) / (0.5 * ski.sidecut_length), -1.0, 1.0)
+    return replace(ski, name=f"{ski.name}, waist {more * 1e3:+g} mm", width=ski.width + more * (1.0 - along**2))
+
+
+def _on(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
+    """A variant on another snow: where it changes H_V or S_f it changes them there as much."""
+    own, its = base.contact.snow, variant.contact.snow
+    share = its.snow_hardness / own.snow_hardness
+    stress = None
+    if its.failure_shear_stress and own.failure_shear_stress and snow.failure_shear_stress:
+        stress = snow.failure_shear_stress * its.failure_shear_stress / own.failure_shear_stress
+    changed = replace(
+        snow, snow_hardness=snow.snow_hardness * share, failure_shear_stress=stress, snow_hardness_interval=None,
+        failure_shear_stress_interval=None,
+    )  # fmt: skip
+    return replace(variant, contact=replace(variant.contact, snow=changed))
+
+
+def _about(value: float, spread: float) -> tuple[float, float]:
+    return value / (1.0 + spread), value * (1.0 + spread)
+
+
+def _fingerprint(points: Sequence[Scenario], line: RacingLine, model: RacerModel) -> str:
+    digest = hashlib.sha256(f"{version('skisnow')} {model} {line.apexes}".encode())
+    for piece in pieces_of((tuple(points), line.turns)):
+        digest.update(piece)
+    return digest.hexdigest()

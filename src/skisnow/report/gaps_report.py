@@ -1,0 +1,130 @@
+"""Two ways through the same gates: lines for a terminal, gate_gaps.csv, and a page with figure and table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from markupsafe import Markup
+
+from ..course.gate_gaps import COLUMNS, gap_rows, gaps_csv, gate_gaps
+from ..errors import ParameterError
+from ..files import write_file
+from .figures.drawing import FORMS, pictured
+from .figures.gate_gaps import gate_gaps_drawing, last_words
+from .figures.style import journal_style
+from .pictures import write_pictures
+from .sheet import Header, Section, sheet
+from .symbols import prose
+from .table import Column, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from ..course.gate_gaps import GateGap
+    from .figures.drawing import Drawing, Picture
+
+GAPS_CSV: Final = "gate_gaps.csv"
+PAGE: Final = "report.html"
+FILES: Final = (GAPS_CSV, PAGE, *(f"gate_gaps.{form}" for form in FORMS))
+"""All that may be written."""
+_TIMES: Final = ("time_s", "other_time_s", "gap_s", "lost_s")
+
+
+def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
+    """A line for each gate: both times, the gap and what was lost since the gate before."""
+    rows: list[tuple[str, ...]] = [("gate", "time (s)", "other (s)", "gap (s)", "lost (s)")]
+    for row in gap_rows(gaps):
+        rows.append((str(row["gate"]), *(_hundredths(row[name], signed=name in _TIMES[2:]) or "-" for name in _TIMES)))
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+    return "\n".join([f"Gates of {names[0]} against {names[1]}, behind +", *lines, _result(gaps, names)])
+
+
+def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path) -> None:
+    """Write gate_gaps.csv, the figure gate_gaps and report.html.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written.
+    """
+    write_file(folder / GAPS_CSV, gaps_csv(gaps))
+    pictures = write_pictures(_drawings(gaps, names), folder, every=())
+    write_file(folder / PAGE, gaps_page(gaps, names, pictures))
+
+
+def gaps_of_folders(folder: Path, other: Path) -> str:
+    """The page of two runs by their folders, without writing anything.
+
+    Raises
+    ------
+    ParameterError
+        They have no gates in common.
+    """
+    gaps, names = gate_gaps(folder, other), (folder.name, other.name)
+    if gaps is None:
+        raise ParameterError(
+            f"{names[0]} and {names[1]} did not go through the same gates: choose two runs on one course"
+        )
+    with journal_style():
+        pictures = [pictured(each) for each in _drawings(gaps, names)]
+    return gaps_page(gaps, names, pictures)
+
+
+def gaps_page(gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Sequence[Picture]) -> str:
+    """The HTML."""
+    key, table = prose("{text}", text=_result(gaps, names)), gaps_table(gaps, names)
+    header = Header("Two runs through the same gates", f"{names[0]} against {names[1]}", [], headline=_headline(gaps))
+    return sheet(header, [Section("gates", "Gates", key=[key], pictures=pictures, tables=[table])])
+
+
+def _drawings(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Iterator[Drawing]:
+    if _known(gaps):
+        yield gate_gaps_drawing(gaps, names)
+
+
+def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
+    """A row for each gate, times to a hundredth of a second."""
+    headings = ("Gate", "Outcome", "Time", "Outcome of the other", "Its time", "Gap", "Lost")
+    columns = [
+        Column(name, words, "text", unit="s" if name in _TIMES else "")
+        for name, words in zip(COLUMNS, headings, strict=True)
+    ]
+    rows = [
+        tuple(_hundredths(row[name], signed=name in _TIMES[2:]) if name in _TIMES else _words(row[name])
+              for name in COLUMNS)
+        for row in gap_rows(gaps)
+    ]  # fmt: skip
+    note = "Times count from the start of each run. Gap and lost: above 0 the first run is behind or loses."
+    return Table("gate_gaps", f"Gates of {names[0]} against {names[1]}.", tuple(columns), rows, note=note)
+
+
+def _headline(gaps: tuple[GateGap, ...]) -> Markup:
+    known = _known(gaps)
+    if not known:
+        return Markup("")
+    gap = known[-1].gap or 0.0
+    return prose(
+        "{value} at gate {gate}; {number} of {all} gates were crossed by both.",
+        value=Markup("<strong>{:.2f} s {}</strong>").format(abs(gap), "behind" if gap > 0.0 else "ahead"),
+        gate=known[-1].gate, number=str(len(known)), all=str(len(gaps)),
+    )  # fmt: skip
+
+
+def _result(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
+    return last_words(gaps, names) if _known(gaps) else "No gate was crossed by both."
+
+
+def _known(gaps: tuple[GateGap, ...]) -> list[GateGap]:
+    return [each for each in gaps if each.gap is not None]
+
+
+def _hundredths(value: float | None, *, signed: bool = False) -> str | None:
+    if value is None:
+        return None
+    return f"{value:+.2f}" if signed else f"{value:.2f}"
+
+
+def _words(cell: str) -> str:
+    return cell.replace("_", " ")

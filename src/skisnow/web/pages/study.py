@@ -1,0 +1,296 @@
+"""Studies: a carved turn or a scenario over ranges of one or two inputs; the queue, and what was computed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import app, background_tasks, run, ui
+
+from ...errors import ParameterError, SkisnowError
+from ...estimate.results_text import results_json
+from ...report.write import RESULTS
+from ..answering import redrawn_by
+from ..error_pages import error_sentence
+from ..fields import button, choice, link, said_options
+from ..job_list import JobList
+from ..lab_skis import FILE, TABLE, LabSkis
+from ..layout import framed, heading, sentence
+from ..runs import Runs
+from ..scenario_fields import ScenarioField, called, in_labels
+from ..snow_choice import SnowChoice
+from ..studies import Studies, StudyJob
+from ..study_asked import CARVE, StudyAsked, study_keys
+from ..study_axis import AxisFields
+from ..study_estimate import estimate_words, unit_s
+from ..typed import typed_number
+from ..worded import Words, named
+from .carve import OF_SNOW as CARVE_SNOW
+from .carve import SLIDERS
+from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert
+from .simulate import OF_SNOW as SCENARIO_SNOW
+from .study_table import table_address
+
+if TYPE_CHECKING:
+    from ...inputs import InputValue
+    from ..job_list import Act
+    from ..settings import Lab
+
+PATH: Final = "/study"
+TITLE: Final = "Study"
+CARVED: Final = "carved turns"
+OTHER: Final = ""
+FIRST: Final = {
+    CARVE: ("edge_angle_deg", "10", "70", "13"),
+    OTHER: ("start.speed_m_per_s", "6", "12", "7"),
+}
+"""What varies at first: input, ends, number of values (modelling assumption)."""
+UNLOADING: Final = "unloading_ratio"
+TIMES: Final = ("run.duration_s", "run.length_m", "start.speed_m_per_s")
+
+
+def add_page(lab: Lab) -> None:
+    """Add the page to the application, and begin to work through its queue."""
+    studies = Studies(lab.runs, lab.scheduler)
+    app.on_startup(lambda: background_tasks.create(studies.work(), name="studies"))
+    app.on_shutdown(studies.end)
+
+    @ui.page(PATH)
+    def study() -> None:
+        with framed("Study", here=PATH):
+            _Form(lab, studies)
+            JobList(studies, _Card, "Nothing was studied yet.")
+
+
+class _CarveField(ScenarioField):
+    """A number of a carved turn."""
+
+    where = "a turn usually"
+
+    def typed_value(self) -> object:
+        """The number; "inf" is one."""
+        return float("inf") if self.text == "inf" else typed_number(called(self.key), self.text)
+
+
+class _Form:
+    """What is studied, what varies and what is fixed."""
+
+    def __init__(self, lab: Lab, studies: Studies) -> None:
+        from ...scenario import scenario_names
+
+        self._studies, self._runs = studies, Runs(lab.runs)
+        self._skis = LabSkis(lab.runs)
+        self._fields: dict[str, ScenarioField] = {}
+        self._axes: list[AxisFields] = []
+        with ui.element("div").classes("fields"):
+            self._of = choice("What is studied", {CARVE: CARVED, **{name: name for name in scenario_names()}}, CARVE)
+            self._ski = choice("Ski", self._skis.names(), self._skis.names()[0])
+            self._snow = SnowChoice(lab, NUMBERS, self._other_snow)
+        self._of.on_value_change(self._draw)
+        with redrawn_by(self._of):
+            heading("What varies", 2)
+            self._varied = ui.element("div")
+            heading("What is fixed", 2)
+            self._inputs = ui.element("div")
+        with ui.element("div").classes("acts"):
+            button("Start the study", self.ask, "main", once=True)
+            self._estimate = Words("").classes("quiet").props("role=status")
+        self._status = Words("").classes("status").props("role=status")
+        if studies.elsewhere:
+            sentence(f"The workers of {studies.elsewhere} compute.", "quiet")
+        self._draw()
+
+    @property
+    def _is_carve(self) -> bool:
+        return self._of.value == CARVE
+
+    def _draw(self) -> None:
+        of = str(self._of.value)
+        names = self._skis.names() if self._is_carve else [GIVEN, *self._skis.names()]
+        self._ski.set_options(said_options(names), value=names[0])
+        for each in (self._varied, self._inputs):
+            each.clear()
+        keys = study_keys(of)
+        if not self._is_carve:
+            values = self._values()
+            keys = {name: key for name, key in keys.items() if name in (*basic(values), *expert(values))}
+        with self._varied:
+            first = FIRST.get(of, FIRST[OTHER])
+            self._axes = [
+                AxisFields("First input", keys, first, self._follow),
+                AxisFields("Second input", keys, None, self._follow),
+            ]
+        self._fields = {}
+        with self._inputs:
+            (self._draw_carve if self._is_carve else self._draw_scenario)()
+        self._follow()
+
+    def _draw_carve(self) -> None:
+        with ui.element("div").classes("inputs"):
+            starts = {**{name: start for name, (_, _, start) in SLIDERS.items()}, UNLOADING: "10"}
+            for name, start in starts.items():
+                self._add(_CarveField(study_keys(CARVE)[name], float(start), None))
+
+    def _draw_scenario(self) -> None:
+        from ...scenario.keys import SCENARIO_KEYS
+
+        values = self._values()
+
+        def draw(names: list[str]) -> None:
+            with ui.element("div").classes("inputs"):
+                for name in names:
+                    self._add(ScenarioField(SCENARIO_KEYS[name], values.get(name), None))
+
+        draw(basic(values))
+        with ui.element("details").classes("expert"):
+            with ui.element("summary"):
+                Words("Expert inputs")
+            for section, words in SECTION_WORDS.items():
+                if names := [name for name in expert(values) if name.startswith(f"{section}.")]:
+                    heading(words, 3)
+                    draw(names)
+
+    def _add(self, made: ScenarioField) -> None:
+        self._fields[made.key.name] = made
+        made.element.on_value_change(self._follow)
+
+    def _values(self) -> dict[str, Any]:
+        from ...scenario import scenario_file
+
+        return {} if self._is_carve else dict(scenario_file(str(self._of.value)).values)
+
+    async def _other_snow(self) -> None:
+        self._follow()
+
+    def _of_snow(self) -> dict[str, bool]:
+        """Whether a chosen snow gives each number of the snow."""
+        names = CARVE_SNOW if self._is_carve else SCENARIO_SNOW
+        return dict(zip(names, (self._snow.gives_hardness, self._snow.gives_stress), strict=True))
+
+    def _follow(self) -> None:
+        """Show the fields that count, and how long the study will take."""
+        varied, given = {axis.name for axis in self._axes}, self._of_snow()
+        for name, each in self._fields.items():
+            each.place.set_visibility(name not in varied and not given.get(name))
+        try:
+            points = self._axes[0].count() * self._axes[1].count()
+        except ParameterError:
+            self._estimate.set_text("")
+            return
+        method, unit = self._unit()
+        words = estimate_words(
+            self._studies, self._runs.folder, self._runs.jobs(), points=points, method=method, unit=unit
+        )
+        self._estimate.set_text(words)
+
+    def _unit(self) -> tuple[str, float]:
+        """Solver and how long a point takes, see `unit_s`; of what varies the middle counts."""
+        if self._is_carve:
+            return "", unit_s(CARVE, {})
+        values = self._values()
+        for name in TIMES:
+            try:
+                values[name] = float(self._fields[name].text or 0.0)
+            except ValueError:
+                return "", 0.0
+        for axis in self._axes:
+            if axis.name in TIMES:
+                try:
+                    values[axis.name] = axis.range().middle
+                except ParameterError:
+                    return "", 0.0
+        return self._fields["solver.method"].text, unit_s(str(self._of.value), values)
+
+    async def ask(self) -> None:
+        """Put the study into the queue, when it can be one."""
+        try:
+            asked = self._asked()
+            job = await run.io_bound(self._studies.ask_for, asked)
+        except SkisnowError as error:
+            keys = [each.key for each in self._fields.values()]
+            self._status.set_text(f"Not begun: {in_labels(error_sentence(error), *keys)}")
+            self._status.classes(add="bad")
+            return
+        if job is not None:
+            self._status.set_text(f"{job.name} is in the queue.")
+            self._status.classes(remove="bad")
+
+    def _asked(self) -> StudyAsked:
+        axes = [axis for axis in self._axes if axis.name]
+        if len({axis.name for axis in axes}) < len(axes):
+            raise ParameterError("the first and the second input are the same; choose another one")
+        varied = {axis.name: axis.range() for axis in axes}
+        given = self._of_snow()
+        for name in varied:
+            if given.get(name):
+                raise ParameterError(
+                    f"{called(study_keys(str(self._of.value))[name])} varies and the chosen snow gives it; choose the "
+                    "numbers below as the snow"
+                )
+        fixed = {name: each.check() for name, each in self._fields.items() if self._counts(name, each)}
+        files, named_words = dict[str, bytes](), list[str]()
+        for values, beside, words in (self._chosen_ski(), self._chosen_snow()):
+            fixed |= values
+            files |= beside
+            named_words += words
+        method, unit = self._unit()
+        return StudyAsked(str(self._of.value), varied, fixed, files, tuple(named_words), method, unit)
+
+    def _counts(self, name: str, each: ScenarioField) -> bool:
+        """Whether a field fixes its input: of a scenario where it is changed; of its two snow numbers both or none."""
+        if not each.place.visible:
+            return False
+        if self._is_carve or each.is_changed:
+            return True
+        pair = [self._fields[one] for one in SCENARIO_SNOW]
+        varied = {axis.name for axis in self._axes} & set(SCENARIO_SNOW)
+        return name in SCENARIO_SNOW and bool(each.text) and (bool(varied) or any(one.is_changed for one in pair))
+
+    def _chosen_ski(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
+        ski = str(self._ski.value)
+        if ski == GIVEN:
+            return {}, {}, []
+        word, table = self._skis.word(ski), ""
+        beside = dict[str, bytes]()
+        if word != ski:
+            text, table = self._skis.texts(ski)
+            beside = {f"ski/{FILE}": text.encode("utf-8")} | ({f"ski/{TABLE}": table.encode("utf-8")} if table else {})
+        key = "ski" if self._is_carve else "ski.name" if word == ski else "ski.file"
+        return {key: ski if word == ski else f"ski/{FILE}"}, beside, [f"ski: {ski}"]
+
+    def _chosen_snow(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
+        snow, lead = self._snow.chosen(), "" if self._is_carve else "snow."
+        if snow is None:
+            return {}, {}, []
+        if snow.analysis is None:
+            return {f"{lead}published": snow.published}, {}, [f"snow: {snow.words}"]
+        where: dict[str, InputValue] = {f"{lead}results": RESULTS}
+        if snow.site:
+            where[f"{lead}site"] = snow.site
+        return where, {RESULTS: results_json(snow.analysis.results)}, [f"snow: {snow.words}"]
+
+
+class _Card:
+    """One study of the list, and what can be done with it."""
+
+    def __init__(self, studies: Studies, job: StudyJob, act: Act) -> None:
+        self._studies = studies
+        with ui.element("section").classes("card") as self.place:
+            heading(job.name, 3)
+            self._words = sentence("", "quiet").props("aria-live=polite")
+            self._progress = sentence("", "quiet progress")
+            with ui.element("div").classes("acts"):
+                cancel = button("Cancel", lambda: act(studies.cancel, job.name))
+                self._cancel = named(cancel, f"Cancel {job.name}")
+                self._go_on = named(button("Go on", lambda: act(studies.go_on, job.name)), f"Go on with {job.name}")
+                table = link("Table and figure", table_address(job.name), "main")
+                self._table = named(table, f"Table and figure of {job.name}")
+
+    def show(self, job: StudyJob) -> None:
+        """Show how it stands now."""
+        of = CARVED if job.scenario == CARVE else job.scenario
+        self._words.set_text(" · ".join(filter(None, (of, job.given, job.state, job.said))))
+        self._progress.set_text(self._studies.progress if job.state == "running" else "")
+        self._progress.set_visibility(bool(self._progress.text))
+        self._cancel.set_visibility(job.state in ("waiting", "running"))
+        self._go_on.set_visibility(job.state in ("cancelled", "failed"))
+        self._table.set_visibility(job.state == "done")

@@ -1,0 +1,182 @@
+"""What a study has found: a chart of a result over what varies, the command's map and table, the files."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any, Final
+from urllib.parse import quote
+
+from nicegui import app, run, ui
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import FileResponse, Response
+
+from ...errors import ParameterError
+from ...language import ENGLISH
+from ...report.number_formatting import significant
+from ..error_pages import error_sentence, plain_page
+from ..fields import choice, link
+from ..language import language_of, said
+from ..layout import framed, heading, sentence
+from ..line_chart import BEHIND, ChartLine, LineChart
+from ..scenario_fields import called, written
+from ..studies import FIGURE, Studies
+from ..study_asked import CARVE, STUDY, TABLE, study_keys
+from ..unpacking import write_zip
+from ..worded import Words, named
+
+if TYPE_CHECKING:
+    from ...study import Study, StudyTable
+    from ..runs import Job
+    from ..settings import Lab
+
+HERE: Final = "/study"
+FILES: Final = f"{HERE}/files"
+ALL: Final = "study.zip"
+ROWS: Final = 200
+"""That the page shows (modelling assumption); the file has all of them."""
+OF_CARVES: Final = {
+    "turn_radius_boot_m": "Carved radius (m)",
+    "side_force_N": "Side force (N)",
+    "side_force_limit_N": "Shear capacity of the snow (N)",
+    "contact_length_m": "Contact length (m)",
+    "greatest_edge_depth_mm": "Greatest depth of the edge (mm)",
+}
+OF_RUNS: Final = {
+    "run_length_m": "Length of the run (m)",
+    "simulated_s": "Simulated time (s)",
+    "end_speed_m_per_s": "Speed at the end (m/s)",
+    "turn_radius_median_m": "Median turn radius (m)",
+    "greatest_edge_depth_mm": "Greatest depth of the edge (mm)",
+    "lost_friction_J": "Energy lost to friction (J)",
+}
+TYPES: Final = {STUDY: "application/toml", TABLE: "text/csv", FIGURE: "image/svg+xml"}
+NO_SCRIPTS: Final = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
+
+
+def table_address(name: str) -> str:
+    """The page of a study."""
+    return f"{HERE}/{quote(name, safe='')}"
+
+
+def _file_address(name: str, file: str) -> str:
+    return f"{FILES}/{quote(name, safe='')}/{file}"
+
+
+def add_page(lab: Lab) -> None:
+    """Add the page, and the addresses of its files."""
+    studies = Studies(lab.runs, lab.scheduler)
+
+    @ui.page(f"{HERE}/{{name}}")
+    async def study_table(name: str) -> None:
+        found = await run.io_bound(studies.table, name)
+        if found is None:
+            raise ParameterError("the lab is about to end")
+        with framed("Study", here=HERE):
+            _asked(next((job for job in studies.jobs() if job.name == name), None))
+            with ui.element("div").classes("acts"):
+                link("Download everything", _file_address(name, ALL), "main")
+                link("Download the table", _file_address(name, TABLE))
+            _Found(*found)
+            if (studies.folder / name / FIGURE).is_file():
+                _map(name)
+
+    @app.get(f"{FILES}/{{name}}/{{file}}")
+    async def files(request: Request, name: str, file: str) -> Response:
+        try:
+            if file != ALL:
+                place = studies.file(name, file)
+                return FileResponse(place, media_type=TYPES[file], headers={"content-security-policy": NO_SCRIPTS})
+            folder = studies.file(name, TABLE).parent
+        except ParameterError as error:
+            return plain_page("This cannot be shown", error_sentence(error), 404, request)
+        packed = io.BytesIO()
+        await run_in_threadpool(lambda: write_zip(studies.files_of(folder), packed))
+        headers = {"content-disposition": 'attachment; filename="study.zip"'}
+        return Response(packed.getvalue(), media_type="application/zip", headers=headers)
+
+
+def _asked(job: Job | None) -> None:
+    """What varies, and the numbers that are fixed."""
+    if job is not None:
+        keys = study_keys(job.scenario)
+        sentence(job.given, "quiet")
+        sentence("; ".join(f"{called(keys[name])}: {value}" for name, value in job.changes.items()), "quiet")
+
+
+def _map(name: str) -> None:
+    with ui.element("figure"):
+        ui.element("img").props(f'src="{_file_address(name, FIGURE)}"').props["alt"] = said(
+            "Turn radius over the inputs that vary, as skisnow study draws it"
+        )
+    if language_of() != ENGLISH:
+        sentence("Figures and the report are in English.", "quiet")
+
+
+class _Found:
+    """A result over the input with more values, a line for each value of the other one; and the rows."""
+
+    def __init__(self, study: Study, table: StudyTable) -> None:
+        self._table = table
+        of = getattr(study.subject, "scenario", CARVE)
+        self._keys = study_keys(of)
+        values = {name: sorted({row[name] for row in table.rows}) for name in study.varied}
+        self._x, *others = sorted(study.varied, key=lambda name: -len(values[name]))
+        self._other = others[0] if others else ""
+        self._lines = values.get(self._other, [None])
+        self._results = dict(OF_CARVES if of == CARVE else OF_RUNS)
+        self._shown = choice("Result", self._results, next(iter(self._results)))
+        self._chart = ui.element("div")
+        self._shown.on_value_change(self._draw)
+        self._draw()
+        self._rows(study)
+
+    def _draw(self) -> None:
+        result = str(self._shown.value)
+        x, y = called(self._keys[self._x]), self._results[result]
+        self._chart.clear()
+        with self._chart:
+            chart = LineChart(x, y, f"Chart of {y} over {x}", height=320)
+        chart.show([self._line(number, result) for number in self._order()])
+
+    def _order(self) -> list[int]:
+        """The lines that are named last, over the others: the first, a middle one and the last."""
+        count = len(self._lines)
+        named = list(dict.fromkeys((0, count // 2, count - 1)))
+        return [*(number for number in range(count) if number not in named), *named]
+
+    def _line(self, number: int, result: str) -> ChartLine:
+        value, count = self._lines[number], len(self._lines)
+        rows = [row for row in self._table.rows if not self._other or row[self._other] == value]
+        rows.sort(key=lambda row: row[self._x])
+        styles = {each: style for style, each in enumerate(dict.fromkeys((0, count // 2, count - 1)))}
+        name = f"{called(self._keys[self._other])}: {written(value)}" if self._other and number in styles else ""
+        x, y = ([row[each] for row in rows] for each in (self._x, result))
+        return ChartLine(x, y, styles.get(number, BEHIND), name=name)
+
+    def _rows(self, study: Study) -> None:
+        heading("Table")
+        columns = {name: called(self._keys[name]) for name in study.varied} | self._results
+        place = named(ui.element("div").classes("table").props("tabindex=0 role=region"), "Table")
+        with place, ui.element("table"):
+            with ui.element("thead"), ui.element("tr"):
+                for words in (*columns.values(), "Outcome"):
+                    with ui.element("th").props("scope=col"):
+                        Words(words)
+            with ui.element("tbody"):
+                for row in self._table.rows[:ROWS]:
+                    _row(row, list(columns))
+        if len(self._table.rows) > ROWS:
+            sentence(
+                f"The first {ROWS} of {len(self._table.rows)} rows; the file has all of them and all columns.", "note"
+            )
+
+
+def _row(row: dict[str, Any], columns: list[str]) -> None:
+    outcome = str(row["outcome"]).replace("_", " ") + (f": {row['reason']}" if row["outcome"] == "error" else "")
+    with ui.element("tr"):
+        for name in columns:
+            with ui.element("td").classes("n"):
+                ui.label("–" if row[name] is None else significant(row[name]))
+        with ui.element("td"):
+            Words(outcome)

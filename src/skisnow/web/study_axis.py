@@ -1,0 +1,129 @@
+"""An input that varies: which one, from where to where, how many values."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from nicegui import ui
+
+from ..errors import ParameterError
+from .fields import choice, field
+from .language import said
+from .layout import sentence
+from .scenario_fields import called, with_point
+from .study_asked import Range
+from .typed import typed_number
+from .worded import named
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from ..inputs import Quantity
+
+NOTHING: Final = "nothing"
+FROM: Final = "From"
+TO: Final = "To"
+VALUES: Final = "Number of values"
+LOG: Final = "Even in the logarithm"
+_USUAL: Final = "10"
+
+
+class AxisFields:
+    """The fields of one input that varies; `changed` is called with each change.
+
+    Parameters
+    ----------
+    place
+        In words: which of the inputs it is.
+    keys
+        What may vary.
+    first
+        Its name, range and number of values at first; None: nothing, which can be chosen then.
+    changed
+        See above.
+    """
+
+    def __init__(
+        self,
+        place: str,
+        keys: Mapping[str, Quantity],
+        first: tuple[str, str, str, str] | None,
+        changed: Callable[[], None],
+    ) -> None:
+        self._keys, self._changed = keys, changed
+        options = {} if first else {NOTHING: NOTHING}
+        name, low, high, n = first or (NOTHING, "", "", _USUAL)
+        with ui.element("div").classes("inputs varied"):
+            with ui.element("div").classes("input"):
+                self._key = choice(place, {**options, **{each: called(key) for each, key in keys.items()}}, name)
+                self._range = sentence("", "quiet range")
+            self._ends = [field(FROM, low, numeric=True), field(TO, high, numeric=True)]
+            self._n = field(VALUES, n, numeric=True)
+            self._log = ui.switch(said(LOG)).classes("field")
+        for each, words in zip((*self._ends, self._n, self._log), (FROM, TO, VALUES, LOG), strict=True):
+            named(each, f"{place}: {words[0].lower()}{words[1:]}")
+        for typed in (*self._ends, self._n):
+            typed.on_value_change(changed)
+        self._log.on_value_change(changed)
+        self._key.on_value_change(self._another)
+        self._show()
+
+    @property
+    def name(self) -> str:
+        """Of the input; nothing where none varies."""
+        name = str(self._key.value)
+        return "" if name == NOTHING else name
+
+    def _another(self) -> None:
+        usual = self._keys[self.name].usual if self.name else None
+        for each, end in zip(self._ends, usual or (None, None), strict=True):
+            each.set_value("" if end is None else f"{end:g}")
+        self._show()
+        self._changed()
+
+    def _show(self) -> None:
+        for each in (*self._ends, self._n, self._log):
+            each.set_visibility(bool(self.name))
+        self._range.set_text(f"Allowed: {self._keys[self.name].allowed}." if self.name else "")
+
+    def range(self) -> Range:
+        """What is typed.
+
+        Raises
+        ------
+        ParameterError
+            It is no range of the input.
+        """
+        key = self._keys[self.name]
+        words = called(key)
+        low, high = (
+            typed_number(f"{words}, the {end} end", str(each.value or ""))
+            for each, end in zip(self._ends, ("lower", "upper"), strict=True)
+        )
+        for end in (low, high):
+            try:
+                key.in_range(round(end) if key.kind == "whole number" and end == round(end) else end)
+            except ParameterError as error:
+                raise ParameterError(str(error).replace(key.name, words)) from error
+        if not low < high:
+            raise ParameterError(f"{words}: it goes from {low:g} to {high:g}; the first end must be the smaller one")
+        if self._log.value and low <= 0.0:
+            raise ParameterError(f"{words}: even in the logarithm, it must begin above 0; it begins at {low:g}")
+        return Range(low, high, self.count(), bool(self._log.value))
+
+    def count(self) -> int:
+        """How many values there are; 1 where nothing varies.
+
+        Raises
+        ------
+        ParameterError
+            What is typed is no such number.
+        """
+        if not self.name:
+            return 1
+        text = with_point(str(self._n.value or "").strip())
+        if not text.isdecimal() or int(text) < 2:
+            raise ParameterError(
+                f"{called(self._keys[self.name])}: the number of values is {text!r}; it must be 2 or more"
+            )
+        return int(text)

@@ -1,0 +1,176 @@
+"""The search against known optima, seeded, interrupted and gone on with."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from skisnow import QuickestLine, Scenario, quickest_line, scenario
+from skisnow.errors import ParameterError
+from skisnow.parallel.kept_rows import KeptRows
+from skisnow.parallel.pool import Pool
+from skisnow.racing.search import Evaluations, least_of
+
+from .test_point import WAY, glide, straight_course
+
+SLALOM = scenario("slalom-20-gates")
+EASY = SLALOM.with_(greatest_edge_deg=75.0)
+"""A point may turn there as the follower does."""
+
+
+@dataclass(frozen=True)
+class Polyline:
+    """Time without friction from rest over straight pieces to a point aside; nodes at fixed places down the slope."""
+
+    down: float = 2.0
+    x: tuple[float, ...] = (0.0, 1.0, 3.0, 6.0, 10.0)
+    aside: float = 8.0
+
+    def pieces(self, y: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Length, mean speed and rise aside of each piece."""
+        whole = np.array([0.0, *y, self.aside])
+        speed = np.sqrt(2.0 * self.down * np.array(self.x))
+        rise = np.diff(whole)
+        return np.hypot(rise, np.diff(self.x)), 0.5 * (speed[1:] + speed[:-1]), rise
+
+    def __call__(self, place: tuple[float, ...]) -> dict[str, Any]:
+        length, speed, _ = self.pieces(self.aside * np.array(place))
+        return {"place": list(place), "value": float(np.sum(length / speed))}
+
+
+def test_a_brachistochrone_of_pieces_obeys_snell() -> None:
+    """At the optimum the sine of the angle over the mean speed is the same on each piece."""
+    pytest.importorskip("cmaes")
+    line = Polyline()
+    with Pool(line, 1, advice="") as pool:
+        made = Evaluations(pool, KeptRows(), [])
+        best = least_of(
+            made, lambda place: tuple(place.tolist()), np.full(3, 0.5), count=600, population=None, spread=0.2,
+            seed=(5,), told=lambda *_: None,
+        )  # fmt: skip
+    length, speed, rise = line.pieces(line.aside * np.array(best.place))
+    assert rise / length / speed == pytest.approx(np.full(4, (rise / length / speed).mean()), rel=1e-4)
+    assert cycloid(line.x[-1], line.aside, line.down) < best.value < 1.03 * cycloid(line.x[-1], line.aside, line.down)
+    assert best.value < 0.97 * 2.0 * math.hypot(10.0, 8.0) / math.sqrt(2.0 * 2.0 * 10.0)  # the straight line
+
+
+def cycloid(x: float, y: float, down: float) -> float:
+    """Time of the brachistochrone to a point."""
+    low, high = 1e-6, 2.0 * math.pi - 1e-6
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if (middle - math.sin(middle)) / (1.0 - math.cos(middle)) < y / x else (low, middle)
+    return low * math.sqrt(x / (1.0 - math.cos(low)) / down)
+
+
+def raced(asked: Scenario = SLALOM, **named: Any) -> QuickestLine:
+    pytest.importorskip("cmaes")
+    usual: dict[str, Any] = {"gates": 2, "model": "point", "evaluations": 40, "workers": 1}
+    return quickest_line(asked, **usual | named)
+
+
+def test_gates_that_the_fall_line_passes_are_raced_straight() -> None:
+    """From where both sides turn by 0.2 m to the straight glide, whose time is known."""
+    found = raced(SLALOM.with_(course=straight_course(), mass_kg=80.0), gates=3, evaluations=120, spread=0.1, seed=3)
+    from skisnow.racing import PointRacer
+
+    _, exact = glide(PointRacer.of(found.scenario), WAY)
+    assert found.score.time is not None
+    assert found.start_score.time is not None
+    assert found.start_score.time - exact > 2e-3
+    assert 0.0 <= found.score.time - exact < 2e-4
+    assert [turn.aside for turn in found.line.turns] == pytest.approx([1.0, 1.0, 1.0], abs=0.08)
+
+
+def test_the_same_seed_gives_the_same_bits_and_another_another_line() -> None:
+    first, again, third = (raced(EASY, seed=seed, evaluations=16).line.turns for seed in (7, 7, 8))
+    assert first == again
+    assert first != third
+
+
+def test_interrupted_and_gone_on_with(tmp_path: Path) -> None:
+    kept = tmp_path / "kept"
+    whole = raced(seed=2, evaluations=24)
+
+    def stop(text: str) -> None:
+        if " 12 of 24" in text:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        raced(seed=2, evaluations=24, checkpoint=kept, progress=stop)
+    done = len(KeptRows.read(kept))
+    assert 10 < done < 24
+    told: list[str] = []
+    found = raced(seed=2, evaluations=24, checkpoint=kept, progress=told.append)
+    assert [each.row for each in found.history] == [each.row for each in whole.history]
+    assert found.line.turns == whole.line.turns
+    assert len(told) == len(whole.history) - done
+    with pytest.raises(ParameterError, match="of another study"):
+        raced(seed=3, checkpoint=kept)
+
+
+@pytest.mark.slow
+def test_workers_change_nothing() -> None:
+    assert raced(seed=4, workers=2).line.turns == raced(seed=4).line.turns
+
+
+def test_it_is_never_slower_than_where_it_began() -> None:
+    found = raced(EASY, evaluations=12)
+    assert found.gained is not None
+    assert found.gained >= 0.0
+    assert found.history[0].value == found.start_score.value
+    assert found.score.value == min(each.value for each in found.history)
+
+
+@pytest.mark.slow
+def test_five_seeds_find_the_same_time_through_four_gates() -> None:
+    """What docs/how-to/race.md says; the first line is too tight for the ski."""
+    found = [raced(gates=4, evaluations=1000, seed=seed) for seed in range(1, 6)]
+    times = [each.score.time for each in found]
+    assert found[0].start_score.time is None
+    assert times == pytest.approx([7.5055] * 5, abs=0.003)
+
+
+@pytest.mark.slow
+def test_a_window_that_moves_on_finds_what_the_whole_search_finds() -> None:
+    parts, whole = (
+        raced(EASY, gates=6, evaluations=n, window=window, step=1) for n, window in ((250, 3), (1500, None))
+    )
+    assert parts.score.time == pytest.approx(whole.score.time, abs=0.02)
+    assert parts.gained is not None
+    assert parts.gained > 0.1
+
+
+@pytest.mark.parametrize(
+    ("named", "words"),
+    [
+        ({"gates": 1}, "gates is 1"),
+        ({"gates": 21}, "from 2 to 20"),
+        ({"evaluations": 0}, "evaluations is 0"),
+        ({"population": 3}, "population is 3"),
+        ({"spread": 0.0}, "spread is 0"),
+        ({"window": 3}, "window is 3"),
+        ({"window": 2, "step": 3}, "step is 3"),
+    ],
+)
+def test_what_is_refused(named: dict[str, Any], words: str) -> None:
+    with pytest.raises(ParameterError, match=words):
+        quickest_line(SLALOM, **({"gates": 2} | named))
+
+
+def test_without_cmaes_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "cmaes", None)
+    with pytest.raises(ParameterError, match=r"skisnow\[racing\]"):
+        quickest_line(SLALOM, gates=2, model="point")
+
+
+def test_a_scenario_without_a_skier_is_refused() -> None:
+    with pytest.raises(ParameterError, match="no skier"):
+        quickest_line(replace(SLALOM, skier=None))

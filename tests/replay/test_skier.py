@@ -1,0 +1,191 @@
+"""A skier as it is drawn: bones keep their lengths, the masses their centre, boots and lean are the run's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from skisnow.course import Course, Gate
+from skisnow.geometry.boot_axes import axes_of
+from skisnow.replay import (
+    Replay,
+    moving_replay_model,
+    replay_bytes,
+    replay_model,
+    replay_of_bytes,
+    replay_of_file,
+    replay_of_run,
+)
+from skisnow.replay.skier import ANKLE_BEHIND, JOINTS, STAND_HEIGHT, centre_of_mass, two_bones
+from skisnow.replay.skier_shapes import skier_mesh, skier_parts
+from skisnow.scenario.skier import Skier
+from skisnow.simulate.boot_history import BootHistory
+from skisnow.simulate.run import Run
+from skisnow.simulate.run_gates import run_gates
+from skisnow.skier import body_of
+from skisnow.skier.segments import FOOT, FOREARM, SHANK, THIGH, TRUNK, UPPER_ARM
+from skisnow.units import DEGREE
+
+from ..report.runs import circle_run
+from .glb_files import GlbFile, Playing
+from .test_of_run import written
+
+HEIGHT = 1.76
+LEANS = np.linspace(-48.0, 48.0, 9) * DEGREE
+
+
+def run_of_skier() -> Run:
+    """A body that leans from right to left over skis on the snow, 0.6 m high; edge angles 4° beyond the lean."""
+    run = circle_run(count=len(LEANS))
+    body = body_of(75.0, HEIGHT)
+    sledge = replace(run.scenario.sledge, mass=75.0, inertia=body.inertia, centre_of_mass=(0.0, 0.6), edge_angle=0.0)
+    attitude = (
+        run.attitude @ Rotation.from_rotvec(-LEANS[:, None] * np.array([1.0, 0.0, 0.0])).as_matrix()
+    )  # to the left is about -x
+    ahead, left = run.attitude[:, :, 0], run.attitude[:, :, 1]
+    place = run.place[:, None] + np.stack([0.22 * left, -0.22 * left], axis=1)
+    heading = np.arctan2(ahead[:, 1], ahead[:, 0])
+    axes = np.array([[axes_of(lean * 1.08, 0.0, turn)] * 2 for lean, turn in zip(LEANS, heading, strict=True)])
+    centre = run.place + 0.6 * np.array([0.0, 0.0, 1.0]) + (0.6 * np.tan(LEANS))[:, None] * left
+    zeros = np.zeros((len(LEANS), 2, 3))
+    boots = BootHistory(place=place, axes=axes, own_force=zeros, own_moment=zeros, centre_of_mass=centre)
+    gates = tuple(
+        Gate(name=str(i), turning=tuple((run.place[at, :2] - left[at, :2]).tolist()), side="left")
+        for i, at in ((1, 2), (2, 6))
+    )
+    scenario = replace(run.scenario, skier=Skier(), sledge=sledge, course=Course(gates=gates, source="of the test"))
+    return replace(run, scenario=scenario, attitude=attitude, boots=boots, boots_by="moved by a skier")
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return run_of_skier()
+
+
+@pytest.fixture(scope="module")
+def replay(run: Run) -> Replay:
+    return replay_of_run(run, title="skier")
+
+
+def joints_of(replay: Replay) -> dict[str, np.ndarray]:
+    """In space."""
+    assert replay.skier is not None
+    turn = Rotation.from_quat(replay.attitude, scalar_first=True).as_matrix()
+    places = replay.place[:, None] + np.einsum("nab,nkb->nka", turn, replay.skier.joints)
+    return {name: places[:, i] for i, name in enumerate(JOINTS)}
+
+
+def test_bones_have_the_lengths_of_a_body_so_tall(replay: Replay) -> None:
+    joints = joints_of(replay)
+    bones = [("pelvis", "neck", TRUNK.length)]
+    for side in ("left ", "right "):
+        bones += [(side + "hip", side + "knee", THIGH.length), (side + "knee", side + "ankle", SHANK.length)]
+        bones += [
+            (side + "shoulder", side + "elbow", UPPER_ARM.length),
+            (side + "elbow", side + "hand", FOREARM.length),
+        ]
+    for one, other, share in bones:
+        length = np.linalg.norm(joints[one] - joints[other], axis=1)
+        assert length == pytest.approx(np.full(len(LEANS), share * HEIGHT), abs=1e-6), (one, other)
+
+
+def test_the_masses_have_their_centre_where_the_run_has_it(run: Run, replay: Replay) -> None:
+    assert run.boots is not None
+    assert centre_of_mass(joints_of(replay)) == pytest.approx(run.boots.centre_of_mass, abs=2e-3)
+
+
+def test_ankles_are_in_the_boots_and_lower_legs_in_their_planes(run: Run, replay: Replay) -> None:
+    joints, boots = joints_of(replay), run.boots
+    assert boots is not None
+    for ski, side in enumerate(("left", "right")):
+        off = (STAND_HEIGHT + FOOT.length * HEIGHT) * boots.axes[:, ski, 2] - ANKLE_BEHIND * boots.axes[:, ski, 0]
+        assert joints[f"{side} ankle"] == pytest.approx(boots.place[:, ski] + off, abs=1e-9)
+        shank = joints[f"{side} knee"] - joints[f"{side} ankle"]
+        aside = np.einsum("na,na->n", shank, boots.axes[:, ski, 1]) / np.linalg.norm(shank, axis=1)
+        assert np.degrees(np.abs(np.arcsin(aside))).max() < 20.0
+        assert np.einsum("na,na->n", shank, boots.axes[:, ski, 0]).min() > 0.0  # the knee is before the ankle
+
+
+def test_two_bones_meet_by_hand() -> None:
+    """3, 4 and 5: the joint lies 9/5 along and 12/5 beside; ends too far apart are taken as near as bones reach."""
+    start, end, aside = np.zeros((1, 3)), np.array([[5.0, 0.0, 0.0]]), np.array([[0.3, 0.0, 1.0]])
+    assert two_bones(start, end, 3.0, 4.0, aside)[0] == pytest.approx([1.8, 0.0, 2.4])
+    assert two_bones(start, 2.0 * end, 3.0, 4.0, aside)[0] == pytest.approx([3.0, 0.0, 0.0], abs=1e-6)
+    assert np.isfinite(two_bones(start, start, 3.0, 4.0, aside)).all()
+
+
+def test_a_body_that_legs_cannot_reach_is_drawn_all_the_same(run: Run) -> None:
+    assert run.boots is not None
+    far = replace(run.boots, centre_of_mass=run.boots.centre_of_mass + np.array([0.0, 0.0, 2.0]))
+    joints = joints_of(replay_of_run(replace(run, boots=far)))
+    for side in ("left", "right"):
+        length = np.linalg.norm(joints[f"{side} hip"] - joints[f"{side} ankle"], axis=1)
+        assert length.max() < (SHANK.length + THIGH.length) * HEIGHT * 1.001
+    assert all(np.isfinite(each).all() for each in joints.values())
+
+
+def test_bytes_and_file_hold_the_skier_and_its_gates(run: Run, replay: Replay, tmp_path: Path) -> None:
+    back = replay_of_bytes(replay_bytes(replay))
+    assert back.skier is not None and replay.skier is not None
+    assert back.skier.joints == pytest.approx(replay.skier.joints, abs=5e-5)
+    result = run_gates(run)
+    assert result is not None
+    assert replay.gate_times is not None and back.gate_times is not None
+    assert replay.gate_times.tolist() == [time - run.time[0] for time in result.times if time is not None]
+    assert back.gate_times == pytest.approx(replay.gate_times, abs=1e-6)
+    ended = replay_of_run(replace(run, scenario=replace(run.scenario, course=None)))
+    assert ended.gate_times is None
+    folder = written(run, tmp_path, **{"course.file": None, "course.name": None})
+    of_file = replay_of_file(folder)
+    assert of_file.skier is not None
+    assert of_file.skier.height == pytest.approx(HEIGHT)
+    assert of_file.skier.joints == pytest.approx(replay.skier.joints, abs=1e-6)
+    assert ("Skis", "giant-slalom, edged by the skier") in of_file.facts
+
+
+def test_a_gate_that_was_not_reached_has_no_time(run: Run) -> None:
+    """Even with it every number of the page's header is one."""
+    gates = (*run.scenario.course.gates, Gate(name="3", turning=(500.0, 0.0), side="left"))  # type: ignore[union-attr]
+    late = replay_of_run(replace(run, scenario=replace(run.scenario, course=Course(gates=gates, source="of the test"))))
+    assert late.gate_times is not None
+    assert np.isnan(late.gate_times).tolist() == [False, False, True]
+    back = replay_of_bytes(replay_bytes(late)).gate_times
+    assert back is not None
+    assert np.isnan(back).tolist() == [False, False, True]
+
+
+def test_both_models_have_the_skier(replay: Replay) -> None:
+    still, moving = GlbFile(replay_model(replay, float(replay.time[4]))), GlbFile(moving_replay_model(replay))
+    (mesh,) = [each for each in still.words["meshes"] if each["name"] == "skier"]
+    vertices = still.array(mesh["primitives"][0]["attributes"]["POSITION"])
+    assert vertices == pytest.approx(skier_mesh(replay, 4).vertices, abs=2e-6)
+    assert replay.skier is not None
+    names = {part.name for part in skier_parts(replay.skier.height)}
+    assert len(names) == 14
+    assert names <= {each["name"] for each in moving.words["nodes"]}
+    whole = skier_mesh(replay, 6)
+    parts = skier_parts(replay.skier.height)
+    first = 0
+    playing = Playing(moving, float(replay.time[6] - replay.time[0]))
+    upright = Rotation.from_quat(moving.words["nodes"][moving.node("run")]["rotation"])
+    for part in parts:
+        own = part.mesh.vertices
+        matrix = playing.matrix(moving.node(part.name))
+        placed = own @ matrix[:3, :3].T + matrix[:3, 3]
+        assert placed == pytest.approx(upright.apply(whole.vertices[first : first + len(own)]), abs=5e-6), part.name
+        first += len(own)
+
+
+def test_meshes_are_closed_and_look_outward(replay: Replay) -> None:
+    """By the divergence theorem the volume of each part is above 0: that of a body, 70 litres, all together."""
+    assert replay.skier is not None
+    volumes = []
+    for part in skier_parts(replay.skier.height):
+        a, b, c = (part.mesh.vertices[part.mesh.pieces[:, i]] for i in range(3))
+        volumes.append(float(np.einsum("ta,ta->t", a, np.cross(b, c)).sum()) / 6.0)
+    assert min(volumes) > 0.0
+    assert 0.05 < sum(volumes) < 0.11

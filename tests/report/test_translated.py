@@ -1,0 +1,167 @@
+"""A report in German: no text of it is left in English, and users' names and numbers are what they were."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from html import unescape
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+
+from skisnow.errors import ParameterError
+from skisnow.report import write_report
+from skisnow.report.figures import DRAWERS
+from skisnow.report.figures.drawing import Drawing, Picture
+from skisnow.report.figures.style import journal_style, site_styles
+from skisnow.report.figures.track_comparison import comparison_drawing
+from skisnow.report.figures.translated import translate_figure
+from skisnow.report.report_data import ReportData
+from skisnow.report.run_drawings import run_drawings
+from skisnow.report.run_report import run_page
+from skisnow.report.symbols import figure_text
+from skisnow.report.track_report import track_drawings
+from skisnow.report.translated import translated_html
+from skisnow.scenario.keys import SCENARIO_KEYS
+from skisnow.track.comparison import compare_tracks
+from skisnow.track.summary import track_summary
+from skisnow.track.track import Track
+
+from .conftest import Reported
+from .runs import circle_run
+from .test_run_report import summary_of
+
+VERSION = f"skisnow {version('skisnow')}"
+TITLE = "Measurement of mechanical properties of snow for simulation of skiing"
+SAME = frozenset({"Code", "Journal of Glaciology", "Moment", f", {VERSION}", TITLE})
+"""What is the same in both languages: words, and the title of a paper."""
+CODES = re.compile(
+    r"[\w.]*_\w+|[\w-]+\.(?:csv|toml)|[0-9a-f]{64}|[ab]@\d+deg|H_.; .* linear|; .* linear|linear|[Rr]mse"
+)
+ENGLISH = re.compile(
+    r"\b(?:the|of|and|are|with|at|by|for|from|no|over|to|yes|not|used|its|each|sites|on|none|which|"
+    r"depth|load|snow|stress|angle|density|interval|experiments?|campaign|without|constant)\b",
+    re.IGNORECASE,
+)
+
+
+def texts(html: str) -> set[str]:
+    """What a reader sees between the tags of a page, and what tags say; formulas and names of files left out."""
+    html = re.sub(r"<(style|script|code|math)\b.*?</\1>", "<br>", html, flags=re.DOTALL)
+    said = re.findall(r'(?:alt|aria-label|data-name)="([^"]*)"', html)
+    return {unescape(each).strip() for each in (*said, *re.findall(r">([^<>]+)<", html))}
+
+
+@pytest.fixture(scope="module")
+def german(reference: Reported) -> str:
+    return translated_html(reference.html, "de", names=ReportData(reference.analysis).names)
+
+
+def test_no_text_of_a_german_report_is_left_in_english(reference: Reported, german: str) -> None:
+    names = ReportData(reference.analysis).names
+    assert '<html lang="de">' in german
+    before, after = texts(reference.html) - names - SAME, texts(german) - names - SAME
+    words = {each for each in before if re.search("[A-Za-z]{4}", each) and not CODES.fullmatch(each)}
+    assert len(words) > 250
+    assert words.intersection(after) == set()
+    ours = {re.sub("|".join((*map(re.escape, names | SAME), "[ab]=constant")), "", each) for each in after}
+    assert {each for each in ours if ENGLISH.search(each) and not CODES.fullmatch(each)} == set()
+
+
+def test_a_german_report_has_the_same_numbers(reference: Reported, german: str) -> None:
+    """Every digit in its order within a table, with the comma."""
+
+    def numbers(html: str) -> list[str]:
+        (body,) = re.findall(r'id="table-models".*?<tbody[^>]*>(.*?)</tbody>', html, flags=re.DOTALL)
+        return re.findall(r"−?\d+[.,]\d+", re.sub(r"<[^>]*>", " ", body))
+
+    assert len(numbers(reference.html)) > 30
+    assert numbers(german) == [each.replace(".", ",") for each in numbers(reference.html)]
+
+
+def test_names_that_users_gave_stay() -> None:
+    page = "<td>all</td><td>all sites</td><p><i>S</i><sub>f</sub> on edge angle ϑ, all (n = 3): no data.</p>"
+    page += "<p>A_1 &lt;b&gt;</p>"
+    german = translated_html(page, "de", names=frozenset({"all"}))
+    assert german == (
+        "<td>all</td><td>alle Messorte</td><p><i>S</i><sub>f</sub> auf Kantwinkel ϑ, all (n = 3): keine Daten.</p>"
+        "<p>A_1 &lt;b&gt;</p>"
+    )
+
+
+def test_dates_are_written_as_a_german_reader_writes_them() -> None:
+    page = '<time datetime="2026-01-09">9</time> to <time datetime="2026-03-12">12 March 2026</time>'
+    assert re.sub("<[^>]*>", "", translated_html(page, "de")) == "9. bis 12. März 2026"
+    assert translated_html("<p>0.5 to 1.25 mm, doi 10.1111/sms.12035, skisnow 0.1.0</p>", "de") == (
+        "<p>0,5 bis 1,25 mm, doi 10.1111/sms.12035, skisnow 0.1.0</p>"
+    )
+
+
+def written(drawing: Drawing) -> Iterator[str]:
+    """Every text of a figure, those at its axes too."""
+    for axes in drawing.figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            yield from axis.get_major_formatter().format_ticks([0.5, 1.0])
+    for text in drawing.figure.findobj(Text):
+        assert isinstance(text, Text)
+        yield text.get_text()
+
+
+@pytest.mark.parametrize("number", range(len(DRAWERS)))
+def test_no_word_in_a_german_figure_is_left_in_english(reference: Reported, number: int) -> None:
+    data = ReportData(reference.analysis)
+    names = frozenset(map(figure_text, data.names))
+    with journal_style():
+        drawn = DRAWERS[number](data, site_styles(data))
+        assert isinstance(drawn, Drawing)
+        english = set(written(drawn))
+        translate_figure(drawn.figure, "de", names=names)
+        german = {re.sub(r"\$[^$]*\$", "", each) for each in written(drawn)} - names
+    assert {each for each in english if re.search("[a-z]{4}", each)} - names
+    assert {each for each in german if ENGLISH.search(each) and not CODES.fullmatch(each)} == set()
+    assert {each for each in german if re.search(r"\d\.\d", each)} == set()
+
+
+def test_no_text_of_a_german_run_is_left_in_english() -> None:
+    """Its page and its figures, but for keys, the papers to cite, and the ids of what the run was given."""
+    run, pictures = circle_run(), []
+    with journal_style():
+        for drawn in run_drawings(run):
+            translate_figure(drawn.figure, "de")
+            words = {re.sub(r"\$[^$]*\$", "", each) for each in written(drawn)}
+            assert {each for each in words if ENGLISH.search(each)} == set()
+            pictures.append(Picture(drawn.name, drawn.whole_caption, drawn.alt, drawn.wide, "", b""))
+    english, german = (texts(run_page(run, summary_of(run), pictures, language=code)) for code in ("en", "de"))
+    choices = {word for key in SCENARIO_KEYS.values() for word in key.choices}
+    same = {"Start", "Start (J)", "false", "giant-slalom", "true", VERSION, *choices, *SCENARIO_KEYS}
+    words = {each for each in english if re.search("[A-Za-z]{4}", each)} - same
+    assert len(words) > 150
+    assert words.intersection(german) == set()
+    left = {each for each in german - same if ENGLISH.search(re.sub(r"\"[^\"]*\"", "", each))}
+    assert {each for each in left if "The skisnow developers" not in each} == set()
+
+
+def test_no_word_in_german_figures_of_tracks_is_left_in_english() -> None:
+    way = np.linspace(0.0, 40.0, 300)
+    place = np.column_stack([way, 3.0 * np.sin(way / 5.0), 0.0 * way])
+    measured, simulated = (
+        Track("a.csv", way / 8.0, place + shift, np.full(300, np.nan), "local", "made by hand") for shift in (0.0, 0.1)
+    )
+    found = compare_tracks(simulated, measured)
+    with journal_style():
+        for drawn in (*track_drawings(track_summary(measured)), comparison_drawing(found)):
+            english = set(written(drawn))
+            translate_figure(drawn.figure, "de", names=frozenset({"a.csv"}))
+            german = {re.sub(r"\$[^$]*\$", "", each) for each in written(drawn)}
+            assert {each for each in german if ENGLISH.search(each)} == set()
+            assert len(english) > 5
+            assert {each for each in english & german if re.search("[a-z]{4}", each)} == set()
+
+
+def test_a_language_without_texts_is_refused_before_anything_is_written(reference: Reported, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError, match="one of en, de; 'xx' is given"):
+        write_report(reference.analysis, tmp_path / "out", language="xx")
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,102 @@
+"""Boots of a scenario: what a table or arrays of poses must be, and what is taken where a table is silent."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.errors import ParameterError
+from skisnow.geometry.boot_axes import angles_of, axes_of
+from skisnow.scenario import read_scenario, scenario_file
+from skisnow.scenario.boots import Boots
+from skisnow.scenario.boots_file import read_boots
+
+FLAT: dict[str, Any] = {
+    "at": np.arange(4.0), "place": np.zeros((4, 2, 3)), "axes": np.tile(np.eye(3), (4, 2, 1, 1)),
+}  # fmt: skip
+MIRRORED = np.tile(np.diag([1.0, -1.0, 1.0]), (4, 2, 1, 1))
+
+
+def test_four_poses_are_enough() -> None:
+    for over, unit in (("time", "s"), ("distance", "m")):
+        assert f"4 poses of each, 0 to 3 {unit}, in the sledge's frame" in repr(Boots(**FLAT, over=over))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({name: each[:3] for name, each in FLAT.items()}, "boots need 4 rows or more"),
+        ({"at": np.zeros((4, 1))}, "boots need 4 rows or more"),
+        ({"place": np.zeros((4, 2, 2))}, r"there are \(4,\), \(4, 2, 2\) and \(4, 2, 3, 3\)"),
+        ({"axes": FLAT["axes"][:3]}, r"there are \(4,\), \(4, 2, 3\) and \(3, 2, 3, 3\)"),
+        ({"place": np.full((4, 2, 3), math.nan)}, "place holds a number that is not finite"),
+        ({"at": np.array([0.0, 1.0, 2.0, math.inf])}, "at holds a number that is not finite"),
+        ({"at": np.array([0.0, 1.0, 1.0, 2.0])}, "time of row 3 is 1 after 1; it must rise"),
+        ({"axes": 1.001 * FLAT["axes"]}, r"axes are off by 2\.0e-03 from right-handed orthonormal ones"),
+        ({"axes": MIRRORED}, "axes are off by 0.0e.00 from right-handed"),
+        ({"frame": "slope", "over": "distance"}, "boots in the slope's frame go over time"),
+    ],
+)
+def test_poses_that_are_none_are_refused(changes: dict[str, Any], told: str) -> None:
+    with pytest.raises(ParameterError, match=told):
+        Boots(**FLAT | changes)
+
+
+def table(folder: Path, text: str, name: str = "boots.csv") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_what_a_table_does_not_say_is_the_sledges(tmp_path: Path) -> None:
+    """Here the left boot's place to the side and the right one's pitch; forces of a run's own boots are passed over."""
+    head = "distance_m, left_aside_m ,right_pitch_deg,left_force_x_N,left_moment_x_N_m\n"
+    path = table(tmp_path, head + "".join(f"{d},0.3,{10 * d},x,y\n" for d in range(4)))
+    found = read_boots(path, edge_angle=0.2, stance_width=0.5)
+    assert (found.frame, found.over, found.source) == ("sledge", "distance", str(path))
+    assert found.place[2].tolist() == [[0.0, 0.3, 0.0], [0.0, -0.25, 0.0]]
+    left, right = angles_of(found.axes)[2]
+    assert left == pytest.approx([0.2, 0.0, 0.0], abs=1e-12)
+    assert right == pytest.approx([0.2, math.radians(20.0), 0.0], abs=1e-12)
+    assert read_boots(path).place[2, 1].tolist() == [0.0, 0.0, 0.0]
+
+
+MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 30\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "told"),
+    [
+        (MOT.replace("2 20", "2 2O"), "a.mot", r"row 7, column left_edge_angle_deg: '2O' is no finite number"),
+        (MOT.replace("2 20", "2 inf"), "a.sto", r"'inf' is no finite number"),
+        (MOT.replace("2 20", "2"), "a.mot", "row 7: 1 cells stand under 2 names"),
+        (MOT.replace("EndHeader\n", ""), "a.mot", "has no line endheader"),
+        ("time_s,left_up_m,left_up_m\n", "a.csv", "the column left_up_m is there twice"),
+        ("time_s,time,left_up_m\n", "a.csv", "needs one of the columns time_s"),
+        ("time_s,left_up_m\n0,1\n\n1\n", "a.csv", "row 3: 1 cells stand under 2 names"),
+        ("time_s,left_up_m\n0,1\n1,2\n2,3\n", "a.csv", r"a\.csv: boots need 4 rows or more"),
+        ("", "a.csv", "needs one of the columns"),
+    ],
+)
+def test_tables_that_are_none_are_refused_with_their_place(tmp_path: Path, text: str, name: str, told: str) -> None:
+    with pytest.raises(ParameterError, match=told):
+        read_boots(table(tmp_path, text, name))
+
+
+def test_a_table_of_opensim_is_read_behind_its_head(tmp_path: Path) -> None:
+    found = read_boots(table(tmp_path, MOT, "a.mot"))
+    assert found.at.tolist() == [0.0, 1.0, 2.0, 3.0]
+    assert found.axes[3, 0] == pytest.approx(axes_of(math.radians(30.0), 0.0, 0.0))
+    assert found.axes[3, 1] == pytest.approx(np.eye(3))
+
+
+def test_a_scenario_given_in_python_is_changed_as_a_file() -> None:
+    base = read_scenario("carved-46m")
+    found = scenario_file(base, changes={"start.speed_m_per_s": 3.0})  # type: ignore[arg-type]
+    assert (found.scenario.start.speed, found.values["start.speed_m_per_s"], found.files) == (3.0, 3.0, ())
+    assert found.scenario.sledge == base.sledge
+    assert scenario_file(base).scenario.start.speed == base.start.speed  # type: ignore[arg-type]
