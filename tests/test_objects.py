@@ -21,6 +21,7 @@ from skisnow.estimate.results_text import results_json
 from skisnow.field import Campaign
 from skisnow.field.reference import reference_campaign
 
+from .conftest import without_png
 from .report.runs import RADIUS, SPEED, circle_run
 
 
@@ -177,7 +178,8 @@ def test_a_change_that_cannot_be_is_refused(changes: dict[str, Any], told: str) 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of a circle at 8 m/s."""
-    return circle_run().report(tmp_path_factory.mktemp("run") / "new").parent
+    with without_png():
+        return circle_run().report(tmp_path_factory.mktemp("run") / "new").parent
 
 
 def test_report_of_a_run_is_the_folder_of_the_command(folder: Path) -> None:

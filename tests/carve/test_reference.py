@@ -77,6 +77,7 @@ def base(ski: Ski | None = None) -> Case:
     return Case(ski=ski or read_ski("slalom"), hardness=0.2e9, edge_angle=math.radians(45.0), load=800.0)
 
 
+@pytest.mark.slow
 def test_hypoplastic_with_twist_and_side_force() -> None:
     compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3))
 

@@ -303,6 +303,7 @@ def test_the_command_does_what_the_call_does(analysis: Analysis, tmp_path: Path,
     assert (tmp_path / "turn" / "report.html").is_file()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_s_json_is_that_of_the_report(asked: list[Scenario], tmp_path: Path, capsys: Printed) -> None:
     """Alone on stdout, as the schema has it, each number that of its run; turn.json holds the same."""
     skisnow.write_reference(tmp_path / "campaign", seed=1)

@@ -71,6 +71,7 @@ def test_it_finds_what_bars_people(plain: Page) -> None:
     assert {each.split(":")[0] for each in barred(plain)} == {"image-alt", "label"}
 
 
+@pytest.mark.slow
 def test_nobody_is_barred_from_correcting(page: Page, served: Served) -> None:
     """The page of a test, while its reason is asked."""
     imported(page, served)

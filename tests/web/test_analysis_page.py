@@ -54,6 +54,7 @@ def html(served: Served, path: str) -> str:
         return str(answer.read().decode())
 
 
+@pytest.mark.slow
 def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Path) -> None:
     id_ = kept_campaign(served, tmp_path / "reference")
     campaign = read_campaign(tmp_path / "reference")

@@ -99,6 +99,7 @@ def test_discs_that_are_taken_off_have_fields_of_their_own(page: Page, served: S
     assert [row[branch] for row in rows[1:-3]] == [""] * 4
 
 
+@pytest.mark.slow
 def test_a_depth_that_is_read_once_more_after_waiting_stands_beside_the_first_one(page: Page, served: Served) -> None:
     """At the width of a phone: with its reading in the file's column, flagged where the snow creeps, corrected with a
     reason; the first depths, and with them H_V, stay.
@@ -231,6 +232,7 @@ def test_a_campaign_without_a_plate_says_where_to_name_one(page: Page, served: S
     page.locator(".bad", has_text="This campaign has no plate yet: name one under Campaign.").wait_for()
 
 
+@pytest.mark.slow
 def test_two_browsers_on_one_series(page: Page, served: Served) -> None:
     create(page, served)
     enter_series(page, "1")

@@ -154,6 +154,7 @@ def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path:
     assert by_lab == results
 
 
+@pytest.mark.slow
 def test_what_a_test_has_once_is_corrected_in_every_row(
     page: Page, served: Served, tmp_path: Path, capsys: Printed
 ) -> None:

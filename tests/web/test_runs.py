@@ -80,6 +80,7 @@ def choose(page: Page, label: str, option: str) -> None:
     page.get_by_role("option", name=option).click()
 
 
+@pytest.mark.slow
 def test_the_snow_of_a_campaign_comes_with_its_uncertainty(page: Page, served: Served, tmp_path: Path) -> None:
     id_, snow = kept_campaign(served, tmp_path / "reference")
     assert snow.snow_hardness_interval is not None and snow.failure_shear_stress_interval is not None

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pytest
+
 from skisnow.field.store import Journals, Store, replayed
 from skisnow.ski import read_ski
 
@@ -27,6 +29,7 @@ def send(page: Page) -> None:
     page.get_by_role("button", name="Store and enter tests").press("Enter")
 
 
+@pytest.mark.slow
 def test_tools_and_plates_in_use_keep_their_names(page: Page, served: Served) -> None:
     create(page, served)
     enter_series(page, "2")
@@ -49,6 +52,7 @@ def test_tools_and_plates_in_use_keep_their_names(page: Page, served: Served) ->
         assert "a longer one" in replayed(Journals(store).entries(id_)).description
 
 
+@pytest.mark.slow
 def test_readings_stay_under_their_loads_when_the_discs_change(page: Page, served: Served) -> None:
     create(page, served)
     enter_series(page, "2")
@@ -127,6 +131,7 @@ def test_a_value_that_is_being_typed_is_not_drawn_over(page: Page, served: Serve
     has_text(page.get_by_label("GJ (N m²) at 0.000 m", exact=True), "180")
 
 
+@pytest.mark.slow
 def test_a_ski_file_that_was_not_drawn_is_not_passed_over(page: Page, served: Served) -> None:
     page.goto(f"{served.address}skis")
     page.get_by_role("row", name="Mass").wait_for()

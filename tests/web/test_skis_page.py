@@ -99,6 +99,7 @@ def test_what_cannot_be_is_said_and_nothing_is_saved(page: Page, served: Served)
     has_text(page.get_by_label("GJ (N m²) at 0.000 m", exact=True), given)
 
 
+@pytest.mark.slow
 def test_the_text_is_drawn_and_its_faults_are_said(page: Page, served: Served) -> None:
     page.goto(f"{served.address}skis")
     page.get_by_role("row", name="Mass").wait_for()

@@ -221,6 +221,7 @@ def killed_while(page: Page, served: Served, typed: str) -> None:
     ready(page)
 
 
+@pytest.mark.slow
 def test_a_lab_that_is_killed_in_a_series(page: Page, served: Served) -> None:
     """Even before its first reading; what is typed meanwhile goes where it was typed."""
     opened(page, served)
@@ -268,6 +269,7 @@ def test_half_typed_text_outlives_a_reload_and_a_restart(page: Page, served: Ser
     assert depths(served) == {"1": ["1.5", "2.15"]}
 
 
+@pytest.mark.slow
 def test_a_campaign_that_is_described_while_the_lab_is_killed_is_begun_once(page: Page, served: Served) -> None:
     page.goto(f"{served.address}describe")
     fill(page, {"Name of the campaign": "one", "Name of plate 1": "plate", "Length (mm) of plate 1": "100"})

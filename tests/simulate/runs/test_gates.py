@@ -87,6 +87,7 @@ def test_edge_angle_of_the_figure_is_that_of_the_sledge() -> None:
         run.plot("course")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_folder_of_a_run_has_its_gates(straight: Run, tmp_path: Path) -> None:
     page = straight.report(tmp_path).read_text(encoding="utf-8")
     assert "3 of 3 gates passed" in page

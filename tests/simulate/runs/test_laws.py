@@ -95,6 +95,7 @@ def test_other_laws_run_in_a_turn(laws: Laws) -> None:
     assert 1e-4 < np.linalg.norm(run.place[-1] - usual.place[-1]) < 0.5
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_run_names_the_laws_that_it_was_given(tmp_path: Path) -> None:
     """In its repr, in summary.json, in run.nc and in the report; a run of the scenario's own laws names none."""
     turn = scenario("carved-46m", changes={"run.duration_s": 0.05})

@@ -128,6 +128,7 @@ def test_a_page_that_was_hidden_goes_on_from_where_it_was(seen: Watched) -> None
     assert seen.does(played(60_000.0)) == pytest.approx(2.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_it_ends_at_the_end_and_begins_anew(seen: Watched) -> None:
     seen.does("replay.seek(3.9); replay.play()")
     seen.page.wait_for_function("!window.skisnowReplay.playing")
@@ -365,6 +366,7 @@ def test_dragging_turns_and_the_wheel_comes_nearer(fresh: Watched) -> None:
     assert before > 0.0
 
 
+@pytest.mark.slow
 def test_picture_and_film_are_files(fresh: Watched, tmp_path: Path) -> None:
     from PIL import Image
 
@@ -405,6 +407,7 @@ def test_a_measured_slope_is_drawn_as_it_falls(browser: Any, tmp_path: Path) -> 
         seen.close()
 
 
+@pytest.mark.slow
 def test_moving_boots_over_measured_heights(browser: Any, tmp_path: Path) -> None:
     """Skis stand where the boots have them, on a mesh of the heights; brackets and shadows go with them."""
     run = run_with_boots()

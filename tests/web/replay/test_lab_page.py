@@ -26,6 +26,7 @@ def kept(folder: Path, name: str, **how: Any) -> None:
     write_run_file(run, in_sections(scenario_values(run.scenario)), folder / name / "run.nc")
 
 
+@pytest.mark.slow
 def test_runs_are_listed_and_two_are_watched(served: Any, page: Any) -> None:
     runs = served.store.parent / "lab"
     page.goto(f"{served.address.rstrip('/')}/replay")
