@@ -72,6 +72,7 @@ def test_units_come_from_the_names() -> None:
         "stiffness_factor",
         "turns",
         "leg_gain",
+        "carving_share",
         "edge_gain",
         "lean_more",
         "reach",

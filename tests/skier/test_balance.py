@@ -142,6 +142,23 @@ def test_the_last_bits_stay_small_while_it_balances() -> None:
     assert np.linalg.norm(ends[0] - ends[1]) < 1e-3
 
 
+def swing(legs: float) -> float:
+    """Rms (N) of the load of the outer ski between 5 and 12 Hz in the first turns, with legs that so give way (1/s)."""
+    run = simulate(tall(Skier(leg_yielding=legs), duration_s=3.5))
+    while_turning = run.time > 1.0
+    balance, step = run.balance, float(np.median(np.diff(run.time)))
+    outer = np.where(balance.lean > 0.0, balance.load[:, 1], balance.load[:, 0])[while_turning]
+    parts, rates = np.fft.rfft(outer - outer.mean()), np.fft.rfftfreq(len(outer), step)
+    parts[(rates < 5.0) | (rates > 12.0)] = 0.0
+    return float(np.sqrt(np.mean(np.fft.irfft(parts, len(outer)) ** 2)))
+
+
+def test_loads_do_not_chatter_from_ski_to_ski() -> None:
+    """Legs that do not give way let the load go to and fro some six times a second, by 100 N and more in the mean."""
+    assert swing(0.0) > 90.0
+    assert swing(Skier().leg_yielding) < 40.0
+
+
 def test_left_and_right_mirror() -> None:
     """The first turn."""
     ends = []

@@ -54,7 +54,7 @@ def test_who_is_on_the_line_turns_as_it_does_and_who_is_beside_it_goes_back() ->
 
 
 def edges() -> Edges:
-    return Edges.of(scenario("skier-10deg"), STEEP, math.radians(66.0))
+    return Edges.of(scenario("skier-10deg"), STEEP, Skier())
 
 
 def test_more_acceleration_takes_more_edge_and_left_is_as_right() -> None:

@@ -30,7 +30,7 @@ class Skier:
         Greatest distance from the middle of the feet to the centre of mass (m).
     greatest_edge
         Greatest edge angle (rad).
-    leg_gain, edge_gain, edge_change, edge_filter, share_filter, load_filter, lean_more, reach, lag, correction, touch
+    leg_gain, leg_yielding, carving_share, edge_gain, edge_change, edge_filter, share_filter, load_filter, lean_more, reach, lag, correction, touch
         Of the control; the page docs/methods/skier.md has what they do.
 
     See Also
@@ -155,6 +155,29 @@ class Skier:
             origin="found by trial",
         ),
     ] = 0.7
+    leg_yielding: Annotated[
+        float,
+        Quantity(
+            "skier.leg_yielding_per_s",
+            "speed aside at which legs give way, over how far the centre of pressure is from where it is asked for",
+            label="yielding of the legs",
+            lowest=0.0,
+            highest=100.0,
+            origin="found by trial: below 0.6 the loads swing at 5 to 8 Hz, from 2 on by the steps of the control",
+        ),
+    ] = 0.8
+    carving_share: Annotated[
+        float,
+        Quantity(
+            "skier.carving_share",
+            "share of the straightest carve's acceleration from which on edges go over from a skid to a carve",
+            label="carving from",
+            lowest=0.0,
+            highest=1.0,
+            below=True,
+            origin="choice: from none on, so that the edge angle grows most evenly",
+        ),
+    ] = 0.0
     edge_gain: Annotated[
         float,
         Quantity(

@@ -98,7 +98,8 @@ class BalancedSkier:
     y'' = ω² (y - b - u): b would be in balance at the present acceleration, u is how far aside the centre of pressure
     is. Of the two movements the one that grows belongs to the capture point ξ = y + y'/ω; what it has to be is what is
     planned: ω ∫ exp(-ω s) b(t + s) ds. The legs bring u to where ξ - ξ_ref decays, as far as the stance allows, and
-    edge angles help.
+    edge angles help. A leg that bears more than asked gives way, as a damper does. Between two calls boots move with
+    even acceleration: their velocities are continuous.
 
     References
     ----------
@@ -106,13 +107,15 @@ class BalancedSkier:
     """
 
     scenario: Scenario
-    records: list[BalanceRecord] = field(default_factory=list)
+    records: list[BalanceRecord] = field(default_factory=list, repr=False)
     skier: Skier = field(init=False)
     steering: Steering = field(init=False)
     edges: Edges = field(init=False)
     _aside: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])  # with its rates
     _edge: list[float] = field(default_factory=lambda: [0.0, 0.0])
     _turn: list[float] = field(default_factory=lambda: [0.0, 0.0])  # planned curvature over speed², with its rate
+    _gives: float = 0.0  # rate aside by legs that give way (m/s)
+    _pressure: float = 0.0  # asked for, from the middle of the feet to the left (m)
     _asked: float = 0.0  # acceleration that balance asks for
     _acceleration: float = 0.0  # of the feet to the left
     _correction: float = 0.0
@@ -126,7 +129,7 @@ class BalancedSkier:
             raise ParameterError("BalancedSkier: the scenario has no skier; give Scenario.with_(skier=Skier())")
         self.skier = self.scenario.skier
         self._stand_on(self.scenario.start.x, self.scenario.start.y)
-        self.edges = Edges.of(self.scenario, self._gravity, self.skier.greatest_edge)
+        self.edges = Edges.of(self.scenario, self._gravity, self.skier)
         self.steering = self._steering()
         height, roll = sledge.centre_of_mass[1], ROLLS * sledge.inertia[0]
         self._rate = math.sqrt(self._gravity * height * sledge.mass / (roll + sledge.mass * height**2))
@@ -177,7 +180,7 @@ class BalancedSkier:
             self.records.append(BalanceRecord(moment.until, seen, balanced, wanted, self._edge[0]))
         stance, half = self.scenario.sledge.stance_width, float(self.scenario.ski.at(0.0).width) / 2.0
         (aside, rate, _), (edge, turning) = self._aside, self._edge
-        return leg_poses((aside, rate), (edge, turning), self._height, stance, half)
+        return leg_poses((aside, rate + self._gives), (edge, turning), self._height, stance, half)
 
     def _most(self, speed: float) -> float:
         """Acceleration of a carve in balance (m/s²)."""
@@ -237,9 +240,11 @@ class BalancedSkier:
         reach = skier.reach * self.scenario.sledge.stance_width / 2.0
         pressure = max(-reach, min(reach, (1.0 + skier.leg_gain) * error))
         growth = max(-MOST_GROWTH, min(MOST_GROWTH, omega**2 * (aside - pressure - balanced)))
-        rate += growth * dt
         furthest = math.sqrt(skier.longest_leg**2 - self._height**2)
-        self._aside = [max(-furthest, min(furthest, aside + rate * dt)), rate, growth]
+        later = rate + growth * dt
+        gives = skier.leg_yielding * (seen.pressure - self._pressure) if seen.bears and not seen.lifted else 0.0
+        place = aside + 0.5 * (rate + self._gives + later + gives) * dt
+        self._aside, self._gives, self._pressure = [max(-furthest, min(furthest, place)), later, growth], gives, pressure
         return error
 
     def _step_edge(self, now: float, seen: Seen, error: float, dt: float) -> None:
@@ -259,8 +264,8 @@ class BalancedSkier:
         target = max(-limit, min(limit, ahead))
         grip = (target + self._downhill * math.sin(seen.course)) / self._gravity
         wanted = self.edges.angle(target, grip, seen.speed, seen.load)
-        turning += (swift**2 * (wanted - edge) - 2.0 * swift * turning) * dt
-        self._edge = [edge + turning * dt, turning]
+        later = turning + (swift**2 * (wanted - edge) - 2.0 * swift * turning) * dt
+        self._edge = [edge + 0.5 * (turning + later) * dt, later]
 
     @property
     def edge_steps(self) -> FloatArray:

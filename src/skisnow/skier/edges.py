@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from ..scenario import Scenario
+from ..scenario.skier import Skier
 
-CARVING_SHARE: Final = 0.6
-"""Share of the straightest carve's acceleration from which on the edges are set as for carving (modelling assumption).
-"""
 EDGE_BEYOND_LEAN: Final = math.radians(3.0)
 """Edge angle beyond the lean in a carve (modelling assumption)."""
 CONTACT_SHARE: Final = 0.85
@@ -33,21 +31,24 @@ class Edges:
         2 S_f² L/H_V (N): a wedge of angle ϑ under the load N holds √(2 S_f² L tan ϑ/(H_V N)) times that load aside.
     greatest
         Edge angle (rad).
+    carving_share
+        Share of the straightest carve's acceleration from which on the edges go over to those of a carve.
     """
 
     radius: float
     gravity: float
     softness: float
     greatest: float
+    carving_share: float
 
     @classmethod
-    def of(cls, scenario: Scenario, gravity: float, greatest: float) -> Edges:
-        """Those of a scenario's ski on its snow."""
+    def of(cls, scenario: Scenario, gravity: float, skier: Skier) -> Edges:
+        """Those of a scenario's ski on its snow, as a skier sets them."""
         snow, ski = scenario.contact.snow, scenario.ski
         length = CONTACT_SHARE * float(ski.station[0] - ski.station[-1])
         strength = snow.failure_shear_stress or 0.0
         softness = 2.0 * strength**2 * length / snow.snow_hardness
-        return cls(ski.sidecut_radius_of_edge_line, gravity, softness, greatest)
+        return cls(ski.sidecut_radius_of_edge_line, gravity, softness, skier.greatest_edge, skier.carving_share)
 
     def carving_acceleration(self, speed: float) -> float:
         """Of a carve in balance at a speed (m/s), with the edge angle of its lean: sin ϑ = v²/(R_sc g) (m/s²)."""
@@ -63,7 +64,7 @@ class Edges:
         carving = min(math.atan(abs(grip)) + EDGE_BEYOND_LEAN, self.greatest)
         skidding = min(self.skidding(grip, load), carving)
         share = abs(acceleration) * self.radius / max(speed**2, 0.05 * self.radius)
-        x = min(1.0, max(0.0, (share - CARVING_SHARE) / (1.0 - CARVING_SHARE)))
+        x = min(1.0, max(0.0, (share - self.carving_share) / (1.0 - self.carving_share)))
         carved = self._carved(share, carving)
         return math.copysign(skidding + (carved - skidding) * x * x * (3.0 - 2.0 * x), grip)
 
