@@ -155,8 +155,8 @@ def swing(legs: float) -> float:
 
 def test_loads_do_not_chatter_from_ski_to_ski() -> None:
     """Legs that do not give way let the load go to and fro some six times a second, by 100 N and more in the mean."""
-    assert swing(0.0) > 90.0
-    assert swing(Skier().leg_yielding) < 40.0
+    assert swing(0.0) > 120.0
+    assert swing(Skier().leg_yielding) < 70.0
 
 
 def test_left_and_right_mirror() -> None:
