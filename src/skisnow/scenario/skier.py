@@ -192,7 +192,7 @@ class Skier:
             below=True,
             origin="found by trial: at 0 lines through gates are cut, at 0.6 loads swing more",
         ),
-    ] = 0.2
+    ] = 0.3
     edge_beyond_lean: Annotated[
         float,
         Quantity(

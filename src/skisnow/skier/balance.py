@@ -235,9 +235,8 @@ class BalancedSkier:
         reach = skier.reach * self.scenario.sledge.stance_width / 2.0
         pressure = max(-reach, min(reach, (1.0 + skier.leg_gain) * error))
         growth = omega**2 * (y - pressure - balanced)
-        later = drift + growth * dt
-        if free:  # put down the lifted ski: with the body, as it is
-            later += (1.0 - min(1.0, skier.touch * dt)) * (rate - drift)
+        back = min(1.0, skier.touch * dt) if free else 1.0  # a lifted ski is put down with the body as it is
+        later = (1.0 - back) * rate + back * drift + growth * dt
         gives = skier.touch * (y - aside) if free else skier.leg_yielding * (seen.pressure - self._pressure)
         furthest = math.sqrt(skier.longest_leg**2 - self._height**2)
         place = aside + 0.5 * (rate + self._gives + later + gives) * dt
