@@ -287,7 +287,7 @@ def test_the_word_at_the_fall_line_does_not_cover_its_arrow(seen: Watched) -> No
             if np.abs(along[0]).max() > 0.95:
                 continue
             looked += 1
-            assert -1.0 < left and right < 1.0, (view, time)
+            assert left > -1.0 and right < 1.0, (view, time)
             assert not any(left < x < right and low < y < high for x, y in along), (view, time)
     assert looked > 5
 
