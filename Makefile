@@ -39,7 +39,7 @@ comma := ,
 # LOCKED=no takes the newest that pyproject.toml allows.
 LOCKED ?= yes
 # the extras that tests need; what only those need who work on it stands in [dependency-groups]
-TESTED := web$(comma)pandas$(comma)xarray
+TESTED := web$(comma)pandas$(comma)xarray$(comma)racing
 # a change of the compiled core builds it anew; without a C++ compiler it is built with the one of Zig's wheel
 CORE := CMakeLists.txt $(wildcard build_backend/*.py src/core/*)
 COMPILER := $(shell command -v c++ || command -v g++ || command -v clang++)
@@ -147,7 +147,7 @@ bench: $(VENV)/.skisnow-dev
 COMPILE := $(TOOLS)/bin/uv --quiet --no-config pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-header --no-annotate $(UPGRADE)
 lock: $(TOOLS)/.tools
-	$(COMPILE) --group dev $(addprefix --extra ,web pandas xarray) pyproject.toml requirements/build.in --output-file requirements/dev.txt
+	$(COMPILE) --group dev $(addprefix --extra ,web pandas xarray racing) pyproject.toml requirements/build.in --output-file requirements/dev.txt
 	$(COMPILE) --extra web --constraint requirements/dev.txt pyproject.toml requirements/build.in --output-file requirements/run.txt
 	$(COMPILE) requirements/tools.in --output-file requirements/tools.txt
 	$(COMPILE) requirements/compiler.in --output-file requirements/compiler.txt

@@ -77,6 +77,7 @@ struct Strip {
   }
 };
 
+constexpr double MOST_AREA = 1e4;  // (m²) around two neighbouring lines
 constexpr int MOST_TRIES = 60;
 constexpr double EXACT = 1e-14;     // (m)
 constexpr double AT_BORDER = 1e-9;  // share of a strip that is rounding: a line along its border lies in it
@@ -201,6 +202,7 @@ void Archive::enter_squares(int later) {
         high[a] = std::max(high[a], corner[a]);
       }
     }
+  if ((high[0] - low[0]) * (high[1] - low[1]) > MOST_AREA) throw std::invalid_argument("a track is wider than a slope");
   for (int x = cell_of(low[0], SQUARE); x <= cell_of(high[0], SQUARE); x++)
     for (int y = cell_of(low[1], SQUARE); y <= cell_of(high[1], SQUARE); y++) {
       squares_[key_of(x, y)].push_back(later);
@@ -227,10 +229,21 @@ void Archive::recall(const Vector3& origin, const Vector3& lateral, double from,
     press_strip({*before(later), tracks_[std::size_t(later)]}, origin, lateral, from, to, time, ground, delayed);
 }
 
-void Archive::forget_since(const Mark& mark) {
+void Archive::require_kept(const Mark& mark) const {
   if (mark.tracks > tracks_.size() || mark.last != last(mark.tracks))
     throw std::invalid_argument(
         "tracks of this state were forgotten when an earlier state was restored; go on from there");
+}
+
+void Archive::replace(Archive&& other) {
+  for (std::int64_t& each : other.numbers_) each += added_;
+  other.added_ += added_;
+  other.strips_ = std::max(other.strips_, strips_);
+  *this = std::move(other);
+}
+
+void Archive::forget_since(const Mark& mark) {
+  require_kept(mark);
   strips_ = mark.strips;
   energy_ = mark.energy;
   time = mark.time;

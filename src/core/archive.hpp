@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "bytes.hpp"
 #include "delayed.hpp"
 #include "groove.hpp"
 
@@ -65,6 +66,13 @@ class Archive {
   Mark mark() const { return {tracks_.size(), strips_, energy_, time, last(tracks_.size())}; }
   void forget_since(const Mark& mark);
 
+  // All up to a mark, as bytes; another archive from them; and that one in place of this: every mark of this one that
+  // has a track is refused from then on. Each throws std::invalid_argument, and changes nothing.
+  void write(const Mark& mark, ByteWriter& out) const;
+  static Archive read(ByteReader& in);
+  void replace(Archive&& other);
+  int strips() const { return strips_; }
+
  private:
   static constexpr double SQUARE = 0.0625;  // side (m) of the squares in which tracks are looked up
 
@@ -77,6 +85,7 @@ class Archive {
   double energy_ = 0.0;
 
   std::int64_t last(std::size_t count) const { return count == 0 ? 0 : numbers_[count - 1]; }
+  void require_kept(const Mark& mark) const;
   void enter_squares(int later);
   const Track* before(int later) const;
 };

@@ -273,6 +273,8 @@ void set_penetration(SnowContact& self, const nb::object& law, const Array& bend
 
 void bind_contact(nb::module_& m) {
   nb::class_<SnowContact::State>(m, "State");
+  m.def("check_bytes",
+        [](const nb::bytes& given) { check_bytes(static_cast<const unsigned char*>(given.data()), given.size()); });
   nb::class_<SnowContact>(m, "Contact")
       .def("__init__", &make_contact, nb::arg("snow"), nb::arg("runners"), nb::arg("spacing"),
            nb::arg("instruction_set").none() = nb::none())
@@ -289,6 +291,15 @@ void bind_contact(nb::module_& m) {
       .def("delayed_energy", &SnowContact::delayed_energy)
       .def("state", &SnowContact::state)
       .def("restore", &SnowContact::restore)
+      .def("bytes_of",
+           [](const SnowContact& self, const SnowContact::State& state) {
+             const Bytes found = bytes_of(self, state);
+             return nb::bytes(found.data(), found.size());
+           })
+      .def("take_bytes",
+           [](SnowContact& self, const nb::bytes& given) {
+             take_bytes(self, static_cast<const unsigned char*>(given.data()), given.size());
+           })
       .def("set_laws", &set_laws, nb::arg("friction").none(), nb::arg("shear").none(), nb::arg("fade_speed"))
       .def("set_penetration", &set_penetration, nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
 }

@@ -47,6 +47,8 @@ class MovingSki {
   void add_to(Body& carrier, const FlexibleSki& stage, double sign) const;
   // The beam's part of the mass matrix with the carrier, as it stands there.
   void couple(FlexibleSki& stage) const;
+  void write(ByteWriter& out) const;
+  void read(ByteReader& in);
 
  private:
   Body body_;

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "bytes.hpp"
 #include "columns.hpp"
 
 namespace skisnow {
@@ -84,11 +85,14 @@ class BorderedSystem {
   // Replace a right side by the solution.
   void solve(Numbers& vector) const;
 
+  void write(ByteWriter& out) const;
+  void read(ByteReader& in);
+
  private:
   Layout layout_;
   const BandKernels* kernels_ = nullptr;
   Column band_, border_, column_;
-  int order_[BODY];
+  int order_[BODY] = {};
 
   std::size_t at(int beam, int row) const { return std::size_t(layout_.first(beam) + row); }
   BeamRows rows(int beam) const;

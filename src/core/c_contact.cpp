@@ -301,3 +301,27 @@ int skisnow_contact_load(skisnow_contact* contact, const skisnow_state* state) {
 }
 
 void skisnow_state_free(skisnow_state* state) { delete state; }
+
+int skisnow_contact_state_size(skisnow_contact* contact, size_t* size) {
+  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
+  return guarded(contact->message, [&] {
+    require(size != nullptr, "size is NULL");
+    *size = bytes_of(*contact->runners, contact->runners->state()).size();
+  });
+}
+
+int skisnow_contact_state_write(skisnow_contact* contact, unsigned char* bytes, size_t size) {
+  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
+  return guarded(contact->message, [&] {
+    require(bytes != nullptr, "bytes is NULL");
+    const Bytes state = bytes_of(*contact->runners, contact->runners->state());
+    require(size >= state.size(),
+            "the state takes " + std::to_string(state.size()) + " bytes; there is room for " + std::to_string(size));
+    std::copy(state.begin(), state.end(), bytes);
+  });
+}
+
+int skisnow_contact_state_read(skisnow_contact* contact, const unsigned char* bytes, size_t size) {
+  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
+  return guarded(contact->message, [&] { take_bytes(*contact->runners, bytes, size); });
+}

@@ -93,6 +93,16 @@ class SnowContact {
   State state() const;
   void restore(const State& state);
 
+  // A state as bytes, the tracks in the snow with it, for another contact of equal runners in equal snow; `read` throws
+  // std::invalid_argument where they are none, and changes nothing; `take` goes to what was read.
+  struct Kept {
+    State state;
+    Archive tracks;
+  };
+  void write(const State& state, ByteWriter& out) const;
+  Kept read(ByteReader& in) const;
+  void take(Kept kept);
+
  private:
   std::shared_ptr<Snow> snow_;
   std::vector<Runner> runners_;
@@ -113,6 +123,7 @@ class SnowContact {
   std::vector<Before> before_;
   bool begun_ = false;
 
+  std::uint64_t fingerprint() const;
   GrooveLines& history(int k, const Situation& at);
   const Wrench& evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, Sections& s);
   void differ(int k, double sense);
@@ -132,5 +143,10 @@ class SnowContact {
   void march_where_needed(int k, const Situation& to);
   void remember(int k, GrooveLines& lines) const;
 };
+
+// A state of a contact sealed, and a contact taken to one. All throw std::invalid_argument, and change nothing.
+void check_bytes(const unsigned char* bytes, std::size_t size);  // whether they are whole, whosever they are
+Bytes bytes_of(const SnowContact& contact, const SnowContact::State& state);
+void take_bytes(SnowContact& contact, const unsigned char* bytes, std::size_t size);
 
 }  // namespace skisnow

@@ -70,6 +70,11 @@ class Dynamics {
   // Steps until a time (s); paused after `most` steps, or after a while.
   Advance advance(double until, long most);
 
+  // All that the next step hangs on, but for the contact, as bytes, and back into one of the same body; what was
+  // observed comes with the next moment reached. Throws std::invalid_argument, and may then have changed some of it.
+  void write(ByteWriter& out) const;
+  void read(ByteReader& in);
+
  private:
   Body body_;
   SnowContact* contact_;

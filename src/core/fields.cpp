@@ -4,6 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "bytes.hpp"
+
 namespace skisnow {
 
 namespace {
@@ -25,6 +27,16 @@ const std::vector<double>& Fields::at(const std::string& name, std::size_t count
     throw std::invalid_argument("the model's data have " + std::to_string(found.size()) + " numbers for " + name +
                                 "; there must be " + std::to_string(count));
   return found;
+}
+
+std::uint64_t Fields::digest() const {
+  ByteWriter all;
+  for (const auto& [name, values] : numbers_) {
+    all.put(digest_of(reinterpret_cast<const unsigned char*>(name.data()), name.size()));
+    all.whole(std::int64_t(values.size())), all.all(values);
+  }
+  const Bytes bytes = all.sealed(0);
+  return digest_of(bytes.data(), bytes.size());
 }
 
 std::string Fields::text() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <string>
@@ -31,6 +32,8 @@ class Fields {
   // A line for each name: the name, how many numbers, and these, which are read again to the last bit.
   std::string text() const;
   static Fields read(const std::string& text);
+  // Of all names and numbers, the same on every machine.
+  std::uint64_t digest() const;
 
  private:
   std::map<std::string, std::vector<double>> numbers_;

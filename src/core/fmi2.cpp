@@ -126,6 +126,18 @@ FMI2_FUNCTION Status fmi2FreeFMUstate(void*, void** state) {
   return OK;
 }
 
+FMI2_FUNCTION Status fmi2SerializedFMUstateSize(void* c, void* state, std::size_t* size) {
+  return said(of(c).size(static_cast<const FmuInstance::State*>(state), size));
+}
+FMI2_FUNCTION Status fmi2SerializeFMUstate(void* c, void* state, char* bytes, std::size_t size) {
+  return said(
+      of(c).write(static_cast<const FmuInstance::State*>(state), reinterpret_cast<unsigned char*>(bytes), size));
+}
+FMI2_FUNCTION Status fmi2DeSerializeFMUstate(void* c, const char* bytes, std::size_t size, void** state) {
+  return said(
+      of(c).read(reinterpret_cast<const unsigned char*>(bytes), size, reinterpret_cast<FmuInstance::State**>(state)));
+}
+
 FMI2_FUNCTION Status fmi2GetStatus(void*, int, Status*) { return DISCARD; }  // no step is ever pending
 FMI2_FUNCTION Status fmi2GetRealStatus(void* c, int kind, double* value) {
   if (kind != LAST_SUCCESSFUL_TIME) return DISCARD;
@@ -156,9 +168,6 @@ NO_VARIABLES(fmi2SetString, const char* const*)
 // modelDescription.xml says that these are not offered.
 #define NOT_OFFERED(name, ...) \
   FMI2_FUNCTION Status name(void* c, __VA_ARGS__) { return said(of(c).refuse(#name " is not offered")); }
-NOT_OFFERED(fmi2SerializedFMUstateSize, void*, std::size_t*)
-NOT_OFFERED(fmi2SerializeFMUstate, void*, char*, std::size_t)
-NOT_OFFERED(fmi2DeSerializeFMUstate, const char*, std::size_t, void**)
 NOT_OFFERED(fmi2GetDirectionalDerivative, const unsigned*, std::size_t, const unsigned*, std::size_t, const double*,
             double*)
 NOT_OFFERED(fmi2SetRealInputDerivatives, const unsigned*, std::size_t, const int*, const double*)

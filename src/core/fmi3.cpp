@@ -91,6 +91,16 @@ FMI3_FUNCTION Status fmi3FreeFMUState(void*, void** state) {
   return OK;
 }
 
+FMI3_FUNCTION Status fmi3SerializedFMUStateSize(void* c, void* state, std::size_t* size) {
+  return said(of(c).size(static_cast<const FmuInstance::State*>(state), size));
+}
+FMI3_FUNCTION Status fmi3SerializeFMUState(void* c, void* state, std::uint8_t* bytes, std::size_t size) {
+  return said(of(c).write(static_cast<const FmuInstance::State*>(state), bytes, size));
+}
+FMI3_FUNCTION Status fmi3DeserializeFMUState(void* c, const std::uint8_t* bytes, std::size_t size, void** state) {
+  return said(of(c).read(bytes, size, reinterpret_cast<FmuInstance::State**>(state)));
+}
+
 // There are no variables of other kinds; none of them is all that can be asked for.
 #define NO_VARIABLES(kind, type)                                                                               \
   FMI3_FUNCTION Status fmi3Get##kind(void* c, const Reference*, std::size_t count, type*, std::size_t) {       \
@@ -127,9 +137,6 @@ NOT_OFFERED(fmi3EnterConfigurationMode)
 NOT_OFFERED(fmi3ExitConfigurationMode)
 NOT_OFFERED(fmi3GetNumberOfVariableDependencies)
 NOT_OFFERED(fmi3GetVariableDependencies)
-NOT_OFFERED(fmi3SerializedFMUStateSize)
-NOT_OFFERED(fmi3SerializeFMUState)
-NOT_OFFERED(fmi3DeserializeFMUState)
 NOT_OFFERED(fmi3GetDirectionalDerivative)
 NOT_OFFERED(fmi3GetAdjointDerivative)
 NOT_OFFERED(fmi3GetIntervalDecimal)

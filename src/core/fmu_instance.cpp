@@ -1,5 +1,6 @@
 #include "fmu_instance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -9,6 +10,7 @@ namespace skisnow {
 
 namespace {
 
+constexpr std::uint64_t STATE = 2;           // of an FMU, among what is kept as bytes
 constexpr const char* DATA = "skisnow.txt";  // in the folder of the resources; its first word is the token
 
 Fields data_in(const std::string& resources, const std::string& token) {
@@ -26,7 +28,10 @@ Fields data_in(const std::string& resources, const std::string& token) {
 }  // namespace
 
 FmuInstance::FmuInstance(const std::string& resources, const std::string& token, Log log)
-    : data_(data_in(resources, token)), model_(FmuModel::of(data_)), log_(std::move(log)) {}
+    : token_(digest_of(reinterpret_cast<const unsigned char*>(token.data()), token.size())),
+      data_(data_in(resources, token)),
+      model_(FmuModel::of(data_)),
+      log_(std::move(log)) {}
 
 FmuStatus FmuInstance::refuse(const std::string& what) const {
   if (log_) log_(FmuStatus::ERROR, what);
@@ -134,6 +139,43 @@ FmuStatus FmuInstance::take(const State* state) {
     if (state == nullptr) throw std::invalid_argument("the state is NULL");
     model_ = state->model->copy();
     stage_ = state->stage, start_time_ = state->start_time;
+  });
+}
+
+Bytes FmuInstance::bytes(const State* state) const {
+  if (state == nullptr) throw std::invalid_argument("the state is NULL");
+  if (state->stage == Stage::FAILED)
+    throw std::logic_error("a state after a step that has failed has no form in bytes");
+  ByteWriter out;
+  out.put(token_), out.whole(std::int64_t(state->stage)), out.number(state->start_time);
+  state->model->write(out);
+  return out.sealed(STATE);
+}
+
+FmuStatus FmuInstance::size(const State* state, std::size_t* size) const {
+  return guarded([&] { *size = bytes(state).size(); });
+}
+
+FmuStatus FmuInstance::write(const State* state, unsigned char* to, std::size_t size) const {
+  return guarded([&] {
+    const Bytes from = bytes(state);
+    if (to == nullptr || size < from.size())
+      throw std::invalid_argument("the state takes " + std::to_string(from.size()) + " bytes; there is room for " +
+                                  std::to_string(to == nullptr ? 0 : size));
+    std::copy(from.begin(), from.end(), to);
+  });
+}
+
+FmuStatus FmuInstance::read(const unsigned char* bytes, std::size_t size, State** state) const {
+  return guarded([&] {
+    ByteReader in = ByteReader::opened(STATE, bytes, size);
+    if (in.take() != token_) refuse_bytes("they are that of another model");
+    const auto stage = Stage(in.whole(0, std::int64_t(Stage::TERMINATED)));
+    auto read = std::make_unique<State>(State{FmuModel::of(data_), stage, in.number()});
+    read->model->read(in);
+    in.require_end();
+    delete *state;
+    *state = read.release();
   });
 }
 

@@ -37,9 +37,14 @@ class FmuInstance {
   };
   FmuStatus keep(State** state) const;  // into *state, where that is one already
   FmuStatus take(const State* state);
+  // A state as bytes, and back into a new one, of any instance of the same FMU.
+  FmuStatus size(const State* state, std::size_t* size) const;
+  FmuStatus write(const State* state, unsigned char* bytes, std::size_t size) const;
+  FmuStatus read(const unsigned char* bytes, std::size_t size, State** state) const;
   FmuStatus refuse(const std::string& what) const;  // an error, in words
 
  private:
+  std::uint64_t token_;  // its digest
   Fields data_;
   std::unique_ptr<FmuModel> model_;
   Stage stage_ = Stage::INSTANTIATED;
@@ -49,6 +54,7 @@ class FmuInstance {
   template <class Work>
   FmuStatus guarded(const Work& work) const noexcept;
   void require(Stage stage, const char* what) const;
+  Bytes bytes(const State* state) const;
 };
 
 }  // namespace skisnow

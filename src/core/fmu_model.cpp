@@ -129,6 +129,20 @@ void FmuContact::step(double from, double to) {
   values[0] = to;
 }
 
+void FmuContact::write(ByteWriter& out) const {
+  out.all(values), out.number(accepted_);
+  out.whole(contact_ ? 1 : 0);
+  if (contact_) contact_->write(contact_->state(), out);
+}
+
+void FmuContact::read(ByteReader& in) {
+  in.all(values), accepted_ = in.number();
+  if (in.whole(0, 1) == 0) return;
+  take_parameters();
+  contact_.emplace(snow_, runners_, spacing_, skisnow::kernels());
+  contact_->take(contact_->read(in));
+}
+
 FmuSledge::FmuSledge(const Fields& data)
     : snow_(snow_of(data)),
       contact_(contact_of(snow_, data)),
@@ -179,6 +193,18 @@ void FmuSledge::step(double from, double to) {
   if (ended != Advance::REACHED) throw std::runtime_error("the motion is too stiff or too rough to be followed");
   values[0] = to;
   tell();
+}
+
+void FmuSledge::write(ByteWriter& out) const {
+  out.all(values), out.number(begun_);
+  contact_.write(contact_.state(), out);
+  dynamics_.write(out);
+}
+
+void FmuSledge::read(ByteReader& in) {
+  in.all(values), begun_ = in.number();
+  contact_.take(contact_.read(in));
+  dynamics_.read(in);
 }
 
 void FmuSledge::tell() {

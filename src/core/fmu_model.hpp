@@ -26,6 +26,9 @@ class FmuModel {
   virtual void begin(double time) = 0;
   // From one time to another (s).
   virtual void step(double from, double to) = 0;
+  // All of it as bytes, and back into a new one of the same data. Throws std::invalid_argument.
+  virtual void write(ByteWriter& out) const = 0;
+  virtual void read(ByteReader& in) = 0;
 
   static std::unique_ptr<FmuModel> of(const Fields& data);
 
@@ -49,6 +52,8 @@ class FmuContact : public FmuModel {
   std::unique_ptr<FmuModel> copy() const override { return std::make_unique<FmuContact>(*this); }
   void begin(double time) override;
   void step(double from, double to) override;
+  void write(ByteWriter& out) const override;
+  void read(ByteReader& in) override;
 
  private:
   std::shared_ptr<Snow> snow_;
@@ -69,6 +74,8 @@ class FmuSledge : public FmuModel {
   std::unique_ptr<FmuModel> copy() const override { return std::make_unique<FmuSledge>(*this); }
   void begin(double time) override;
   void step(double from, double to) override;
+  void write(ByteWriter& out) const override;
+  void read(ByteReader& in) override;
 
  private:
   std::shared_ptr<Snow> snow_;

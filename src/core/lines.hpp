@@ -99,6 +99,10 @@ class GrooveLines {
   // Press an older track into a line's ground; its energy was counted there.
   void press_older(int slot, const Ground& older);
 
+  // The lines that are laid, as bytes, and back into lines of an equal runner. Throws std::invalid_argument.
+  void write(ByteWriter& out) const;
+  void read(ByteReader& in);
+
  private:
   double spacing_ = LINE_SPACING;
   std::vector<std::uint8_t> filled_;  // knots of each block's tile that are filled

@@ -102,6 +102,15 @@ SKISNOW_API int skisnow_contact_save(skisnow_contact* contact, skisnow_state** s
 SKISNOW_API int skisnow_contact_load(skisnow_contact* contact, const skisnow_state* state);
 SKISNOW_API void skisnow_state_free(skisnow_state* state);
 
+/* All that a contact remembers now, with the tracks in its snow, as bytes: for a file, or for another process on any
+ * machine. `write` needs room for as many as `size` names. `read` is for a contact of equal runners and spacing in
+ * equal snow: what follows has the same bits. All other tracks in its snow are forgotten, and with them the states that
+ * were saved before. Bytes that are damaged, not complete, of other runners or of another snow are refused, and nothing
+ * changes. Of contacts in one snow write all at one moment, and read all, into contacts made in the same order. */
+SKISNOW_API int skisnow_contact_state_size(skisnow_contact* contact, size_t* size);
+SKISNOW_API int skisnow_contact_state_write(skisnow_contact* contact, unsigned char* bytes, size_t size);
+SKISNOW_API int skisnow_contact_state_read(skisnow_contact* contact, const unsigned char* bytes, size_t size);
+
 #ifdef __cplusplus
 }
 #endif

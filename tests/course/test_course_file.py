@@ -10,6 +10,7 @@ import pytest
 
 from skisnow.course import Course, Gate, MovingPoint, course_warnings, on_slope, passages, read_course
 from skisnow.errors import ParameterError
+from skisnow.scenario import read_scenario
 
 HEAD = "gate,x_m,y_m,side,outer_x_m,outer_y_m\n"
 ROWS = "1,10,-1,left,10,4\n2,20,1,right,20,-4\n3,30,-1,Left,,\n"
@@ -123,6 +124,11 @@ def test_sides_that_are_not_told_are_those_of_the_bends(tmp_path: Path) -> None:
     [
         ("<gpx></gpx>", "there is no waypoint"),
         ("<gpx><wpt lat='95' lon='11'/></gpx>", "waypoint 1, lat: '95' is no number from -90 to 90"),
+        ("<gpx><wpt lat='nan' lon='11'/></gpx>", "waypoint 1, lat: 'nan' is no number from -90 to 90"),
+        (
+            "<gpx><wpt lat='47' lon='11'><ele>1e6</ele></wpt></gpx>",
+            "waypoint 1, ele: '1e6' is no number from -100000 to 100000",
+        ),
         ("<gpx><wpt lat='47'/></gpx>", "waypoint 1, lon: None is no number from -180 to 180"),
         ("<gpx><wpt lat='47' lon='11'>", "is no GPX that can be read"),
         ('<!DOCTYPE gpx [<!ENTITY a "b">]><gpx/>', "the declaration of an entity, a"),
@@ -167,3 +173,21 @@ def test_rules_of_giant_slalom() -> None:
 
     assert course_warnings(replace(giant(width=3.0), discipline="slalom"), drop=60.0) == ()
     assert course_warnings(replace(giant(width=3.0), discipline=None), drop=60.0) == ()
+
+
+def test_a_scenario_lays_degrees_on_its_slope(tmp_path: Path) -> None:
+    """Down a plane the incline is longer than the map; over a profile x stays horizontal."""
+    named = [(east, north, f"<name>{i}</name><type>gate {side}</type>") for i, (east, north, side) in enumerate(POINTS)]
+    file = str(written(tmp_path, gpx(named), "course.gpx"))
+    heights = "".join(f"{x},{-x / 5}\n" for x in range(0, 101, 5))
+    (tmp_path / "profile.csv").write_text(f"x,y\n{heights}", encoding="utf-8")
+    place = {"latitude_deg": LATITUDE, "longitude_deg": LONGITUDE, "fall_line_azimuth_deg": 180.0}
+    changes = {"course.file": file} | {f"course.{name}": value for name, value in place.items()}
+    plane = read_scenario("carved-46m", changes={**changes, "slope.angle_deg": 20.0}).course
+    bent = {"slope.kind": "profile", "slope.profile": str(tmp_path / "profile.csv")}
+    profile = read_scenario("carved-46m", changes={**changes, **bent}).course
+    for found, stretched in ((plane, 1.0 / math.cos(math.radians(20.0))), (profile, 1.0)):
+        assert found is not None
+        np.testing.assert_allclose(
+            [gate.turning for gate in found.gates], [(-n * stretched, e) for e, n, _ in POINTS], atol=1e-3
+        )

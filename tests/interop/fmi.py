@@ -128,6 +128,19 @@ class Instance:
         self.call("GetFMUstate" if self.fmu.fmi == 2 else "GetFMUState", ctypes.byref(kept))
         return kept
 
+    def to_bytes(self, kept: ctypes.c_void_p) -> bytes:
+        size, name = ctypes.c_size_t(), "FMUstate" if self.fmu.fmi == 2 else "FMUState"
+        self.call(f"Serialized{name}Size", kept, ctypes.byref(size))
+        room = ctypes.create_string_buffer(size.value)
+        self.call(f"Serialize{name}", kept, room, size)
+        return room.raw
+
+    def from_bytes(self, data: bytes) -> ctypes.c_void_p:
+        kept = ctypes.c_void_p()
+        name = "DeSerializeFMUstate" if self.fmu.fmi == 2 else "DeserializeFMUState"
+        self.call(name, data, ctypes.c_size_t(len(data)), ctypes.byref(kept))
+        return kept
+
     def restore(self, kept: ctypes.c_void_p) -> None:
         self.call("SetFMUstate" if self.fmu.fmi == 2 else "SetFMUState", kept)
 

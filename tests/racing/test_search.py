@@ -156,6 +156,8 @@ def test_a_window_that_moves_on_finds_what_the_whole_search_finds() -> None:
         ({"evaluations": 0}, "evaluations is 0"),
         ({"population": 3}, "population is 3"),
         ({"spread": 0.0}, "spread is 0"),
+        ({"settled": -1.0}, "settled is -1"),
+        ({"search": "grid"}, "search is .grid."),
         ({"window": 3}, "window is 3"),
         ({"window": 2, "step": 3}, "step is 3"),
     ],

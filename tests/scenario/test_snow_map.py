@@ -109,6 +109,19 @@ def test_curve_that_falls_below_zero_is_refused() -> None:
         SnowMap()
 
 
+def test_a_large_map_is_looked_through_as_finely() -> None:
+    """Between two of 200 × 200 places, and of 30,000 in a row, as between two of four."""
+    values = np.full((200, 200), 4.0)
+    values[120:, :] = 0.01
+    SnowMap(failure_shear_stress=Grid(np.arange(200.0), np.arange(200.0), values + 0.5))
+    with pytest.raises(ParameterError, match=r"S_f of the snow map .* goes below 0 at x = 12\d\.\d+ m, y = 0 m"):
+        SnowMap(failure_shear_stress=Grid(np.arange(200.0), np.arange(200.0), values))
+    row = np.full(30_000, 4.0)
+    row[20_000:] = 0.01
+    with pytest.raises(ParameterError, match=r"goes below 0 at x = 0 m, y = 20000\.\d+ m"):
+        SnowMap(hardness=Grid(np.zeros(1), np.arange(30_000.0), row[None, :]))
+
+
 def test_given_twice_is_refused(tmp_path: Path) -> None:
     path = written(tmp_path, ALONG)
     with pytest.raises(ParameterError, match=r"snow\.H_V_N_per_mm3 is given twice, as a number and over the place"):

@@ -57,6 +57,12 @@ def _add_search(parser: argparse.ArgumentParser) -> None:
         "--evaluations", type=whole_number(1, MOST_EVALUATIONS), default=300, metavar="N",
         help="after which no new batch begins, of each window; 1: only the line that it begins from; left out: 300",
     )  # fmt: skip
+    search = "surrogate: a Gaussian process says where to race next (left out with the skier); cma: CMA-ES alone"
+    parser.add_argument("--search", choices=("surrogate", "cma"), help=search)
+    parser.add_argument(
+        "--settled", type=number("s", lowest=0.0, highest=100.0), default=0.0, metavar="SECONDS",
+        help="end a search where all of its last batch lie within so much; left out: 0, never",
+    )  # fmt: skip
     parser.add_argument(
         "--window", type=whole_number(2, MOST_GATES), metavar="N",
         help="search the turns of N gates at once, then move on; left out: all at once",
@@ -116,7 +122,8 @@ def _raced(options: argparse.Namespace) -> tuple[QuickestLine, list[tuple[str, S
     with Progress() as progress:
         found = quickest_line(
             scenario.with_(method="fast"), gates=options.gates, model=options.model, start=start,
-            evaluations=options.evaluations, window=options.window, step=options.step, seed=options.seed,
+            evaluations=options.evaluations, search=options.search, settled=options.settled,
+            window=options.window, step=options.step, seed=options.seed,
             checkpoint=options.out / KEPT, progress=progress, **computing,
         )  # fmt: skip
         checked = _checked(found, scenario, progress)

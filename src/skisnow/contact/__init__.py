@@ -8,9 +8,20 @@ each with its own pose. Friction, shear and penetration follow any law of `skisn
 from __future__ import annotations
 
 from .c_library import c_header, c_library
+from .contact_state import ContactState
 from .laws import Laws
 from .runner import Runner
 from .snow_contact import ContactForces, Sections, SnowContact
 from .snow_field import SnowField
 
-__all__ = ["ContactForces", "Laws", "Runner", "Sections", "SnowContact", "SnowField", "c_header", "c_library"]
+__all__ = [
+    "ContactForces",
+    "ContactState",
+    "Laws",
+    "Runner",
+    "Sections",
+    "SnowContact",
+    "SnowField",
+    "c_header",
+    "c_library",
+]

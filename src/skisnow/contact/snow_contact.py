@@ -13,6 +13,7 @@ from ..compiled import core
 from ..errors import ParameterError
 from ..shown import Facts, Shown, field_facts
 from .asked_laws import AskedFriction, AskedPressure, AskedStrength
+from .contact_state import ContactState
 
 if TYPE_CHECKING:
     from .runner import Runner
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Beams: TypeAlias = Sequence[npt.ArrayLike] | None
-State: TypeAlias = core.State
 
 SPACING: Final = 0.02
 """Of the lines of snow along a runner (m) (modelling assumption, as in the simulated turns)."""
@@ -227,20 +227,23 @@ class SnowContact(Shown):
         """Energy (J) that the delayed depth of the snow has taken and not given back, lost or stored."""
         return self.compiled.delayed_energy()
 
-    def state(self) -> State:
+    def state(self) -> ContactState:
         """The history of this contact, to go back to; later tracks of others go with it."""
-        return self.compiled.state()
+        return ContactState.of(self.compiled)
 
-    def restore(self, state: State) -> None:
+    def restore(self, state: ContactState) -> None:
         """Go back to a state: what follows has the same bits as it had from there.
+
+        A state from bytes brings its tracks with it: all others in the snow are forgotten.
 
         Raises
         ------
         ParameterError
-            Tracks of the state were forgotten when an earlier one was restored.
+            Tracks of the state were forgotten when an earlier one was restored; or its bytes are those of other
+            runners, another snow or other laws. Nothing has changed then.
         """
         try:
-            self.compiled.restore(state)
+            state.restore_in(self.compiled)
         except ValueError as error:
             raise ParameterError(f"SnowContact: {error}") from error
 

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
+_FEW_ANGLES = 16
+"""Readings at up to so many angles are gone through angle by angle: each has one sine and one tangent."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -87,40 +89,52 @@ class Readings(ShownFields):
     @cached_property
     def displaced_volume(self) -> FloatArray:
         """Displaced volume V of each reading (m³)."""
-        return self._by_tool(
-            lambda tool, e, angle: tool.displaced_volume(e, angle), self.penetration_depth, self.series
-        )
+        return self.volume_at_depth(self.penetration_depth)
 
     @cached_property
     def area_growth(self) -> FloatArray:
         """Growth dA/de of the contact area of each reading (m)."""
-        return self._by_tool(lambda tool, e, angle: tool.area_growth(e, angle), self.penetration_depth, self.series)
+        return self._by_tool(lambda tool, e, angle: tool.area_growth(e, angle), self.penetration_depth)
 
     def area_at_depth(self, penetration_depth: FloatArray) -> FloatArray:
         """Contact area A (m²) of each reading's tool at another depth (m)."""
-        return self._by_tool(lambda tool, e, angle: tool.contact_area(e, angle), penetration_depth, self.series)
+        return self._by_tool(lambda tool, e, angle: tool.contact_area(e, angle), penetration_depth)
 
     def volume_at_depth(self, penetration_depth: FloatArray) -> FloatArray:
         """Displaced volume V (m³) of each reading's tool at another depth (m)."""
-        return self._by_tool(lambda tool, e, angle: tool.displaced_volume(e, angle), penetration_depth, self.series)
+        return self._by_tool(lambda tool, e, angle: tool.displaced_volume(e, angle), penetration_depth)
 
     def depth_at_volume(self, displaced_volume: FloatArray) -> FloatArray:
         """Depth (m) at which each reading's tool displaces the given volume (m³)."""
-        return self._by_tool(lambda tool, V, angle: tool.depth_at_volume(V, angle), displaced_volume, self.series)
+        return self._by_tool(lambda tool, V, angle: tool.depth_at_volume(V, angle), displaced_volume)
 
     def volume_of_series(self, penetration_depth: FloatArray) -> FloatArray:
         """Displaced volume V (m³) of each series' tool at one depth (m) per series."""
-        every = np.arange(self.n_series, dtype=np.int64)
-        return self._by_tool(lambda tool, e, angle: tool.displaced_volume(e, angle), penetration_depth, every)
+        result = np.empty(self.n_series)
+        for index, tool in enumerate(self.tools):
+            mine = self.tool == index
+            result[mine] = tool.displaced_volume(penetration_depth[mine], self.edge_angle[mine])
+        return result
 
-    def _by_tool(
-        self, form: Callable[[Tool, FloatArray, FloatArray], FloatArray], values: FloatArray, series: IntArray
-    ) -> FloatArray:
-        result = np.empty(len(values))
-        tool, angle = self.tool[series], self.edge_angle[series]
-        for index, shape in enumerate(self.tools):
-            mine = tool == index
-            result[mine] = form(shape, values[mine], angle[mine])
+    @cached_property
+    def _alike(self) -> tuple[tuple[Tool, FloatArray, IntArray], ...]:
+        """A tool, its edge angle, the readings that have both; with many angles, a tool and the angle of each."""
+        found: list[tuple[Tool, FloatArray, IntArray]] = []
+        for index, tool in enumerate(self.tools):
+            mine = self.tool == index
+            angles = np.unique(self.edge_angle[mine])
+            if len(angles) <= _FEW_ANGLES:
+                each = ((angle, mine & (self.edge_angle == angle)) for angle in angles)
+                found += [(tool, angle, np.flatnonzero(series[self.series])) for angle, series in each]
+            else:
+                readings = np.flatnonzero(mine[self.series])
+                found.append((tool, self.angle_of_reading[readings], readings))
+        return tuple(found)
+
+    def _by_tool(self, form: Callable[[Tool, FloatArray, FloatArray], FloatArray], values: FloatArray) -> FloatArray:
+        result = np.empty(self.n)
+        for tool, angle, mine in self._alike:
+            result[mine] = form(tool, values[mine], angle)
         return result
 
     def less_offset(self, offset: FloatArray) -> Readings:

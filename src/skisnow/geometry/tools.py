@@ -29,6 +29,11 @@ def _length(name: str, meaning: str) -> Quantity:
     return Quantity(name, meaning, lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
 
 
+def _tangent(angle: FloatArray) -> FloatArray:
+    """Tan ϑ, of the angles' own shape; 1 where ϑ is 0 and no wedge is."""
+    return np.where(angle > 0, np.tan(angle), 1.0)
+
+
 class Tool(abc.ABC):
     """A rigid body pressed into snow along the snow normal.
 
@@ -93,31 +98,31 @@ class SkiPiece(Tool):
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.contact_area`."""
-        e, angle = np.broadcast_arrays(np.asarray(penetration_depth, float), np.asarray(edge_angle, float))
+        e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
         wedge = e < self.width * np.sin(angle)
-        return self.length * np.where(wedge, e / np.tan(np.where(wedge, angle, 1.0)), self.width * np.cos(angle))
+        return self.length * np.where(wedge, e / _tangent(angle), self.width * np.cos(angle))
 
     def displaced_volume(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.displaced_volume`."""
-        e, angle = np.broadcast_arrays(np.asarray(penetration_depth, float), np.asarray(edge_angle, float))
+        e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
         rim = self.width * np.sin(angle)
         wedge = e < rim
-        plain = e**2 / (2.0 * np.tan(np.where(wedge, angle, 1.0)))
+        plain = e**2 / (2.0 * _tangent(angle))
         return self.length * np.where(wedge, plain, self.width * np.cos(angle) * (e - rim / 2.0))
 
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.area_growth`: L / tan ϑ for the wedge, 0 once the whole base is loaded."""
-        e, angle = np.broadcast_arrays(np.asarray(penetration_depth, float), np.asarray(edge_angle, float))
+        e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
         wedge = e < self.width * np.sin(angle)
-        return np.where(wedge, self.length / np.tan(np.where(wedge, angle, 1.0)), 0.0)
+        return np.where(wedge, self.length / _tangent(angle), 0.0)
 
     def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.depth_at_volume`."""
-        V, angle = np.broadcast_arrays(np.asarray(displaced_volume, float), np.asarray(edge_angle, float))
+        V, angle = np.asarray(displaced_volume, float), np.asarray(edge_angle, float)
         rim = self.width * np.sin(angle)
         base = self.length * self.width * np.cos(angle)
         wedge = base * rim / 2.0 > V
-        plain: FloatArray = np.sqrt(2.0 * np.tan(np.where(wedge, angle, 1.0)) * V / self.length)
+        plain: FloatArray = np.sqrt(2.0 * _tangent(angle) * V / self.length)
         return np.where(wedge, plain, V / base + rim / 2.0)
 
     def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
@@ -144,29 +149,25 @@ class PlainWedge(Tool):
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.contact_area`."""
-        e, angle = np.broadcast_arrays(np.asarray(penetration_depth, float), np.asarray(edge_angle, float))
-        edged = angle > 0
-        return self.length * np.where(edged, e / np.tan(np.where(edged, angle, 1.0)), self.width)
+        e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
+        return self.length * np.where(angle > 0, e / _tangent(angle), self.width)
 
     def displaced_volume(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.displaced_volume`."""
-        e, angle = np.broadcast_arrays(np.asarray(penetration_depth, float), np.asarray(edge_angle, float))
-        edged = angle > 0
-        return self.length * np.where(edged, e**2 / (2.0 * np.tan(np.where(edged, angle, 1.0))), self.width * e)
+        e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
+        return self.length * np.where(angle > 0, e**2 / (2.0 * _tangent(angle)), self.width * e)
 
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.area_growth`."""
         _, angle = np.broadcast_arrays(np.asarray(penetration_depth, float), np.asarray(edge_angle, float))
-        edged = angle > 0
-        return np.where(edged, self.length / np.tan(np.where(edged, angle, 1.0)), 0.0)
+        return np.where(angle > 0, self.length / _tangent(angle), 0.0)
 
     def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.depth_at_volume`."""
-        V, angle = np.broadcast_arrays(np.asarray(displaced_volume, float), np.asarray(edge_angle, float))
-        edged = angle > 0
-        plain = np.sqrt(2.0 * np.tan(np.where(edged, angle, 1.0)) * V / self.length)
+        V, angle = np.asarray(displaced_volume, float), np.asarray(edge_angle, float)
+        plain = np.sqrt(2.0 * _tangent(angle) * V / self.length)
         flat: FloatArray = V / (self.length * self.width)
-        return np.where(edged, plain, flat)
+        return np.where(angle > 0, plain, flat)
 
     def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.greatest_depth`: W sin ϑ edged, where the base goes under; the width when flat."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Final, TypeAlias
+from typing import Final, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -19,13 +19,15 @@ from ..parallel.kept_rows import KeptRows
 from ..parallel.pool import Pool, workers_in_force
 from ..scenario import Scenario
 from ..shown import Facts, Shown, amount
+from .by_surrogate import SurrogateSearch
 from .line import RacingLine, course_of, cut, follower_line, with_numbers
 from .racers import LinePoint, Racer, RacerModel, ScoredLine, score_in, turns_in
-from .score import Score
+from .score import NOT_PASSED, Score
 from .search import Evaluated, Evaluations, least_of, require_cmaes
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Progress: TypeAlias = Callable[[str], None]
+Search: TypeAlias = Literal["surrogate", "cma"]
 
 RANGES: Final = {"aside": (0.25, 1.75), "along": (-0.25, 0.25), "turning": (0.35, 1.0)}
 """Of aside (m), along and turning, within which a line is looked for (modelling assumption: nearer to a pole than half
@@ -91,8 +93,10 @@ def quickest_line(
     model: RacerModel = "skier",
     start: RacingLine | None = None,
     evaluations: int = 300,
+    search: Search | None = None,
     population: int | None = None,
     spread: float = 0.15,
+    settled: float = 0.0,
     window: int | None = None,
     step: int = 1,
     seed: int = 0,
@@ -101,7 +105,7 @@ def quickest_line(
     checkpoint: Path | None = None,
     progress: Progress | None = None,
 ) -> QuickestLine:
-    """Search the quickest line through a course: three numbers a turn, by CMA-ES.
+    """Search the quickest line through a course: three numbers a turn.
 
     Parameters
     ----------
@@ -115,13 +119,20 @@ def quickest_line(
         Where the search begins; None: the line that the skier follows by itself.
     evaluations
         After which no new batch begins; of each window. 1: only the line where it begins, which needs no cmaes.
+    search
+        "surrogate": a Gaussian process of the evaluations so far says where the next four are made; where all turns
+        begin alike it varies them alike at first. "cma": CMA-ES alone, for evaluations that cost next to nothing. None:
+        "surrogate" for the skier, "cma" for the point.
     population
-        Evaluations of a batch; None: 4 + 3 ln n for n numbers.
+        Evaluations of a batch of CMA-ES; None: 4 + 3 ln n for n numbers.
     spread
         Standard deviation of the first batch over the range of each number, above 0 to 1.
+    settled
+        Ends a search before its evaluations are used up, where all values of its last batch, with the surrogate of its
+        last two, lie within so much (s).
     window, step
         Search the turns of so many gates at once, the turns before them as found, then move on by `step` gates; None:
-        all at once.
+        all at once. A turn that enters begins as the last but one that was found, or as `start` has it.
     seed
         Of every random number, from 0 on.
     workers
@@ -158,18 +169,21 @@ def quickest_line(
     ----------
     * Hansen and Ostermeier (2001), "Completely derandomized self-adaptation in evolution strategies", Evolutionary
       Computation 9(2), 159-195, doi 10.1162/106365601750190398.
+    * Jones, Schonlau and Welch (1998), "Efficient global optimization of expensive black-box functions", Journal of
+      Global Optimization 13, 455-492, doi 10.1023/A:1008306431147.
     * The page docs/how-to/race.md.
     """
     begun = _begun(scenario, gates, start)
     count, (window, step) = len(begun.turns), _window(len(begun.turns), window, step)
-    _require(evaluations=evaluations, population=population, spread=spread)
+    _require(evaluations=evaluations, population=population, spread=spread, settled=settled)
+    search = _search(search, model)
     if evaluations > 1:
         require_cmaes()
     require_executor(executor)
     scenario = replace(scenario, course=begun.course)
     racer = Racer(scenario, model)
     tell = progress or _silent
-    settings = (evaluations, population, spread, window, step, seed)
+    settings = (evaluations, search, population, spread, settled, window, step, seed)
     kept = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
     advice = "finished evaluations are kept. Start again, with fewer workers"
     try:
@@ -178,8 +192,12 @@ def quickest_line(
             line = begun
             for first in range(0, max(1, count - window + step), step):
                 part = cut(line, min(first + window, count))
-                found = _searched(made, part, first, evaluations, population, spread, seed, tell)
-                line = RacingLine(line.course, line.start, (*turns_in(found.row), *line.turns[len(part.turns) :]))
+                how = _How(search, evaluations, population, spread, settled, seed, tell)
+                found = _searched(made, part, first, how)
+                turns, left = turns_in(found.row), line.turns[len(part.turns) :]
+                if start is None:
+                    left = turns[-2:-1] * len(left)
+                line = RacingLine(line.course, line.start, (*turns, *left))
     finally:
         kept.close()
     started = score_in(made.done[0].row) if window == count else racer.score(begun)
@@ -189,10 +207,20 @@ def quickest_line(
     )  # fmt: skip
 
 
-def _searched(
-    made: Evaluations, part: RacingLine, first: int, count: int, population: int | None, spread: float, seed: int,
-    tell: Progress,
-) -> Evaluated:  # fmt: skip
+@dataclass(frozen=True, slots=True)
+class _How:
+    """How a window is searched: the arguments of `quickest_line`."""
+
+    search: Search
+    evaluations: int
+    population: int | None
+    spread: float
+    settled: float
+    seed: int
+    tell: Progress
+
+
+def _searched(made: Evaluations, part: RacingLine, first: int, how: _How) -> Evaluated:
     """The least over the turns of a line from a gate on."""
 
     def point_of(place: FloatArray) -> LinePoint:
@@ -200,14 +228,21 @@ def _searched(
         return LinePoint(with_numbers(part, numbers, first), tuple(place.tolist()))
 
     def told(done: int, least: float) -> None:
-        best = f"best {least:.3f} s" if least < 1000.0 else "no line through all gates yet"
-        tell(f"gates {first + 1} to {len(part.turns)}: {done} of {count} evaluations, {best}")
+        best = f"best {least:.3f} s" if least < NOT_PASSED else "no line through all gates yet"
+        how.tell(f"gates {first + 1} to {len(part.turns)}: {done} of {how.evaluations} evaluations, {best}")
 
     numbers = [[each.aside, each.along, each.turning] for each in part.turns[first:]]
     place = np.clip((np.array(numbers) - _LOW) / _WIDTH, 0.0, 1.0).ravel()
-    return least_of(
-        made, point_of, place, count=count, population=population, spread=spread, seed=(seed, first), told=told
-    )
+    seed = (how.seed, first)
+    if how.search == "cma" or how.evaluations == 1:
+        return least_of(
+            made, point_of, place, count=how.evaluations, population=how.population, spread=how.spread, seed=seed,
+            told=told, settled=how.settled,
+        )  # fmt: skip
+    return SurrogateSearch(
+        evaluations=made, point_of=point_of, count=how.evaluations, kinds=len(_LOW), spread=how.spread, seed=seed,
+        told=told, first=len(made.done), settled=how.settled,
+    ).least(place)  # fmt: skip
 
 
 def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> RacingLine:
@@ -238,13 +273,23 @@ def _window(gates: int, window: int | None, step: int) -> tuple[int, int]:
     return window, step
 
 
-def _require(*, evaluations: int, population: int | None, spread: float) -> None:
+def _search(search: Search | None, model: RacerModel) -> Search:
+    if search is None:
+        return "surrogate" if model == "skier" else "cma"
+    if search not in get_args(Search):
+        raise ParameterError(f"search is {search!r}; it must be one of {', '.join(get_args(Search))}")
+    return search
+
+
+def _require(*, evaluations: int, population: int | None, spread: float, settled: float) -> None:
     if evaluations < 1:
         raise ParameterError(f"evaluations is {evaluations}; at least 1 is needed")
     if population is not None and population < 4:
         raise ParameterError(f"population is {population}; at least 4 is needed")
     if not 0.0 < spread <= 1.0:
         raise ParameterError(f"spread is {spread:g}; it must be above 0 and at most 1")
+    if not 0.0 <= settled < NOT_PASSED:
+        raise ParameterError(f"settled is {settled:g}; it must be from 0 to below {NOT_PASSED:g}")
 
 
 def _fingerprint(racer: Racer, begun: RacingLine, settings: Sequence[object]) -> str:

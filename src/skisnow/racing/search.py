@@ -109,6 +109,7 @@ def least_of(
     spread: float,
     seed: Sequence[int],
     told: Told,
+    settled: float = 0.0,
 ) -> Evaluated:
     """Search the unit cube; the least of `count` evaluations or some more, the first of them at the start itself.
 
@@ -130,6 +131,8 @@ def least_of(
         Numbers from 0 on.
     told
         Called as evaluations come.
+    settled
+        Ends the search before, where all values of a batch lie within so much.
 
     References
     ----------
@@ -143,28 +146,40 @@ def least_of(
 
     def evaluate(batch: Sequence[FloatArray]) -> None:
         for more in evaluations.of([(point_of(place), place) for place in batch]):
-            told(len(found()) + more, _least(found()).value if found() else FAILED)
+            told(len(found()) + more, least_in(found()).value if found() else FAILED)
 
     evaluate([np.asarray(start, float)])
     if count == 1:
-        return _least(found())
+        return least_in(found())
     optimiser = _optimiser(start, population, spread, seed)
     while len(found()) < count and not optimiser.should_stop():
         batch = [optimiser.ask() for _ in range(optimiser.population_size)]
         evaluate(batch)
-        optimiser.tell([(np.array(each.place), _finite(each.value)) for each in found()[-len(batch) :]])
-    return _least(found())
+        values = [_finite(each.value) for each in found()[-len(batch) :]]
+        optimiser.tell(
+            [(np.array(each.place), value) for each, value in zip(found()[-len(batch) :], values, strict=True)]
+        )
+        if max(values) - min(values) < settled:
+            break
+    return least_in(found())
 
 
 def _optimiser(start: FloatArray, population: int | None, spread: float, seed: Sequence[int]) -> Any:
-    limits = np.tile([0.0, 1.0], (len(start), 1))
-    state = int(np.random.SeedSequence(list(seed)).generate_state(1)[0])
-    return require_cmaes().CMA(
-        mean=np.clip(start, 0.0, 1.0), sigma=spread, bounds=limits, seed=state, population_size=population
+    return optimiser_within(
+        np.tile([0.0, 1.0], (len(start), 1)), np.clip(start, 0.0, 1.0), spread, seed, population=population
     )
 
 
-def _least(found: Sequence[Evaluated]) -> Evaluated:
+def optimiser_within(
+    limits: FloatArray, mean: FloatArray, spread: float, seed: Sequence[int], *, population: int | None = None
+) -> Any:
+    """CMA-ES within limits (n, 2) from a mean (n,) and a deviation on, seeded."""
+    state = int(np.random.SeedSequence(list(seed)).generate_state(1)[0])
+    return require_cmaes().CMA(mean=mean, sigma=spread, bounds=limits, seed=state, population_size=population)
+
+
+def least_in(found: Sequence[Evaluated]) -> Evaluated:
+    """The first of the least."""
     return min(found, key=lambda each: _finite(each.value))
 
 

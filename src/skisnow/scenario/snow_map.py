@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from ..errors import ParameterError
 from ..geometry.surfaces import Grid
@@ -13,8 +14,11 @@ from ..shown import Facts, Shown, span
 from ..snow import SnowProperties
 from ..units import N_PER_MM2, N_PER_MM3
 
-MOST_CHECKED: Final = 400_000
-"""Places between those of a map at which it is looked for values below 0."""
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+FINER: Final = 4
+"""Parts of a patch between whose ends it is looked for values below 0 (modelling assumption)."""
+_PATCHES_AT_ONCE: Final = 16_384
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -90,17 +94,38 @@ class SnowMap(Shown):
 
 
 def _require_positive(name: str, grid: Grid) -> None:
-    """Smooth patches may swing below the values that they join."""
-    fine = 4 if 16 * grid.values.size <= MOST_CHECKED else 1
-    x, y = (np.linspace(places[0], places[-1], fine * (len(places) - 1) + 1) for places in (grid.x, grid.y))
-    values = grid.values_at(x[:, None], y[None, :])
-    if values.min() > 0.0:
-        return
-    i, j = np.unravel_index(int(np.argmin(values)), values.shape)
-    place = f"x = {x[i]:g} m, y = {y[j]:g} m"
-    if grid.values.min() > 0.0:
+    """At the places, and between them, where smooth patches may swing below the values that they join."""
+    i, j = np.unravel_index(int(np.argmin(grid.values)), grid.values.shape)
+    if grid.values[i, j] <= 0.0:
         raise ParameterError(
-            f"{name} of the snow map falls from one place to the next so steeply that the curve through its values "
-            f"goes below 0 at {place}; give more places there"
+            f"{name} of the snow map is {grid.values[i, j]:g} at x = {grid.x[i]:g} m, y = {grid.y[j]:g} m; it must be "
+            "above 0"
         )
-    raise ParameterError(f"{name} of the snow map is {values[i, j]:g} at {place}; it must be above 0")
+    x, y = _corners_that_may_swing(grid)
+    parts = np.linspace(0.0, 1.0, FINER + 1)
+    for first in range(0, len(x), _PATCHES_AT_ONCE):
+        some = slice(first, first + _PATCHES_AT_ONCE)
+        finer_x, finer_y = np.broadcast_arrays(
+            x[some, None, None] + grid.steps[0] * parts[:, None], y[some, None, None] + grid.steps[1] * parts
+        )
+        values = grid.values_at(finer_x, finer_y)
+        lowest = int(np.argmin(values))
+        if values.flat[lowest] <= 0.0:
+            raise ParameterError(
+                f"{name} of the snow map falls from one place to the next so steeply that the curve through its values "
+                f"goes below 0 at x = {finer_x.flat[lowest]:g} m, y = {finer_y.flat[lowest]:g} m; give more places "
+                "there"
+            )
+
+
+def _corners_that_may_swing(grid: Grid) -> tuple[FloatArray, FloatArray]:
+    """X and y of the first corner of each patch that may reach below 0.
+
+    A patch lies in the convex hull of its Bézier points, which are its corners' values, give or take a third of their
+    slopes over the patch.
+    """
+    along_x, along_y = grid.gradients(grid.x[:, None], grid.y[None, :])
+    swing = (np.abs(along_x) * grid.steps[0] + np.abs(along_y) * grid.steps[1]) / 3.0
+    low = np.pad(grid.values <= swing, ((0, 1), (0, 1)), mode="edge")
+    i, j = np.nonzero(low[:-1, :-1] | low[1:, :-1] | low[:-1, 1:] | low[1:, 1:])
+    return grid.x[i], grid.y[j]

@@ -165,6 +165,22 @@ def test_diverged_numbers_end_as_not_finite(monkeypatch: pytest.MonkeyPatch) -> 
     assert is_sound(run)
 
 
+def test_the_moment_that_gains_energy_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Energy out of nothing ends the run at the moment before, and its path is as long as it was there."""
+
+    def gains(self: Record) -> bool:
+        return self.setup.time > 0.035
+
+    plain = simulate(read_scenario("carved-46m", changes={"run.duration_s": 0.03}))
+    monkeypatch.setattr(Record, "gains_energy", property(gains))
+    run = simulate(read_scenario("carved-46m"))
+    assert run.outcome == "not_finite"
+    assert run.time == pytest.approx([0.0, 0.01, 0.02, 0.03])
+    np.testing.assert_array_equal(run.place, plain.place)
+    assert run.run_length == pytest.approx(plain.run_length, rel=1e-12)
+    assert is_sound(run)
+
+
 def test_open_energy_is_no_finish(monkeypatch: pytest.MonkeyPatch) -> None:
     """The end of a run that gives a tenth too little or too much does not stand, whatever it was."""
     given = read_scenario("carved-46m", changes={"run.duration_s": 0.05})

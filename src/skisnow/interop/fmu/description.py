@@ -12,7 +12,10 @@ from .variables import UNITS, Variable
 Version: TypeAlias = Literal[2, 3]
 IDENTIFIER: Final = "skisnow"
 """Name of the library within the FMU, without its ending."""
-_STATE: Final = {2: "canGetAndSetFMUstate", 3: "canGetAndSetFMUState"}
+_STATE: Final = {
+    2: ("canGetAndSetFMUstate", "canSerializeFMUstate"),
+    3: ("canGetAndSetFMUState", "canSerializeFMUState"),
+}
 
 
 def description(model: Model, token: str, *, fmi: Version) -> bytes:
@@ -21,7 +24,7 @@ def description(model: Model, token: str, *, fmi: Version) -> bytes:
     capabilities = {
         "modelIdentifier": IDENTIFIER,
         "canHandleVariableCommunicationStepSize": "true",
-        _STATE[fmi]: "true",
+        **dict.fromkeys(_STATE[fmi], "true"),
     }
     ET.SubElement(root, "CoSimulation", capabilities)
     units = ET.SubElement(root, "UnitDefinitions")

@@ -1,0 +1,63 @@
+// Numbers as bytes that any machine reads again, and back with every border checked.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace skisnow {
+
+using Bytes = std::vector<unsigned char>;
+
+// FNV-1a (Fowler, Noll, Vo), 64 bits: of two pieces that differ in one byte it always differs.
+std::uint64_t digest_of(const unsigned char* bytes, std::size_t size);
+
+// Each number takes eight bytes, the lowest first.
+class ByteWriter {
+ public:
+  void whole(std::int64_t value) { put(std::uint64_t(value)); }
+  void put(std::uint64_t value);
+  void number(double value);
+  void numbers(const double* values, std::size_t count);
+  template <class Numbers>
+  void all(const Numbers& values) {
+    numbers(values.data(), values.size());
+  }
+
+  // What was written, between a head that says whose it is and a digest of all before it.
+  Bytes sealed(std::uint64_t kind) const;
+
+ private:
+  Bytes bytes_;
+};
+
+// Every function throws std::invalid_argument where the bytes end, or have a number that cannot be.
+class ByteReader {
+ public:
+  // What was sealed; the bytes are to outlive it. Refuses what is damaged, of another kind or of another version.
+  static ByteReader opened(std::uint64_t kind, const unsigned char* bytes, std::size_t size);
+
+  std::uint64_t take();
+  std::int64_t whole(std::int64_t least, std::int64_t most);
+  double number();  // finite
+  double within(double least, double most);
+  void numbers(double* values, std::size_t count);
+  std::vector<double> numbers(std::size_t count);
+  template <class Numbers>
+  void all(Numbers& values) {
+    numbers(values.data(), values.size());
+  }
+  std::size_t left() const { return std::size_t(end_ - at_); }
+  void require_end() const;
+
+ private:
+  const unsigned char *at_, *end_;
+
+  ByteReader(const unsigned char* at, const unsigned char* end) : at_(at), end_(end) {}
+};
+
+[[noreturn]] void refuse_bytes(const std::string& why);
+
+}  // namespace skisnow

@@ -1,0 +1,81 @@
+"""What a contact remembers, to go back to, in this process or as bytes in another one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..compiled import core
+from ..errors import ParameterError
+from ..shown import Facts, Shown
+
+
+class ContactState(Shown):
+    """The history of a contact at one moment; `skisnow.SnowContact.state` gives it, ``restore`` takes it.
+
+    It can be pickled and copied. A state that comes from bytes serves any contact of equal runners and spacing in equal
+    snow, on any machine; laws of your own in Python are not in the bytes: that they are the same is yours to see to.
+
+    See Also
+    --------
+    skisnow.SnowContact
+
+    References
+    ----------
+    * The page docs/how-to/contact.md.
+    """
+
+    __slots__ = ("_compiled", "_kept", "_to_bytes")
+
+    def __init__(self, compiled: core.State | None, kept: bytes | None, to_bytes: Callable[[], bytes] | None) -> None:
+        self._compiled, self._kept, self._to_bytes = compiled, kept, to_bytes
+
+    @classmethod
+    def of(cls, contact: core.Contact) -> ContactState:
+        """As a compiled contact is now."""
+        state = contact.state()
+        return cls(state, None, lambda: contact.bytes_of(state))
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> ContactState:
+        """A state that `to_bytes` has written.
+
+        Raises
+        ------
+        ParameterError
+            They are damaged, not complete, or of another version of the form.
+        """
+        try:
+            core.check_bytes(bytes(data))
+        except ValueError as error:
+            raise ParameterError(f"ContactState: {error}") from error
+        return cls(None, bytes(data), None)
+
+    def to_bytes(self) -> bytes:
+        """All of it, the tracks in its snow as well.
+
+        Raises
+        ------
+        ParameterError
+            Tracks of the state were forgotten when an earlier one was restored.
+        """
+        if self._kept is None:
+            assert self._to_bytes is not None
+            try:
+                return self._to_bytes()
+            except ValueError as error:
+                raise ParameterError(f"ContactState: {error}") from error
+        return self._kept
+
+    def restore_in(self, contact: core.Contact) -> None:
+        """Take a compiled contact to this state; ValueError where it is none of its own."""
+        if self._compiled is not None:
+            contact.restore(self._compiled)
+        else:
+            contact.take_bytes(self.to_bytes())
+
+    def __reduce__(self) -> tuple[Callable[[bytes], ContactState], tuple[bytes]]:
+        """Pickled as its bytes."""
+        return ContactState.from_bytes, (self.to_bytes(),)
+
+    def _facts(self) -> Facts:
+        return Facts("of this process" if self._kept is None else f"of {len(self._kept)} bytes")

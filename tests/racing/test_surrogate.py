@@ -1,0 +1,99 @@
+"""A Gaussian process against what it was given, and a search that asks it against known optima."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skisnow.parallel.kept_rows import KeptRows
+from skisnow.parallel.pool import Pool
+from skisnow.racing.by_surrogate import SurrogateSearch
+from skisnow.racing.search import Evaluations
+from skisnow.racing.surrogate import Surrogate, learnable
+
+from .test_search import EASY, Polyline, cycloid, raced
+
+PLACES = np.random.default_rng(1).random((40, 4))
+VALUES = 3.0 + np.sin(2.0 * PLACES[:, 0]) + PLACES[:, 1] ** 2 - 0.5 * PLACES[:, 2]
+"""The last number moves nothing."""
+
+
+def test_it_gives_back_what_it_was_given_and_knows_what_is_between() -> None:
+    known = Surrogate.of(PLACES[:30], VALUES[:30], 4)
+    mean, deviation = known.at(PLACES[:30])
+    assert mean == pytest.approx(VALUES[:30], abs=0.01)
+    assert deviation.max() < 0.05
+    mean, deviation = known.at(PLACES[30:])
+    assert mean == pytest.approx(VALUES[30:], abs=0.1)
+    assert np.abs(mean - VALUES[30:]).max() < 4.0 * deviation.max()
+    assert known.lengths[3] > 2.0 * known.lengths[0]
+    far = known.at(np.full((1, 4), 40.0))
+    assert (far[0][0], far[1][0]) == pytest.approx((known.level, known.scale), rel=1e-6)
+
+
+def test_scatter_is_taken_for_scatter() -> None:
+    x = np.linspace(0.0, 1.0, 80)[:, None]
+    scatter = 0.1 * np.random.default_rng(3).standard_normal(80)
+    known = Surrogate.of(x, np.sin(3.0 * x[:, 0]) + scatter, 1)
+    assert known.noise * known.scale == pytest.approx(0.1, rel=0.25)
+    assert known.at(x)[0] == pytest.approx(np.sin(3.0 * x[:, 0]), abs=0.1)
+
+
+def test_what_it_believes_changes_no_mean_but_is_known() -> None:
+    known, place = Surrogate.of(PLACES[:30], VALUES[:30], 4), np.array([0.1, 0.9, 0.1, 0.9])
+    more = known.believing(place)
+    assert more.at(PLACES)[0] == pytest.approx(known.at(PLACES)[0], abs=1e-4)
+    assert more.at(place[None, :])[1][0] < 0.5 * known.at(place[None, :])[1][0]
+
+
+def test_numbers_of_one_kind_have_one_length() -> None:
+    assert Surrogate.of(PLACES, VALUES, 2).lengths.tolist()[:2] == Surrogate.of(PLACES, VALUES, 2).lengths.tolist()[2:]
+
+
+def test_failures_count_little_more_than_the_greatest_time_and_keep_their_order() -> None:
+    values = [8.0, 8.2, 1000.3, 8.1, 1000.1, 2000.1, np.inf, 20.0, 8.3]
+    found = learnable(values)
+    assert found[[0, 1, 3, 8]] == pytest.approx([8.0, 8.2, 8.1, 8.3])
+    assert found.max() < 10.0
+    assert found[7] < 9.0  # a detour
+    assert np.argsort(found).tolist() == [0, 3, 1, 8, 7, 4, 2, 5, 6]
+    assert np.isfinite(learnable([1000.3, np.inf])).all()
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_brachistochrone_of_pieces_in_thirty_evaluations(seed: int) -> None:
+    """Whose optimum obeys Snell, as the other test says."""
+    pytest.importorskip("cmaes")
+    line = Polyline()
+    with Pool(line, 1, advice="") as pool:
+        made = Evaluations(pool, KeptRows(), [])
+        best = SurrogateSearch(
+            evaluations=made, point_of=lambda place: tuple(place.tolist()), count=30, kinds=3, spread=0.2, seed=(seed,),
+            told=lambda *_: None, first=0,
+        ).least(np.full(3, 0.5))  # fmt: skip
+    assert len(made.done) < 34
+    exact = cycloid(line.x[-1], line.aside, line.down)
+    assert exact < best.value < 1.025 * exact
+    length, speed, rise = line.pieces(line.aside * np.array(best.place))
+    assert rise / length / speed == pytest.approx(np.full(4, (rise / length / speed).mean()), rel=0.1)
+
+
+def test_turns_are_searched_alike_then_each_for_itself_and_gone_on_with(tmp_path: Path) -> None:
+    kept = tmp_path / "kept"
+    found = raced(EASY, search="surrogate", evaluations=22, seed=2, checkpoint=kept)
+    assert found.gained is not None
+    assert found.gained > 0.05
+    alike = [each.place[:3] == pytest.approx(each.place[3:]) for each in found.history]
+    assert all(alike[:9])
+    assert not any(alike[-8:])
+    told: list[str] = []
+    again = raced(EASY, search="surrogate", evaluations=22, seed=2, checkpoint=kept, progress=told.append)
+    assert [each.row for each in again.history] == [each.row for each in found.history]
+    assert told == []
+
+
+def test_it_ends_where_all_of_two_batches_are_alike() -> None:
+    found = raced(EASY, search="surrogate", evaluations=60, settled=5.0)
+    assert len(found.history) < 30
