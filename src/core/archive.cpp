@@ -77,7 +77,7 @@ struct Strip {
   }
 };
 
-constexpr double MOST_AREA = 1e5;  // (m²) around two neighbouring lines
+constexpr double MOST_AREA = 1e4;  // (m²) around two neighbouring lines
 constexpr int MOST_TRIES = 60;
 constexpr double EXACT = 1e-14;     // (m)
 constexpr double AT_BORDER = 1e-9;  // share of a strip that is rounding: a line along its border lies in it

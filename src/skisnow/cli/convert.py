@@ -17,7 +17,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Read IN, a campaign (folder or .xlsx), a snow pit in CAAML 6 (.caaml, .xml) or a recording of a "
         "SnowMicroPen (.pnt), and write OUT in the format that its ending tells: CAAML 6.0.3 (.caaml, .xml) or CSV "
         "with the column names of SnowEx (.csv). Weather in SMET (.smet) becomes SMET 1.1 in SI, or CSV; .mot and .sto "
-        "each other, markers (.trc, .c3d) .trc.",
+        "each other, markers (.trc, .c3d) each other.",
     )
     parser.add_argument("source", type=Path, metavar="IN", help="what is read")
     parser.add_argument("target", type=Path, metavar="OUT", help="what is written; SnowEx's tables add to the name")
@@ -31,6 +31,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--time", metavar="TIME", help="day or time such as 2026-11-23T09:10, where IN has none: CAAML demands one"
     )
+    parser.add_argument(
+        "--forces", type=Path, metavar="FILE", help="a .mot or .sto whose columns go into a .c3d beside the markers"
+    )
     parser.set_defaults(run=run, parser=parser)
 
 
@@ -43,7 +46,10 @@ def run(options: argparse.Namespace) -> int:
 
         height = options.snow_height_cm
         asked = ConvertOptions(
-            site=options.site, time=options.time, snow_height=None if height is None else height * CM
+            site=options.site,
+            time=options.time,
+            snow_height=None if height is None else height * CM,
+            forces=options.forces,
         )
         written = convert(options.source, options.target, asked)
     for path in written:

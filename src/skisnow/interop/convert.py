@@ -16,7 +16,7 @@ from ..field.smet import read_smet
 from ..field.snow_pit import ForceProfile, SnowPit
 from ..inputs import meant
 from .caaml import write_caaml
-from .opensim import read_c3d, read_motion, read_trc, write_motion, write_trc
+from .opensim import read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
 from .site_pit import site_pit, sites_of
 from .smet import write_smet, write_weather_csv
 from .snowex import write_snowex_force, write_snowex_pit
@@ -54,11 +54,14 @@ class ConvertOptions:
         Of the snow on the ground (m), where the source does not say it.
     time
         ISO 8601, where the source does not say it.
+    forces
+        A .mot or .sto file whose columns go into a .c3d file beside the markers.
     """
 
     site: str | None = None
     snow_height: float | None = None
     time: str | None = None
+    forces: Path | None = None
 
 
 def convert(source: str | Path, target: str | Path, options: ConvertOptions | None = None) -> tuple[Path, ...]:
@@ -85,7 +88,10 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
         raise ParameterError(f"{kinds[0]} to {kinds[1]} is not known. Known are {known_conversions()}")
     if source.resolve() == target.resolve():
         raise OutputError(f"{target} is the file that is read; give the new one another name")
-    return made(source, target, options or ConvertOptions())
+    options = options or ConvertOptions()
+    if options.forces is not None and kinds[1] != ENDINGS[".c3d"]:
+        raise ParameterError(f"forces go into a .c3d file beside its markers; {target} is none. Leave --forces out")
+    return made(source, target, options)
 
 
 def known_conversions() -> str:
@@ -157,6 +163,11 @@ def _markers(read: Callable[[Path], Markers]) -> Conversion:
     return convert_markers
 
 
+def _to_c3d(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, ...]:
+    write_c3d(read_trc(source), target, forces=None if options.forces is None else read_motion(options.forces))
+    return (target,)
+
+
 if TYPE_CHECKING:
     from typing import TypeAlias
 
@@ -175,6 +186,7 @@ CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     ("SMET", CSV): lambda source, target, _: (write_weather_csv(read_smet(source), target),),
     ("OpenSim table", "OpenSim table"): _motion,
     ("TRC markers", "TRC markers"): _markers(read_trc),
+    ("TRC markers", "C3D markers"): _to_c3d,
     ("C3D markers", "TRC markers"): _markers(read_c3d),
 }
 """By the kinds of source and target."""

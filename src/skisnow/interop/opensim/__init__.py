@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .boots import BootMarkers, boots_of_markers, boots_text
-from .c3d import read_c3d
+from .c3d import read_c3d, write_c3d
 from .markers import Markers, read_trc, write_trc
 from .table import MotionTable, read_motion, write_motion
 
@@ -16,6 +16,7 @@ __all__ = [
     "read_c3d",
     "read_motion",
     "read_trc",
+    "write_c3d",
     "write_motion",
     "write_trc",
 ]

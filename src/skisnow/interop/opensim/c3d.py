@@ -1,16 +1,28 @@
-"""Markers of a .c3d file, read by ezc3d."""
+"""Markers of a .c3d file, and forces beside them, read and written by ezc3d."""
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
-from ...errors import ParameterError
+from ...errors import OutputError, ParameterError
+from ...files import write_file
 from ...given import plain_bytes
-from .markers import METRES, Markers
-from .table import MOST_BYTES
+from .markers import METRES, FloatArray, Markers
+from .table import MOST_BYTES, MotionTable
+
+ENDING: Final = ".c3d"
+WRITTEN: Final = "mm"
+"""Unit of places in what is written: that of most captures."""
+MOST_FRAMES: Final = 65_535
+"""That the format counts, from its frame 0 on."""
+MOST_NAMES: Final = 255
+OFF_FRAME: Final = 0.25
+"""Share of a frame by which a time may lie beside it, as rounded times of text files do: the format counts frames."""
+_UNITS: Final = {"_force_v": "N", "_force_p": "m", "_moment_": "Nm", "_torque_": "Nm"}  # by what a name contains
 
 
 def read_c3d(path: str | Path) -> Markers:
@@ -21,12 +33,7 @@ def read_c3d(path: str | Path) -> Markers:
     ParameterError
         ezc3d is not installed, the file cannot be read, or it has no markers or no sound unit.
     """
-    try:
-        import ezc3d
-    except ImportError:
-        raise ParameterError(
-            f"{path}: .c3d files are read by ezc3d, which is not installed: pip install 'skisnow[c3d]'"
-        ) from None
+    ezc3d = _ezc3d(path, "read")
     plain_bytes(path, most_bytes=MOST_BYTES)
     try:
         found: Any = ezc3d.c3d(str(path))
@@ -45,3 +52,104 @@ def read_c3d(path: str | Path) -> Markers:
     place = METRES[unit] * np.moveaxis(points[:3, : len(names)], (0, 1, 2), (2, 1, 0))
     time = (first + np.arange(len(place))) / rate
     return Markers(time, names, np.ascontiguousarray(place), rate)
+
+
+def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None = None) -> None:
+    """Write markers, and forces as analogue channels, as a .c3d file; needs ezc3d (``skisnow[c3d]``).
+
+    Places are in millimetres; all numbers have the format's single precision. A marker that was not seen has a negative
+    residual, as the format wants it.
+
+    Parameters
+    ----------
+    markers
+        At a steady rate; the format counts frames from the time 0, up to 65,535.
+    path
+        The file, whose name ends in .c3d.
+    forces
+        Of the same stretch of time, at the markers' rate or a whole multiple: a channel for each column.
+
+    Raises
+    ------
+    ParameterError
+        ezc3d is not installed, the name ends otherwise, times are not those of frames, or there are more frames or
+        names than the format counts.
+    OutputError
+        The place cannot be written.
+    """
+    path = Path(path)
+    if path.suffix.lower() != ENDING:
+        raise ParameterError(f"{path} does not end in {ENDING}; name it so")
+    ezc3d = _ezc3d(path, "written")
+    rate, n = markers.rate, len(markers.time)
+    first = round(float(markers.time[0]) * rate)
+    _require_frames(path, "markers", markers.time, first / rate, rate)
+    _require_names(path, "markers", markers.names)
+    if first < 0 or first + n > MOST_FRAMES:
+        raise ParameterError(
+            f"{path}: the markers' frames are {first} to {first + n - 1}; .c3d counts frames from 0 to "
+            f"{MOST_FRAMES - 1}: shift the times, or write a shorter stretch"
+        )
+    made: Any = ezc3d.c3d()
+    point = made["parameters"]["POINT"]
+    point["RATE"]["value"], point["UNITS"]["value"] = [rate], [WRITTEN]
+    point["LABELS"]["value"] = list(markers.names)
+    made["header"]["points"]["first_frame"] = first
+    places = np.moveaxis(markers.place, (0, 1, 2), (2, 1, 0)) / METRES[WRITTEN]
+    made["data"]["points"] = np.concatenate([places, np.ones((1, *places.shape[1:]))])
+    unseen = ~np.isfinite(places).all(axis=0, keepdims=True)
+    made["data"]["meta_points"]["residuals"] = np.where(unseen, -1.0, 0.0)
+    if forces is not None:
+        _put_forces(made, path, markers, forces, first / rate)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            place = Path(folder, f"written{ENDING}")  # ezc3d adds this ending to all other names
+            made.write(str(place))
+            content = place.read_bytes()
+    except (OSError, RuntimeError, ValueError) as error:
+        raise OutputError(f"{path} cannot be written as .c3d: {error}") from error
+    write_file(path, content)
+
+
+def _put_forces(made: Any, path: Path, markers: Markers, forces: MotionTable, start: float) -> None:
+    """Analogue channels of an opened file."""
+    n = len(markers.time)
+    often, rest = divmod(len(forces.time), n)
+    if rest or not often:
+        raise ParameterError(
+            f"{path}: forces have {len(forces.time)} rows for {n} frames; there must be a whole number for each frame"
+        )
+    rate = often * markers.rate
+    _require_frames(path, "forces", forces.time, start, rate)
+    _require_names(path, "forces", tuple(forces.columns))
+    analog = made["parameters"]["ANALOG"]
+    analog["RATE"]["value"], analog["LABELS"]["value"] = [rate], list(forces.columns)
+    analog["UNITS"]["value"] = [
+        next((unit for part, unit in _UNITS.items() if part in name), "") for name in forces.columns
+    ]
+    made["data"]["analogs"] = np.stack([*forces.columns.values()])[None]
+
+
+def _require_frames(path: Path, what: str, time: FloatArray, start: float, rate: float) -> None:
+    off = np.abs(time - start - np.arange(len(time)) / rate) * rate
+    if not np.all(off <= OFF_FRAME):
+        worst = int(np.argmax(off > OFF_FRAME))
+        raise ParameterError(
+            f"{path}: {what} at {float(time[worst])!r} s are not at a frame of {rate:g} Hz from {start:g} s on; "
+            ".c3d has one rate: bring them to it first"
+        )
+
+
+def _require_names(path: Path, what: str, names: tuple[str, ...]) -> None:
+    if not 0 < len(names) <= MOST_NAMES:
+        raise ParameterError(f"{path}: there are {len(names)} {what}; .c3d names 1 to {MOST_NAMES}")
+
+
+def _ezc3d(path: str | Path, done: str) -> Any:
+    try:
+        import ezc3d
+    except ImportError:
+        raise ParameterError(
+            f"{path}: .c3d files are {done} by ezc3d, which is not installed: pip install 'skisnow[c3d]'"
+        ) from None
+    return ezc3d
