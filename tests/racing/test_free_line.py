@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -40,7 +41,7 @@ class FreeLine:
 
 def nodes() -> npt.NDArray[np.float64]:
     gates = [0.0, *(gate.turning[0] for gate in FOUR.course.gates)]
-    return np.unique(np.concatenate([np.linspace(a, b, NODES + 1) for a, b in zip(gates, gates[1:], strict=False)]))
+    return np.unique(np.concatenate([np.linspace(a, b, NODES + 1) for a, b in pairwise(gates)]))
 
 
 def quickest_free_line(racer: PointRacer) -> tuple[float, FreeLine]:
