@@ -11,11 +11,13 @@ import pytest
 from skisnow.cli import main
 from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_bytes, replay_of_file
 from skisnow.report.run_file import write_run_file
+from skisnow.report.run_report import run_page
 from skisnow.scenario import scenario_values
 from skisnow.scenario.values import in_sections
 
 from ..replay.held import held_replay
 from ..report.runs import circle_run
+from ..report.test_run_report import summary_of
 
 Printed: TypeAlias = pytest.CaptureFixture[str]
 GPX = """<gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg>
@@ -57,6 +59,33 @@ def test_a_second_run_and_a_track_stand_in_the_page(folder: Path, tmp_path: Path
     assert shown.track.time == pytest.approx(np.array([0.5, 1.5, 2.5]))
     assert held_replay(page, "ghost") == replay_bytes(replay_of_file(folder))
     assert sorted(each.name for each in folder.iterdir()) == ["run.nc"]
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_a_report_that_lies_there_gets_the_link_once(folder: Path, language: str, capsys: Printed) -> None:
+    """It is then the page that a run with its replay has."""
+    run = circle_run(count=21)
+    without, linked = (run_page(run, summary_of(run), [], has_replay=each, language=language) for each in (False, True))
+    assert 'href="replay.html"' not in without
+    page = folder / "report.html"
+    page.write_text(without, encoding="utf-8")
+    assert main(["replay", str(folder / "run.nc")]) == 0
+    assert page.read_text(encoding="utf-8") == linked
+    assert "report.html now has a link" in capsys.readouterr().err
+    assert main(["replay", str(folder)]) == 0
+    assert page.read_text(encoding="utf-8") == linked
+    assert "link" not in capsys.readouterr().err
+
+
+def test_a_page_that_is_no_report_of_a_run_stays_as_it_is(folder: Path, tmp_path: Path) -> None:
+    run = circle_run(count=21)
+    mine, report = "<p>my own page, about skisnow</p>", run_page(run, summary_of(run), [])
+    (folder / "report.html").write_text(mine, encoding="utf-8")
+    assert main(["replay", str(folder)]) == 0
+    assert (folder / "report.html").read_text(encoding="utf-8") == mine
+    (folder / "report.html").write_text(report, encoding="utf-8")
+    assert main(["replay", str(folder), "--out", str(tmp_path / "new")]) == 0  # the page lies elsewhere
+    assert (folder / "report.html").read_text(encoding="utf-8") == report
 
 
 @pytest.mark.parametrize("words", [["{}"], ["--ghost", "{}"]])

@@ -124,6 +124,11 @@ def test_sides_that_are_not_told_are_those_of_the_bends(tmp_path: Path) -> None:
     [
         ("<gpx></gpx>", "there is no waypoint"),
         ("<gpx><wpt lat='95' lon='11'/></gpx>", "waypoint 1, lat: '95' is no number from -90 to 90"),
+        ("<gpx><wpt lat='nan' lon='11'/></gpx>", "waypoint 1, lat: 'nan' is no number from -90 to 90"),
+        (
+            "<gpx><wpt lat='47' lon='11'><ele>1e6</ele></wpt></gpx>",
+            "waypoint 1, ele: '1e6' is no number from -100000 to 100000",
+        ),
         ("<gpx><wpt lat='47'/></gpx>", "waypoint 1, lon: None is no number from -180 to 180"),
         ("<gpx><wpt lat='47' lon='11'>", "is no GPX that can be read"),
         ('<!DOCTYPE gpx [<!ENTITY a "b">]><gpx/>', "the declaration of an entity, a"),

@@ -10,6 +10,7 @@ import pytest
 
 from skisnow.course import Course, CourseResult, Gate, MovingPoint, passages
 from skisnow.course.gate import Point, Side
+from skisnow.errors import ParameterError
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -45,6 +46,16 @@ def test_times_on_a_straight_line_at_constant_speed() -> None:
     assert [each.clearance for each in result.passages] == pytest.approx([1.0, 1.0, 1.0])
     assert [each.speed for each in result.passages] == pytest.approx([10.0] * 3)
     assert (result.passed, result.missed, result.fault) == (3, (), None)
+
+
+def test_time_through_the_course_is_told_where_both_ends_were_reached() -> None:
+    assert "first to last gate  2 s" in repr(passages(WIDE, along_x(), {}))
+    assert "first to last gate" not in repr(passages(WIDE, along_x(seconds=3.0), {}))
+
+
+def test_a_side_is_left_or_right() -> None:
+    with pytest.raises(ParameterError, match="gate 1: side is 'up'; it must be left or right"):
+        course(((10.0, -1.0), "up"))  # type: ignore[arg-type]
 
 
 def test_without_outer_poles_the_line_is_square_to_the_course() -> None:

@@ -16,6 +16,7 @@ from skisnow.parallel import chunk, crews, dask_cluster
 from skisnow.parallel.batch import run_batch
 from skisnow.parallel.chunk import Identity
 from skisnow.parallel.executors import require_executor
+from skisnow.parallel.kept_rows import KeptRows, row_text
 from skisnow.parallel.pool import Pool
 from tests.identify.straight_tracks import SCENARIO, track
 
@@ -54,6 +55,14 @@ def test_any_executor_gives_the_same_rows_in_few_chunks_and_is_left_open() -> No
     with ThreadPoolExecutor(2) as threads:
         assert run_batch(POINTS, dict, executor=threads) == ROWS
         assert threads.submit(len, "open").result() == 4
+
+
+def test_what_is_finished_is_not_handed_out_again() -> None:
+    """Nor chunks without a point, when some were finished before."""
+    kept, executor = KeptRows(), Here()
+    kept.add([(number, row_text(ROWS[number])) for number in range(36)])
+    assert run_batch(POINTS, dict, kept=kept, executor=executor) == ROWS
+    assert 1 <= executor.chunks <= 5
 
 
 @pytest.mark.slow
@@ -203,3 +212,11 @@ def test_the_file_of_a_scheduler_is_read(tmp_path: Path) -> None:
     assert (asked.address, asked.wait_s) == ("tls://a:1", 5)
     assert asked.tls == {"ca_file": str(tmp_path / "ca.pem"), "cert": str(tmp_path / "own.pem")}
     assert [dask_cluster.is_plain(each) for each in (path, "tcp://a:1", "tls://a:1")] == [False, True, False]
+
+
+@pytest.mark.parametrize("key", ["ca_file", "cert"])
+def test_a_certificate_that_is_none_is_told_before_the_work_begins(key: str, tmp_path: Path) -> None:
+    nonsense = tmp_path / "own.pem"
+    nonsense.write_text("no certificate", encoding="utf-8")
+    with pytest.raises(ParameterError, match=r"own\.pem: no certificate can be read .* \[tls\] needs PEM files"):
+        dask_cluster._require_certificates({key: str(nonsense)})

@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow import BootMoment, Run, Scenario, scenario, simulate, time_gates
+from skisnow import BootMoment, BootPose, Run, Scenario, scenario, simulate, time_gates
 from skisnow.errors import ParameterError
 from skisnow.scenario import Skier
 from skisnow.skier import BalancedSkier
+from skisnow.skier.seen import Moment
 
 
 def tall(skier: Skier | None = None, **changes: object) -> Scenario:
@@ -140,6 +141,45 @@ def test_the_last_bits_stay_small_while_it_balances() -> None:
     """10⁻¹² of the start speed moves the end of 20 s by less than a millimetre."""
     ends = [steady(0.0, 20.0, speed).place[-1] for speed in (7.0, 7.0 * (1.0 + 1e-12))]
     assert np.linalg.norm(ends[0] - ends[1]) < 1e-3
+
+
+class Watched(BalancedSkier):
+    """Keeps the poses that it gave."""
+
+    poses: list[BootPose]
+
+    def __call__(self, moment: Moment) -> Sequence[BootPose]:
+        found = super().__call__(moment)
+        self.poses = [*getattr(self, "poses", []), found[0]]
+        return found
+
+
+def test_boots_move_with_even_acceleration() -> None:
+    """From call to call the way of a boot is the mean of its velocities at both ends, through an edge change, too."""
+    turn = tall(Skier(first_turn=0.1, turn_time=0.8), duration_s=1.0)
+    skier = Watched(turn)
+    assert simulate(turn, boots=skier).outcome == "finished"
+    place, velocity = (np.array([getattr(pose, name) for pose in skier.poses]) for name in ("place", "velocity"))
+    step = 0.01
+    assert np.abs(np.diff(velocity, axis=0)).max() > 0.02
+    assert np.abs(np.diff(place, axis=0) / step - 0.5 * (velocity[1:] + velocity[:-1])).max() < 1e-3
+
+
+def swing(legs: float) -> float:
+    """Rms (N) of the load of the outer ski between 5 and 12 Hz in the first turns, with legs that so give way (1/s)."""
+    run = simulate(tall(Skier(leg_yielding=legs), duration_s=3.5))
+    turning = run.time > 1.0
+    load, rates = run.balance.load[turning], np.fft.rfftfreq(int(turning.sum()), float(np.median(np.diff(run.time))))
+    parts = np.fft.rfft(load - load.mean(axis=0), axis=0)
+    parts[(rates < 5.0) | (rates > 12.0)] = 0.0
+    left, right = np.fft.irfft(parts, len(load), axis=0).T
+    return float(np.sqrt(np.mean(np.where(run.balance.lean[turning] > 0.0, right, left) ** 2)))
+
+
+def test_loads_do_not_chatter_from_ski_to_ski() -> None:
+    """Legs that do not give way let the load go to and fro some six times a second, by 100 N and more in the mean."""
+    assert swing(0.0) > 100.0
+    assert swing(Skier().leg_yielding) < 60.0
 
 
 def test_left_and_right_mirror() -> None:

@@ -54,7 +54,7 @@ def test_who_is_on_the_line_turns_as_it_does_and_who_is_beside_it_goes_back() ->
 
 
 def edges() -> Edges:
-    return Edges.of(scenario("skier-10deg"), STEEP, math.radians(66.0))
+    return Edges.of(scenario("skier-10deg"), STEEP, Skier())
 
 
 def test_more_acceleration_takes_more_edge_and_left_is_as_right() -> None:
@@ -85,13 +85,13 @@ def test_a_carve_in_balance_leans_as_it_must() -> None:
 def test_legs_keep_the_centre_of_mass_level_and_their_rates_are_those_of_their_poses() -> None:
     height, step = 0.6, 1e-6
     for aside in (0.0, 0.3, -0.5):
-        poses = leg_poses((aside, 0.7), (0.4, -1.1), height, 0.44, 0.03)
+        poses = leg_poses((aside, 0.7), (0.4, -1.1), height, 0.44, 0.03, 0.05)
         lean = math.atan2(aside, height)
         snow_up = np.array([0.0, -math.sin(lean), math.cos(lean)])  # in the body
-        flat = leg_poses((aside, 0.0), (0.0, 0.0), height, 0.44, 0.03)
+        flat = leg_poses((aside, 0.0), (0.0, 0.0), height, 0.44, 0.03, 0.05)
         for pose in flat:
             assert float((np.array([0.0, 0.0, height]) - pose.place) @ snow_up) == pytest.approx(height)
-        later = leg_poses((aside + 0.7 * step, 0.7), (0.4 - 1.1 * step, -1.1), height, 0.44, 0.03)
+        later = leg_poses((aside + 0.7 * step, 0.7), (0.4 - 1.1 * step, -1.1), height, 0.44, 0.03, 0.05)
         for pose, other in zip(poses, later, strict=True):
             assert (other.place - pose.place) / step == pytest.approx(pose.velocity, abs=1e-4)
 

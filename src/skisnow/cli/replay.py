@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -99,12 +100,23 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     return measured_track(track, starts_at=options.starts_at_s)
 
 
+def _link(folder: Path) -> None:
+    """A report that was written without a replay leads to it from now on."""
+    from ..report.replay_link import link_replay
+
+    if (page := link_replay(folder)) is not None:
+        print(f"{page} now has a link to the replay.", file=sys.stderr)
+
+
 def _written(options: argparse.Namespace, shown: Replay, ghost: Replay | None) -> list[Path]:
     from ..replay import write_moving_replay_model, write_replay, write_replay_model
 
-    folder = options.out or (options.folder if options.folder.is_dir() else options.folder.parent)
+    own = options.folder if options.folder.is_dir() else options.folder.parent
+    folder = options.out or own
     with announced("writing"):
         written = [write_replay(shown, folder / "replay.html", ghost=ghost)]
+        if folder.resolve() == own.resolve():
+            _link(folder)
         if options.model:
             written.append(folder / "replay.glb")
             write_moving_replay_model(shown, written[-1], exaggeration=options.exaggeration)

@@ -20,8 +20,8 @@ from ..sources import Sources
 
 FloatArray = npt.NDArray[np.float64]
 
-SEARCH_STEP: Final = 4e-3
-"""Fixed step (s) of the fast mode in a search: 2 to 5 cm off after 46 m, on very hard snow too long (modelling
+SEARCH_STEP: Final = 5e-3
+"""Fixed step (s) of the fast mode in a search: 1 to 3 cm off after 46 m, on very hard snow too long (modelling
 assumption)."""
 OUTPUT_INTERVAL: Final = 0.02
 """Between the outputs (s) that a cubic with their velocities joins: exact to 0.1 mm on R = 5 m at 10 m/s."""

@@ -44,6 +44,8 @@ REPLAY: Final = "replay.html"
 """The run in three dimensions, where that was asked for."""
 
 _LINK: Final = Markup('<a href="{}">the run in three dimensions</a>').format(REPLAY)
+REPLAY_FACT: Final = Markup("<dt>Replay</dt><dd>{}</dd>").format(_LINK)
+"""The link as the page of a run has it among its facts."""
 
 
 def write_run_report(

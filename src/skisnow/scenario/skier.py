@@ -30,7 +30,11 @@ class Skier:
         Greatest distance from the middle of the feet to the centre of mass (m).
     greatest_edge
         Greatest edge angle (rad).
-    leg_gain, edge_gain, edge_change, edge_filter, share_filter, load_filter, lean_more, reach, lag, correction, touch
+    greatest_lean
+        That it plans (rad).
+    leg_gain, leg_yielding, carving_share, edge_beyond_lean, blunt_edge, edge_gain, edge_change, edge_filter,
+    share_filter, load_filter, lean_more, reach, lag, correction, trusted_edge, touch, lifted_share, bearing_share,
+    foresight, foresight_step, slowest, greatest_pressed
         Of the control; the page docs/methods/skier.md has what they do.
 
     See Also
@@ -144,6 +148,17 @@ class Skier:
             origin="what was measured of slalom racers at gates 10 m apart, 65.7 ± 1.7° (Reid 2020)",
         ),
     ] = 66.0 * DEGREE
+    greatest_lean: Annotated[
+        float,
+        Quantity(
+            "skier.greatest_lean_deg",
+            "greatest lean of balance that it plans, from the snow's normal",
+            label="greatest planned lean",
+            lowest=1.0,
+            highest=80.0,
+            origin="found by trial: little below the leg's reach, arccos(0.6/1.05) = 55°",
+        ),
+    ] = 48.0 * DEGREE
     leg_gain: Annotated[
         float,
         Quantity(
@@ -155,6 +170,51 @@ class Skier:
             origin="found by trial",
         ),
     ] = 0.7
+    leg_yielding: Annotated[
+        float,
+        Quantity(
+            "skier.leg_yielding_per_s",
+            "speed aside at which legs give way, over how far the centre of pressure is from where it is asked for",
+            label="yielding of the legs",
+            lowest=0.0,
+            highest=100.0,
+            origin="found by trial: below 0.6 the loads swing at 5 to 8 Hz, from 2 on by the steps of the control",
+        ),
+    ] = 1.0
+    carving_share: Annotated[
+        float,
+        Quantity(
+            "skier.carving_share",
+            "share of the straightest carve's acceleration from which on edges go over from a skid to a carve",
+            label="carving from",
+            lowest=0.0,
+            highest=1.0,
+            below=True,
+            origin="found by trial: at 0 lines through gates are cut, at 0.6 loads swing more",
+        ),
+    ] = 0.3
+    edge_beyond_lean: Annotated[
+        float,
+        Quantity(
+            "skier.edge_beyond_lean_deg",
+            "edge angle beyond the lean of balance in a carve",
+            label="edge beyond the lean",
+            lowest=0.0,
+            highest=45.0,
+            origin="choice: so that the ski holds, with the lean not known better",
+        ),
+    ] = 3.0 * DEGREE
+    blunt_edge: Annotated[
+        float,
+        Quantity(
+            "skier.blunt_edge_deg",
+            "edge angle over which the lift of the boot by the edge is rounded where it goes through flat",
+            label="rounding of the edge change",
+            lowest=0.1,
+            highest=30.0,
+            origin="choice: an edge change of no jump in the speed of the legs",
+        ),
+    ] = 3.0 * DEGREE
     edge_gain: Annotated[
         float,
         Quantity(
@@ -254,6 +314,17 @@ class Skier:
             origin="found by trial",
         ),
     ] = 0.12
+    trusted_edge: Annotated[
+        float,
+        Quantity(
+            "skier.trusted_edge_deg",
+            "edge angle from which on loads are believed in full, with its square below: flatter skis follow the feet",
+            label="edge of trusted loads",
+            lowest=0.1,
+            highest=80.0,
+            origin="choice: twice what holds the weight aside on the race piste of the catalogue",
+        ),
+    ] = 10.0 * DEGREE
     touch: Annotated[
         float,
         Quantity(
@@ -265,6 +336,73 @@ class Skier:
             origin="found by trial",
         ),
     ] = 20.0
+
+    lifted_share: Annotated[
+        float,
+        Quantity(
+            "skier.lifted_share",
+            "share of the load below which a ski counts as lifted",
+            label="a ski is lifted below",
+            lowest=0.0,
+            highest=0.5,
+            origin="choice: well below what a ski in the air weighs, 3 % of the skier",
+        ),
+    ] = 0.02
+    bearing_share: Annotated[
+        float,
+        Quantity(
+            "skier.bearing_share",
+            "share of the weight below which the load of both skis tells nothing",
+            label="skis bear from",
+            lowest=0.0,
+            highest=1.0,
+            origin="choice: a fifth, where a leap has all but begun",
+        ),
+    ] = 0.2
+    foresight: Annotated[
+        float,
+        Quantity(
+            "skier.foresight_s",
+            "time ahead over which it thinks its plan through",
+            label="foresight",
+            lowest=0.1,
+            highest=10.0,
+            origin="derived: what is later than 5.5 times the pendulum's time of 0.28 s weighs less than 0.4 %",
+        ),
+    ] = 1.6
+    foresight_step: Annotated[
+        float,
+        Quantity(
+            "skier.foresight_step_s",
+            "step of that",
+            label="step of the foresight",
+            lowest=0.001,
+            highest=0.1,
+            origin="choice: two steps of the control",
+        ),
+    ] = 0.02
+    slowest: Annotated[
+        float,
+        Quantity(
+            "skier.slowest_m_per_s",
+            "speed with which lag and turns are computed at least",
+            label="slowest speed in the control",
+            lowest=0.1,
+            highest=20.0,
+            origin="choice: below the start speeds of the catalogue",
+        ),
+    ] = 2.0
+    greatest_pressed: Annotated[
+        float,
+        Quantity(
+            "skier.greatest_pressed_m_per_s2",
+            "greatest acceleration by the slope's own bend that it counts with",
+            label="pressing by the slope",
+            lowest=0.0,
+            highest=9.0,
+            origin="choice: a fifth of gravity; planes have none",
+        ),
+    ] = 2.0
 
     __repr__ = declared_text
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Final, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -25,28 +25,6 @@ from .seen import Moment, Seen, seen_at
 from .steering import LineThroughGates, Steering, TurnsOverTime, Underway
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
-
-AHEAD: Final = 1.6
-STRIDE: Final = 0.02
-"""Time (s) that is looked ahead, and its step (modelling assumption)."""
-FADING: Final = 0.3
-"""Time (s) in which what balance asks, and what the loads teach, is thought to fade (modelling assumption)."""
-FORGETTING: Final = 6.0
-"""Rate (1/s) at which what the loads taught is forgotten while a ski is lifted (modelling assumption)."""
-MOST_GROWTH: Final = 25.0
-"""Greatest acceleration of the centre of mass against the feet (m/s²) (modelling assumption)."""
-ROLLS: Final = 0.7
-"""Share of the roll inertia that counts in the pendulum's rate (modelling assumption)."""
-TURN_MORE: Final = 1.3
-"""Greatest acceleration with what balance asks, over the greatest planned one (modelling assumption)."""
-BEND: Final = 0.8
-"""Distance (m) before and behind at which the slope's bend is looked at (modelling assumption)."""
-MOST_PRESSED: Final = 2.0
-"""Greatest acceleration (m/s²) by the slope's bend that the control counts with (modelling assumption)."""
-SLOWEST: Final = 2.0
-"""Speed (m/s) with which the lag is computed at least (modelling assumption)."""
-STEEPEST: Final = 1.1
-"""Greatest planned acceleration over gravity (modelling assumption)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +76,8 @@ class BalancedSkier:
     y'' = ω² (y - b - u): b would be in balance at the present acceleration, u is how far aside the centre of pressure
     is. Of the two movements the one that grows belongs to the capture point ξ = y + y'/ω; what it has to be is what is
     planned: ω ∫ exp(-ω s) b(t + s) ds. The legs bring u to where ξ - ξ_ref decays, as far as the stance allows, and
-    edge angles help.
+    edge angles help. A leg that bears more than asked gives way, as a damper does. Between two calls boots move with
+    even acceleration: their velocities are continuous.
 
     References
     ----------
@@ -106,13 +85,15 @@ class BalancedSkier:
     """
 
     scenario: Scenario
-    records: list[BalanceRecord] = field(default_factory=list)
+    records: list[BalanceRecord] = field(default_factory=list, repr=False)
     skier: Skier = field(init=False)
     steering: Steering = field(init=False)
     edges: Edges = field(init=False)
     _aside: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])  # with its rates
     _edge: list[float] = field(default_factory=lambda: [0.0, 0.0])
     _turn: list[float] = field(default_factory=lambda: [0.0, 0.0])  # planned curvature over speed², with its rate
+    _gives: float = 0.0  # rate aside by legs that give way (m/s)
+    _pressure: float = 0.0  # asked for, from the middle of the feet to the left (m)
     _asked: float = 0.0  # acceleration that balance asks for
     _acceleration: float = 0.0  # of the feet to the left
     _correction: float = 0.0
@@ -121,15 +102,19 @@ class BalancedSkier:
     _rate: float = field(init=False)
 
     def __post_init__(self) -> None:
-        sledge = self.scenario.sledge
         if self.scenario.skier is None:
             raise ParameterError("BalancedSkier: the scenario has no skier; give Scenario.with_(skier=Skier())")
         self.skier = self.scenario.skier
         self._stand_on(self.scenario.start.x, self.scenario.start.y)
-        self.edges = Edges.of(self.scenario, self._gravity, self.skier.greatest_edge)
+        self.edges = Edges.of(self.scenario, self._gravity, self.skier)
         self.steering = self._steering()
-        height, roll = sledge.centre_of_mass[1], ROLLS * sledge.inertia[0]
-        self._rate = math.sqrt(self._gravity * height * sledge.mass / (roll + sledge.mass * height**2))
+        self._rate = self._rate_at(0.0)
+
+    def _rate_at(self, aside: float) -> float:
+        """Of the pendulum (1/s), its centre of mass so far aside (m): the more it leans the less its body rolls."""
+        sledge, height = self.scenario.sledge, self._height
+        roll = sledge.inertia[0] * height**2 / (height**2 + aside**2)
+        return math.sqrt(self._gravity * height * sledge.mass / (roll + sledge.mass * height**2))
 
     def _stand_on(self, x: float, y: float) -> FloatArray:
         """Take gravity along the snow's normal and down the slope there; gives the normal (3,)."""
@@ -143,14 +128,15 @@ class BalancedSkier:
         return normal
 
     def _pressed(self, x: float, y: float) -> float:
-        """Acceleration off the snow (m/s²) that the slope's own bend gives at the present speed; at most 2 m/s²."""
+        """Acceleration off the snow (m/s²) that the slope's bend, over a ski's length, gives at the present speed."""
         if not self.records:
             return 0.0
         seen = self.records[-1].seen
         ahead = np.array([math.cos(seen.course), math.sin(seen.course)])
-        behind, before = (normals_of(self.scenario.slope, *(np.array([x, y]) + d * ahead)) for d in (-BEND, BEND))
-        bend = float((behind - before)[:2] @ ahead) / (2.0 * BEND)
-        return max(-MOST_PRESSED, min(MOST_PRESSED, seen.speed**2 * bend))
+        half, most = self.scenario.ski.length / 2.0, self.skier.greatest_pressed
+        behind, before = (normals_of(self.scenario.slope, *(np.array([x, y]) + d * ahead)) for d in (-half, half))
+        bend = float((behind - before)[:2] @ ahead) / (2.0 * half)
+        return max(-most, min(most, seen.speed**2 * bend))
 
     def _steering(self) -> Steering:
         course, start = self.scenario.course, self.scenario.start
@@ -162,26 +148,39 @@ class BalancedSkier:
     def _height(self) -> float:
         return self.scenario.sledge.centre_of_mass[1]
 
+    @property
+    def _weight(self) -> float:
+        """On level snow (N)."""
+        return self.scenario.sledge.mass * self.scenario.gravity
+
+    @property
+    def _steepest(self) -> float:
+        """Acceleration (m/s²) in balance at the greatest lean."""
+        return self._gravity * math.tan(self.skier.greatest_lean)
+
     def __call__(self, moment: Moment) -> Sequence[BootPose]:
         """Where the boots shall be at the moment's end."""
         dt = moment.until - moment.time
         if dt > 0.0:
             normal = self._stand_on(*moment.position[:2].tolist())
-            seen = seen_at(moment, self._height, normal)
+            least = self.skier.bearing_share * self._weight
+            seen = seen_at(moment, self._height, normal, least, self.skier.lifted_share)
+            self._rate = self._rate_at(self._aside[0])
             wanted, planned = self._foreseen(moment.until, seen)
             self._learn(seen, planned, dt)
-            wanted += self._correction * self._rate / (self._rate + 1.0 / FADING)
+            wanted += self._correction / (1.0 + self.skier.leg_gain)  # it fades as errors do
             balanced, wanted = planned + self._correction, self.skier.lean_more * wanted
             error = self._step_aside(seen, wanted, balanced, dt)
             self._step_edge(moment.until, seen, error, dt)
             self.records.append(BalanceRecord(moment.until, seen, balanced, wanted, self._edge[0]))
         stance, half = self.scenario.sledge.stance_width, float(self.scenario.ski.at(0.0).width) / 2.0
         (aside, rate, _), (edge, turning) = self._aside, self._edge
-        return leg_poses((aside, rate), (edge, turning), self._height, stance, half)
+        moving = (aside, rate + self._gives)
+        return leg_poses(moving, (edge, turning), self._height, stance, half, self.skier.blunt_edge)
 
     def _most(self, speed: float) -> float:
         """Acceleration of a carve in balance (m/s²)."""
-        return min(self.edges.carving_acceleration(speed), STEEPEST * self._gravity)
+        return min(self.edges.carving_acceleration(speed), self._steepest)
 
     def _planned(self, at: Underway, most: float) -> float:
         """Acceleration that is planned, over that of a carve in balance."""
@@ -190,56 +189,62 @@ class BalancedSkier:
 
     def _limit(self, speed: float) -> float:
         """Greatest planned acceleration (m/s²): with the greatest edge angle."""
-        return min(speed**2 / (self.edges.radius * math.cos(self.edges.greatest)), STEEPEST * self._gravity)
+        return min(speed**2 / (self.edges.radius * math.cos(self.edges.greatest)), self._steepest)
 
     def _foreseen(self, now: float, seen: Seen) -> tuple[float, float]:
         """Where the capture point should be, and where the centre of mass would be in balance now (m)."""
-        change, lag = self.skier.edge_change, self.skier.lag / max(seen.speed, SLOWEST)
+        skier, step = self.skier, self.skier.foresight_step
+        change, speed = skier.edge_change, max(seen.speed, skier.slowest)
+        lag, fading = skier.lag / speed, skier.leg_gain * self._rate
         most, (turn, rate), acceleration = self._most(seen.speed), self._turn, self._acceleration
         at = Underway(now, *seen.place, seen.course, seen.speed, acceleration)
         total = weights = first = 0.0
-        for i in range(round(AHEAD / STRIDE)):
-            later = (i + 0.5) * STRIDE
+        for i in range(round(skier.foresight / step)):
+            later = (i + 0.5) * step
             at.time = now + later
-            rate += STRIDE * (change**2 * (self._planned(at, most) - turn) - 2.0 * change * rate)
-            turn += STRIDE * rate
-            target = most * turn + self._asked * math.exp(-later / FADING)
-            acceleration += (target - acceleration) * STRIDE / (lag + STRIDE)
+            rate += step * (change**2 * (self._planned(at, most) - turn) - 2.0 * change * rate)
+            turn += step * rate
+            target = most * turn + self._asked * math.exp(-fading * later)
+            acceleration += (target - acceleration) * step / (lag + step)
             balanced = self._height * (acceleration + self._downhill * math.sin(at.heading)) / self._gravity
             first = balanced if i == 0 else first
             weight = math.exp(-self._rate * later)
             total, weights = total + weight * balanced, weights + weight
-            at.x += STRIDE * at.speed * math.cos(at.heading)
-            at.y += STRIDE * at.speed * math.sin(at.heading)
+            at.x += step * at.speed * math.cos(at.heading)
+            at.y += step * at.speed * math.sin(at.heading)
             at.acceleration = acceleration
-            at.heading += acceleration / max(seen.speed, 1.0) * STRIDE
+            at.heading += acceleration / speed * step
         return total / weights, first
 
     def _learn(self, seen: Seen, planned: float, dt: float) -> None:
         """How far balance is from the plan, by the loads while both skis bear and are edged."""
         if not seen.bears or seen.lifted:
-            self._correction *= 1.0 - FORGETTING * dt
+            self._correction *= 1.0 - _share_of(dt, self.skier.load_filter)
             return
-        most, skids = self.skier.correction, math.degrees(abs(self._edge[0]))
+        most, edged = self.skier.correction, self._edge[0] / self.skier.trusted_edge
         found = seen.aside - seen.pressure - self._aside[2] / self._rate**2 - planned
-        known = min(1.0, max(0.0, (skids - 2.0) / 3.0)) * found  # skis that hardly hold follow the feet
+        known = min(1.0, edged**2) * found  # skis that hardly hold follow the feet
         self._correction += _share_of(dt, self.skier.load_filter) * (max(-most, min(most, known)) - self._correction)
 
     def _step_aside(self, seen: Seen, wanted: float, balanced: float, dt: float) -> float:
         """Draw the capture point towards what is wanted; gives how far it is from it (m)."""
         skier, omega, (aside, rate, _) = self.skier, self._rate, self._aside
-        if seen.lifted or not seen.bears:
-            back = min(1.0, skier.touch * dt)
-            aside, rate = aside + back * (seen.aside - aside), rate + back * (seen.aside_rate - rate)
-            error = seen.aside + seen.aside_rate / omega - wanted
-        else:
-            error = aside + rate / omega - wanted
+        free = seen.lifted or not seen.bears
+        y, drift = (seen.aside, seen.aside_rate) if free else (aside, rate)
+        error = y + drift / omega - wanted
         reach = skier.reach * self.scenario.sledge.stance_width / 2.0
         pressure = max(-reach, min(reach, (1.0 + skier.leg_gain) * error))
-        growth = max(-MOST_GROWTH, min(MOST_GROWTH, omega**2 * (aside - pressure - balanced)))
-        rate += growth * dt
+        growth = omega**2 * (y - pressure - balanced)
+        back = min(1.0, skier.touch * dt) if free else 1.0  # a lifted ski is put down with the body as it is
+        later = (1.0 - back) * rate + back * drift + growth * dt
+        gives = skier.touch * (y - aside) if free else skier.leg_yielding * (seen.pressure - self._pressure)
         furthest = math.sqrt(skier.longest_leg**2 - self._height**2)
-        self._aside = [max(-furthest, min(furthest, aside + rate * dt)), rate, growth]
+        place = aside + 0.5 * (rate + self._gives + later + gives) * dt
+        self._aside, self._gives, self._pressure = (
+            [max(-furthest, min(furthest, place)), later, growth],
+            gives,
+            pressure,
+        )
         return error
 
     def _step_edge(self, now: float, seen: Seen, error: float, dt: float) -> None:
@@ -249,18 +254,15 @@ class BalancedSkier:
         planned = self._planned(Underway(now, *seen.place, seen.course, seen.speed, self._acceleration), most)
         rate += dt * (change**2 * (planned - turn) - 2.0 * change * rate)
         self._turn = [turn + rate * dt, rate]
-        lean = max(math.atan(most / self._gravity), 0.1)
-        asked = max(-1.0, min(1.0, skier.edge_gain * error / self._height / lean))
-        self._asked += _share_of(dt, skier.share_filter) * (most * asked - self._asked)
+        asked = max(-most, min(most, skier.edge_gain * self._gravity * error / self._height))
+        self._asked += _share_of(dt, skier.share_filter) * (asked - self._asked)
         ahead = most * self._turn[0] + self._asked
-        lag = skier.lag / max(seen.speed, SLOWEST)
+        lag = skier.lag / max(seen.speed, skier.slowest)
         self._acceleration += (ahead - self._acceleration) * dt / (lag + dt)
-        limit = TURN_MORE * self._limit(seen.speed)
-        target = max(-limit, min(limit, ahead))
-        grip = (target + self._downhill * math.sin(seen.course)) / self._gravity
-        wanted = self.edges.angle(target, grip, seen.speed, seen.load)
-        turning += (swift**2 * (wanted - edge) - 2.0 * swift * turning) * dt
-        self._edge = [edge + turning * dt, turning]
+        grip = (ahead + self._downhill * math.sin(seen.course)) / self._gravity
+        wanted = self.edges.angle(ahead, grip, max(seen.speed, skier.slowest), self._weight)
+        later = turning + (swift**2 * (wanted - edge) - 2.0 * swift * turning) * dt
+        self._edge = [edge + 0.5 * (turning + later) * dt, later]
 
     @property
     def edge_steps(self) -> FloatArray:

@@ -4,19 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
 
 from ..scenario import Scenario
-
-CARVING_SHARE: Final = 0.6
-"""Share of the straightest carve's acceleration from which on the edges are set as for carving (modelling assumption).
-"""
-EDGE_BEYOND_LEAN: Final = math.radians(3.0)
-"""Edge angle beyond the lean in a carve (modelling assumption)."""
-CONTACT_SHARE: Final = 0.85
-"""Share of the ski's length that bears (modelling assumption)."""
-LEAST_LOAD: Final = 100.0
-"""Load of a ski (N) with which its edge is computed at least (modelling assumption)."""
+from ..scenario.skier import Skier
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,37 +23,43 @@ class Edges:
         2 S_f² L/H_V (N): a wedge of angle ϑ under the load N holds √(2 S_f² L tan ϑ/(H_V N)) times that load aside.
     greatest
         Edge angle (rad).
+    carving_share
+        Share of the straightest carve's acceleration from which on the edges go over to those of a carve.
+    beyond_lean
+        Edge angle beyond the lean in a carve (rad).
     """
 
     radius: float
     gravity: float
     softness: float
     greatest: float
+    carving_share: float
+    beyond_lean: float
 
     @classmethod
-    def of(cls, scenario: Scenario, gravity: float, greatest: float) -> Edges:
-        """Those of a scenario's ski on its snow."""
+    def of(cls, scenario: Scenario, gravity: float, skier: Skier) -> Edges:
+        """Those of a scenario's ski on its snow, as a skier sets them."""
         snow, ski = scenario.contact.snow, scenario.ski
-        length = CONTACT_SHARE * float(ski.station[0] - ski.station[-1])
         strength = snow.failure_shear_stress or 0.0
-        softness = 2.0 * strength**2 * length / snow.snow_hardness
-        return cls(ski.sidecut_radius_of_edge_line, gravity, softness, greatest)
+        softness = 2.0 * strength**2 * ski.running_length / snow.snow_hardness
+        radius = ski.sidecut_radius_of_edge_line
+        return cls(radius, gravity, softness, skier.greatest_edge, skier.carving_share, skier.edge_beyond_lean)
 
     def carving_acceleration(self, speed: float) -> float:
         """Of a carve in balance at a speed (m/s), with the edge angle of its lean: sin ϑ = v²/(R_sc g) (m/s²)."""
-        lean = math.asin(min(0.95, speed**2 / (self.radius * self.gravity)))
-        return speed**2 / (self.radius * math.cos(min(lean, self.greatest)))
+        lean = math.asin(min(math.sin(self.greatest), speed**2 / (self.radius * self.gravity)))
+        return speed**2 / (self.radius * math.cos(lean))
 
     def skidding(self, grip: float, load: float) -> float:
         """Edge angle (rad) that holds so many times the load (N) of both skis aside, and no more."""
-        return math.atan(grip**2 * max(load / 2.0, LEAST_LOAD) / self.softness)
+        return math.atan(grip**2 * load / (2.0 * self.softness))
 
     def angle(self, acceleration: float, grip: float, speed: float, load: float) -> float:
         """Edge angle (rad) for an acceleration to the left (m/s²), which takes so many times the load (N) aside."""
-        carving = min(math.atan(abs(grip)) + EDGE_BEYOND_LEAN, self.greatest)
+        carving = min(math.atan(abs(grip)) + self.beyond_lean, self.greatest)
         skidding = min(self.skidding(grip, load), carving)
-        share = abs(acceleration) * self.radius / max(speed**2, 0.05 * self.radius)
-        x = min(1.0, max(0.0, (share - CARVING_SHARE) / (1.0 - CARVING_SHARE)))
+        share = abs(acceleration) * self.radius / speed**2
+        x = min(1.0, max(0.0, (share - self.carving_share) / (1.0 - self.carving_share)))
         carved = self._carved(share, carving)
         return math.copysign(skidding + (carved - skidding) * x * x * (3.0 - 2.0 * x), grip)
 

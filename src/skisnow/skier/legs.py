@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 import numpy as np
 
 from ..dynamics import BootPose
 from ..geometry.boot_axes import axes_of
 
-BLUNT: Final = math.sin(math.radians(3.0))
-"""Sine of the edge angle below which a ski counts as flat: what it lifts its boot by is rounded (modelling assumption).
-"""
-
 
 def leg_poses(
-    aside: tuple[float, float], edge: tuple[float, float], height: float, stance: float, half_width: float
+    aside: tuple[float, float],
+    edge: tuple[float, float],
+    height: float,
+    stance: float,
+    half_width: float,
+    blunt: float,
 ) -> list[BootPose]:
     """Poses of the left and the right boot against the body.
 
@@ -30,12 +30,15 @@ def leg_poses(
         Of the centre of mass above the snow (m), which stays, and in the body above its boots at the start.
     stance, half_width
         Between the skis, and of a ski (m).
+    blunt
+        Edge angle (rad) below which a ski counts as flat: what it lifts its boot by is rounded.
     """
     (y, rate), (angle, turning) = aside, edge
     lean, swing = math.atan2(y, height), rate * height / (y * y + height * height)
     cos, sin = math.cos(lean), math.sin(lean)
-    root = math.hypot(math.sin(angle), BLUNT)
-    up, rises = half_width * (root - BLUNT), half_width * math.sin(angle) * math.cos(angle) * turning / root
+    least = math.sin(blunt)
+    root = math.hypot(math.sin(angle), least)
+    up, rises = half_width * (root - least), half_width * math.sin(angle) * math.cos(angle) * turning / root
     axes = axes_of(angle - lean, 0.0, 0.0)
     poses = []
     for side in (0.5, -0.5):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final, Protocol, TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -12,11 +12,6 @@ import numpy.typing as npt
 from ..scenario.slope_surface import down_and_left
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
-
-LEAST_LOAD: Final = 150.0
-"""Load (N) below which nothing is learnt of the centre of pressure (modelling assumption)."""
-LIFTED: Final = 0.02
-"""Share of the load below which a ski counts as lifted (modelling assumption)."""
 
 
 class Moment(Protocol):
@@ -52,6 +47,8 @@ class Seen:
         Loads of the skis (N).
     place, speed, heading, course
         Of the middle of the feet: x, y (m), (m/s), the skis' and the path's heading from the fall line (rad).
+    bears, lifted
+        Whether the loads tell anything, and whether one ski is off the snow.
     """
 
     aside: float
@@ -64,6 +61,8 @@ class Seen:
     speed: float
     heading: float
     course: float
+    bears: bool
+    lifted: bool
 
     @property
     def load(self) -> float:
@@ -71,23 +70,27 @@ class Seen:
         return self.left + self.right
 
     @property
-    def bears(self) -> bool:
-        """Whether the loads tell anything."""
-        return self.load > LEAST_LOAD
-
-    @property
-    def lifted(self) -> bool:
-        """Whether one ski is off the snow."""
-        return self.bears and min(self.left, self.right) < LIFTED * self.load
-
-    @property
     def lean(self) -> float:
         """Of the line from the middle of the feet to the centre of mass, positive left (rad)."""
         return math.atan2(self.aside, self.height)
 
 
-def seen_at(moment: Moment, centre_height: float, normal: FloatArray) -> Seen:
-    """What the skier sees at a moment, its centre of mass so high in the body (m), on snow of such a normal (3,)."""
+def seen_at(moment: Moment, centre_height: float, normal: FloatArray, least_load: float, lifted_share: float) -> Seen:
+    """What the skier sees at a moment.
+
+    Parameters
+    ----------
+    moment
+        Of the run.
+    centre_height
+        Of the centre of mass in the body (m).
+    normal
+        Of the snow, (3,).
+    least_load
+        Below which the loads tell nothing (N).
+    lifted_share
+        Share of the load below which a ski is lifted.
+    """
     rotation, boots = moment.rotation, moment.boots
     up = normal @ rotation
     ahead = boots[:, 1].mean(axis=0)
@@ -107,11 +110,13 @@ def seen_at(moment: Moment, centre_height: float, normal: FloatArray) -> Seen:
         aside=float(centre @ left),
         aside_rate=float((np.cross(spin, centre) - drift) @ left),
         height=float(centre @ up),
-        pressure=roll / load if load > LEAST_LOAD else 0.0,
+        pressure=roll / load if load > least_load else 0.0,
         left=float(loads[0]),
         right=float(loads[1]),
         place=(float(place[0]), float(place[1])),
         speed=math.hypot(way @ down, way @ aside),
         heading=math.atan2(facing @ aside, facing @ down),
         course=math.atan2(way @ aside, way @ down),
+        bears=load > least_load,
+        lifted=load > least_load and bool(loads.min() < lifted_share * load),
     )

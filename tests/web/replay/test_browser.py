@@ -249,6 +249,49 @@ def test_the_groove_is_deepest_where_the_edge_is(seen: Watched) -> None:
     assert seen.does("return [...new Set(replay.stage.groove.mesh.geometry.attributes.lowest.array)]") == [0.5]
 
 
+def test_metre_marks_are_told_and_can_be_taken_away(seen: Watched) -> None:
+    """Squares, lines and the path, whose dashes begin each metre."""
+    found = seen.does(
+        """const at = replay.stage.path.geometry.attributes.position.array, middles = [];
+           for (let i = 0; i < 5; i++) middles.push([...at.slice(12 * i, 12 * i + 3)]);
+           return middles;"""
+    )
+    apart = np.linalg.norm(np.diff(np.array(found), axis=0), axis=1)
+    assert apart == pytest.approx(1.0, abs=0.01)  # on a circle of 12 m straight across
+    legend, box = seen.page.locator(".replay-legend"), seen.page.get_by_label("Metre marks")
+    assert "Squares 1 m" in legend.inner_text()
+    before = seen.picture()
+    box.uncheck()
+    assert "Squares 1 m" not in legend.inner_text()
+    assert (np.abs(seen.picture() - before).max(axis=2) > 8).mean() > 0.05
+    seen.page.keyboard.press("m")
+    assert box.is_checked()
+
+
+@pytest.mark.slow
+def test_the_word_at_the_fall_line_does_not_cover_its_arrow(seen: Watched) -> None:
+    """In the views from outside, wherever the arrow's tail is in the picture."""
+    looked = 0
+    for view in ("chase", "boot", "above"):
+        for time in (0.5, 1.0, 2.0, 3.0, 3.5):
+            along, (left, right, low, high) = seen.does(
+                f"""replay.look("{view}"); replay.seek({time});
+                   const {{ group }} = replay.stage.fallLine, {{ camera }} = replay.stage.follower;
+                   const [arrow, word] = group.children, place = camera.position.clone();
+                   const at = (x) => arrow.localToWorld(place.set(x, 0, 0)).project(camera).toArray().slice(0, 2);
+                   const [x, y] = at(0), [wide, , , , , tall] = camera.projectionMatrix.elements;
+                   const [width, height] = [word.scale.x * wide, word.scale.y * tall];
+                   return [[0, 0.1, 0.3, 0.6, 1].map(at), [x - word.center.x * width, x + (1 - word.center.x) * width,
+                       y - word.center.y * height, y + (1 - word.center.y) * height]];"""
+            )
+            if np.abs(along[0]).max() > 0.95:
+                continue
+            looked += 1
+            assert left > -1.0 and right < 1.0, (view, time)
+            assert not any(left < x < right and low < y < high for x, y in along), (view, time)
+    assert looked > 5
+
+
 def test_forces_are_arrows_and_numbers_on_demand(seen: Watched, replay: Replay) -> None:
     seen.does("replay.seek(2.0)")
     assert "Force on left ski" not in seen.page.locator(".replay-readings").inner_text()

@@ -7,8 +7,9 @@ export const VIEWS = ["chase", "boot", "above", "edge", "free"];
 const UPRIGHT = new THREE.Vector3(0, 0, 1);
 const NEAREST = 0.15;
 const FARTHEST = 15;
-const CHASE = { behind: 2.9, height: 1.35, outward: 0.7, ahead: 1.5, up: 0, lag: 0.7 }; // m, and s that the camera comes after
-const CHASE_SKIER = { ...CHASE, behind: 4.4, height: 1.9, outward: 1.1, up: 0.45 };
+// Far and high enough that a turn is seen as a curve: m, and s that the camera comes after.
+const CHASE = { behind: 3.5, height: 2.2, outward: 0.9, ahead: 0.35, up: -0.1, lag: 0.7 };
+const CHASE_SKIER = { ...CHASE, behind: 5, height: 2.8, outward: 1.2, up: 0.3 };
 const BOOT = { behind: 0.7, height: 1.05 }; // m
 const BOOT_SKIER = { behind: -0.35, height: 0.75 }; // before the knees, which would hide the skis
 

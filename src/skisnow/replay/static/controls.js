@@ -7,14 +7,16 @@ import { SETTINGS } from "./sharpness.js";
 export const MOST_RELIEF = 30;
 export const SPEEDS = [[1, "true speed"], [0.5, "half speed"], [0.25, "a quarter"], [0.1, "a tenth"]];
 export const VIEW_NAMES = { chase: "From behind", boot: "From the boot", above: "From above", edge: "Along the edge", free: "Free" };
-const ARROWS = "Arrows: orange, force per length; purple, force of a whole ski";
-const SKIER = "Skier: boots, lean and centre of mass as computed; knees, trunk's bend, head, arms and poles assumed";
+const ARROWS = "Arrows: orange, force per length; purple, whole ski";
+const SKIER = "Assumed: knees, trunk's bend, head, arms, poles";
+export const MARKS = "Squares 1 m, a dash of the path each metre";
 export const FORCE_TITLE = "Force of the snow on the ski (N/mm)";
+export const DEPTH_TITLE = "Permanent groove depth (mm)";
 const KEYS = [
   ["Space", "play or pause"], ["← →", "a twentieth of a second; with Shift half a second"], ["Home End", "start, end"],
   ["1 2 3 4 5", "behind, boot, above, edge, free"], ["+ −", "nearer, farther"], ["A D W S", "turn the free view"],
   ["X C", "less, more exaggeration of bending and twist"], ["V B", "the groove less, more deep"],
-  ["G F O T", "groove, forces, other run, measured track"],
+  ["G M F O T", "groove, metre marks, forces, other run, measured track"],
 ];
 
 /** An element with properties, attributes (`aria-…`, `data-…`, `for`) and children. */
@@ -53,7 +55,7 @@ export function controls({ run, ghost, modelAddress, movingModelAddress }) {
   for (const [name, text] of Object.entries(VIEW_NAMES)) {
     parts.views.append(made("button", { type: "button", textContent: text, "data-view": name, "aria-pressed": "false" }));
   }
-  const toggles = [["groove", "Groove", null], ["forces", "Forces", null]];
+  const toggles = [["groove", "Groove", null], ["marks", "Metre marks", null], ["forces", "Forces", null]];
   if (ghost) toggles.push(["ghost", `Other run: ${ghost.title}`, css(GHOST)]);
   if (run.track_name) toggles.push(["track", `Measured: ${run.track_name}`, css(TRACK)]);
   for (const [name, text, colour] of toggles) parts.shown.append(toggle(name, text, colour, name !== "forces"));
@@ -115,9 +117,11 @@ export function fillLegend(element, scales, colours, hasSkier) {
     bar("force", FORCE_TITLE, ticksOf(scales.force / 1000)),
     scales.staysNothing
       ? made("span", { textContent: "Elastic snow: no groove stays; the line is where the skis went" })
-      : bar("depth", "Permanent groove depth (mm)", ticksOf(scales.depth * 1000)),
-    ...(hasSkier ? [made("span", { className: "replay-note", textContent: SKIER })] : []),
-    made("span", { className: "replay-arrows", hidden: true, textContent: ARROWS }),
+      : bar("depth", DEPTH_TITLE, ticksOf(scales.depth * 1000)),
+    made("div", { className: "replay-notes" },
+      made("span", { className: "replay-marks", textContent: MARKS }),
+      made("span", { className: "replay-arrows", hidden: true, textContent: ARROWS }),
+      ...(hasSkier ? [made("span", { textContent: SKIER })] : [])),
   );
 }
 

@@ -1,10 +1,13 @@
-// The groove that stays behind, growing as the boots pass, and a measured track.
+// The groove that stays behind, growing as the boots pass, the path in dashes, and a measured track.
 
 import { depthColour, TRACK } from "./colours.js";
 import { largest } from "./binary.js";
-import { between, edgeAngle, surfaceNormal } from "./motion.js";
+import { between, edgeAngle, surfaceHeight, surfaceNormal } from "./motion.js";
 import { relief } from "./relief.js";
 import { hills, ribbon } from "./snow.js";
+
+const PATH = [64, 84, 106];
+const PATH_WIDTH = 0.025; // m
 
 /** The deepest groove that stays in a run (m). */
 export const deepest = (run) => Math.max(0, largest(run.arrays.groove_residual_depth.values));
@@ -104,13 +107,35 @@ export function measuredTrack(run) {
   };
 }
 
-function dash(start, end) {
+/** The way of the middle between the boots, behind and ahead: a dash on the snow begins each metre. */
+export function path(run) {
+  const place = run.arrays.place.values;
+  const at = (i, share) => {
+    const [x, y] = [0, 1].map((axis) => (1 - share) * place[3 * i + axis] + share * place[3 * i + 3 + axis]);
+    return [x, y, surfaceHeight(run, x, y)];
+  };
+  const pieces = [];
+  let [gone, start] = [0, null];
+  for (let i = 0; i < place.length / 3 - 1; i++) {
+    const step = Math.hypot(...[0, 1, 2].map((axis) => place[3 * i + 3 + axis] - place[3 * i + axis]));
+    let next = (Math.floor(2 * gone) + 1) / 2; // m: dashes and gaps of half a metre end by turns
+    for (; next <= gone + step; next += 0.5) {
+      const here = at(i, (next - gone) / step);
+      if (start) pieces.push(dash(start, here, PATH, PATH_WIDTH));
+      start = start ? null : here;
+    }
+    gone += step;
+  }
+  return ribbon(pieces, { least: 1.5, order: 2.5, hidden: hills(run) });
+}
+
+function dash(start, end, colour = TRACK, width = 0.02) {
   const way = [0, 1, 2].map((axis) => (end[axis] - start[axis]) / 2);
   const size = Math.hypot(way[0], way[1]) || 1;
   return {
     middle: start.map((part, axis) => part + way[axis]),
-    beside: [(-0.01 * way[1]) / size, (0.01 * way[0]) / size, 0],
+    beside: [(-0.5 * width * way[1]) / size, (0.5 * width * way[0]) / size, 0],
     along: way,
-    colour: TRACK,
+    colour,
   };
 }

@@ -65,7 +65,8 @@ function upright(run, places, { radius, height }, colour, up = 0) {
   return flat(mesh, 5);
 }
 
-const ARROW = [[0, 0.035], [0.62, 0.035], [0.62, 0.11], [0.95, 0], [0.62, -0.11], [0.62, -0.035], [0, -0.035]];
+const LENGTH = 1.1; // m
+const ARROW = [[0, 0.04], [0.72, 0.04], [0.72, 0.13], [LENGTH, 0], [0.72, -0.13], [0.72, -0.04], [0, -0.04]];
 
 /** An arrow that lies on the snow beside the sledge and points down the fall line; `show(pose)` takes it along. */
 export function fallLine(run) {
@@ -73,13 +74,23 @@ export function fallLine(run) {
   const material = new THREE.MeshBasicMaterial({ color: 0x0b4f8a, side: THREE.DoubleSide, depthTest: false, depthWrite: false });
   const arrow = flat(new THREE.Mesh(new THREE.ShapeGeometry(shape), material), 4.5);
   const label = sprite("fall line", 0.038);
-  label.center.set(0.5, -0.6); // over the arrow's tail, from wherever one looks
   const group = new THREE.Group();
   group.add(arrow, label);
+  const side = run.skier ? 1.7 : 1.25; // m beside the boots
+  const seen = (x, camera) => arrow.localToWorld(new THREE.Vector3(x, 0, 0)).project(camera);
   return {
     group,
+    /** Put the word beside the arrow's tail in the picture: where neither its head nor the middle is, and not cut off. */
+    face(camera) {
+      group.updateWorldMatrix(true, true);
+      const [tail, head] = [seen(0, camera), seen(LENGTH, camera)];
+      const [ahead, up] = [(head.x - tail.x) * camera.aspect, head.y - tail.y];
+      const isRight = Math.abs(ahead) > 0.3 * Math.abs(up) ? ahead < 0 : tail.x > 0;
+      const end = tail.x + (isRight ? 1.04 : -1.04) * label.scale.x * camera.projectionMatrix.elements[0];
+      if (Math.abs(end) < 1) label.center.set(isRight ? -0.04 : 1.04, 0.5);
+      else label.center.set(isRight ? 1 : 0, up > 0 ? 1.3 : -0.3); // below or above the tail
+    },
     show(pose) {
-      const side = 1.15;
       const [x, y] = [pose.place[0] + side * pose.left[0] + 0.5 * pose.forward[0], pose.place[1] + side * pose.left[1] + 0.5 * pose.forward[1]];
       group.position.set(x, y, surfaceHeight(run, x, y));
       const [ahead, aside] = surfaceGrade(run, x, y, 0.25);

@@ -4,6 +4,8 @@ import * as THREE from "./three.module.min.js";
 import { quads } from "./quads.js";
 import { flat, shades, SUN } from "./snow.js";
 
+const WIDEST = 0.1; // m
+
 const SHADER = {
   vertex: `
     attribute vec3 beside;   // half the width, to the left
@@ -14,6 +16,7 @@ const SHADER = {
     uniform float height;    // of the picture in pixels
     uniform float least;     // width in pixels
     uniform float times;     // depth and width are drawn so often
+    uniform float widest;    // half of it (m): what is drawn wider than it is, is no wider
     attribute float lowest;  // where it is deepest: -1 right edge, 1 left edge
     attribute float level;   // 1: a flat ski's, with a level floor
     uniform vec3 sun;        // world
@@ -32,7 +35,7 @@ const SHADER = {
       vec4 middle = modelViewMatrix * vec4(position, 1.0);
       float pixel = 2.0 * max(-middle.z, 0.01) / (projectionMatrix[1][1] * height);
       float size = max(length(beside), 1e-9);
-      float wide = max(times * size, 0.5 * least * pixel) / size;
+      float wide = max(clamp(widest / size, 1.0, times), 0.5 * least * pixel / size);
       vec3 centre = position + (1.0 - wide) * bottom * beside; // the deepest line stays where it is
       vec4 world = modelMatrix * vec4(centre + corner.x * wide * beside + corner.y * along, 1.0);
       vec3 left = normalize(mat3(modelMatrix) * beside);
@@ -42,7 +45,7 @@ const SHADER = {
       light = vec2(dot(sun, left), dot(sun, up));
       hue = tint;
       half_width = wide * size;
-      depth = deep * wide;
+      depth = deep * max(wide, times);
       place = corner.x * half_width;
       vec4 seen = viewMatrix * world;
       away = -seen.z;
@@ -106,7 +109,8 @@ export function relief(pieces, { least, order, hidden }) {
     vertexShader: SHADER.vertex,
     fragmentShader: SHADER.fragment,
     uniforms: {
-      ...shades(), height: { value: 720 }, least: { value: least }, times: { value: 1 }, sun: { value: SUN },
+      ...shades(), height: { value: 720 }, least: { value: least }, times: { value: 1 }, widest: { value: WIDEST },
+      sun: { value: SUN },
     },
     side: THREE.DoubleSide,
     depthWrite: false,

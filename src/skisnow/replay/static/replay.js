@@ -2,7 +2,7 @@
 
 import { decoded } from "./binary.js";
 import { VIEWS } from "./cameras.js";
-import { controls, fillLegend, FORCE_TITLE, laidOut, made, MOST_RELIEF, readings } from "./controls.js";
+import { controls, DEPTH_TITLE, fillLegend, FORCE_TITLE, laidOut, made, MARKS, MOST_RELIEF, readings } from "./controls.js";
 import { wholeForces } from "./force_arrows.js";
 import { gapAt } from "./gap.js";
 import { miniMap } from "./mini_map.js";
@@ -39,7 +39,7 @@ class Player {
     this.start = run.arrays.time.values[0];
     this.end = this.start + Math.max(...[run, ghost].filter(Boolean).map(duration)); // both begin together
     Object.assign(this, { time: this.start, playing: false, rate: 1, exaggeration: 1, relief: RELIEF, frames: 0, film: null });
-    this.shown = { groove: true, forces: false, ghost: true, track: true };
+    this.shown = { groove: true, marks: true, forces: false, ghost: true, track: true };
     this.flat = document.createElement("canvas");
     this.sharpness = new Sharpness();
     try {
@@ -118,9 +118,13 @@ class Player {
   #compose() {
     const bent = this.exaggeration === 1 ? [] : [`Bending and twist ${this.exaggeration} times`];
     const deep = this.relief === 1 || !this.shown.groove ? [] : [`Groove ${this.relief} times as deep and wide`];
-    const words = [this.run.title, ...this.lines.map(({ name, text }) => `${name}: ${text}`), ...bent, ...deep];
-    const most = this.stage.scales.force / 1000;
-    composed(this.parts.canvas, this.flat, words, { title: FORCE_TITLE, colours: this.run.colours.force, most });
+    const marks = this.shown.marks ? [MARKS] : [];
+    const words = [this.run.title, ...this.lines.map(({ name, text }) => `${name}: ${text}`), ...bent, ...deep, ...marks];
+    const { force, depth, staysNothing } = this.stage.scales;
+    const { colours } = this.run;
+    const scales = [{ title: FORCE_TITLE, colours: colours.force, most: force / 1000 }];
+    if (this.shown.groove && !staysNothing) scales.push({ title: DEPTH_TITLE, colours: colours.depth, most: Number((1000 * depth).toPrecision(3)) });
+    composed(this.parts.canvas, this.flat, words, scales);
   }
 
   seek(time) {
@@ -197,6 +201,7 @@ class Player {
     const box = this.parts.shown.querySelector(`[data-show="${name}"]`);
     if (box) box.checked = on;
     this.parts.legend.querySelector(".replay-arrows").hidden = !this.shown.forces;
+    this.parts.legend.querySelector(".replay-marks").hidden = !this.shown.marks;
     this.stage.choose(this.shown);
     this.draw();
   }
@@ -313,6 +318,7 @@ class Player {
       v: () => this.deepen(this.relief - 1),
       b: () => this.deepen(this.relief + 1),
       g: () => this.show("groove", !this.shown.groove),
+      m: () => this.show("marks", !this.shown.marks),
       f: () => this.show("forces", !this.shown.forces),
       o: () => this.show("ghost", !this.shown.ghost),
       t: () => this.show("track", !this.shown.track),

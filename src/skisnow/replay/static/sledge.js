@@ -6,9 +6,9 @@ import { largest } from "./binary.js";
 import { bootPose, poseAt, surfaceHeight, surfaceNormal } from "./motion.js";
 import { hills } from "./snow.js";
 
-export const SHADOW = 0x93a7bb;
-const STEEL = 0x4b5966;
-const TUBE = 0x2c3742;
+export const SHADOW = 0x6c8299;
+const STEEL = 0x36424e;
+const TUBE = 0x1b242d;
 const RED = 0xc8372d;
 const PALE = 0xe9edf0;
 
@@ -73,9 +73,9 @@ function bracket(add, thick) {
 
 /** Two tubes across from bracket to bracket, and four up to the mass; put between the brackets' joints by what is returned. */
 function frame(add, mass) {
-  const across = JOINTS.map(() => tube(add, 0.013));
+  const across = JOINTS.map(() => tube(add, 0.018));
   const joints = [0, 1].map(() => JOINTS.map(() => add(new THREE.SphereGeometry(0.019, 12, 8), STEEL)));
-  const up = [0, 1].map(() => JOINTS.map(() => tube(add, 0.009)));
+  const up = [0, 1].map(() => JOINTS.map(() => tube(add, 0.013)));
   return (ends) => {
     JOINTS.forEach((_, i) => {
       stretch(across[i], ends[0][i], ends[1][i]);
@@ -93,10 +93,10 @@ function weights(add, mass) {
     const geometry = new THREE.CylinderGeometry(radius, radius, high, 28).rotateX(Math.PI / 2);
     add(geometry, colour).position.copy(mass).add(new THREE.Vector3(0, 0, up));
   };
-  disc(0.085, 0.024, -0.027, STEEL);
-  disc(0.09, 0.026, 0, RED);
-  disc(0.085, 0.024, 0.027, STEEL);
-  disc(0.018, 0.13, 0, PALE);
+  disc(0.135, 0.03, -0.036, TUBE);
+  disc(0.15, 0.042, 0, RED);
+  disc(0.135, 0.03, 0.036, RED);
+  disc(0.022, 0.17, 0, PALE);
 }
 
 const tube = (add, radius) => add(new THREE.CylinderGeometry(radius, radius, 1, 10), TUBE);

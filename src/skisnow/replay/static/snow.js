@@ -35,12 +35,16 @@ const SURFACE = {
     uniform vec3 horizon;
     uniform vec3 snow;
     uniform float lit;
+    uniform float squares;   // how dark every second one is
     uniform sampler2D tile;
     varying float away;
     varying vec2 depth;
     varying vec2 at;
     void main() {
       vec3 tone = snow;
+      vec2 square = step(0.5, fract(0.5 * at));
+      float there = squares * clamp((60.0 - away) / 45.0, 0.0, 1.0) * abs(square.x - square.y);
+      tone -= vec3(0.1, 0.07, 0.042) * there;
       if (lit > 0.5) {
         float near = texture2D(tile, at * 0.37).r - 0.5;
         float wide = texture2D(tile, at.yx * 0.041 + 0.3).r - 0.5;
@@ -92,7 +96,7 @@ export function surface(run) {
   const material = new THREE.ShaderMaterial({
     vertexShader: SURFACE.vertex,
     fragmentShader: SURFACE.fragment,
-    uniforms: { ...shades(), lit: { value: 1 }, tile: { value: snowTile() } },
+    uniforms: { ...shades(), lit: { value: 1 }, squares: { value: 1 }, tile: { value: snowTile() } },
     defines: hills(run) ? { HILLS: 1 } : {},
     side: THREE.DoubleSide,
     depthWrite: hills(run),

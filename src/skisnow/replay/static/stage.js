@@ -6,7 +6,7 @@ import { Follower } from "./cameras.js";
 import { GHOST, roundAbove, TRACK } from "./colours.js";
 import { forceArrows } from "./force_arrows.js";
 import { grid } from "./grid.js";
-import { deepest, groove, measuredTrack } from "./groove.js";
+import { deepest, groove, measuredTrack, path } from "./groove.js";
 import { fallLine, gates, horizonHills, poles } from "./landmarks.js";
 import { plume } from "./plume.js";
 import { MOST_EFFECTS } from "./sharpness.js";
@@ -56,7 +56,9 @@ export class Stage {
     this.fallLine = fallLine(run);
     this.arrows = forceArrows(run, this.scales.force);
     this.plume = plume(run);
-    this.space.add(this.surface, grid(run), this.groove.mesh, this.skis.group, poles(run), gates(run));
+    this.lines = grid(run);
+    this.path = path(run);
+    this.space.add(this.surface, this.lines, this.path, this.groove.mesh, this.skis.group, poles(run), gates(run));
     this.space.add(this.fallLine.group, this.arrows.group, this.plume.points);
     this.arrows.group.visible = false;
     this.spend(MOST_EFFECTS);
@@ -89,8 +91,10 @@ export class Stage {
     this.plume.points.visible = effects > 1;
   }
 
-  /** What is shown: groove, forces, ghost and track, each true or false. */
-  choose({ groove: grooves, forces, ghost, track }) {
+  /** What is shown: groove, metre marks, forces, ghost and track, each true or false. */
+  choose({ groove: grooves, marks, forces, ghost, track }) {
+    this.surface.material.uniforms.squares.value = marks ? 1 : 0;
+    this.lines.visible = this.path.visible = marks;
     this.groove.mesh.visible = grooves;
     this.arrows.group.visible = forces;
     if (this.ghost) {
@@ -119,6 +123,8 @@ export class Stage {
     }
     this.#mark(time);
     this.follower.follow(pose);
+    this.follower.camera.updateMatrixWorld(true);
+    this.fallLine.face(this.follower.camera);
     this.renderer.render(this.scene, this.follower.camera);
     return pose;
   }

@@ -2,8 +2,8 @@
 
 import { css } from "./colours.js";
 
-/** Draw the picture with words and the scale of the force, {title, colours, most}, on a flat canvas of its own. */
-export function composed(canvas, flat, words, scale) {
+/** Draw the picture with words and scales of colours, each {title, colours, most}, on a flat canvas of its own. */
+export function composed(canvas, flat, words, scales) {
   if (flat.width !== canvas.width || flat.height !== canvas.height) {
     flat.width = canvas.width;
     flat.height = canvas.height;
@@ -13,13 +13,16 @@ export function composed(canvas, flat, words, scale) {
   const size = Math.max(13, Math.round(flat.height / 42));
   pen.font = `600 ${size}px system-ui, sans-serif`;
   pen.textBaseline = "top";
-  const texts = [...words, scale.title];
-  const width = Math.max(...texts.map((text) => pen.measureText(text).width));
+  const width = Math.max(...[...words, ...scales.map(({ title }) => title)].map((text) => pen.measureText(text).width));
   pen.fillStyle = "rgba(255, 255, 255, 0.86)";
-  pen.fillRect(size * 0.6, size * 0.6, width + size * 1.2, (texts.length + 1.9) * size * 1.4 + size * 0.4);
+  pen.fillRect(size * 0.6, size * 0.6, width + size * 1.2, (words.length + 2.9 * scales.length) * size * 1.4 + size * 0.4);
   pen.fillStyle = "#10202e";
-  texts.forEach((text, i) => pen.fillText(text, size * 1.2, size * (1.1 + 1.4 * i)));
-  bar(pen, scale, size * 1.2, size * (1.1 + 1.4 * texts.length), width, size);
+  words.forEach((text, i) => pen.fillText(text, size * 1.2, size * (1.1 + 1.4 * i)));
+  scales.forEach((scale, i) => {
+    const line = words.length + 2.9 * i;
+    pen.fillText(scale.title, size * 1.2, size * (1.1 + 1.4 * line));
+    bar(pen, scale, size * 1.2, size * (2.5 + 1.4 * line), width, size);
+  });
   return flat;
 }
 

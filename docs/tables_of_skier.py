@@ -1,0 +1,288 @@
+"""The tables of the page on the skier, computed again: python docs/tables_of_skier.py [TABLE ...].
+
+Each stands between two marks that no reader sees, ``<!-- table NAME -->`` and ``<!-- end of table -->``. Some 80 runs
+in the fast mode: ten minutes of one core.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from skisnow import Course, Gate, Run, Scenario, scenario, simulate, time_gates
+from skisnow.scenario import scenario_values
+from skisnow.scenario.keys import SCENARIO_KEYS
+
+PAGE = Path(__file__).resolve().parent / "validation/skier.md"
+GRAVITY = 9.81
+SHARE = 0.2
+SHORT = 4.0
+FOR_GATES = ("skier.pole_clearance_m", "skier.sight_s", "skier.line_rate_per_s")
+BAND = (5.0, 12.0)
+AVERAGED = 0.2
+STIFF = {"skier.leg_yielding_per_s": 0.0}
+
+
+@cache
+def run_of(name: str, *changes: tuple[str, object]) -> Run:
+    """A run of a built-in scenario with changes, in the fast mode."""
+    print(name, *changes, file=sys.stderr)
+    return simulate(scenario(name, changes={"solver.method": "fast", **dict(changes)}))
+
+
+def steps_of(run: Run) -> float:
+    """Between two rows (s)."""
+    return float(np.median(np.diff(run.time)))
+
+
+def swing(run: Run, first: float = 1.0, last: float = math.inf) -> float:
+    """Rms of the load of the outer ski between 5 and 12 Hz, in a time (N)."""
+    within = (run.time > first) & (run.time < last)
+    load = run.balance.load[within]
+    parts, rates = np.fft.rfft(load - load.mean(axis=0), axis=0), np.fft.rfftfreq(len(load), steps_of(run))
+    parts[(rates < BAND[0]) | (rates > BAND[1])] = 0.0
+    left, right = np.fft.irfft(parts, len(load), axis=0).T
+    return float(np.sqrt(np.mean(np.where(run.balance.lean[within] > 0.0, right, left) ** 2)))
+
+
+def edges(run: Run) -> npt.NDArray[np.float64]:
+    """Edge angle over time (°)."""
+    return np.degrees(run.balance.lean + run.balance.angulation)
+
+
+def off_balance(run: Run) -> list[npt.NDArray[np.float64]]:
+    """By how much tan Ψ is off, by the slope formula and with roll and rise, where it is above 0.3, after 1 s."""
+    balance, found = run.balance, []
+    for formula in (balance.balanced_lean, balance.rolling_lean):
+        turning = (run.time > 1.0) & (np.abs(np.tan(formula)) > 0.3) & np.isfinite(balance.pressure_lean)
+        found.append(np.abs(np.tan(balance.pressure_lean[turning]) / np.tan(formula[turning]) - 1.0))
+    return found
+
+
+def slips(run: Run, first: float, last: float) -> float:
+    """Median angle between skis and path in a time (°)."""
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    within = (run.time > first) & (run.time < last)
+    return float(np.degrees(np.median(np.abs(run.heading - path)[within])))
+
+
+def weights(run: Run, load: npt.NDArray[np.float64]) -> str:
+    """Mean over half turns of a load's greatest value, meant over 0.1 s, over the weight."""
+    half = max(1, round(0.05 / steps_of(run)))
+    smooth = np.convolve(load, np.ones(2 * half + 1) / (2 * half + 1), "same")[half:-half]
+    return f"{smooth.max() / (run.scenario.sledge.mass * GRAVITY):.1f}"
+
+
+def _rate_step(run: Run) -> float:
+    return float(np.abs(np.diff(edges(run), n=2)).max() / steps_of(run))
+
+
+LINKED: dict[str, Callable[[Run], str]] = {
+    "outcome": lambda run: run.outcome,
+    "speed, least and greatest (m/s)": lambda run: f"{run.speed.min():.1f}, {run.speed.max():.1f}",
+    "greatest lean, edge angle (°)": lambda run: (
+        f"{np.degrees(np.abs(run.balance.lean).max()):.0f}, {np.abs(edges(run)).max():.0f}"
+    ),
+    "leg, shortest and longest (m)": lambda run: f"{run.balance.leg.min():.2f}, {run.balance.leg.max():.2f}",
+    "edge angle changes in 10 ms by at most (°)": lambda run: f"{np.abs(np.diff(edges(run))).max():.1f}",
+    "edge rate changes in 10 ms by at most (°/s)": lambda run: (
+        f"{np.abs(np.diff(edges(run), n=2)).max() / steps_of(run):.0f}"
+    ),
+    "slope formula: median of the error of tan Ψ": lambda run: f"{100.0 * np.median(off_balance(run)[0]):.1f} %",
+    "with roll and rise: median": lambda run: f"{100.0 * np.median(off_balance(run)[1]):.1f} %",
+    "… instants within 5 %": lambda run: f"{100.0 * np.mean(off_balance(run)[1] < 0.05):.0f} %",
+    "load of the outer ski, 5 to 12 Hz, rms (N)": lambda run: f"{swing(run):.0f}",
+    "one ski in the air, of the time": lambda run: f"{100.0 * np.mean(run.balance.load.min(axis=1) < 10.0):.0f} %",
+    "greatest load of both skis, of one, in weights": lambda run: (
+        f"{weights(run, run.balance.load.sum(axis=1))}, {weights(run, run.balance.load.max(axis=1))}"
+    ),
+    "energy residual over all energy": lambda run: f"{abs(run.energy_balance_error):.0e}",
+    "work of the muscles (J)": lambda run: f"{run.energies['boots'][-1]:.0f}",
+    "of it given, taken (J)": lambda run: "{:.0f}, {:.0f}".format(*muscles(run)),
+}
+
+
+def muscles(run: Run) -> tuple[float, float]:
+    """Work of the muscles where they give and where they take (J)."""
+    steps = np.diff(run.energies["boots"])
+    return float(steps[steps > 0.0].sum()), float(steps[steps < 0.0].sum())
+
+
+def linked() -> Iterator[str]:
+    """The linked turns, row by row."""
+    names = ("skier-10deg", "skier-19deg")
+    yield f"| | {' | '.join(f'`{each}`' for each in names)} |"
+    yield "| --- | ---: | ---: |"
+    for row, told in LINKED.items():
+        yield f"| {row} | {' | '.join(told(run_of(each)).replace('-', '−') for each in names)} |"
+
+
+def swings() -> Iterator[str]:
+    """The load of the outer ski with legs that give way and that do not."""
+    yield "| | legs give way | legs are stiff |"
+    yield "| --- | ---: | ---: |"
+    for name in ("skier-10deg", "skier-19deg"):
+        short = ("run.duration_s", 3.5)
+        runs = run_of(name, short), run_of(name, short, *STIFF.items())
+        cells = " | ".join(f"{swing(each):.0f} | {each.balance.load.max():.0f}" for each in runs)
+        rms, most = cells.split(" | ")[::2], cells.split(" | ")[1::2]
+        yield f"| `{name}`, rms 5 to 12 Hz (N) | {' | '.join(rms)} |"
+        yield f"| … greatest load of a ski (N) | {' | '.join(most)} |"
+
+
+def carved() -> Iterator[str]:
+    """Turn by turn on two snows: angle between skis and path, and what shear takes."""
+    hard = {"snow.published": None, "snow.H_V_N_per_mm3": 1.0, "snow.S_f_N_per_mm2": 0.4}
+    yield "| turn on 10° | race piste: slip (°), lost to shear (J) | H_V 1, S_f 0.4: slip (°), lost to shear (J) |"
+    yield "| --- | ---: | ---: |"
+    for number, (first, last) in enumerate(((0.8, 1.8), (1.8, 3.8), (3.8, 5.8), (5.8, 7.8), (7.8, 9.8))):
+        cells = []
+        for changes in ({}, hard):
+            run = run_of("skier-10deg", *{key: value for key, value in changes.items() if value is not None}.items())
+            lost = np.interp([first, last], run.time, run.energies["shear"])
+            over = run.time[-1] < last
+            cells.append("fell" if over else f"{slips(run, first, last):.1f}, {lost[1] - lost[0]:.0f}")
+        yield f"| {'half' if number == 0 else number} | {' | '.join(cells)} |"
+
+
+def through(name: str, *changes: tuple[str, object]) -> list[str]:
+    """Of a run through gates: passed, speed, time, greatest lean and edge angle, smallest radius."""
+    run = run_of(name, *changes)
+    course = run.scenario.course
+    assert course is not None
+    passages = time_gates(course, run).passages
+    passed = [each.outcome for each in passages].count("passed")
+    return [
+        f"{passed} of {len(passages)}",
+        f"{run.speed[-1]:.1f}",
+        f"{np.degrees(np.abs(run.balance.lean).max()):.0f}",
+        f"{np.abs(edges(run)).max():.0f}",
+        f"{smallest_radius(run):.1f}",
+        f"{100.0 * np.mean(off_balance(run)[1] < 0.05):.0f} %",
+        run.outcome.replace("_", " "),
+    ]
+
+
+def smallest_radius(run: Run) -> float:
+    """Median over the turns of the smallest radius of the boots' path, of curvatures meant over 0.2 s (m)."""
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    turning = np.gradient(path, run.time) / np.maximum(run.speed, 0.1)
+    count = max(1, round(AVERAGED / steps_of(run)))
+    smooth = np.convolve(turning, np.ones(count) / count, "same")[count:-count]
+    sides = np.flatnonzero(np.diff(np.sign(smooth)))
+    tops = [np.abs(part).max() for part in np.split(smooth, sides + 1)[1:-1] if len(part) > 2 * count]
+    return float(1.0 / np.median(tops)) if tops else math.nan
+
+
+GATES = (("slalom-20-gates", 7.0), ("slalom-20-gates", 8.0), ("giant-slalom-20-gates", 7.0),
+         ("giant-slalom-20-gates", 10.0))  # fmt: skip
+
+
+def gates() -> Iterator[str]:
+    """Which gates are passed on which slope."""
+    heads = ("course", "slope (°)", "passed", "speed at the end (m/s)", "greatest lean (°)", "edge angle (°)")
+    yield f"| {' | '.join(heads)} | smallest radius (m) | lean within 5 % | outcome |"
+    yield "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
+    for name, angle in GATES:
+        yield f"| `{name}` | {angle:g} | {' | '.join(through(name, ('slope.angle_deg', angle)))} |"
+
+
+@cache
+def spaced(distance: float, across: float, edge: float, angle: float) -> Run:
+    """Ten slalom gates so far apart down the slope and across (m), with a greatest edge angle and a slope (°)."""
+    poles = ((12.0 + distance * i, 0.5 * across * (-1) ** i) for i in range(10))
+    found = tuple(
+        Gate(name=str(i), turning=place, side="left" if place[1] > 0.0 else "right") for i, place in enumerate(poles, 1)
+    )
+    base = scenario("slalom-20-gates", changes={"solver.method": "fast", "slope.angle_deg": angle})
+    assert base.skier is not None
+    skier = replace(base.skier, greatest_edge=math.radians(edge))
+    print("spaced", distance, angle, file=sys.stderr)
+    return simulate(base.with_(course=Course(gates=found), skier=skier))
+
+
+def racers() -> Iterator[str]:
+    """Beside Reid and others (2020)."""
+    yield "| gates every | slope (°) | greatest edge angle (°) | smallest radius (m) | passed | speed (m/s) |"
+    yield "| --- | ---: | ---: | ---: | ---: | ---: |"
+    yield "| 10 m, measured | 19 | 65.7 ± 1.7 | 3.96 ± 0.23 | | |"
+    yield _racer(10.0, 65.7)
+    yield "| 13 m, measured | 19 | 71.0 ± 1.9 | 4.94 ± 0.59 | | |"
+    yield _racer(13.0, 71.0)
+
+
+def _racer(distance: float, edge: float, angle: float = 7.0) -> str:
+    run = spaced(distance, 3.0, edge, angle)
+    assert run.scenario.course is not None
+    passed = [each.outcome for each in time_gates(run.scenario.course, run).passages].count("passed")
+    numbers = f"{np.abs(edges(run)).max():.1f} | {smallest_radius(run):.1f} | {passed} of 10 | {run.speed[-1]:.1f} |"
+    return f"| {distance:g} m, simulated | {angle:g} | {numbers}"
+
+
+def sensitivity() -> Iterator[str]:
+    """What a fifth more or less of each number of the skier moves after 4 s."""
+    yield "| key | value | moves the end by, −20 %, +20 % (m) | load, 5 to 12 Hz (N) | greatest lean (°) |"
+    yield "| --- | ---: | ---: | ---: | ---: |"
+    for name in ("skier-10deg", "slalom-20-gates"):
+        base = run_of(name, ("run.duration_s", SHORT))
+        yield f"| `{name}` as it is | | | {swing(base):.0f} | {_lean(base)} |"
+        for key, value in _numbers(base.scenario):
+            if (key in FOR_GATES) is (name == "slalom-20-gates"):
+                yield f"| `{key.removeprefix('skier.')}` | {value:g} | {_moved(name, base, key, value)} |"
+
+
+def _numbers(turn: Scenario) -> Iterator[tuple[str, float]]:
+    values: Mapping[str, object] = scenario_values(turn)
+    for key in SCENARIO_KEYS:
+        value = values.get(key)
+        if key.startswith("skier.") and isinstance(value, float | int) and not isinstance(value, bool):
+            yield key, float(value)
+
+
+def _moved(name: str, base: Run, key: str, value: float) -> str:
+    highest = SCENARIO_KEYS[key].highest
+    top = min(value * (1.0 + SHARE), highest if highest is not None else math.inf)
+    runs = [run_of(name, ("run.duration_s", SHORT), (key, each)) for each in (value * (1.0 - SHARE), top)]
+    ends = ", ".join(
+        f"{math.dist(each.place[-1], base.place[-1]):.3f}" if each.time[-1] == base.time[-1] else each.outcome
+        for each in runs
+    )
+    return f"{ends} | {swing(runs[0]):.0f}, {swing(runs[1]):.0f} | {_lean(runs[0])}, {_lean(runs[1])}"
+
+
+def _lean(run: Run) -> str:
+    return f"{np.degrees(np.abs(run.balance.lean).max()):.1f}"
+
+
+TABLES: dict[str, Callable[[], Iterator[str]]] = {
+    "linked": linked,
+    "swings": swings,
+    "carved": carved,
+    "gates": gates,
+    "racers": racers,
+    "sensitivity": sensitivity,
+}
+
+
+def main() -> None:
+    """Write the tables that are named, or all."""
+    for name in sys.argv[1:] or TABLES:
+        table = "\n".join(TABLES[name]())
+        mark = f"<!-- table {name} -->\n"
+        text = PAGE.read_text(encoding="utf-8")
+        found = re.search(f"{re.escape(mark)}.*?<!-- end of table -->", text, re.DOTALL)
+        assert found, f"{PAGE.name} has no table {name}"
+        text = f"{text[: found.start()]}{mark}\n{table}\n\n<!-- end of table -->{text[found.end() :]}"
+        PAGE.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
