@@ -33,7 +33,8 @@ class FreeLine:
     spline: Any = field(init=False)
 
     def __post_init__(self) -> None:
-        self.spline = CubicSpline(self.x, np.array([0.0, *self.y]), bc_type=((1, 0.0), (2, 0.0)))
+        ends: Any = ((1, 0.0), (2, 0.0))
+        self.spline = CubicSpline(self.x, np.array([0.0, *self.y]), bc_type=ends)
 
     def at(self, x: float) -> tuple[float, float, float]:
         return float(self.spline(x)), float(self.spline(x, 1)), float(self.spline(x, 2))
@@ -71,7 +72,7 @@ def quickest_free_line(racer: PointRacer) -> tuple[float, FreeLine]:
         return np.concatenate([1.0 - racer.least_radius * curvature, 1.0 + racer.least_radius * curvature])
 
     begin = np.array([FOUR.at(float(each))[0] for each in x[1:]])
-    constraints = [{"type": "ineq", "fun": clear}, {"type": "ineq", "fun": bent}]
+    constraints: Any = [{"type": "ineq", "fun": clear}, {"type": "ineq", "fun": bent}]
     found = minimize(time, begin, method="SLSQP", constraints=constraints, options={"maxiter": 200, "ftol": 1e-7})
     assert found.success, found.message
     assert clear(found.x).min() > -1e-6
