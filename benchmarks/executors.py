@@ -11,6 +11,8 @@ import time
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from skisnow.parallel.batch import compute_missing
 from skisnow.parallel.kept_rows import KeptRows
 from skisnow.study import read_study
@@ -32,11 +34,17 @@ RUNS: Final = """
 out = "table.csv"
 scenario = "carved-46m"
 [fixed]
-"run.duration_s" = 0.3
+"run.duration_s" = {duration}
 [grid]
-"start.speed_m_per_s" = { from = 6, to = 9, n = 10 }
+"start.speed_m_per_s" = {{ from = 6, to = 9, n = {speeds} }}
 mu_0 = [0.02, 0.05]
 """
+STUDIES: Final = {
+    "carved turns": CARVE,
+    "runs of 0.3 s": RUNS.format(duration=0.3, speeds=10),
+    "runs of 1 s": RUNS.format(duration=1, speeds=8),
+    "runs of 5 s": RUNS.format(duration=5, speeds=5),
+}
 
 
 def asleep(_point: Any) -> dict[str, Any]:
@@ -82,24 +90,31 @@ def main() -> None:
     """Print two tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--tasks", type=int, default=1000, help="that sleep for 50 ms")
-    parser.add_argument("--repeats", type=int, default=3, help="the shortest time counts")
+    parser.add_argument("--repeats", type=int, default=5, help="in turn; the median of their ratios counts")
+    parser.add_argument("--studies", nargs="*", choices=list(STUDIES), default=list(STUDIES))
     asked = parser.parse_args()
-    print("| points | one process | two threads: times as fast | two processes: times as fast |")
-    print("| --- | ---: | ---: | ---: |")
+    print("| points | one process | two threads: times as fast | two processes | threads over processes (range) |")
+    print("| --- | ---: | ---: | ---: | ---: |")
     with tempfile.TemporaryDirectory() as name:
-        for title, text in (("carved turns", CARVE), ("runs of 0.3 s", RUNS)):
+        for title in asked.studies:
             times: dict[str | None, list[float]] = {None: [], "threads": [], "processes": []}
-            for _ in range(asked.repeats):
-                for executor, found in times.items():
-                    found.append(study_seconds(Path(name), text, executor))
-            one, threads, processes = (min(found) for found in times.values())
-            print(f"| {title} | {1e3 * one:.2f} ms | {one / threads:.2f} | {one / processes:.2f} |", flush=True)
+            for repeat in range(asked.repeats):
+                for executor in list(times)[:: 1 if repeat % 2 else -1]:  # whoever went first goes last
+                    times[executor].append(study_seconds(Path(name), STUDIES[title], executor))
+            one, threads, processes = (np.array(found) for found in times.values())
+            faster = processes / threads
+            print(
+                f"| {title} | {1e3 * one.min():.1f} ms | {np.median(one / threads):.2f} | "
+                f"{np.median(one / processes):.2f} | {np.median(faster):.2f} "
+                f"({faster.min():.2f} to {faster.max():.2f}) |",
+                flush=True,
+            )
     print("\n| executor | time over tasks × 50 ms / 2 |\n| --- | ---: |")
     ideal = asked.tasks * TASK_S / WORKERS
-    print(f"| threads | {asleep_seconds(asked.tasks, 'threads') / ideal:.3f} |", flush=True)
     try:
         import distributed
     except ImportError:
+        print(f"| threads | {asleep_seconds(asked.tasks, 'threads') / ideal:.3f} |")
         print("| Dask | not installed |")
         return
     with (
@@ -107,7 +122,8 @@ def main() -> None:
         distributed.Client(cluster) as client,
     ):
         asleep_seconds(4, client)
-        print(f"| Dask, two workers | {asleep_seconds(asked.tasks, client) / ideal:.3f} |")
+        for name, executor in (("threads", "threads"), ("Dask, two workers", client)) * 2:  # in turn
+            print(f"| {name} | {asleep_seconds(asked.tasks, executor) / ideal:.3f} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from packaging.version import Version
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCKS = {name: (ROOT / "requirements" / f"{name}.txt").read_text(encoding="utf-8") for name in ("run", "dev", "tools")}
-TESTED = ("web", "pandas", "xarray")
+TESTED = ("web", "pandas", "xarray", "racing")
 """Extras that the tests need."""
 PYTHONS = ("3.11.7", "3.12.1", "3.13.0", "3.14.0")
 

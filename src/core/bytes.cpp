@@ -91,14 +91,14 @@ double ByteReader::within(double least, double most) {
   return out;
 }
 
-void ByteReader::numbers(double* values, std::size_t count) {
-  for (std::size_t i = 0; i < count; i++) values[i] = number();
+void ByteReader::numbers(double* values, std::size_t count, double most) {
+  for (std::size_t i = 0; i < count; i++) values[i] = within(-most, most);
 }
 
-std::vector<double> ByteReader::numbers(std::size_t count) {
+std::vector<double> ByteReader::numbers(std::size_t count, double most) {
   if (count > left() / WORD) refuse_bytes("they name more numbers than they have");
   std::vector<double> out(count);
-  numbers(out.data(), count);
+  numbers(out.data(), count, most);
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -43,11 +44,12 @@ class ByteReader {
   std::int64_t whole(std::int64_t least, std::int64_t most);
   double number();  // finite
   double within(double least, double most);
-  void numbers(double* values, std::size_t count);
-  std::vector<double> numbers(std::size_t count);
+  // Each finite, and not farther than this from 0.
+  void numbers(double* values, std::size_t count, double most = std::numeric_limits<double>::max());
+  std::vector<double> numbers(std::size_t count, double most = std::numeric_limits<double>::max());
   template <class Numbers>
-  void all(Numbers& values) {
-    numbers(values.data(), values.size());
+  void all(Numbers& values, double most = std::numeric_limits<double>::max()) {
+    numbers(values.data(), values.size(), most);
   }
   std::size_t left() const { return std::size_t(end_ - at_); }
   void require_end() const;

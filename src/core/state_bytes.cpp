@@ -16,13 +16,11 @@ constexpr std::int64_t MOST_LINES = std::int64_t(1) << 62;  // number of a line,
 constexpr std::int64_t MOST_COUNT = std::int64_t(1) << 30;
 constexpr double FARTHEST = 1e7;                   // (m) from the origin; the squares of tracks are counted up to there
 constexpr double UNIT = 1e-6;                      // by which a direction's length may differ from 1
-constexpr double MOST_ACROSS = 1e4;                // (m) along a line
+constexpr double MOST_ACROSS = 1e4;                // (m) along a line, and into the snow
+constexpr double MOST_STRESS = 1e18;               // (Pa), (N/m³)
 constexpr std::int64_t MOST_PLACES = 100'000'000;  // of a line's delayed depth, from its origin
 
-template <class Place>
-void read_place(ByteReader& in, Place& out) {
-  for (double& each : out) each = in.within(-FARTHEST, FARTHEST);
-}
+void read_place(ByteReader& in, Vector3& out) { in.all(out, FARTHEST); }
 
 void require_unit(const Vector3& direction) {
   const double square = direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2];
@@ -43,8 +41,7 @@ void read_rotation(ByteReader& in, double (&out)[3][3]) {
 
 void require_rising(const double* place, int count) {
   for (int j = 0; j < count; j++)
-    if (std::fabs(place[j]) > MOST_ACROSS || (j > 0 && place[j] < place[j - 1]))
-      refuse_bytes("places across a line of snow do not rise");
+    if (j > 0 && place[j] < place[j - 1]) refuse_bytes("places across a line of snow do not rise");
 }
 
 void write_ground(const Ground& ground, ByteWriter& out) {
@@ -55,7 +52,7 @@ void write_ground(const Ground& ground, ByteWriter& out) {
 Ground read_ground(ByteReader& in) {
   Ground out;
   out.count = int(in.whole(0, KNOTS));
-  in.numbers(out.place, std::size_t(out.count)), in.numbers(out.depth, std::size_t(out.count));
+  for (double* each : {out.place, out.depth}) in.numbers(each, std::size_t(out.count), MOST_ACROSS);
   require_rising(out.place, out.count);
   return out;
 }
@@ -69,7 +66,7 @@ DelayedGround read_delayed(ByteReader& in) {
   DelayedGround out;
   out.spacing = in.within(1e-9, MOST_ACROSS), out.first = long(in.whole(-MOST_PLACES, MOST_PLACES));
   const auto count = std::size_t(in.whole(0, MOST_PLACES));
-  out.depth = in.numbers(count), out.stress = in.numbers(count);
+  out.depth = in.numbers(count, MOST_ACROSS), out.stress = in.numbers(count, MOST_STRESS);
   return out;
 }
 
@@ -88,7 +85,7 @@ Track read_track(ByteReader& in, int strips) {
   out.strip = int(in.whole(0, strips - 1)), out.number = in.whole(-MOST_LINES, MOST_LINES);
   out.count = int(in.whole(2, KNOTS));
   const auto count = std::size_t(out.count);
-  in.numbers(out.place, count), in.numbers(out.depth, count), in.numbers(out.delayed, count);
+  for (double* each : {out.place, out.depth, out.delayed}) in.numbers(each, count, MOST_ACROSS);
   out.left_at = in.number();
   require_rising(out.place, out.count);
   return out;
@@ -104,7 +101,7 @@ Pose read_pose(ByteReader& in, int nodes) {
   read_place(in, out.position), read_rotation(in, out.rotation);
   const auto count = std::size_t(in.whole(0, 3 * nodes));
   if (count != 0 && count != std::size_t(3 * nodes)) refuse_bytes("a pose has another number of nodes");
-  out.beam = in.numbers(count);
+  out.beam = in.numbers(count, FARTHEST);
   return out;
 }
 
@@ -147,11 +144,12 @@ void GrooveLines::read(ByteReader& in) {
   first = in.whole(-MOST_LINES, MOST_LINES), end = in.whole(first, first + capacity() - BLOCK);
   for (std::int64_t n = first; n < end; n++) {
     Line line{slot(n), {}, {}};
-    in.numbers(line.values, LINE_FIELDS);
+    for (int field = 0; field < LINE_FIELDS; field++) {
+      const bool of_snow = field == HARDNESS || field == EXCESS || field == STRENGTH;
+      in.numbers(line.values + field, 1, of_snow ? MOST_STRESS : FARTHEST);
+    }
     for (const int from : {AHEAD_X, NORMAL_X})
       require_unit({line.values[from], line.values[from + 1], line.values[from + 2]});
-    for (const int field : {ORIGIN_X, ORIGIN_Y, ORIGIN_Z})
-      if (std::fabs(line.values[field]) > FARTHEST) refuse_bytes("a line of snow lies too far off");
     line.ground = read_ground(in);
     put_back(line);
     delayed[std::size_t(line.slot)] = read_delayed(in);
@@ -234,7 +232,7 @@ void write_body(const BodyState& state, ByteWriter& out) {
 }
 
 void read_body(ByteReader& in, BodyState& out) {
-  read_place(in, out.position), read_rotation(in, out.rotation), in.all(out.bend), in.all(out.rate);
+  read_place(in, out.position), read_rotation(in, out.rotation), in.all(out.bend, FARTHEST), in.all(out.rate, FARTHEST);
 }
 
 template <class Do, class WorkOrConst>
@@ -248,7 +246,7 @@ void each_work(WorkOrConst& work, const Do& act) {
 
 void MovingSki::write(ByteWriter& out) const { write_body(state_, out), out.all(now_), out.all(before_); }
 
-void MovingSki::read(ByteReader& in) { read_body(in, state_), in.all(now_), in.all(before_); }
+void MovingSki::read(ByteReader& in) { read_body(in, state_), in.all(now_, FARTHEST), in.all(before_, FARTHEST); }
 
 // All but what is found again before it is asked for.
 void Dynamics::write(ByteWriter& out) const {
@@ -266,7 +264,7 @@ void Dynamics::write(ByteWriter& out) const {
 
 void Dynamics::read(ByteReader& in) {
   read_body(in, state);
-  in.all(rate_before_), in.all(moved_);
+  in.all(rate_before_, FARTHEST), in.all(moved_, FARTHEST);
   time = in.number(), last_step_ = in.number(), share_ = in.within(0.0, 1.0), step_ = in.within(0.0, rule_.longest);
   reach_ = in.number(), contraction_ = in.number();
   kept_ = int(in.whole(-MOST_COUNT, MOST_COUNT));

@@ -71,6 +71,13 @@ def test_variants_on_the_same_snows_without_the_search(
     rows = table(tmp_path / "worth.csv")
     assert len(rows) == 6 * 3
     assert (tmp_path / "worth.png").read_bytes().startswith(b"\x89PNG")
+    gaps = table(tmp_path / "gaps_giant-slalom.csv")
+    assert [row["gate"] for row in gaps] == ["1", "2"]
+    assert gaps[-1]["other_time_s"] == rows[0]["time_as_it_is_s"]
+    times = [float(gaps[-1][name]) for name in ("time_s", "other_time_s", "gap_s")]
+    assert times[0] - times[1] == pytest.approx(times[2], abs=1e-12)
+    assert (tmp_path / "gaps_giant-slalom.png").read_bytes().startswith(b"\x89PNG")
+    assert not list(tmp_path.glob("gaps_friction*"))
     assert race(tmp_path / "c") == 1
     assert "skisnow[racing]" in capsys.readouterr().err
 

@@ -11,6 +11,8 @@ from skisnow.racing.racers import Racer, run_score, skied
 
 SLALOM = scenario("slalom-20-gates").with_(method="fast")
 FOUR = cut(follower_line(SLALOM), 4)
+MARGIN = 0.3
+"""Time (s) by which four gates are quicker than the path follower."""
 
 
 def test_on_the_followers_line_it_does_what_the_follower_does() -> None:
@@ -45,8 +47,8 @@ def test_a_line_too_near_the_poles_straddles_or_misses() -> None:
 
 @pytest.mark.slow
 def test_four_gates_are_raced_quicker_than_by_the_follower() -> None:
-    """What docs/how-to/race.md says was found."""
+    """By the margin that docs/how-to/race.md states, with the turns alike already."""
     pytest.importorskip("cmaes")
-    found = quickest_line(SLALOM, gates=4, evaluations=60, population=10, spread=0.12, seed=1)
-    assert found.start_score.time == pytest.approx(8.22, abs=0.01)
-    assert found.score.time == pytest.approx(7.93, abs=0.01)
+    found = quickest_line(SLALOM, gates=4, evaluations=13, seed=1)
+    assert found.gained is not None
+    assert found.gained > MARGIN

@@ -143,7 +143,7 @@ def _write(folder: Path, found: Comparison, text: str, language: str, gaps: tupl
     with staged(folder, last="compare.json") as stage:
         stage.stale += FILES
         if gaps is not None:
-            write_gaps(gaps, found.names, stage.path)
+            write_gaps(gaps, found.names, stage.path, language=language)
         write_file(stage.path / "compare.json", f"{text}\n")
         write_pictures(
             map(comparison_drawing, [found]), stage.path, every=(), language=language, names=frozenset(found.names)

@@ -13,7 +13,7 @@ from .ending import Ending, ending_is_an_interrupt
 from .out_folder import ready
 from .progress import Progress
 from .scheduler import add_scheduler, scheduler_of
-from .words import MOST_RESAMPLES, MOST_WORKERS, seed_number, whole_number
+from .words import MOST_RESAMPLES, MOST_WORKERS, add_language, seed_number, whole_number
 
 MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
 
@@ -47,6 +47,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     _add_ways(parser)
     parser.add_argument("--json", action="store_true", help="print identification.json alone to standard output")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write identification.json, fits.csv and a report")
+    add_language(parser)
     parser.add_argument("--resume", action="store_true", help="go on with the simulations that are kept in --out")
     parser.set_defaults(run=run, parser=parser)
 
@@ -153,7 +154,11 @@ def _tell(options: argparse.Namespace, found: Identification, asked: ScenarioFil
 
         with Progress() as progress:
             page = write_identify_report(
-                found, contents, options.out, progress=lambda doing: progress(f"writing {doing}")
+                found,
+                contents,
+                options.out,
+                language=options.language,
+                progress=lambda doing: progress(f"writing {doing}"),
             )
         print(f"Report: {page}", file=sys.stderr)
     if found.outcome == "interrupted" and options.out is not None:

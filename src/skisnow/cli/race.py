@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,7 @@ from .words import MOST_WORKERS, add_changes, number, seed_number, whole_number
 if TYPE_CHECKING:
     from ..racing import QuickestLine, RacingLine, Score, Worth
     from ..scenario import Scenario
+    from ..simulate.run import Run
 
 KEPT, KEPT_WORTH = "evaluations.partial", "worth.partial"
 MOST_EVALUATIONS, MOST_GATES, MOST_SNOWS = 1_000_000, 1_000, 10_000
@@ -96,17 +98,25 @@ def run(options: argparse.Namespace) -> int:
     """Search, race again as the scenario says, compare, print, write; 1 where no line comes through."""
     try:
         with ending_is_an_interrupt():
-            found, checked, worth = _raced(options)
+            raced = _raced(options)
     except KeyboardInterrupt as stopped:
         ended = isinstance(stopped, Ended)
         print(f"\nskisnow: {'ended' if ended else 'interrupted'}; finished races are kept in {options.out}.\n"
               "The same command goes on with them.", file=sys.stderr)  # fmt: skip
         return 143 if ended else 130
-    _tell(options, found, checked, worth)
-    return 1 if found.score.time is None else 0
+    _tell(options, raced)
+    return 1 if raced.found.score.time is None else 0
 
 
-def _raced(options: argparse.Namespace) -> tuple[QuickestLine, list[tuple[str, Score]], tuple[Worth, ...]]:
+@dataclass(frozen=True)
+class _Raced:
+    found: QuickestLine
+    checked: list[tuple[str, Score]]
+    run: Run | None
+    worth: tuple[Worth, ...]
+
+
+def _raced(options: argparse.Namespace) -> _Raced:
     with announced("loading"):
         from ..racing import compared, drawn_for_race, quickest_line
         from ..racing.search import require_cmaes
@@ -126,14 +136,14 @@ def _raced(options: argparse.Namespace) -> tuple[QuickestLine, list[tuple[str, S
             window=options.window, step=options.step, seed=options.seed,
             checkpoint=options.out / KEPT, progress=progress, **computing,
         )  # fmt: skip
-        checked = _checked(found, scenario, progress)
+        checked, run = _checked(found, scenario, progress)
         worth: tuple[Worth, ...] = ()
         if variants:
             worth = compared(
                 found.scenario, {name: each.with_(method="fast") for name, each in variants.items()}, found.line, snows,
                 model=options.model, checkpoint=options.out / KEPT_WORTH, progress=progress, **computing,
             )  # fmt: skip
-    return found, checked, worth
+    return _Raced(found, checked, run, worth)
 
 
 def _asked(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
@@ -160,26 +170,27 @@ def _start(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None
     return read_line(options.line, course_of(scenario), (scenario.start.x, scenario.start.y))
 
 
-def _checked(found: QuickestLine, scenario: Scenario, progress: Progress) -> list[tuple[str, Score]]:
-    """Both lines raced as the scenario says it, where the search raced by a quicker method."""
-    from ..racing.racers import Racer
+def _checked(found: QuickestLine, scenario: Scenario, progress: Progress) -> tuple[list[tuple[str, Score]], Run | None]:
+    """Both lines raced as the scenario says it, where the search raced by a quicker method; the run on the quickest."""
+    from ..racing.racers import run_score, skied
 
-    if found.model == "point" or scenario.solver.method == "fast":
-        return []
-    racer, checked = Racer(scenario, found.model), []
-    for name, line in (("quickest line, computed as the scenario says", found.line), ("where it began", found.start)):
-        progress(f"racing again: {name}")
-        checked.append((name, racer.score(line)))
-    return checked
+    if found.model == "point":
+        return [], None
+    progress("racing again: the quickest line")
+    run = skied(scenario, found.line)
+    checked = [("quickest line, computed as the scenario says", run_score(run))]
+    if scenario.solver.method == "fast":
+        return [], run
+    progress("racing again: where it began")
+    return [*checked, ("where it began", run_score(skied(scenario, found.start)))], run
 
 
-def _tell(
-    options: argparse.Namespace, found: QuickestLine, checked: list[tuple[str, Score]], worth: tuple[Worth, ...]
-) -> None:
+def _tell(options: argparse.Namespace, raced: _Raced) -> None:
     from ..report.race_folder import write_race
     from ..report.race_summary import race_dict, race_summary, worth_summary
 
-    place = write_race(found, options.out, checked=checked, worth=worth)
+    found, checked, worth = raced.found, raced.checked, raced.worth
+    place = write_race(found, options.out, checked=checked, worth=worth, run=raced.run, against=tuple(options.against))
     if options.json:
         contents = race_dict(found, checked, worth)
         print(json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1), flush=True)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from .announced import announced
 from .out_folder import ready
 from .progress import Progress
-from .words import MOST_WORKERS, number, seed_number, whole_number
+from .words import MOST_WORKERS, add_language, number, seed_number, whole_number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -72,6 +72,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="write report.html, turn.json and figures of the whole chain here"
     )
+    add_language(parser)
     parser.set_defaults(run=run)
 
 
@@ -95,7 +96,7 @@ def run(options: argparse.Namespace) -> int:
     chosen = given | {name: getattr(options, name) for name in names if getattr(options, name) is not None}
     with Progress() as progress:
         found = chain(options.campaign, options.site, asked.scenario, priors=priors, progress=progress, **chosen)
-        page = None if options.out is None else found.report(options.out)
+        page = None if options.out is None else found.report(options.out, language=options.language)
     if options.json:
         from ..report.turn_dict import turn_dict
 

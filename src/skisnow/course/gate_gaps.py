@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -55,8 +56,13 @@ def gate_gaps(folder: Path, other: Path) -> tuple[GateGap, ...] | None:
     tables = [_rows(each / GATES_FILE) for each in (folder, other) if (each / GATES_FILE).is_file()]
     if len(tables) < 2 or not _same_course(*tables):
         return None
+    return gaps_of(*tables)
+
+
+def gaps_of(rows: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str, Any]]) -> tuple[GateGap, ...]:
+    """Gaps at the gates of two tables of the same gates, each row with gate, outcome and time_s or None."""
     found, before = [], 0.0
-    for own, its in zip(*tables, strict=True):
+    for own, its in zip(rows, other, strict=True):
         time, other_time = own["time_s"], its["time_s"]
         gap = None if time is None or other_time is None else time - other_time
         found.append(
@@ -87,7 +93,7 @@ def _rows(place: Path) -> list[dict[str, Any]]:
         ) from error
 
 
-def gaps_csv(gaps: tuple[GateGap, ...]) -> str:
+def gaps_csv(gaps: Sequence[GateGap]) -> str:
     """A row for each gate under `COLUMNS`, nothing where there is no number."""
     stream = io.StringIO()
     writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
@@ -96,7 +102,7 @@ def gaps_csv(gaps: tuple[GateGap, ...]) -> str:
     return stream.getvalue()
 
 
-def gap_rows(gaps: tuple[GateGap, ...]) -> list[dict[str, Any]]:
+def gap_rows(gaps: Sequence[GateGap]) -> list[dict[str, Any]]:
     """The same as values."""
     return [
         {

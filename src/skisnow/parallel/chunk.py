@@ -58,8 +58,9 @@ class NeedsFiles(Protocol):
         ...
 
 
+@lru_cache(maxsize=1)
 def own_identity() -> Identity:
-    """Of this process."""
+    """Of this process; looking up the version takes milliseconds, which every chunk would."""
     return Identity(version("skisnow"), core.SOURCE_HASH)
 
 

@@ -27,6 +27,8 @@ LARGEST_FOR_A_PIPE: Final = 64
 """Points; their rows stay well below the 64 kB that a pipe takes in one piece."""
 LARGEST: Final = 10_000
 """Points of one chunk: some megabytes of rows (modelling assumption)."""
+CHUNK_S: Final = 0.25
+"""Work (s) that is handed over at once, and that a kill loses (modelling assumption: handing over costs 1 ms here)."""
 
 
 class Crew(ABC):
@@ -34,6 +36,8 @@ class Crew(ABC):
 
     largest: int = LARGEST
     """Points of one chunk."""
+    chunk_s: float = CHUNK_S
+    """Work of one chunk (s)."""
 
     @abstractmethod
     def size(self) -> int:

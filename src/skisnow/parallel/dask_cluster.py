@@ -33,6 +33,9 @@ WAIT_S: Final = 30.0
 """How long (s) a scheduler may take to answer, where the file does not say."""
 AWAY_S: Final = 10.0
 """How long (s) a scheduler may be away in the middle of the work (modelling assumption)."""
+CHUNK_S: Final = 1.0
+"""Work (s) that is handed over at once (modelling assumption: from one piece to the next a worker takes some 10 ms, and
+some 50 where its cores are wanted by others)."""
 COUNTED_EVERY_S: Final = 1.0
 """Workers come and go; how many there are is asked for so often (modelling assumption: asking takes milliseconds)."""
 
@@ -242,6 +245,8 @@ def crew_of_client(client: Any, function: PointFunction, close: Callable[[], Non
 
 class _DaskCrew(GivenCrew):
     """The scheduler gives a chunk of a worker that was lost to another one."""
+
+    chunk_s = CHUNK_S
 
     def __init__(self, function: PointFunction, client: Any, close: Callable[[], None] | None) -> None:
         super().__init__(function, client.get_executor(pure=False), self._threads, close)

@@ -15,9 +15,6 @@ from .crews import LOST, Crew, ProcessCrew
 from .executors import ExecutorLike, crew_of
 from .kept_rows import NumberedText, row_text
 
-CHUNK_SECONDS: Final = 0.25
-"""Work that is handed over at once, and that a kill loses (modelling assumption: handing over costs 1 ms here, 10 ms to
-another computer)."""
 LOOKED_AFTER_S: Final = 2.0
 """While nothing comes it is looked so often whether anything can (modelling assumption)."""
 
@@ -106,7 +103,7 @@ class Pool:
                     crew.require_alive()
                 for future in ended:
                     done = future.result()
-                    size = max(1, min(crew.largest, int(CHUNK_SECONDS / max(done.seconds_per_point, 1e-9))))
+                    size = max(1, min(crew.largest, int(crew.chunk_s / max(done.seconds_per_point, 1e-9))))
                     yield done.rows
         except Exception as error:
             told = str(error) if isinstance(error, SkisnowError) and str(error) == LOST else crew.told(error)

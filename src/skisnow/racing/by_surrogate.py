@@ -27,7 +27,7 @@ BOX_CHANGES: Final = (0.8, 1.3)
 """Of that box after a batch without a better value, and with one (modelling assumption)."""
 ASKED: Final = 50
 """Generations in which the least of the process is sought (modelling assumption)."""
-ALIKE: Final = 0.3
+ALIKE: Final = 0.5
 """Share of all evaluations with the same numbers for all turns (modelling assumption)."""
 
 

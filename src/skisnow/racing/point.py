@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final, TypeAlias
 
@@ -148,7 +148,7 @@ class PointRacer:
         tight = self.least_radius * line.greatest_curvature() - 1.0
         if tight > 0.0:
             failed = NOT_PASSED if found.time is not None else found.value
-            return Score(value=failed + tight, time=None, passed=found.passed, words="the line is too tight")
+            return replace(found, value=failed + tight, time=None, words="the line is too tight")
         return found
 
 

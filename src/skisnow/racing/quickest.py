@@ -294,7 +294,7 @@ def _require(*, evaluations: int, population: int | None, spread: float, settled
 
 def _fingerprint(racer: Racer, begun: RacingLine, settings: Sequence[object]) -> str:
     search = version("cmaes") if settings[0] != 1 else None
-    digest = hashlib.sha256(f"{version('skisnow')} {search} {tuple(settings)} {begun.apexes}".encode())
+    digest = hashlib.sha256(f"with gates {version('skisnow')} {search} {tuple(settings)} {begun.apexes}".encode())
     for piece in pieces_of((racer, begun.turns)):
         digest.update(piece)
     return digest.hexdigest()

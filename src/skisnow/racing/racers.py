@@ -114,13 +114,15 @@ class ScoredLine:
             "time": found.time,
             "passed": found.passed,
             "words": found.words,
+            "gates": [list(each) for each in found.gates],
             "turns": [[each.aside, each.along, each.turning] for each in point.line.turns],
         }
 
 
 def score_in(row: dict[str, Any]) -> Score:
     """The score of a row."""
-    return Score(value=row["value"], time=row["time"], passed=row["passed"], words=row["words"])
+    gates = tuple((outcome, time) for outcome, time in row["gates"])
+    return Score(value=row["value"], time=row["time"], passed=row["passed"], words=row["words"], gates=gates)
 
 
 def turns_in(row: dict[str, Any]) -> tuple[LineTurn, ...]:

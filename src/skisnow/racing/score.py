@@ -29,12 +29,15 @@ class Score(ShownFields):
         Gates.
     words
         How it ended.
+    gates
+        Of each gate what became of it and the time from the start (s), None where it was not crossed.
     """
 
     value: float
     time: float | None
     passed: int
     words: str
+    gates: tuple[tuple[str, float | None], ...] = ()
 
 
 def score_of(result: CourseResult | None, end: tuple[float, float], *, finished: bool, words: str) -> Score:
@@ -53,9 +56,11 @@ def score_of(result: CourseResult | None, end: tuple[float, float], *, finished:
     """
     if result is None:
         return Score(value=float("inf"), time=None, passed=0, words=words)
-    last = result.passages[-1].time
+    times = [None if each.time is None else each.time - result.start_time for each in result.passages]
+    gates = tuple((each.outcome, time) for each, time in zip(result.passages, times, strict=True))
+    last = times[-1]
     if finished and result.fault is None and last is not None:
-        return Score(value=last - result.start_time, time=last - result.start_time, passed=result.passed, words=words)
+        return Score(value=last, time=last, passed=result.passed, words=words, gates=gates)
     beside = sum(
         min(max(-each.clearance, 0.0), FARTHEST)
         for each in result.passages
@@ -64,4 +69,5 @@ def score_of(result: CourseResult | None, end: tuple[float, float], *, finished:
     left = max(0.0, result.course.gates[-1].turning[0] - end[0])
     missed = max(1, len(result.passages) - result.passed)
     fault = words if result.fault is None or not finished else result.fault.words
-    return Score(value=NOT_PASSED * missed + beside + min(left, FARTHEST), time=None, passed=result.passed, words=fault)
+    value = NOT_PASSED * missed + beside + min(left, FARTHEST)
+    return Score(value=value, time=None, passed=result.passed, words=fault, gates=gates)

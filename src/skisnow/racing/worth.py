@@ -14,6 +14,7 @@ import numpy.typing as npt
 from scipy.stats import qmc
 
 from ..content import pieces_of
+from ..course.gate_gaps import GateGap, gaps_of
 from ..errors import ParameterError
 from ..parallel.batch import run_batch
 from ..parallel.executors import ExecutorLike
@@ -77,6 +78,17 @@ class Worth(Shown):
     def faster(self) -> int:
         """On how many snows it is faster."""
         return int(np.sum(self.differences < 0.0))
+
+    def gaps(self, names: Sequence[str]) -> tuple[GateGap, ...]:
+        """Its gap in time to the scenario as it is at each gate, by the gates' names, on the scenario's own snow."""
+        own, base = (
+            [
+                {"gate": name, "outcome": outcome, "time_s": time}
+                for name, (outcome, time) in zip(names, gates, strict=True)
+            ]
+            for gates in (self.scores[0].gates, self.base[0].gates)
+        )
+        return gaps_of(own, base)
 
     def _facts(self) -> Facts:
         rows = (
@@ -226,7 +238,7 @@ def _about(value: float, spread: float) -> tuple[float, float]:
 
 
 def _fingerprint(points: Sequence[Scenario], line: RacingLine, model: RacerModel) -> str:
-    digest = hashlib.sha256(f"{version('skisnow')} {model} {line.apexes}".encode())
+    digest = hashlib.sha256(f"with gates {version('skisnow')} {model} {line.apexes}".encode())
     for piece in pieces_of((tuple(points), line.turns)):
         digest.update(piece)
     return digest.hexdigest()

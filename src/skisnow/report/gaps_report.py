@@ -9,9 +9,11 @@ from markupsafe import Markup
 from ..course.gate_gaps import COLUMNS, gap_rows, gaps_csv, gate_gaps
 from ..errors import ParameterError
 from ..files import write_file
+from ..language import ENGLISH
 from .figures.drawing import FORMS, pictured
 from .figures.gate_gaps import gate_gaps_drawing, last_words
 from .figures.style import journal_style
+from .figures.translated import translate_figure
 from .pictures import write_pictures
 from .sheet import Header, Section, sheet
 from .symbols import prose
@@ -41,8 +43,8 @@ def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
     return "\n".join([f"Gates of {names[0]} against {names[1]}, behind +", *lines, _result(gaps, names)])
 
 
-def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path) -> None:
-    """Write gate_gaps.csv, the figure gate_gaps and report.html.
+def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path, *, language: str = ENGLISH) -> None:
+    """Write gate_gaps.csv, the figure gate_gaps and report.html, figure and page in a language.
 
     Raises
     ------
@@ -50,12 +52,12 @@ def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path) 
         A file cannot be written.
     """
     write_file(folder / GAPS_CSV, gaps_csv(gaps))
-    pictures = write_pictures(_drawings(gaps, names), folder, every=())
-    write_file(folder / PAGE, gaps_page(gaps, names, pictures))
+    pictures = write_pictures(_drawings(gaps, names), folder, every=(), language=language, names=frozenset(names))
+    write_file(folder / PAGE, gaps_page(gaps, names, pictures, language=language))
 
 
-def gaps_of_folders(folder: Path, other: Path) -> str:
-    """The page of two runs by their folders, without writing anything.
+def gaps_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
+    """The page of two runs by their folders, in a language, without writing anything.
 
     Raises
     ------
@@ -68,15 +70,23 @@ def gaps_of_folders(folder: Path, other: Path) -> str:
             f"{names[0]} and {names[1]} did not go through the same gates: choose two runs on one course"
         )
     with journal_style():
-        pictures = [pictured(each) for each in _drawings(gaps, names)]
-    return gaps_page(gaps, names, pictures)
+        drawn = list(_drawings(gaps, names))
+        for each in drawn:
+            translate_figure(each.figure, language, names=frozenset(names))
+        pictures = [pictured(each) for each in drawn]
+    return gaps_page(gaps, names, pictures, language=language)
 
 
-def gaps_page(gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Sequence[Picture]) -> str:
+def gaps_page(
+    gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Sequence[Picture], *, language: str = ENGLISH
+) -> str:
     """The HTML."""
     key, table = prose("{text}", text=_result(gaps, names)), gaps_table(gaps, names)
-    header = Header("Two runs through the same gates", f"{names[0]} against {names[1]}", [], headline=_headline(gaps))
-    return sheet(header, [Section("gates", "Gates", key=[key], pictures=pictures, tables=[table])])
+    header = Header(
+        "Two runs through the same gates", f"Gates of {names[0]} against {names[1]}", [], headline=_headline(gaps)
+    )
+    section = Section("gates", "Gates", key=[key], pictures=pictures, tables=[table])
+    return sheet(header, [section], language=language, names=frozenset(names))
 
 
 def _drawings(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Iterator[Drawing]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from markupsafe import Markup
 
 from ..files import require_writable, write_file
+from ..language import ENGLISH, require_language
 from ..spreadsheet_text import guarded
 from ..staging import staged
 from .figures.drawing import Drawing
@@ -21,7 +22,7 @@ from .figures.identify_profiles import profiles_drawn
 from .number_formatting import counted, interval, significant
 from .pictures import picture_files, write_pictures
 from .sheet import Header, Section, sheet
-from .symbols import html, prose
+from .symbols import figure_text, html, prose
 from .tables.identified import correlation_table, parameters_table
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ def write_identify_report(
     contents: Mapping[str, Any],
     folder: str | Path,
     *,
+    language: str = ENGLISH,
     progress: Callable[[str], None] | None = None,
 ) -> Path:
     """Write identification.json, fits.csv, figures/ and report.html; returns the page's path.
@@ -53,6 +55,8 @@ def write_identify_report(
         What `identification_dict` gives.
     folder
         Made where it is missing. Other files in it stay; figures of an earlier identification are replaced or removed.
+    language
+        Of the page and the figures: en, or a language that there is a catalogue of (de).
     progress
         Called with a line of text now and then.
 
@@ -60,7 +64,10 @@ def write_identify_report(
     ------
     OutputError
         A file cannot be written.
+    ParameterError
+        There are no texts of the language.
     """
+    require_language(language)
     folder = Path(folder)
     require_writable(folder)
     report = progress or _silent
@@ -69,9 +76,12 @@ def write_identify_report(
         text = json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)
         write_file(stage.path / ANSWER, f"{text}\n")
         write_file(stage.path / "fits.csv", fits_csv(found))
-        pictures = write_pictures(_drawings(found), stage.path / "figures", every=FIGURES, progress=report)
+        pictures = write_pictures(
+            _drawings(found), stage.path / "figures", every=FIGURES, language=language,
+            names=frozenset(map(figure_text, names_in(found))), progress=report,
+        )  # fmt: skip
         report("report.html")
-        write_file(stage.path / "report.html", identify_page(found, pictures))
+        write_file(stage.path / "report.html", identify_page(found, pictures, language=language))
     return folder / "report.html"
 
 
@@ -90,7 +100,15 @@ def fits_csv(found: Identification) -> str:
     return stream.getvalue()
 
 
-def identify_page(found: Identification, pictures: list[Picture]) -> str:
+def names_in(found: Identification) -> frozenset[str]:
+    """What users wrote, and keys of a scenario's file: the same in every language."""
+    parameters = {text for each in found.parameters for text in (each.parameter.name, each.parameter.key)}
+    return frozenset(
+        {found.scenario, *(fit.name for fit in found.fits), *(name for name, _ in found.data), *parameters}
+    )
+
+
+def identify_page(found: Identification, pictures: list[Picture], *, language: str = ENGLISH) -> str:
     """The HTML of the report."""
     fits = [picture for picture in pictures if picture.name != "profiles"]
     profiles = [picture for picture in pictures if picture.name == "profiles"]
@@ -114,7 +132,7 @@ def identify_page(found: Identification, pictures: list[Picture]) -> str:
     sections.append(Section("provenance", "How it was computed", words=_methods(found)))
     facts = [("Scenario", found.scenario), ("Points", str(found.points)), ("Computed", f"skisnow {version('skisnow')}")]
     header = Header("Parameters identified from measurements", _title(found), facts, headline=_headline(found))
-    return sheet(header, sections)
+    return sheet(header, sections, language=language, names=names_in(found))
 
 
 def _headline(found: Identification) -> Markup:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..from_above import from_above
+from ..language import ENGLISH
 from ..shown import Facts, Shown, amount
 
 if TYPE_CHECKING:
@@ -106,9 +107,9 @@ class TurnChain(Shown):
         found = from_above("report.turn_sentences", "plain_sentences")
         return [sentence.replace("<sub>", "_").striptags() for sentence in found(self)]
 
-    def report(self, folder: str | Path) -> Path:
+    def report(self, folder: str | Path, *, language: str = ENGLISH) -> Path:
         """Write report.html, turn.json and figures/ of the whole chain; see `report.turn_report.write_turn_report`."""
-        page: Path = from_above("report.turn_report", "write_turn_report")(self, folder)
+        page: Path = from_above("report.turn_report", "write_turn_report")(self, folder, language=language)
         return page
 
     def _facts(self) -> Facts:

@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from ..errors import ParameterError
 from ..files import require_writable, write_file
+from ..language import ENGLISH, require_language
 from ..scenario.values import scenario_values
 from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
@@ -20,8 +21,9 @@ from .figures.runs_compared import runs_compared
 from .figures.track_band import FEWEST, track_band
 from .number_formatting import significant
 from .pictures import write_pictures
+from .run_report import CHOICES
 from .sheet import Header, Section, sheet
-from .symbols import html, prose
+from .symbols import figure_text, html, prose
 from .tables.run import scenario_table
 from .tables.turn import contacts_table, ensemble_table, parameters_table, shares_table
 from .turn_dict import turn_dict
@@ -38,8 +40,8 @@ FIGURES: Final = ("contacts", "along_ski", "grip", "band")
 """Names of the figures of such a report, in figures/ as .png and .svg."""
 
 
-def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:
-    """Write report.html, turn.json and figures/ of the chain from a campaign to a turn.
+def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = ENGLISH) -> Path:
+    """Write report.html, turn.json and figures/ of the chain from a campaign to a turn; page and figures in a language.
 
     Returns
     -------
@@ -49,7 +51,7 @@ def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:
     Raises
     ------
     ParameterError
-        There are fewer than two contacts, or too few runs for a band.
+        There are fewer than two contacts, or too few runs for a band, or there are no texts of the language.
     OutputError
         A file cannot be written.
     """
@@ -58,13 +60,28 @@ def write_turn_report(chain: TurnChain, folder: str | Path) -> Path:
             f"there are {len(chain.runs)} contacts and {len(chain.ensemble)} runs of the ensemble; the report needs 2 "
             f"and {FEWEST} at least"
         )
+    require_language(language)
     folder = Path(folder)
     require_writable(folder)
-    pictures = write_pictures(_drawings(chain), folder / "figures", every=FIGURES)
+    names = names_in(chain)
+    pictures = write_pictures(
+        _drawings(chain), folder / "figures", every=FIGURES, language=language, names=frozenset(map(figure_text, names))
+    )
     text = json.dumps(turn_dict(chain), ensure_ascii=False, allow_nan=False, indent=1)
     write_file(folder / "turn.json", f"{text}\n")
-    write_file(folder / "report.html", sheet(_header(chain), _sections(chain, pictures)))
+    write_file(folder / "report.html", turn_page(chain, pictures, language=language))
     return folder / "report.html"
+
+
+def turn_page(chain: TurnChain, pictures: Sequence[Picture], *, language: str = ENGLISH) -> str:
+    """The HTML of the report."""
+    return sheet(_header(chain), _sections(chain, pictures), language=language, names=names_in(chain))
+
+
+def names_in(chain: TurnChain) -> frozenset[str]:
+    """What users wrote, and words of a scenario's file: the same in every language."""
+    skis = {run.scenario.ski.name for run in chain.runs.values()}
+    return CHOICES | skis | {chain.campaign, chain.site, chain.snow.source}
 
 
 def _drawings(chain: TurnChain) -> Iterator[Drawing]:

@@ -79,7 +79,7 @@ def _distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("distance travelled (m)")
-    axes.set_ylabel(f"distance from the track (m)\nof {mathtext(first)}")
+    axes.set_ylabel(f"distance (m) from the track of\n{mathtext(first)}")
 
 
 def _depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:

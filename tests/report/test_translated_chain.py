@@ -1,0 +1,99 @@
+"""The reports of a turn, of an identification and of the gates of two runs in German: nothing is left in English."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from skisnow.course.gate_gaps import GateGap
+from skisnow.errors import ParameterError
+from skisnow.identify.identification import Identification
+from skisnow.report import gaps_report, identify_report, turn_report
+from skisnow.report.figures.drawing import Drawing, Picture
+from skisnow.report.figures.style import journal_style
+from skisnow.report.figures.translated import translate_figure
+from skisnow.report.symbols import figure_text
+from skisnow.report.turn_chain import TurnChain
+from skisnow.scenario.keys import SCENARIO_KEYS
+
+from . import test_identify_report, test_turn_report
+from .test_translated import ENGLISH, VERSION, texts, written
+
+chain, found = test_turn_report.chain, test_identify_report.found  # fixtures
+KEYS = frozenset({*SCENARIO_KEYS, "giant-slalom", "false", "true", "Start", "Start (J)", VERSION, f", {VERSION}"})
+NAMES = ("run A", "run B")
+GAPS = tuple(
+    GateGap(gate=gate, outcome="passed", other_outcome=other, time=own, other_time=its, gap=gap, lost=lost)
+    for gate, other, own, its, gap, lost in (
+        ("1", "passed", 1.5, 1.25, 0.25, 0.25),
+        ("2", "missed", 2.5, None, None, None),
+        ("3", "passed", 3.5, 3.75, -0.25, -0.5),
+    )
+)
+
+
+def drawn(drawings: Iterator[Drawing], names: frozenset[str]) -> list[Picture]:
+    """Drawn and translated, without files; no word in them is left in English."""
+    pictures = []
+    with journal_style():
+        for each in drawings:
+            english = set(written(each))
+            translate_figure(each.figure, "de", names=frozenset(map(figure_text, names)))
+            german = {re.sub(r"\$[^$]*\$", "", text) for text in written(each)} - names
+            assert {text for text in german if ENGLISH.search(_without(text, names))} == set()
+            assert any(re.search("[a-z]{4}", text) for text in english)
+            pictures.append(Picture(each.name, each.whole_caption, each.alt, each.wide, "", b""))
+    return pictures
+
+
+def _without(text: str, names: frozenset[str]) -> str:
+    for name in sorted(names, key=len, reverse=True):
+        text = text.replace(name, "")
+    return text
+
+
+def left(page: Callable[[str], str], names: frozenset[str], *, fewest: int) -> set[str]:
+    """Texts of a page that stay as they are or have an English word, but for names and keys."""
+    english, german = (texts(page(language)) for language in ("en", "de"))
+    words = {each for each in english if re.search("[A-Za-z]{4}", _without(each, names))} - KEYS
+    assert len(words) > fewest
+    stayed = words & german
+    return stayed | {
+        each for each in german - KEYS if ENGLISH.search(_without(each, names)) and "The skisnow developers" not in each
+    }
+
+
+def test_no_text_of_a_german_turn_is_left_in_english(chain: TurnChain) -> None:
+    names = turn_report.names_in(chain)
+    pictures = drawn(turn_report._drawings(chain), names)
+    assert left(lambda language: turn_report.turn_page(chain, pictures, language=language), names, fewest=120) == set()
+
+
+def test_no_text_of_a_german_identification_is_left_in_english(found: Identification) -> None:
+    names = identify_report.names_in(found) | {"Two are hardly told apart", "By Gauss and Newton", "The search ended"}
+    pictures = drawn(identify_report._drawings(found), names)
+    page = identify_report.identify_page
+    assert left(lambda language: page(found, pictures, language=language), names, fewest=30) == set()
+
+
+def test_no_text_of_german_gaps_is_left_in_english() -> None:
+    names = frozenset(NAMES)
+    pictures = drawn(gaps_report._drawings(GAPS, NAMES), names)
+    page = gaps_report.gaps_page
+    assert left(lambda language: page(GAPS, NAMES, pictures, language=language), names, fewest=12) == set()
+
+
+def test_a_language_without_texts_is_refused_before_anything_is_written(
+    chain: TurnChain, found: Identification, tmp_path: Path
+) -> None:
+    writers: tuple[Callable[[Path], Path], ...] = (
+        lambda folder: chain.report(folder, language="xx"),
+        lambda folder: identify_report.write_identify_report(found, {}, folder, language="xx"),
+    )
+    for write in writers:
+        with pytest.raises(ParameterError, match="one of en, de; 'xx' is given"):
+            write(tmp_path / "out")
+    assert not (tmp_path / "out").exists()
