@@ -124,7 +124,7 @@ NO_VARIABLES(String, const char*)
 // modelDescription.xml says that these are not offered; an importer may still look for their names.
 #define NOT_OFFERED(name) \
   FMI3_FUNCTION Status name(void* c, ...) { return said(of(c).refuse(#name " is not offered")); }
-#define NO_INSTANCE(name) \
+#define NO_INSTANCE(name) /* NOLINT(bugprone-macro-parentheses): a name */ \
   FMI3_FUNCTION void* name(...) { return nullptr; }
 NO_INSTANCE(fmi3InstantiateModelExchange)
 NO_INSTANCE(fmi3InstantiateScheduledExecution)

@@ -39,7 +39,7 @@ class FmuInstance {
   FmuStatus take(const State* state);
   // A state as bytes, and back into a new one, of any instance of the same FMU.
   FmuStatus size(const State* state, std::size_t* size) const;
-  FmuStatus write(const State* state, unsigned char* bytes, std::size_t size) const;
+  FmuStatus write(const State* state, unsigned char* to, std::size_t size) const;
   FmuStatus read(const unsigned char* bytes, std::size_t size, State** state) const;
   FmuStatus refuse(const std::string& what) const;  // an error, in words
 

@@ -109,11 +109,12 @@ Situation FmuContact::situation(double time) {
 }
 
 void FmuContact::meet(double time) {
-  if (!contact_) return;  // before begin() there is none
   const Situation at = situation(time);
+  if (!contact_) return;  // before begin() there is none
+  auto& contact = *contact_;
   double* to = output();
-  for (const Reaction& each : contact_->force(at)) to = std::copy_n(each.moment, 3, std::copy_n(each.force, 3, to));
-  contact_->update(at);
+  for (const Reaction& each : contact.force(at)) to = std::copy_n(each.moment, 3, std::copy_n(each.force, 3, to));
+  contact.update(at);
   accepted_ = time;
 }
 

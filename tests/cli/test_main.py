@@ -59,6 +59,15 @@ def test_check_lists_every_error_and_exits_1(campaign: Path, capsys: pytest.Capt
     assert "errors: 2" in text
 
 
+def test_check_of_a_ski_file_says_what_checks_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ski = tmp_path / "mine.toml"
+    ski.write_text('name = "mine"\n', encoding="utf-8")
+    assert main(["check", str(ski)]) == 1
+    assert "carve --ski FILE" in capsys.readouterr().out
+    assert main(["check", str(tmp_path / "nowhere")]) == 1
+    assert "carve --ski" not in capsys.readouterr().out
+
+
 def test_analyse_refuses_a_campaign_with_errors_and_writes_nothing(
     campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

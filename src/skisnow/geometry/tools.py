@@ -29,9 +29,13 @@ def _length(name: str, meaning: str) -> Quantity:
     return Quantity(name, meaning, lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
 
 
+_FLAT: Final = 1e-300
+"""Edge angles (rad) not above it are 0: lengths over their tangents would overflow."""
+
+
 def _tangent(angle: FloatArray) -> FloatArray:
-    """Tan ϑ, of the angles' own shape; 1 where ϑ is 0 and no wedge is."""
-    return np.where(angle > 0, np.tan(angle), 1.0)
+    """Tan ϑ, of the angles' own shape; 1 where the tool is flat and no wedge is."""
+    return np.where(angle > _FLAT, np.tan(angle), 1.0)
 
 
 class Tool(abc.ABC):
@@ -150,29 +154,29 @@ class PlainWedge(Tool):
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.contact_area`."""
         e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
-        return self.length * np.where(angle > 0, e / _tangent(angle), self.width)
+        return self.length * np.where(angle > _FLAT, e / _tangent(angle), self.width)
 
     def displaced_volume(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.displaced_volume`."""
         e, angle = np.asarray(penetration_depth, float), np.asarray(edge_angle, float)
-        return self.length * np.where(angle > 0, e**2 / (2.0 * _tangent(angle)), self.width * e)
+        return self.length * np.where(angle > _FLAT, e**2 / (2.0 * _tangent(angle)), self.width * e)
 
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.area_growth`."""
         _, angle = np.broadcast_arrays(np.asarray(penetration_depth, float), np.asarray(edge_angle, float))
-        return np.where(angle > 0, self.length / _tangent(angle), 0.0)
+        return np.where(angle > _FLAT, self.length / _tangent(angle), 0.0)
 
     def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.depth_at_volume`."""
         V, angle = np.asarray(displaced_volume, float), np.asarray(edge_angle, float)
         plain = np.sqrt(2.0 * _tangent(angle) * V / self.length)
         flat: FloatArray = V / (self.length * self.width)
-        return np.where(angle > 0, plain, flat)
+        return np.where(angle > _FLAT, plain, flat)
 
     def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.greatest_depth`: W sin ϑ edged, where the base goes under; the width when flat."""
         angle = np.asarray(edge_angle, float)
-        return np.where(angle > 0, self.width * np.sin(angle), self.width)
+        return np.where(angle > _FLAT, self.width * np.sin(angle), self.width)
 
 
 @dataclass(frozen=True, slots=True)

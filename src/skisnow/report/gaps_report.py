@@ -56,7 +56,7 @@ def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path, 
     write_file(folder / PAGE, gaps_page(gaps, names, pictures, language=language))
 
 
-def gaps_of_folders(folder: Path, other: Path, *, language: str = ENGLISH) -> str:
+def gaps_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
     """The page of two runs by their folders, in a language, without writing anything.
 
     Raises

@@ -79,7 +79,7 @@ class Boots(Shown):
         self._require_sound()
         object.__setattr__(self, "_place", CubicSpline(self.at, self.place))
         turned = np.swapaxes(self.axes, -1, -2)
-        splines = (RotationSpline(self.at, Rotation.from_matrix(turned[:, ski])) for ski in range(2))
+        splines = (RotationSpline(self.at, Rotation.from_matrix(turned[:, ski].copy())) for ski in range(2))
         object.__setattr__(self, "_axes", tuple(splines))
 
     def _require_sound(self) -> None:

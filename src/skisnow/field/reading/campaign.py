@@ -158,6 +158,8 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
         return _read(FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress)
     if not folder.is_dir():
         action = "Name the folder that holds campaign.toml and the tables, or a workbook (.xlsx) with all of it."
+        if folder.is_file() and folder.suffix.lower() == ".toml":
+            action += " A ski or a scenario is checked where it is used: by carve --ski FILE, by simulate FILE."
         value = "a file" if folder.exists() else "nothing"
         nowhere = error("unreadable_file", str(folder), value=value, allowed="a folder that exists", action=action)
         return _Contents(folder, None, {}, {}, (nowhere,))

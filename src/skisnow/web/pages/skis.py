@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 PATH: Final = "/skis"
 TITLE: Final = "Skis"
-ALONG: Final = "Position along the ski (m), boot = 0"
+ALONG: Final = "Position (m), boot = 0"
 PANELS: Final = {
     "half_width_mm": "Edge (mm)",
     "base_height_mm": "Base (mm)",

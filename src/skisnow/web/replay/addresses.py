@@ -22,6 +22,7 @@ from ...report.gaps_report import gaps_of_folders
 from ...ski import read_ski
 from ..confined import BOUNDS, confined
 from ..error_pages import plain_page
+from ..language import language_of_request
 from ..runs import JOB
 from .tracks import TrackFolders, track_on_slope
 
@@ -131,7 +132,7 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
     def gates(request: Request, run: str, ghost: str = "") -> Response:
         try:
-            page = confined(BOUNDS, gaps_of_folders, runs.place(run), runs.place(ghost))
+            page = confined(BOUNDS, gaps_of_folders, runs.place(run), runs.place(ghost), language_of_request(request))
         except ParameterError as error:
             return plain_page("This cannot be shown", f"{str(error)[0].upper()}{str(error)[1:]}.", 404, request)
         return HTMLResponse(page)
