@@ -81,7 +81,7 @@ def test_a_skier_is_sent_through_an_uploaded_course(page: Page, served: Served, 
     assert page.get_by_label("Edge angle ϑ (°)", exact=True).count() == 0  # the skier sets it
     page.get_by_label("Ends after (s)", exact=True).fill("0.05")
     page.get_by_role("button", name="Simulate").click()
-    page.get_by_text("finished: ").wait_for()
+    page.get_by_text("missed gate: ").wait_for()
     (job,) = (served.store.parent / "lab").glob("*/job.json")
     changes = json.loads(job.read_text(encoding="utf-8"))["changes"]
     assert Path(changes["course.file"]).read_bytes() == COURSE

@@ -136,7 +136,7 @@ def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> 
     page.goto(f"{served.address}simulate")
     page.get_by_label("Ends after (s)", exact=True).fill("60")
     page.get_by_label("Ends after a way of (m)", exact=True).fill("900")
-    page.get_by_text("Expert inputs").click()  # long to compute, and few rows to write
+    page.locator("summary", has_text="Expert inputs").click()  # long to compute, and few rows to write
     page.get_by_label("Distance of the snow lines (mm)", exact=True).fill("2")
     page.get_by_label("Time between outputs (ms)", exact=True).fill("100")
     for _ in range(2):

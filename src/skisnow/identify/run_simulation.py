@@ -20,7 +20,7 @@ from ..sources import Sources
 
 FloatArray = npt.NDArray[np.float64]
 
-SEARCH_STEP: Final = 5e-3
+SEARCH_STEP: Final = 4e-3
 """Fixed step (s) of the fast mode in a search: 1 to 3 cm off after 46 m, on very hard snow too long (modelling
 assumption)."""
 OUTPUT_INTERVAL: Final = 0.02
