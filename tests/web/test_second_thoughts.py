@@ -81,6 +81,7 @@ def test_readings_stay_under_their_loads_when_the_discs_change(page: Page, serve
     assert found == [("20", "1.4"), ("30", "1.7"), ("40", "2.0"), ("50", "2.2"), ("60", "2.5"), ("80", "2.9")]
 
 
+@pytest.mark.slow
 def test_a_shear_test_that_was_begun_waits_while_another_is_looked_at(page: Page, served: Served) -> None:
     create(page, served)
     enter_shear(page)
@@ -94,6 +95,7 @@ def test_a_shear_test_that_was_begun_waits_while_another_is_looked_at(page: Page
     has_text(page.get_by_label("Moment (N m)"), "7,7")
 
 
+@pytest.mark.slow
 def test_pressed_twice_is_done_once(page: Page, served: Served) -> None:
     page.goto(f"{served.address}describe")
     fill(page, {"Name of the campaign": "one", "Name of plate 1": "plate", "Length (mm) of plate 1": "100"})

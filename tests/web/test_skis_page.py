@@ -42,6 +42,7 @@ def type_into(page: Page, label: str, text: str) -> None:
     page.keyboard.press("Tab")
 
 
+@pytest.mark.slow
 def test_factors_and_values_at_stations_are_drawn_and_saved(page: Page, served: Served) -> None:
     page.goto(f"{served.address}skis")
     page.get_by_label("EI (N m²) at 0.000 m", exact=True).wait_for()

@@ -70,7 +70,7 @@ def test_shear_tests_without_a_pause(page: Page, served: Served) -> None:
     assert found == [["6", "250", "30"], ["8", "250", "36"], ["7", "250", "33"]]
 
 
-@pytest.mark.parametrize("is_busy", [False, True])
+@pytest.mark.parametrize("is_busy", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, served: Served, is_busy: bool) -> None:
     if is_busy:
         page.add_init_script(LEFT_LATE)

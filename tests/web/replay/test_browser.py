@@ -233,6 +233,7 @@ def test_gates_stand_where_they_are_red_and_blue_by_turns(seen: Watched) -> None
     assert found == [[[4, 3], 0xD0342C], [[9, -2], 0x1F5FBF]]
 
 
+@pytest.mark.slow
 def test_the_groove_is_as_deep_as_the_slider_says(seen: Watched) -> None:
     """Where one looks down into it; at its true depth of 20 mm it is hardly seen."""
     seen.does("replay.look('edge'); replay.show('ghost', false); replay.seek(2.0)")
@@ -249,6 +250,7 @@ def test_the_groove_is_deepest_where_the_edge_is(seen: Watched) -> None:
     assert seen.does("return [...new Set(replay.stage.groove.mesh.geometry.attributes.lowest.array)]") == [0.5]
 
 
+@pytest.mark.slow
 def test_metre_marks_are_told_and_can_be_taken_away(seen: Watched) -> None:
     """Squares, lines and the path, whose dashes begin each metre."""
     found = seen.does(
@@ -341,6 +343,7 @@ def test_ghost_and_measured_track_are_switches(seen: Watched) -> None:
         everything = fewer
 
 
+@pytest.mark.slow
 def test_exaggeration_bends_more(seen: Watched) -> None:
     seen.does("replay.seek(2.0); replay.look('edge')")
     true = seen.picture()
@@ -394,6 +397,7 @@ def test_every_control_has_a_name(seen: Watched) -> None:
     assert unnamed == []
 
 
+@pytest.mark.slow
 def test_dragging_turns_and_the_wheel_comes_nearer(fresh: Watched) -> None:
     box = fresh.page.locator("canvas.replay-canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
@@ -480,6 +484,7 @@ def test_moving_boots_over_measured_heights(browser: Any, tmp_path: Path) -> Non
         seen.close()
 
 
+@pytest.mark.slow
 def test_elastic_snow_says_that_nothing_stays(browser: Any, tmp_path: Path) -> None:
     run = circle_run(unloading_ratio=1.0)
     elastic = replace(run, groove=replace(run.groove, residual_depth=np.zeros(len(run.groove.width))))
