@@ -219,6 +219,7 @@ def test_a_series_on_a_phone_from_its_first_reading_to_the_last(page: Page, serv
     marked = "document.activeElement.value?.slice(document.activeElement.selectionStart) === '3,o'"
     page.wait_for_function(marked)
     assert page.locator(":focus").get_attribute("aria-label") == "Depth under 80 N (mm)"
+    ready(page)
     page.get_by_label("Depth under 80 N (mm)").fill("")
     press(page, "button", "Next series")
     page.get_by_role("heading", name="New series").wait_for()

@@ -103,6 +103,33 @@ def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, s
     assert depths(served) == {"1": ["1.5", "2.15", "2.6"]}
 
 
+@pytest.mark.parametrize("is_seen", [False, True])
+def test_what_is_typed_on_after_a_last_reading_that_is_refused_is_not_written_there(
+    page: Page, served: Served, is_seen: bool
+) -> None:
+    page.add_init_script(PAUSES)
+    page.goto(begun(served))
+    page.get_by_label("Site", exact=True).and_(page.locator(":focus")).wait_for()
+    page.keyboard.type("A\n30\n1.5\n2.15\n")
+    page.get_by_text("Stored: 2.15 mm under 40 N.").wait_for()
+    page.keyboard.type("2.6.\n")
+    field = page.get_by_label("Depth under 60 N (mm)").and_(page.locator(":focus"))
+    field.wait_for()
+    if is_seen:
+        page.evaluate("pauseOver()")
+        ready(page)
+        page.keyboard.type("2.6\n")
+        page.get_by_text("Stored: 2.6 mm under 60 N.").wait_for()
+        assert depths(served) == {"1": ["1.5", "2.15", "2.6"]}
+    else:
+        page.keyboard.type("\n45\n")
+        page.evaluate("pauseOver()")
+        page.evaluate("pauseOver()")  # none since the last look
+        page.get_by_text("Typed meanwhile and not used: ⏎ 45 ⏎").wait_for()
+        has_text(field, "2.6.")
+        assert depths(served) == {"1": ["1.5", "2.15"]}
+
+
 def test_what_is_typed_while_another_scenario_is_drawn_finds_its_field(page: Page, served: Served) -> None:
     answers = HeldAnswers(page)
     page.goto(f"{served.address}simulate")
@@ -169,6 +196,13 @@ NOTE_WHAT_IS_LOST = """() => new MutationObserver(() => {
 }).observe(document, { subtree: true, attributes: true, characterData: true, childList: true })"""
 
 # A timer of Quasar's tells that a field was left, and in a busy browser keys go before timers: here until a press.
+# the hand pauses when it is told to, not when a machine has been slow
+PAUSES = """(() => {
+  const soon = window.setTimeout;
+  const pauses = [];
+  window.setTimeout = (act, ms, ...rest) => (ms === 250 ? pauses.push(act) : soon(act, ms, ...rest));
+  window.pauseOver = () => new Promise((done) => (pauses.splice(0).forEach((act) => act()), soon(done, 0)));
+})()"""
 LEFT_LATE = """(() => {
   const soon = window.setTimeout;
   const waiting = [];

@@ -23,6 +23,7 @@
   let resuming = false; // readings or rows of before are being told to the lab
   let goingTo = ""; // the address that the page goes on to
   let drawings = 0; // menus chosen from whose fields the lab has not drawn anew yet
+  let toPutRight = null; // the field of the last reading, which was refused
   const telling = new Map(); // readings that the lab has not answered yet, by their numbers
 
   const fieldsets = () => document.querySelectorAll("fieldset.lab");
@@ -213,11 +214,13 @@
 
   async function writeHeld() {
     writing = true;
+    tellHolding();
     while (held.length && !waiting && !refused && !isLost && !goingTo && !drawings) {
       refused = !write(held[0]);
       if (!refused) held.shift();
       await pause(0); // the field tells its text before the next key comes
     }
+    if (toPutRight && !waiting) goBack();
     if (refused && !waiting) await letRunOut();
     writing = false;
     save();
@@ -235,6 +238,8 @@
       await pause(PAUSE_MS);
     }
     if (held.length) say("unused", `${SAID.meanwhile} ${held.splice(0).map(inWords).join("")}`);
+    refused = false;
+    toPutRight = null;
   }
 
   const pause = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -309,12 +314,21 @@
     (next ?? (typed ? button : null))?.focus();
   }
 
-  // The last reading was refused: its field again, all of it marked, unless somebody has gone elsewhere meanwhile.
+  // The last reading was refused: when what is typed already is written, and the next series not asked for, to its field.
   function refusedLast(id) {
-    const field = getHtmlElement(id)?.querySelector("input") ?? getHtmlElement(id);
-    if (!document.activeElement?.matches("button.then")) return;
+    toPutRight = id;
+    if (!writing) writeHeld();
+  }
+
+  // To the field of the last reading, all of it marked, unless somebody has gone elsewhere meanwhile. A hand that types on
+  // has not seen it yet.
+  function goBack() {
+    const field = getHtmlElement(toPutRight)?.querySelector("input") ?? getHtmlElement(toPutRight);
+    toPutRight = null;
+    if (!field || !document.activeElement?.matches("button.then")) return;
     field.focus();
     field.select();
+    refused = true;
   }
 
   // A field that has to be put right: shown, with the focus in it and all of it marked.
