@@ -14,7 +14,7 @@ QUICK := -n 2 --dist worksteal -q --hypothesis-profile=ci
 # tests start hundreds of Python processes; where compiled modules are not kept, each compiles the package anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo test test-repeating test-all test-minimum coverage lint tidy sanitize docs bench lock sbom clean
+.PHONY: help demo test test-all test-minimum coverage lint tidy sanitize docs bench lock sbom clean
 
 help:
 	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, and a slalom to watch, in $(DEMO)/"
@@ -81,10 +81,6 @@ demo: $(VENV)/.skisnow
 
 test: $(VENV)/.skisnow-dev
 	$(BIN)/python -m pytest $(QUICK)
-
-# for .ci/run: a browser test that failed has a second try
-test-repeating: $(VENV)/.skisnow-dev
-	$(BIN)/python .ci/repeating.py $(QUICK)
 
 test-all: $(VENV)/.skisnow-dev
 	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m 'slow or not slow'

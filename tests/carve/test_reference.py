@@ -113,7 +113,8 @@ def test_a_plain_ski_with_a_shovel() -> None:
     compare(replace(base(ski), unloading_ratio=10.0, clamp_length=0.3))
 
 
-@pytest.mark.parametrize("moment", [pytest.param(0.0, marks=pytest.mark.slow), 40.0])
+@pytest.mark.slow
+@pytest.mark.parametrize("moment", [0.0, 40.0])
 def test_a_boot_that_takes_no_moment_of_the_side_force(moment: float) -> None:
     compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, boot_is_free=True, moment=moment))
 
@@ -146,7 +147,7 @@ def test_a_hardness_that_grows_with_the_edge_angle() -> None:
 @pytest.mark.parametrize(
     "law",
     [
-        pytest.param(AngleShear(0.35e6, 0.6), id="angle"),
+        pytest.param(AngleShear(0.35e6, 0.6), id="angle", marks=pytest.mark.slow),
         pytest.param(Deepening(0.1e6, 1e-3), marks=pytest.mark.slow, id="depth"),
     ],
 )

@@ -69,6 +69,7 @@ def test_nearest_of_few_pieces(ends: int) -> None:
     assert Path(path).nearest(points).distance == pytest.approx([by_hand(point, path) for point in points], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_many_points_in_one_place_among_many_pieces() -> None:
     """Every piece is as near as every other: more than can be looked at at once, for one point and for all."""
     angle = np.linspace(0.0, math.tau, 2001)

@@ -12,7 +12,7 @@ from skisnow.web.pages import PAGES
 from .conftest import Served, settled
 from .replay.test_lab_page import kept
 from .test_contrast import COLOURS, LEAST, contrast
-from .test_entering import NAME_OF
+from .test_entering import NAMELESS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -52,8 +52,8 @@ def test_it_fits_every_field_has_a_name_and_all_text_stands_out(page: Page, serv
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         fields = page.locator("input:visible, select:visible, button:visible, textarea:visible")
         assert fields.count() > 1
-        assert [each for each in fields.all() if not each.evaluate(NAME_OF)] == []
-        assert [each for each in page.locator("svg[role=img]").all() if not each.get_attribute("aria-label")] == []
+        assert fields.evaluate_all(NAMELESS) == []
+        assert page.locator("svg[role=img]:not([aria-label]), svg[role=img][aria-label='']").count() == 0
         found = page.evaluate(COLOURS)
         assert len(found) > 5
         assert [row for row in found if contrast(row[1], row[2]) < LEAST] == []

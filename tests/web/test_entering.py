@@ -114,8 +114,7 @@ def test_a_depth_that_is_read_once_more_after_waiting_stands_beside_the_first_on
     ready(page)
     page.locator("summary", has_text="Depths read once more after waiting").press("Enter")
     fits(page)
-    fields = page.locator("input:visible, button:visible").all()
-    assert [each for each in fields if not each.evaluate(NAME_OF)] == []
+    assert page.locator("input:visible, button:visible").evaluate_all(NAMELESS) == []
     page.get_by_label("Depth after waiting under 40 N (mm)").fill("2.1.6")
     page.keyboard.press("Enter")
     page.get_by_text("Not stored: Depth after waiting (mm) is a number of 0 or more").wait_for()
@@ -264,9 +263,7 @@ def test_a_phone_and_the_names_of_all_fields(page: Page, served: Served) -> None
         page.get_by_role("heading", level=1).wait_for()
         page.locator("h2").first.wait_for()
         assert page.evaluate("document.documentElement.scrollWidth") <= 390, place
-        fields = page.locator("input:visible, select:visible, button:visible")
-        nameless = [each for each in fields.all() if not each.evaluate(NAME_OF)]
-        assert nameless == [], place
+        assert page.locator("input:visible, select:visible, button:visible").evaluate_all(NAMELESS) == [], place
         assert page.evaluate(CUT) == [], place
 
 
@@ -274,16 +271,19 @@ CUT = """[...document.querySelectorAll(".q-field__label")]
     .filter((each) => each.clientWidth && each.checkVisibility() && each.scrollWidth > each.clientWidth + 1)
     .map((each) => each.textContent)"""
 """The labels of fields that are longer than their fields."""
-NAME_OF = """element => element.getAttribute('aria-label') || element.innerText?.trim()
-  || [...(element.labels || [])].map(label => label.innerText.trim()).join(' ')"""
+NAMELESS = """elements => elements.filter((element) => !(element.getAttribute('aria-label') || element.innerText?.trim()
+  || [...(element.labels || [])].map(label => label.innerText.trim()).join(' '))).map((element) => element.outerHTML)"""
+"""Those of elements that a screen reader has no name for."""
 
 
 def tab_to(page: Page, place: Locator) -> None:
     """Go there by the tabulator; it is further than any page is long where it cannot be reached."""
-    place.wait_for()
+    element = place.element_handle()
     for _ in range(150):
-        if place.evaluate("element => element === document.activeElement"):
+        if element.evaluate("element => element === document.activeElement"):
             return
+        if not element.evaluate("element => element.isConnected"):  # drawn anew
+            element = place.element_handle()
         page.keyboard.press("Tab")
     raise AssertionError(f"{place} is not reached by the tabulator")
 

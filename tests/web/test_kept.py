@@ -97,6 +97,7 @@ def correct(page: Page, field: str, text: str, why: str) -> None:
     page.get_by_text("Corrected; the first reading is kept.").wait_for()
 
 
+@pytest.mark.slow
 def test_an_imported_campaign_is_corrected(page: Page, served: Served, tmp_path: Path, capsys: Printed) -> None:
     imported(page, served)
     follow(page, "Analysis")
@@ -175,7 +176,7 @@ def test_what_a_test_has_once_is_corrected_in_every_row(
     assert abs(results["shear"]["experiments"][0]["S_f_N_per_mm2"] - 0.24) < 1e-12
 
 
-@pytest.mark.parametrize("has_icons", [True, False])
+@pytest.mark.parametrize("has_icons", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_the_pages_fit_a_phone(page: Page, served: Served, has_icons: bool) -> None:
     page.set_viewport_size({"width": 390, "height": 844})
     if not has_icons:  # the icons' font comes late, or never: an icon is then its name, which is longer
