@@ -16,7 +16,7 @@ from skisnow import QuickestLine, Scenario, quickest_line, scenario
 from skisnow.errors import ParameterError
 from skisnow.parallel.kept_rows import KeptRows
 from skisnow.parallel.pool import Pool
-from skisnow.racing.search import Evaluations, least_of
+from skisnow.racing.search import Batches, Evaluations, least_of
 
 from .test_point import WAY, glide, straight_course
 
@@ -45,16 +45,18 @@ class Polyline:
         return {"place": list(place), "value": float(np.sum(length / speed))}
 
 
+def batches(made: Evaluations) -> Batches:
+    """Of places alone, told to nobody."""
+    return Batches(evaluations=made, point_of=lambda place: tuple(place.tolist()), told=lambda *_: None, first=0)
+
+
 def test_a_brachistochrone_of_pieces_obeys_snell() -> None:
     """At the optimum the sine of the angle over the mean speed is the same on each piece."""
     pytest.importorskip("cmaes")
     line = Polyline()
     with Pool(line, 1, advice="") as pool:
-        made = Evaluations(pool, KeptRows(), [])
-        best = least_of(
-            made, lambda place: tuple(place.tolist()), np.full(3, 0.5), count=600, population=None, spread=0.2,
-            seed=(5,), told=lambda *_: None,
-        )  # fmt: skip
+        made = batches(Evaluations(pool, KeptRows(), []))
+        best = least_of(made, np.full(3, 0.5), count=600, population=None, spread=0.2, seed=(5,))
     length, speed, rise = line.pieces(line.aside * np.array(best.place))
     assert rise / length / speed == pytest.approx(np.full(4, (rise / length / speed).mean()), rel=1e-4)
     assert cycloid(line.x[-1], line.aside, line.down) < best.value < 1.03 * cycloid(line.x[-1], line.aside, line.down)

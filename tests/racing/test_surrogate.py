@@ -13,7 +13,7 @@ from skisnow.racing.by_surrogate import SurrogateSearch
 from skisnow.racing.search import Evaluations
 from skisnow.racing.surrogate import Surrogate, learnable
 
-from .test_search import EASY, Polyline, cycloid, raced
+from .test_search import EASY, Polyline, batches, cycloid, raced
 
 PLACES = np.random.default_rng(1).random((40, 4))
 VALUES = 3.0 + np.sin(2.0 * PLACES[:, 0]) + PLACES[:, 1] ** 2 - 0.5 * PLACES[:, 2]
@@ -69,10 +69,8 @@ def test_a_brachistochrone_of_pieces_in_thirty_evaluations(seed: int) -> None:
     line = Polyline()
     with Pool(line, 1, advice="") as pool:
         made = Evaluations(pool, KeptRows(), [])
-        best = SurrogateSearch(
-            evaluations=made, point_of=lambda place: tuple(place.tolist()), count=30, kinds=3, spread=0.2, seed=(seed,),
-            told=lambda *_: None, first=0,
-        ).least(np.full(3, 0.5))  # fmt: skip
+        search = SurrogateSearch(batches=batches(made), count=30, kinds=3, spread=0.2, seed=(seed,))
+        best = search.least(np.full(3, 0.5))
     assert len(made.done) < 34
     exact = cycloid(line.x[-1], line.aside, line.down)
     assert exact < best.value < 1.025 * exact

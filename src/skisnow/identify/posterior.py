@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import ParameterError
+from ..optional_packages import needed
 from .parameter import bounds_of
 from .result import Solution
 
@@ -32,13 +32,7 @@ def require_emcee() -> Any:
     ParameterError
         It is not installed.
     """
-    try:
-        import emcee
-    except ImportError as error:
-        raise ParameterError(
-            'a posterior needs the package emcee, which is not installed: pip install "skisnow[posterior]"'
-        ) from error
-    return emcee
+    return needed("emcee", extra="posterior", what="a posterior")
 
 
 def posterior_places(

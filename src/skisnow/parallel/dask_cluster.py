@@ -10,9 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from ..certificates import load_certificate
 from ..errors import ParameterError, SkisnowError
 from ..given import read_toml
 from ..inputs import nearest
+from ..optional_packages import needed
 from .chunk import PointFunction
 from .crews import LOST, Crew, GivenCrew
 
@@ -196,17 +198,12 @@ def _require_certificates(tls: Mapping[str, str]) -> None:
         if what := tls.get("ca_file", ""):
             context.load_verify_locations(what)
         if what := tls.get("cert", ""):
-            context.load_cert_chain(what, tls.get("key"), password=_no_password)
+            load_certificate(context, what, tls.get("key"))
     except (OSError, ssl.SSLError, ValueError) as error:
         raise ParameterError(
             f"{what}: no certificate can be read ({error}). [tls] needs PEM files: ca_file, the authority; cert and "
             "key, a certificate that it signed and its private key"
         ) from error
-
-
-def _no_password() -> str:
-    """Workers ask nobody for a password."""
-    raise ValueError("the private key has a password")
 
 
 def _unanswered(asked: SchedulerFile, error: Exception) -> str:
@@ -294,20 +291,8 @@ def _security(tls: Mapping[str, str] | None) -> Any:
 
 
 def _distributed() -> Any:
-    try:
-        import distributed
-    except ImportError as error:
-        raise _missing("distributed", error) from error
-    return distributed
+    return needed("distributed", extra="dask", what="a scheduler")
 
 
 def _jobqueue() -> Any:
-    try:
-        import dask_jobqueue
-    except ImportError as error:
-        raise _missing("dask-jobqueue", error) from error
-    return dask_jobqueue
-
-
-def _missing(name: str, error: ImportError) -> ParameterError:
-    return ParameterError(f"a scheduler needs {name}, which cannot be loaded ({error}): pip install 'skisnow[dask]'")
+    return needed("dask_jobqueue", extra="dask", what="a batch system")

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
 from .score import NOT_PASSED
-from .search import FAILED, Evaluated, Evaluations, Told, least_in, optimiser_within
+from .search import Batches, Evaluated, optimiser_within
 from .surrogate import Surrogate, learnable
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
@@ -37,10 +37,8 @@ class SurrogateSearch:
 
     Attributes
     ----------
-    evaluations
+    batches
         Where they are made.
-    point_of
-        From a place to what the function takes.
     count
         Evaluations after which no new batch begins.
     kinds
@@ -49,33 +47,16 @@ class SurrogateSearch:
         Of the first evaluations: half of the box about the start is twice as much.
     seed
         Numbers from 0 on.
-    told
-        Called as evaluations come.
-    first
-        Number of the search's first evaluation.
     settled
         Ends the search before, where all values of two batches lie within so much.
     """
 
-    evaluations: Evaluations
-    point_of: Callable[[FloatArray], Any]
+    batches: Batches
     count: int
     kinds: int
     spread: float
     seed: Sequence[int]
-    told: Told
-    first: int
     settled: float = 0.0
-
-    @property
-    def found(self) -> list[Evaluated]:
-        """So far."""
-        return self.evaluations.done[self.first :]
-
-    def evaluate(self, batch: Sequence[FloatArray]) -> None:
-        """A batch."""
-        for more in self.evaluations.of([(self.point_of(place), place) for place in batch]):
-            self.told(len(self.found) + more, least_in(self.found).value if self.found else FAILED)
 
     def least(self, start: FloatArray) -> Evaluated:
         """The least; where all turns begin alike they are searched alike at first, then each for itself.
@@ -87,13 +68,13 @@ class SurrogateSearch:
         * Eriksson and others (2019), "Scalable global optimization via local Bayesian optimization", Advances in Neural
           Information Processing Systems 32, doi 10.48550/arXiv.1910.01739.
         """
-        self.evaluate([np.asarray(start, float)])
+        self.batches.evaluate([np.asarray(start, float)])
         turns = len(start) // self.kinds
         each_alike = np.tile(np.eye(self.kinds), (turns, 1))
         if turns > 1 and np.array_equal(np.tile(start[: self.kinds], turns), start):
             self._narrow(each_alike, self.first_of(self.kinds), math.ceil(ALIKE * self.count), 0)
         self._narrow(np.eye(len(start)), len(start) // 2, self.count, 1)
-        return least_in(self.found)
+        return self.batches.least
 
     @staticmethod
     def first_of(numbers: int) -> int:
@@ -104,29 +85,29 @@ class SurrogateSearch:
         """Go on until `count`, moving by directions (n, m) from the best."""
         box, size = min(2.0 * self.spread, BOX[1]) / (1 + phase), directions.shape[1]
         shares = qmc.LatinHypercube(size, rng=np.random.default_rng([*self.seed, phase])).random(drawn)
-        begin = self._numbers(directions, np.array(least_in(self.found).place))
-        if len(self.found) < count:
-            self.evaluate([directions @ np.clip(begin + box * (2.0 * each - 1.0), 0.0, 1.0) for each in shares])
-        while len(self.found) < count and box > BOX[0]:
-            before = least_in(self.found).value
-            self.evaluate(self._chosen(directions, box, phase))
-            better = least_in(self.found).value < before - self.settled
+        begin = self._numbers(directions, np.array(self.batches.least.place))
+        if len(self.batches.found) < count:
+            self.batches.evaluate([directions @ np.clip(begin + box * (2.0 * each - 1.0), 0.0, 1.0) for each in shares])
+        while len(self.batches.found) < count and box > BOX[0]:
+            before = self.batches.least.value
+            self.batches.evaluate(self._chosen(directions, box, phase))
+            better = self.batches.least.value < before - self.settled
             box = min(BOX[1], box * BOX_CHANGES[better])
-            last = [each.value for each in self.found[-2 * len(HOPES) :]]
+            last = [each.value for each in self.batches.found[-2 * len(HOPES) :]]
             if max(last) - min(last) < self.settled:
                 return
 
     def _chosen(self, directions: FloatArray, box: float, phase: int) -> list[FloatArray]:
         """A batch, each place as if those before it had given what is expected."""
-        places = np.array([each.place for each in self.found])
-        values = learnable([each.value for each in self.found])
+        places = np.array([each.place for each in self.batches.found])
+        values = learnable([each.value for each in self.batches.found])
         known = Surrogate.of(places, values, self.kinds)
-        passed = np.array([each.value < NOT_PASSED for each in self.found])
+        passed = np.array([each.value < NOT_PASSED for each in self.batches.found])
         expected = np.where(passed | ~passed.any(), known.at(places)[0], np.inf)
         centre = self._numbers(directions, places[int(np.argmin(expected))])
         chosen: list[FloatArray] = []
         for hope in HOPES:
-            seed = (*self.seed, phase, len(self.found), len(chosen))
+            seed = (*self.seed, phase, len(self.batches.found), len(chosen))
             place = directions @ _least_within(known, directions, centre, box, hope, seed)
             chosen.append(place)
             known = known.believing(place)

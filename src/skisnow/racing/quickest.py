@@ -23,7 +23,7 @@ from .by_surrogate import SurrogateSearch
 from .line import RacingLine, course_of, cut, follower_line, with_numbers
 from .racers import LinePoint, Racer, RacerModel, ScoredLine, score_in, turns_in
 from .score import NOT_PASSED, Score
-from .search import Evaluated, Evaluations, least_of, require_cmaes
+from .search import Batches, Evaluated, Evaluations, least_of, require_cmaes
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 Progress: TypeAlias = Callable[[str], None]
@@ -234,15 +234,15 @@ def _searched(made: Evaluations, part: RacingLine, first: int, how: _How) -> Eva
     numbers = [[each.aside, each.along, each.turning] for each in part.turns[first:]]
     place = np.clip((np.array(numbers) - _LOW) / _WIDTH, 0.0, 1.0).ravel()
     seed = (how.seed, first)
+    batches = Batches(evaluations=made, point_of=point_of, told=told, first=len(made.done))
     if how.search == "cma" or how.evaluations == 1:
         return least_of(
-            made, point_of, place, count=how.evaluations, population=how.population, spread=how.spread, seed=seed,
-            told=told, settled=how.settled,
+            batches, place, count=how.evaluations, population=how.population, spread=how.spread, seed=seed,
+            settled=how.settled,
         )  # fmt: skip
     return SurrogateSearch(
-        evaluations=made, point_of=point_of, count=how.evaluations, kinds=len(_LOW), spread=how.spread, seed=seed,
-        told=told, first=len(made.done), settled=how.settled,
-    ).least(place)  # fmt: skip
+        batches=batches, count=how.evaluations, kinds=len(_LOW), spread=how.spread, seed=seed, settled=how.settled
+    ).least(place)
 
 
 def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> RacingLine:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import ParameterError
+from ..optional_packages import needed
 from ..parallel.kept_rows import KeptRows, Row
 from ..parallel.pool import Pool
 
@@ -82,6 +83,43 @@ class Evaluations:
             self.done.append(Evaluated(number, tuple(place.tolist()), row))
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Batches:
+    """The evaluations of one search among all, batch by batch.
+
+    Attributes
+    ----------
+    evaluations
+        Where they are made.
+    point_of
+        From a place to what the function takes.
+    told
+        Called as evaluations come.
+    first
+        Number of the search's first evaluation.
+    """
+
+    evaluations: Evaluations
+    point_of: Callable[[FloatArray], Any]
+    told: Told
+    first: int
+
+    @property
+    def found(self) -> list[Evaluated]:
+        """So far."""
+        return self.evaluations.done[self.first :]
+
+    @property
+    def least(self) -> Evaluated:
+        """The first of the least so far."""
+        return min(self.found, key=lambda each: _finite(each.value))
+
+    def evaluate(self, batch: Sequence[FloatArray]) -> None:
+        """A batch of places."""
+        for more in self.evaluations.of([(self.point_of(place), place) for place in batch]):
+            self.told(len(self.found) + more, self.least.value if self.found else FAILED)
+
+
 def require_cmaes() -> Any:
     """The package of the search.
 
@@ -90,35 +128,25 @@ def require_cmaes() -> Any:
     ParameterError
         It is not installed.
     """
-    try:
-        import cmaes
-    except ImportError as error:
-        raise ParameterError(
-            'a race needs the package cmaes, which is not installed: pip install "skisnow[racing]"'
-        ) from error
-    return cmaes
+    return needed("cmaes", extra="racing", what="a race")
 
 
 def least_of(
-    evaluations: Evaluations,
-    point_of: Callable[[FloatArray], Any],
+    batches: Batches,
     start: FloatArray,
     *,
     count: int,
     population: int | None,
     spread: float,
     seed: Sequence[int],
-    told: Told,
     settled: float = 0.0,
 ) -> Evaluated:
     """Search the unit cube; the least of `count` evaluations or some more, the first of them at the start itself.
 
     Parameters
     ----------
-    evaluations
+    batches
         Where they are made.
-    point_of
-        From a place to what the function takes.
     start
         (n,) where it begins.
     count
@@ -129,8 +157,6 @@ def least_of(
         Standard deviation of the first batch, in shares of each range.
     seed
         Numbers from 0 on.
-    told
-        Called as evaluations come.
     settled
         Ends the search before, where all values of a batch lie within so much.
 
@@ -139,29 +165,18 @@ def least_of(
     * Hansen and Ostermeier (2001), "Completely derandomized self-adaptation in evolution strategies", Evolutionary
       Computation 9(2), 159-195, doi 10.1162/106365601750190398.
     """
-    first = len(evaluations.done)
-
-    def found() -> list[Evaluated]:
-        return evaluations.done[first:]
-
-    def evaluate(batch: Sequence[FloatArray]) -> None:
-        for more in evaluations.of([(point_of(place), place) for place in batch]):
-            told(len(found()) + more, least_in(found()).value if found() else FAILED)
-
-    evaluate([np.asarray(start, float)])
+    batches.evaluate([np.asarray(start, float)])
     if count == 1:
-        return least_in(found())
+        return batches.least
     optimiser = _optimiser(start, population, spread, seed)
-    while len(found()) < count and not optimiser.should_stop():
-        batch = [optimiser.ask() for _ in range(optimiser.population_size)]
-        evaluate(batch)
-        values = [_finite(each.value) for each in found()[-len(batch) :]]
-        optimiser.tell(
-            [(np.array(each.place), value) for each, value in zip(found()[-len(batch) :], values, strict=True)]
-        )
+    while len(batches.found) < count and not optimiser.should_stop():
+        asked = [optimiser.ask() for _ in range(optimiser.population_size)]
+        batches.evaluate(asked)
+        values = [_finite(each.value) for each in batches.found[-len(asked) :]]
+        optimiser.tell(list(zip(asked, values, strict=True)))
         if max(values) - min(values) < settled:
             break
-    return least_in(found())
+    return batches.least
 
 
 def _optimiser(start: FloatArray, population: int | None, spread: float, seed: Sequence[int]) -> Any:
@@ -176,11 +191,6 @@ def optimiser_within(
     """CMA-ES within limits (n, 2) from a mean (n,) and a deviation on, seeded."""
     state = int(np.random.SeedSequence(list(seed)).generate_state(1)[0])
     return require_cmaes().CMA(mean=mean, sigma=spread, bounds=limits, seed=state, population_size=population)
-
-
-def least_in(found: Sequence[Evaluated]) -> Evaluated:
-    """The first of the least."""
-    return min(found, key=lambda each: _finite(each.value))
 
 
 def _finite(value: float) -> float:

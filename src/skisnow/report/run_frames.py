@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-from importlib import import_module
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import ParameterError
+from ..optional_packages import needed
 from ..scenario.values import in_sections, scenario_values
 from ..simulate.track_table import track_columns, track_table
 from .run_file import SKI_NAMES
@@ -25,13 +24,13 @@ if TYPE_CHECKING:
 
 def run_dataframe(run: Run) -> DataFrame:
     """The rows of track.csv; see `Run.to_dataframe`."""
-    pandas = _needed("pandas", "a table of a run as a DataFrame")
+    pandas = needed("pandas", extra="pandas", what="a table of a run as a DataFrame")
     return pandas.DataFrame(track_table(run), columns=list(track_columns(run)))
 
 
 def run_dataset(run: Run) -> Dataset:
     """Every variable of run.nc with its unit and meaning; see `Run.to_xarray`."""
-    xarray = _needed("xarray", "a run as a Dataset")
+    xarray = needed("xarray", extra="xarray", what="a run as a Dataset")
     stored = variables_of(run)
     coordinates = {each.name for each in stored if (each.name,) == each.dimensions}
     variables = {each.name: _variable(each, run) for each in stored}
@@ -51,12 +50,3 @@ def _variable(variable: RunVariable, run: Run) -> tuple[tuple[str, ...], Any, di
     values = np.asarray(variable.values(run), dtype=float)
     finite = np.where(np.isfinite(values), values, np.nan)  # as in run.nc: the radius of a straight path is missing
     return variable.dimensions, finite, {"units": variable.units, "long_name": variable.meaning}
-
-
-def _needed(package: str, what: str) -> Any:
-    try:
-        return import_module(package)
-    except ImportError as error:
-        raise ParameterError(
-            f'{what} needs the package {package}, which is not installed: pip install "skisnow[{package}]"'
-        ) from error

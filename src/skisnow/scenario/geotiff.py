@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..given import is_file
+from ..optional_packages import needed
 from .grid_table import PlacedValues
 
 
@@ -55,14 +56,8 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
 
 
 def _rasterio(path: str | Path) -> Any:
-    try:
-        import rasterio
-    except ImportError as error:
-        raise ParameterError(
-            f'{path}: a GeoTIFF needs the package rasterio, which is not installed: pip install "skisnow[geotiff]", or '
-            "write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid"
-        ) from error
-    return rasterio
+    grid = ", or write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid"
+    return needed("rasterio", extra="geotiff", what=f"{path}: a GeoTIFF", instead=grid)
 
 
 def _require_metres(path: str | Path, system: Any) -> None:

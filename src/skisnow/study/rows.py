@@ -9,11 +9,13 @@ import sqlite3
 import weakref
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, Final, overload
 
 from ..errors import ParameterError
 from ..given import own_json
+from ..optional_packages import needed
 from ..parallel.kept_rows import Row
 from .cells import Reader, row_of
 
@@ -195,11 +197,5 @@ def require_pyarrow() -> Any:
     ParameterError
         It is not installed.
     """
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError as error:
-        raise ParameterError(
-            f"a table in Parquet needs pyarrow, which cannot be loaded ({error}): pip install 'skisnow[parquet]'"
-        ) from error
-    return pyarrow
+    needed("pyarrow.parquet", extra="parquet", what="a table in Parquet")
+    return import_module("pyarrow")

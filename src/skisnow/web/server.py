@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import uvicorn
 
+from ..certificates import load_certificate
 from ..errors import ParameterError
 from .addresses import for_others, lab_addresses
 from .application import lab_application
@@ -48,17 +49,12 @@ class Certificate:
 
     def __post_init__(self) -> None:
         try:
-            ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(self.file, self.key, password=_no_password)
+            load_certificate(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), self.file, self.key)
         except (OSError, ssl.SSLError, ValueError) as error:
             raise ParameterError(
                 f"{self.file}: no certificate with its private key can be read ({error}); give a PEM file with both, "
                 "or the key's file with --certificate-key"
             ) from error
-
-
-def _no_password() -> str:
-    """The server asks nobody for a password."""
-    raise ValueError("the private key has a password")
 
 
 def serve(

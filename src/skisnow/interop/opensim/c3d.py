@@ -11,6 +11,7 @@ import numpy as np
 from ...errors import OutputError, ParameterError
 from ...files import write_file
 from ...given import plain_bytes
+from ...optional_packages import needed
 from .markers import METRES, FloatArray, Markers
 from .table import MOST_BYTES, MotionTable
 
@@ -146,10 +147,4 @@ def _require_names(path: Path, what: str, names: tuple[str, ...]) -> None:
 
 
 def _ezc3d(path: str | Path, done: str) -> Any:
-    try:
-        import ezc3d
-    except ImportError:
-        raise ParameterError(
-            f"{path}: .c3d files are {done} by ezc3d, which is not installed: pip install 'skisnow[c3d]'"
-        ) from None
-    return ezc3d
+    return needed("ezc3d", extra="c3d", what=f"{path}: a .c3d file that is to be {done}")
