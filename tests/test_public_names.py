@@ -161,7 +161,7 @@ def test_only_these_places_reach_up() -> None:
         "scenario.changed.changed_scenario": "scenario/scenario.py",
         "simulate.run_balance.balance_of": "simulate/run.py",
     }
-    assert imports == {"__init__.py", "callable_packages.py", "from_above.py", "report/run_frames.py"}
+    assert imports == {"__init__.py", "callable_packages.py", "from_above.py", "optional_packages.py"}
     for each in found:
         module, _, name = each.rpartition(".")
         assert callable(getattr(import_module(f"skisnow.{module}"), name))

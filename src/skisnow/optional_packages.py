@@ -31,5 +31,5 @@ def needed(module: str, *, extra: str, what: str, instead: str = "") -> Any:
         return import_module(module)
     except ImportError as error:
         raise ParameterError(
-            f'{what} needs {module}, which cannot be loaded ({error}): pip install "skisnow[{extra}]"{instead}'
+            f"{what} needs {module}, which cannot be loaded ({error}): pip install 'skisnow[{extra}]'{instead}"
         ) from error

@@ -208,7 +208,7 @@ def test_geotiff_lies_as_on_its_map(tmp_path: Path) -> None:
 
 def test_geotiff_without_its_package_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "rasterio", None)
-    with pytest.raises(ParameterError, match=r'pip install "skisnow\[geotiff\]"'):
+    with pytest.raises(ParameterError, match=r"pip install 'skisnow\[geotiff\]'"):
         read_terrain(written(tmp_path, "", "heights.tif"))
 
 

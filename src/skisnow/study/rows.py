@@ -9,7 +9,6 @@ import sqlite3
 import weakref
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, Final, overload
 
@@ -197,5 +196,7 @@ def require_pyarrow() -> Any:
     ParameterError
         It is not installed.
     """
-    needed("pyarrow.parquet", extra="parquet", what="a table in Parquet")
-    return import_module("pyarrow")
+    pyarrow, _ = (
+        needed(module, extra="parquet", what="a table in Parquet") for module in ("pyarrow", "pyarrow.parquet")
+    )
+    return pyarrow
