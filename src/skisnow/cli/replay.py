@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .announced import announced
-from .words import add_fall_line_azimuth, number
+from .words import add_fall_line_azimuth, add_language, number
 
 if TYPE_CHECKING:
     from ..replay import Replay, ReplayTrack
@@ -54,6 +54,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="bending and twist so many times in the models; left out: 1",
     )
     parser.add_argument("--title", help="what the reader sees above it; left out: the folder's name")
+    add_language(parser, "the page")
     parser.add_argument("--out", type=Path, metavar="DIR", help="the folder to write into; left out: the run's")
     parser.set_defaults(run=run, parser=parser)
 
@@ -114,7 +115,7 @@ def _written(options: argparse.Namespace, shown: Replay, ghost: Replay | None) -
     own = options.folder if options.folder.is_dir() else options.folder.parent
     folder = options.out or own
     with announced("writing"):
-        written = [write_replay(shown, folder / "replay.html", ghost=ghost)]
+        written = [write_replay(shown, folder / "replay.html", ghost=ghost, language=options.language)]
         if folder.resolve() == own.resolve():
             _link(folder)
         if options.model:

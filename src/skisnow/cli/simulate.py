@@ -155,7 +155,7 @@ def _write(options: argparse.Namespace, found: Run, summary: dict[str, Any], *, 
         if replay_title is not None:
             from ..replay import write_replay
 
-            write_replay(found, place / REPLAY, title=replay_title)
+            write_replay(found, place / REPLAY, title=replay_title, language=options.language)
 
     with Progress() as progress:
         page = write_run(

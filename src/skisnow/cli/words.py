@@ -58,13 +58,13 @@ def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:
     )
 
 
-def add_language(parser: argparse.ArgumentParser) -> None:
-    """Add the option that says which language a report is in."""
+def add_language(parser: argparse.ArgumentParser, what: str = "the page and the figures that --out writes") -> None:
+    """Add the option that says which language a report is in; `what`: all that is in it."""
     parser.add_argument(
         "--language",
         choices=codes(),
         default=ENGLISH,
-        help="of the page and the figures that --out writes; files that programs read stay as they are (left out: en)",
+        help=f"of {what}; files that programs read stay as they are (left out: en)",
     )
 
 

@@ -82,6 +82,7 @@ class Catalogue:
     """
 
     def __init__(self, translations: Mapping[str, str]) -> None:
+        self._translations = dict(translations)
         self._whole = {english: text for english, text in translations.items() if not _PLACE.search(english)}
         open_ones = [english for english in translations if _PLACE.search(english)]
         open_ones.sort(key=lambda english: -len(_PLACE.sub("", english)))
@@ -96,6 +97,10 @@ class Catalogue:
         other._names = names
         other.translated = lru_cache(_KNOWN)(other._translated)
         return other
+
+    def as_given(self, english: str) -> str:
+        """The translation of just this text, its places still open; the text itself where there is none."""
+        return self._translations.get(english, english)
 
     def _translated(self, text: str) -> str:
         plain = text.replace("\N{NO-BREAK SPACE}", " ")

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import base64
+import re
+from dataclasses import replace
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -12,6 +15,7 @@ from markupsafe import Markup
 
 from ..errors import ParameterError
 from ..files import write_file
+from ..language import ENGLISH, catalogue, require_language
 from ..simulate.run import Run
 from .binary import replay_bytes
 from .of_file import replay_of_file
@@ -22,7 +26,8 @@ if TYPE_CHECKING:
     from .replay import ReplayTrack
 
 MODULES: Final = (
-    "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow_tile.js", "quads.js",
+    "words.js", "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow_tile.js",
+    "quads.js",
     "snow.js", "grid.js", "relief.js", "groove.js", "sledge.js", "skier.js", "skis.js", "labels.js", "landmarks.js",
     "force_arrows.js", "plume.js", "cameras.js", "sharpness.js", "controls.js", "mini_map.js", "takeaway.js",
     "gap.js",
@@ -32,6 +37,8 @@ MODULES: Final = (
 STYLE: Final = "replay.css"
 _PACKAGE: Final = "skisnow.replay"
 _ENDS_A_SCRIPT: Final = ("</script", "<!--")
+_SAID: Final = re.compile(r'\bsaid\("([^"]+)"')
+"""A text in the program that is looked up."""
 
 
 def write_replay(
@@ -41,6 +48,7 @@ def write_replay(
     ghost: Run | Replay | str | Path | None = None,
     title: str | None = None,
     track: ReplayTrack | None = None,
+    language: str = ENGLISH,
 ) -> Path:
     """Write a replay as one HTML file that opens without a server and without network.
 
@@ -56,6 +64,8 @@ def write_replay(
         What the reader sees; left out: the folder's name, or "A simulated run".
     track
         A measured track in the run's axes, shown beside; not with a replay, which has its own.
+    language
+        Of the page: en, or a language that there is a catalogue of (de).
 
     Returns
     -------
@@ -65,14 +75,15 @@ def write_replay(
     Raises
     ------
     ParameterError
-        A folder holds no run that can be shown.
+        A folder holds no run that can be shown, or there are no texts of the language.
     OutputError
         The file cannot be written.
     """
+    require_language(language)
     shown = [_replay(run, title, track)]
     if ghost is not None:
         shown.append(_replay(ghost, None, None))
-    write_file(path, replay_page(*shown))
+    write_file(path, replay_page(*shown, language=language))
     return Path(path)
 
 
@@ -86,16 +97,36 @@ def _replay(run: Run | Replay | str | Path, title: str | None, track: ReplayTrac
     return replay_of_file(run, title=title, track=track)
 
 
-def replay_page(run: Replay, ghost: Replay | None = None) -> str:
-    """The HTML of a replay, a second run over it where there is one."""
+def replay_page(run: Replay, ghost: Replay | None = None, *, language: str = ENGLISH) -> str:
+    """The HTML of a replay in a language, a second run over it where there is one."""
     environment = Environment(loader=PackageLoader(_PACKAGE, "static"), autoescape=True, undefined=StrictUndefined)
-    named = [("run", run), *([("ghost", ghost)] if ghost is not None else [])]
+    named = {"run": run} if ghost is None else {"run": run, "ghost": ghost}
+    content = {name: replay_bytes(in_language(each, language)) for name, each in named.items()}
     return environment.get_template("replay.html").render(
         title=run.title,
+        language=language,
+        said=catalogue(language).translated,
+        words=page_words(language),
         css=Markup(static_text(STYLE)),
-        runs=[{"id": name, "base64": base64.b64encode(replay_bytes(each)).decode()} for name, each in named],
+        runs=[{"id": name, "base64": base64.b64encode(each).decode()} for name, each in content.items()],
         modules=[{"name": name, "text": _module(name)} for name in MODULES],
     )
+
+
+@cache
+def page_words(language: str) -> dict[str, str]:
+    """What the page says in a language, by the English texts of its program; nothing for English."""
+    if language == ENGLISH:
+        return {}
+    texts = {text for name in MODULES for text in _SAID.findall(static_text(name))}
+    return {text: catalogue(language).as_given(text) for text in sorted(texts)}
+
+
+def in_language(run: Replay, language: str) -> Replay:
+    """A replay whose lines for the reader are in a language."""
+    words = catalogue(language)
+    facts = ((words.translated(name), words.with_numbers(words.translated(text))) for name, text in run.facts)
+    return replace(run, facts=tuple(facts))
 
 
 def static_text(name: str) -> str:

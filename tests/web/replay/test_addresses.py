@@ -52,11 +52,11 @@ class Client:
     def __init__(self, app: FastAPI) -> None:
         self.app = app
 
-    def get(self, address: str, params: dict[str, str] | None = None) -> httpx.Response:
+    def get(self, address: str, params: dict[str, str] | None = None, language: str = "en") -> httpx.Response:
         async def asked() -> httpx.Response:
             transport = httpx.ASGITransport(app=self.app)
             async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as client:
-                return await client.get(address, params=params)
+                return await client.get(address, params=params, headers={"accept-language": language})
 
         with ThreadPoolExecutor(max_workers=1) as thread:
             return thread.submit(lambda: asyncio.run(asked())).result()
@@ -67,6 +67,14 @@ def client(runs: Path) -> Client:
     app = FastAPI()
     add_addresses(app, RunFolders(runs))
     return Client(app)
+
+
+def test_page_and_run_are_in_the_readers_language(client: Client) -> None:
+    page = client.get("/replay/show", {"run": "older"}, "de-AT").text
+    assert '<html lang="de">' in page and "Alle Läufe" in page and '"Speed of play": "Tempo"' in page
+    assert "Kantwinkel 30°" in client.get("/replay/data/older", language="de").text
+    assert "edge angle 30°" in client.get("/replay/data/older").text
+    assert "words: {}" in client.get("/replay/show", {"run": "older"}).text
 
 
 def test_runs_are_listed_newest_first(runs: Path) -> None:

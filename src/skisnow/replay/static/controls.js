@@ -2,21 +2,25 @@
 
 import { css, GHOST, gradient, TRACK } from "./colours.js";
 import { edgeAngle } from "./motion.js";
-import { SETTINGS } from "./sharpness.js";
+import { settings } from "./sharpness.js";
+import { asWritten, decimal, said } from "./words.js";
 
 export const MOST_RELIEF = 30;
-export const SPEEDS = [[1, "true speed"], [0.5, "half speed"], [0.25, "a quarter"], [0.1, "a tenth"]];
-export const VIEW_NAMES = { chase: "From behind", boot: "From the boot", above: "From above", edge: "Along the edge", free: "Free" };
-const ARROWS = "Arrows: orange, force per length; purple, whole ski";
-const SKIER = "Assumed: knees, trunk's bend, head, arms, poles";
-export const MARKS = "Squares 1 m, a dash of the path each metre";
-export const FORCE_TITLE = "Force of the snow on the ski (N/mm)";
-export const DEPTH_TITLE = "Permanent groove depth (mm)";
-const KEYS = [
-  ["Space", "play or pause"], ["← →", "a twentieth of a second; with Shift half a second"], ["Home End", "start, end"],
-  ["1 2 3 4 5", "behind, boot, above, edge, free"], ["+ −", "nearer, farther"], ["A D W S", "turn the free view"],
-  ["X C", "less, more exaggeration of bending and twist"], ["V B", "the groove less, more deep"],
-  ["G M F O T", "groove, metre marks, forces, other run, measured track"],
+const speeds = () => [
+  [1, said("true speed")], [0.5, said("half speed")], [0.25, said("a quarter")], [0.1, said("a tenth")],
+];
+const viewNames = () => ({
+  chase: said("From behind"), boot: said("From the boot"), above: said("From above"), edge: said("Along the edge"), free: said("Free"),
+});
+export const marks = () => said("Squares 1 m, a dash of the path each metre");
+export const forceTitle = () => said("Force of the snow on the ski (N/mm)");
+export const depthTitle = () => said("Permanent groove depth (mm)");
+const keysOf = () => [
+  [said("Space"), said("play or pause")], ["← →", said("a twentieth of a second; with Shift half a second")],
+  [said("Home End"), said("start, end")], ["1 2 3 4 5", said("behind, boot, above, edge, free")],
+  ["+ −", said("nearer, farther")], ["A D W S", said("turn the free view")],
+  ["X C", said("less, more exaggeration of bending and twist")], ["V B", said("the groove less, more deep")],
+  ["G M F O T", said("groove, metre marks, forces, other run, measured track")],
 ];
 
 /** An element with properties, attributes (`aria-…`, `data-…`, `for`) and children. */
@@ -33,31 +37,31 @@ export function made(tag, properties = {}, ...children) {
 /** All parts of the page, by name. */
 export function controls({ run, ghost, modelAddress, movingModelAddress }) {
   const parts = {
-    canvas: made("canvas", { className: "replay-canvas", tabIndex: 0, role: "img", "aria-label": `Replay of ${run.title}` }),
-    readings: made("dl", { className: "replay-readings", "aria-label": "Readings" }),
+    canvas: made("canvas", { className: "replay-canvas", tabIndex: 0, role: "img", "aria-label": said("Replay of {}", run.title) }),
+    readings: made("dl", { className: "replay-readings", "aria-label": said("Readings") }),
     legend: made("div", { className: "replay-legend" }),
     message: made("p", { className: "replay-message", role: "status" }),
-    play: made("button", { type: "button", className: "replay-play", textContent: "Play" }),
-    time: slider("Time", 0, 1, 0.001),
-    speed: choice("Speed of play", SPEEDS),
-    exaggeration: slider("Exaggeration of bending and twist", 1, 20, 1),
+    play: made("button", { type: "button", className: "replay-play", textContent: said("Play") }),
+    time: slider(said("Time"), 0, 1, 0.001),
+    speed: choice(said("Speed of play"), speeds()),
+    exaggeration: slider(said("Exaggeration of bending and twist"), 1, 20, 1),
     exaggerated: made("output", { textContent: "1 ×" }),
-    relief: slider("Exaggeration of the groove", 1, MOST_RELIEF, 1),
+    relief: slider(said("Exaggeration of the groove"), 1, MOST_RELIEF, 1),
     deepened: made("output", { textContent: "1 ×" }),
-    drawing: choice("Drawing", SETTINGS),
-    views: made("div", { className: "replay-views", role: "group", "aria-label": "View" }),
-    shown: made("div", { className: "replay-shown", role: "group", "aria-label": "What is shown" }),
-    picture: made("button", { type: "button", textContent: "Picture (PNG)" }),
-    film: made("button", { type: "button", textContent: "Film (WebM)" }),
-    movingModel: movingModelAddress ? fileLink("Model that moves (glTF)") : null,
-    model: modelAddress ? fileLink("Model of this moment (glTF)") : null,
+    drawing: choice(said("Drawing"), settings()),
+    views: made("div", { className: "replay-views", role: "group", "aria-label": said("View") }),
+    shown: made("div", { className: "replay-shown", role: "group", "aria-label": said("What is shown") }),
+    picture: made("button", { type: "button", textContent: said("Picture (PNG)") }),
+    film: made("button", { type: "button", textContent: said("Film (WebM)") }),
+    movingModel: movingModelAddress ? fileLink(said("Model that moves (glTF)")) : null,
+    model: modelAddress ? fileLink(said("Model of this moment (glTF)")) : null,
   };
-  for (const [name, text] of Object.entries(VIEW_NAMES)) {
+  for (const [name, text] of Object.entries(viewNames())) {
     parts.views.append(made("button", { type: "button", textContent: text, "data-view": name, "aria-pressed": "false" }));
   }
-  const toggles = [["groove", "Groove", null], ["marks", "Metre marks", null], ["forces", "Forces", null]];
-  if (ghost) toggles.push(["ghost", `Other run: ${ghost.title}`, css(GHOST)]);
-  if (run.track_name) toggles.push(["track", `Measured: ${run.track_name}`, css(TRACK)]);
+  const toggles = [["groove", said("Groove"), null], ["marks", said("Metre marks"), null], ["forces", said("Forces"), null]];
+  if (ghost) toggles.push(["ghost", said("Other run: {}", ghost.title), css(GHOST)]);
+  if (run.track_name) toggles.push(["track", said("Measured: {}", run.track_name), css(TRACK)]);
   for (const [name, text, colour] of toggles) parts.shown.append(toggle(name, text, colour, name !== "forces"));
   return parts;
 }
@@ -85,21 +89,21 @@ export function laidOut(root, parts, run) {
   for (const [name, value] of run.facts) facts.append(made("dt", { textContent: name }), made("dd", { textContent: value }));
   const field = (text, ...inputs) => made("div", { className: "replay-field" }, made("span", { textContent: text }), ...inputs);
   const keys = made("dl", { className: "replay-keys" });
-  for (const [key, text] of KEYS) keys.append(made("dt", { textContent: key }), made("dd", { textContent: text }));
+  for (const [key, text] of keysOf()) keys.append(made("dt", { textContent: key }), made("dd", { textContent: text }));
   const takeAway = [parts.picture, parts.film, parts.movingModel, parts.model].filter(Boolean);
   root.classList.add("replay");
   root.replaceChildren(
     made("div", { className: "replay-stage" }, parts.canvas, parts.readings, parts.legend, parts.map),
     made(
       "div",
-      { className: "replay-controls", role: "group", "aria-label": "Controls of the replay" },
+      { className: "replay-controls", role: "group", "aria-label": said("Controls of the replay") },
       made("div", { className: "replay-row replay-playing" }, parts.play, parts.time, parts.speed),
       made("div", { className: "replay-row" }, parts.views, parts.shown),
-      made("div", { className: "replay-row" }, field("Groove depth", parts.relief, parts.deepened),
-        field("Bending and twist", parts.exaggeration, parts.exaggerated), field("Export", ...takeAway)),
+      made("div", { className: "replay-row" }, field(said("Groove depth"), parts.relief, parts.deepened),
+        field(said("Bending and twist"), parts.exaggeration, parts.exaggerated), field(said("Export"), ...takeAway)),
       parts.message,
-      made("details", {}, made("summary", { textContent: "Drawing, keys, and what this run is" }),
-        field("Drawing", parts.drawing), keys, facts),
+      made("details", {}, made("summary", { textContent: said("Drawing, keys, and what this run is") }),
+        field(said("Drawing"), parts.drawing), keys, facts),
     ),
   );
 }
@@ -107,34 +111,36 @@ export function laidOut(root, parts, run) {
 /** The legend of force and groove, with units, and what of a skier is drawn by assumption. */
 export function fillLegend(element, scales, colours, hasSkier) {
   const bar = (kind, title, ticks) => {
-    const marks = ticks.map((text) => made("span", { textContent: text }));
+    const ends = ticks.map((text) => made("span", { textContent: text }));
     return made("div", { className: "replay-scale" },
       made("span", { className: "replay-scale-title", textContent: title }),
       made("span", { className: "replay-bar", style: `background:${gradient(colours[kind])}` }),
-      made("span", { className: "replay-ticks" }, ...marks));
+      made("span", { className: "replay-ticks" }, ...ends));
   };
   element.replaceChildren(
-    bar("force", FORCE_TITLE, ticksOf(scales.force / 1000)),
+    bar("force", forceTitle(), ticksOf(scales.force / 1000)),
     scales.staysNothing
-      ? made("span", { textContent: "Elastic snow: no groove stays; the line is where the skis went" })
-      : bar("depth", DEPTH_TITLE, ticksOf(scales.depth * 1000)),
+      ? made("span", { textContent: said("Elastic snow: no groove stays; the line is where the skis went") })
+      : bar("depth", depthTitle(), ticksOf(scales.depth * 1000)),
     made("div", { className: "replay-notes" },
-      made("span", { className: "replay-marks", textContent: MARKS }),
-      made("span", { className: "replay-arrows", hidden: true, textContent: ARROWS }),
-      ...(hasSkier ? [made("span", { textContent: SKIER })] : [])),
+      made("span", { className: "replay-marks", textContent: marks() }),
+      made("span", { className: "replay-arrows", hidden: true, textContent: said("Arrows: orange, force per length; purple, whole ski") }),
+      ...(hasSkier ? [made("span", { textContent: said("Assumed: knees, trunk's bend, head, arms, poles") })] : [])),
   );
 }
 
 function ticksOf(most) {
-  return [0, most / 2, most].map((value) => String(Number(value.toPrecision(3))));
+  return [0, most / 2, most].map((value) => asWritten(Number(value.toPrecision(3))));
 }
 
-const SIDES = ["left", "right"];
+const LEFT = 0;
 
 /** Mean edge angle of both skis, and to which side. */
 function edged(run, time) {
   const angle = (90 / Math.PI) * (edgeAngle(run, 0, time) + edgeAngle(run, 1, time));
-  return Math.abs(angle) < 0.5 ? "flat" : `${Math.abs(angle).toFixed(0)}° ${SIDES[angle > 0 ? 0 : 1]}`;
+  const size = Math.abs(angle).toFixed(0);
+  if (Math.abs(angle) < 0.5) return said("flat");
+  return angle > 0 ? said("{}° left", size) : said("{}° right", size);
 }
 
 /**
@@ -144,18 +150,21 @@ function edged(run, time) {
 export function readings(run, pose, { row, outer, gap = null, forces = null }) {
   const of = (name, size = 1) => row(run.arrays[name].values, pose.at, size);
   const curvature = of("curvature")[0];
-  const radius = Math.abs(curvature) < 1e-3 ? "straight" : `${(1 / Math.abs(curvature)).toFixed(1)} m ${SIDES[curvature > 0 ? 0 : 1]}`;
-  const depths = Array.from(of("depth", 2), (depth) => (depth > 0 ? `${(1000 * depth).toFixed(1)} mm` : "above the snow"));
-  const depth = (ski, large) => ({ name: `Depth at ${SIDES[ski]} boot`, text: depths[ski], large: large && !run.skier });
+  const size = decimal(1 / Math.abs(curvature), 1);
+  const turn = curvature > 0 ? said("{} m left", size) : said("{} m right", size);
+  const radius = Math.abs(curvature) < 1e-3 ? said("straight") : turn;
+  const depths = Array.from(of("depth", 2), (depth) => (depth > 0 ? `${decimal(1000 * depth, 1)} mm` : said("above the snow")));
+  const depth = (ski, large) => ({ name: ski === LEFT ? said("Depth at left boot") : said("Depth at right boot"), text: depths[ski], large: large && !run.skier });
   const lines = [
-    { name: "Speed", text: `${of("speed")[0].toFixed(2)} m/s`, large: true },
-    { name: "Turn radius", text: radius, large: true },
-    ...(run.skier ? [{ name: "Edge angle", text: edged(run, pose.time), large: true }] : []),
+    { name: said("Speed"), text: `${decimal(of("speed")[0], 2)} m/s`, large: true },
+    { name: said("Turn radius"), text: radius, large: true },
+    ...(run.skier ? [{ name: said("Edge angle"), text: edged(run, pose.time), large: true }] : []),
     ...(gap ? [{ ...gap, large: true }] : []),
     depth(outer, true),
     depth(1 - outer, false),
-    { name: "Time", text: `${pose.time.toFixed(2)} s`, large: false },
+    { name: said("Time"), text: `${decimal(pose.time, 2)} s`, large: false },
   ];
   if (!forces) return lines;
-  return [...lines, ...SIDES.map((side, ski) => ({ name: `Force on ${side} ski`, text: `${forces[ski].toFixed(0)} N`, large: false }))];
+  const names = [said("Force on left ski"), said("Force on right ski")];
+  return [...lines, ...names.map((name, ski) => ({ name, text: `${forces[ski].toFixed(0)} N`, large: false }))];
 }

@@ -1,5 +1,7 @@
 // Two runs through the same gates: which one was there first, and by how much.
 
+import { decimal, said } from "./words.js";
+
 const APART = 0.05; // m between the poles of gates that are the same
 
 /** The gap at the last gate that both have behind them at a time, as {name, text}; null where they share no course. */
@@ -11,10 +13,11 @@ export function gapAt(run, ghost, time) {
   own.forEach((at, i) => {
     if (Math.max(at, other[i]) <= since) last = i; // of a gate that was not reached the time is no number
   });
-  if (last < 0) return { name: "Gap at the first gate", text: "not yet" };
+  if (last < 0) return { name: said("Gap at the first gate"), text: said("not yet") };
   const late = own[last] - other[last];
-  const words = Math.abs(late) < 0.005 ? "level" : `${Math.abs(late).toFixed(2)} s ${late > 0 ? "behind" : "ahead"}`;
-  return { name: `Gap at gate ${last + 1}`, text: words };
+  const size = decimal(Math.abs(late), 2);
+  const words = late > 0 ? said("{} s behind", size) : said("{} s ahead", size);
+  return { name: said("Gap at gate {}", last + 1), text: Math.abs(late) < 0.005 ? said("level") : words };
 }
 
 function haveSameGates(run, ghost) {

@@ -4,6 +4,7 @@ import { sprite } from "./labels.js";
 import { surfaceGrade, surfaceHeight } from "./motion.js";
 import { extent, flat } from "./snow.js";
 import * as THREE from "./three.module.min.js";
+import { said } from "./words.js";
 
 const EVERY = 10; // m
 const AROUND = 20; // m beyond the run that poles stand
@@ -73,7 +74,7 @@ export function fallLine(run) {
   const shape = new THREE.Shape(ARROW.map(([x, y]) => new THREE.Vector2(x, y)));
   const material = new THREE.MeshBasicMaterial({ color: 0x0b4f8a, side: THREE.DoubleSide, depthTest: false, depthWrite: false });
   const arrow = flat(new THREE.Mesh(new THREE.ShapeGeometry(shape), material), 4.5);
-  const label = sprite("fall line", 0.038);
+  const label = sprite(said("fall line"), 0.038);
   const group = new THREE.Group();
   group.add(arrow, label);
   const side = run.skier ? 1.7 : 1.25; // m beside the boots

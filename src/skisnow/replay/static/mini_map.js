@@ -1,6 +1,7 @@
 // The whole run from above on a small canvas: its path, where it is now, the fall line downwards, and 10 m.
 
 import { css, TRACK } from "./colours.js";
+import { said } from "./words.js";
 
 const SIZE = 150; // px of the page
 const MARGIN = 16;
@@ -11,7 +12,7 @@ export function miniMap(run) {
   canvas.className = "replay-map";
   canvas.width = canvas.height = 2 * SIZE;
   canvas.setAttribute("role", "img");
-  canvas.setAttribute("aria-label", "The run from above, the fall line downwards; a bar of 10 m");
+  canvas.setAttribute("aria-label", said("The run from above, the fall line downwards; a bar of 10 m"));
   const frame = framed(run.arrays.place.values);
   const still = ground(run, frame);
   const pen = canvas.getContext("2d");

@@ -2,7 +2,7 @@
 
 import { decoded } from "./binary.js";
 import { VIEWS } from "./cameras.js";
-import { controls, DEPTH_TITLE, fillLegend, FORCE_TITLE, laidOut, made, MARKS, MOST_RELIEF, readings } from "./controls.js";
+import { controls, depthTitle, fillLegend, forceTitle, laidOut, made, marks, MOST_RELIEF, readings } from "./controls.js";
 import { wholeForces } from "./force_arrows.js";
 import { gapAt } from "./gap.js";
 import { miniMap } from "./mini_map.js";
@@ -10,6 +10,7 @@ import { edges, row } from "./motion.js";
 import { MOST_EFFECTS, Sharpness, STILL } from "./sharpness.js";
 import { Stage } from "./stage.js";
 import { composed, filmType, recording, saved } from "./takeaway.js";
+import { decimal, said, speak } from "./words.js";
 
 const STEP = 0.05; // s that an arrow key goes
 const LARGE_STEP = 0.5;
@@ -21,9 +22,10 @@ const LONGEST = 1000; // ms of play in one picture: a page that was hidden meanw
  *
  * `run` and, for a second one laid over it, `ghost` are the bytes of replays. Where there is a server,
  * `modelAddress(time, exaggeration)` gives the address of a glTF model of a moment, `movingModelAddress(exaggeration)`
- * that of one that moves.
+ * that of one that moves. `words` are translations, by the English texts.
  */
-export function startReplay(root, { run, ghost = null, modelAddress = null, movingModelAddress = null }) {
+export function startReplay(root, { run, ghost = null, modelAddress = null, movingModelAddress = null, words = null }) {
+  speak(words);
   return new Player(root, decoded(run), ghost ? decoded(ghost) : null, { modelAddress, movingModelAddress });
 }
 
@@ -45,7 +47,7 @@ class Player {
     try {
       this.stage = new Stage(this.parts.canvas, run, ghost);
     } catch (error) {
-      this.say("This browser shows no WebGL picture. Switch hardware acceleration on, or take another browser.");
+      this.say(said("This browser shows no WebGL picture. Switch hardware acceleration on, or take another browser."));
       throw error;
     }
     this.#fill();
@@ -61,7 +63,7 @@ class Player {
     fillLegend(parts.legend, this.stage.scales, this.run.colours, Boolean(this.run.skier));
     if (!filmType()) {
       parts.film.disabled = true;
-      parts.film.title = "This browser records no film.";
+      parts.film.title = said("This browser records no film.");
     }
     this.deepen(RELIEF);
     this.look("chase");
@@ -110,20 +112,20 @@ class Player {
       });
     });
     parts.time.value = this.time;
-    parts.time.setAttribute("aria-valuetext", `${this.time.toFixed(2)} seconds`);
+    parts.time.setAttribute("aria-valuetext", said("{} seconds", decimal(this.time, 2)));
     if (parts.model) parts.model.href = this.addresses.modelAddress(this.time, this.exaggeration);
     if (parts.movingModel) parts.movingModel.href = this.addresses.movingModelAddress(this.exaggeration);
   }
 
   #compose() {
-    const bent = this.exaggeration === 1 ? [] : [`Bending and twist ${this.exaggeration} times`];
-    const deep = this.relief === 1 || !this.shown.groove ? [] : [`Groove ${this.relief} times as deep and wide`];
-    const marks = this.shown.marks ? [MARKS] : [];
-    const words = [this.run.title, ...this.lines.map(({ name, text }) => `${name}: ${text}`), ...bent, ...deep, ...marks];
+    const bent = this.exaggeration === 1 ? [] : [said("Bending and twist {} times", this.exaggeration)];
+    const deep = this.relief === 1 || !this.shown.groove ? [] : [said("Groove {} times as deep and wide", this.relief)];
+    const squares = this.shown.marks ? [marks()] : [];
+    const words = [this.run.title, ...this.lines.map(({ name, text }) => `${name}: ${text}`), ...bent, ...deep, ...squares];
     const { force, depth, staysNothing } = this.stage.scales;
     const { colours } = this.run;
-    const scales = [{ title: FORCE_TITLE, colours: colours.force, most: force / 1000 }];
-    if (this.shown.groove && !staysNothing) scales.push({ title: DEPTH_TITLE, colours: colours.depth, most: Number((1000 * depth).toPrecision(3)) });
+    const scales = [{ title: forceTitle(), colours: colours.force, most: force / 1000 }];
+    if (this.shown.groove && !staysNothing) scales.push({ title: depthTitle(), colours: colours.depth, most: Number((1000 * depth).toPrecision(3)) });
     composed(this.parts.canvas, this.flat, words, scales);
   }
 
@@ -136,7 +138,7 @@ class Player {
     if (this.playing) return;
     if (this.time >= this.end) this.time = this.start;
     this.playing = true;
-    this.parts.play.textContent = "Pause";
+    this.parts.play.textContent = said("Pause");
     this.sharpness.start();
     this.resize();
     let before = null;
@@ -156,7 +158,7 @@ class Player {
   pause() {
     if (!this.playing) return;
     this.playing = false;
-    this.parts.play.textContent = "Play";
+    this.parts.play.textContent = said("Play");
     if (this.film) this.#endFilm();
     this.resize();
   }
@@ -230,8 +232,8 @@ class Player {
     if (this.time >= this.end) this.time = this.start;
     this.film = recording(this.flat);
     this.resize();
-    this.parts.film.textContent = "End the film";
-    this.say("Recording while it plays.");
+    this.parts.film.textContent = said("End the film");
+    this.say(said("Recording while it plays."));
     await this.film.begun;
     this.play();
   }
@@ -245,10 +247,10 @@ class Player {
     const film = this.film;
     this.draw();
     this.film = null;
-    this.parts.film.textContent = "Film (WebM)";
+    this.parts.film.textContent = said("Film (WebM)");
     this.lastFilm = await film.stop();
     saved(this.lastFilm, `${fileName(this.run.title)}.webm`);
-    this.say(`The film is saved: ${(this.lastFilm.size / 1e6).toFixed(1)} MB.`);
+    this.say(said("The film is saved: {} MB.", decimal(this.lastFilm.size / 1e6, 1)));
   }
 
   #listen(root) {
@@ -264,7 +266,7 @@ class Player {
     parts.film.addEventListener("click", () => (this.film ? this.pause() : this.startFilm()));
     parts.picture.addEventListener("click", async () => {
       saved(await this.picture(), `${fileName(this.run.title)}-${this.time.toFixed(2)}s.png`);
-      this.say("The picture is saved.");
+      this.say(said("The picture is saved."));
     });
     const isMeant = (target) => target === document.body || root.contains(target); // where nothing has the focus, too
     document.addEventListener("keydown", (event) => isMeant(event.target) && this.#key(event));

@@ -1,5 +1,7 @@
 // How the picture is drawn: as fine and with as much as the machine keeps up with while it plays, and finer when it stands.
 
+import { said } from "./words.js";
+
 /** From the lowest: pixels drawn for each of the page, and effects (1: light on the snow, shadows; 2: the plume too). */
 const LEVELS = [
   { ratio: 0.5, effects: 0 }, { ratio: 0.7, effects: 0 }, { ratio: 0.7, effects: 1 }, { ratio: 1, effects: 1 },
@@ -14,7 +16,7 @@ const MISSES = 2; // times that a level proved too much before it is left alone
 /** The ratio of a picture that stands still: edges are smooth when two are made one. */
 export const STILL = 2;
 export const MOST_EFFECTS = 2;
-export const SETTINGS = [["auto", "As this machine keeps up"], ["low", "Low"], ["full", "Full"]];
+export const settings = () => [["auto", said("As this machine keeps up")], ["low", said("Low")], ["full", said("Full")]];
 
 /** Keeps the level of a picture that plays, or stays with the one that was chosen. */
 export class Sharpness {

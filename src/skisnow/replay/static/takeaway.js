@@ -1,6 +1,7 @@
 // To take away: the picture as PNG and a film as WebM, both with the readings written on them.
 
 import { css } from "./colours.js";
+import { asWritten } from "./words.js";
 
 /** Draw the picture with words and scales of colours, each {title, colours, most}, on a flat canvas of its own. */
 export function composed(canvas, flat, words, scales) {
@@ -33,7 +34,7 @@ function bar(pen, { colours, most }, left, top, width, size) {
   pen.fillRect(left, top, width, size * 0.8);
   pen.fillStyle = "#10202e";
   pen.fillText("0", left, top + size);
-  const end = String(most);
+  const end = asWritten(most);
   pen.fillText(end, left + width - pen.measureText(end).width, top + size);
 }
 

@@ -13,11 +13,12 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from ...errors import ParameterError
 from ...given import read_json
+from ...language import ENGLISH, catalogue
 from ...replay.binary import replay_bytes
 from ...replay.model import replay_model
 from ...replay.moving_model import moving_replay_model
 from ...replay.of_file import RUN_FILE, replay_of_file
-from ...replay.page import MODULES, STYLE, static_text
+from ...replay.page import MODULES, STYLE, in_language, page_words, static_text
 from ...report.gaps_report import gaps_of_folders
 from ...ski import read_ski
 from ..confined import BOUNDS, confined
@@ -101,17 +102,17 @@ def _ski_of_job(job: Path) -> Ski | None:
 def add_addresses(app: FastAPI, runs: RunFolders) -> None:
     """Let an application answer for the replays of these runs."""
 
-    def show(run: str, ghost: str = "", track: str = "") -> Response:
+    def show(request: Request, run: str, ghost: str = "", track: str = "") -> Response:
         try:
             for name in (run, ghost) if ghost else (run,):
                 runs.place(name)
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
-        return HTMLResponse(show_page(run, ghost or None, track))
+        return HTMLResponse(show_page(run, ghost or None, track, language_of_request(request)))
 
-    def data(name: str, track: str = "") -> Response:
+    def data(request: Request, name: str, track: str = "") -> Response:
         try:
-            content = replay_bytes(runs.replay(name, track))
+            content = replay_bytes(in_language(runs.replay(name, track), language_of_request(request)))
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
         return Response(content, media_type="application/octet-stream", headers={"cache-control": "no-cache"})
@@ -162,13 +163,16 @@ def program_file(name: str) -> Response:
     return Response(static_text(name), media_type=kind, headers={"cache-control": "no-cache"})
 
 
-def show_page(run: str, ghost: str | None, track: str = "") -> str:
+def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGLISH) -> str:
     """The HTML that fetches a run, a second one to lay over it and a track beside it, by their names."""
     environment = Environment(
         loader=PackageLoader("skisnow.replay", "static"), autoescape=True, undefined=StrictUndefined
     )
     return environment.get_template("show.html").render(
         title=run,
+        language=language,
+        said=catalogue(language).translated,
+        words=page_words(language),
         files=FILES,
         list=LIST,
         run=f"{DATA}/{quote(run)}" + (f"?track={quote(track, safe='')}" if track else ""),
