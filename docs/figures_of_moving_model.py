@@ -18,8 +18,9 @@ from PIL import Image
 from skisnow import scenario, simulate
 from skisnow.replay import moving_replay_model, replay_of_run
 
-PLACE = Path(__file__).resolve().parent / "_static" / "replay" / "moving-model.png"
+PLACE = Path(__file__).resolve().parent / "_static" / "replay" / "moving-model.webp"
 MOMENTS = (0.5, 2.0, 3.5, 5.0)
+QUALITY = 88
 SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 SITE = "http://model.test/"  # answered by this program
 PAGE = """<!doctype html><style>body { margin: 0 }</style><canvas width="1120" height="700"></canvas>
@@ -93,7 +94,7 @@ def main() -> None:
     whole = Image.new("RGB", (2 * 560 + 8, 2 * 350 + 8), "white")
     for number, each in enumerate(taken):
         whole.paste(each, ((number % 2) * 568, (number // 2) * 358))
-    whole.save(PLACE, optimize=True)
+    whole.save(PLACE, quality=QUALITY, method=6)
 
 
 if __name__ == "__main__":
