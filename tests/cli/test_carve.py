@@ -146,6 +146,16 @@ def test_several_skis_share_one_answer_one_table_and_one_figure(tmp_path: Path, 
     assert head.split() == ["slalom", "giant-slalom"]
 
 
+@pytest.mark.parametrize("at_rest", [(), ("--at-rest",)])
+def test_a_figure_in_german(tmp_path: Path, at_rest: tuple[str, ...]) -> None:
+    figure = tmp_path / "carve.svg"
+    assert main(["carve", *ASKED, *SNOW, *at_rest, "--figure", str(figure), "--language", "de"]) == 0
+    text = figure.read_text("utf-8")
+    assert "Stelle entlang des Skis (m), Schuh = 0" in text and "Last 800 N" in text and ">slalom<" in text
+    for english in ("along", "depth", "load", "circle", "boot", "carve", "rest:", "length", "twist", "surface"):
+        assert english not in text
+
+
 def test_table_has_skis_own_names_sidecut_radius_and_bearing_length(tmp_path: Path, capsys: Printed) -> None:
     catalogue = (Path(skisnow.__file__).parent / "ski/catalogue/slalom.toml").read_text("utf-8")
     path = tmp_path / "a.toml"

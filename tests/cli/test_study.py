@@ -58,6 +58,17 @@ def test_maps_are_drawn(which: str, suffix: str, tmp_path: Path) -> None:
     assert figure.read_bytes() == first
 
 
+@pytest.mark.parametrize("which", ["radius", "grip"])
+def test_a_map_in_german(which: str, tmp_path: Path) -> None:
+    path, figure = study_in(tmp_path / "a", SMALL), tmp_path / "map.svg"
+    words = ["--map", which, "--figure", str(figure), "--language", "de"]
+    assert main(["study", str(path), "--workers", "1", *words]) == 0
+    text = figure.read_text("utf-8")
+    assert "Kantwinkel" in text and "hält" in text
+    for english in ("edge", "load", "turn radius", "holds", "slips", "grip", "force"):
+        assert english not in text
+
+
 ANGLES = "{ from = 10, to = 60, n = 3 }"
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .announced import announced
 from .first_figure import fonts_listed
-from .words import number, whole_number
+from .words import add_language, number, whole_number
 
 if TYPE_CHECKING:
     from ..carve.answer import CarveAnswer
@@ -29,6 +29,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     _add_choices(parser)
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a figure: .png, .svg or .pdf")
+    add_language(parser, "the figure")
     parser.set_defaults(run=run)
 
 
@@ -92,10 +93,12 @@ def run(options: argparse.Namespace) -> int:
     _warn(answers)
     found = answers_dict(answers)
     if options.figure is not None:
+        from ..report.carve_summary import answers_of, ski_titles
         from ..report.figures.carved_skis import carved_skis
         from ..report.figures.figure_file import write_figure
 
-        write_figure(options.figure, lambda: carved_skis(found))
+        names = frozenset(ski_titles(answers_of(found)))
+        write_figure(options.figure, lambda: carved_skis(found), language=options.language, names=names)
         print(f"Figure: {options.figure}", file=sys.stderr)
     if options.json:
         print(json.dumps(found, ensure_ascii=False, allow_nan=False, indent=1))

@@ -12,7 +12,7 @@ from ..errors import ParameterError
 from .ending import Ended, ending_is_an_interrupt
 from .progress import Progress
 from .scheduler import add_scheduler, scheduler_of
-from .words import MOST_WORKERS, whole_number
+from .words import MOST_WORKERS, add_language, whole_number
 
 if TYPE_CHECKING:
     from ..study import Study, StudyTable
@@ -37,6 +37,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     merge = "put parts together to this table: skisnow study --merge TABLE PART PART …"
     parts.add_argument("--merge", type=Path, metavar="TABLE", help=merge)
     parser.add_argument("--figure", type=Path, metavar="FILE", help="draw a map of the table: .png, .svg or .pdf")
+    add_language(parser, "the map")
     about = "radius over edge angle, or where the edge loses grip; left out: radius"
     parser.add_argument("--map", choices=("radius", "grip"), default="radius", help=about)
     parser.set_defaults(run=run, parser=parser)
@@ -152,7 +153,8 @@ def _draw(options: argparse.Namespace, table: StudyTable) -> None:
     from ..report.figures.radius_map import radius_map
 
     draw = {"radius": radius_map, "grip": grip_map}[options.map]
-    write_figure(options.figure, lambda: draw(table))
+    names = frozenset(str(row[column]) for row in table.rows for column in ("ski", "ski_name") if row.get(column))
+    write_figure(options.figure, lambda: draw(table), language=options.language, names=names)
     print(f"Figure: {options.figure}", file=sys.stderr)
 
 

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ...errors import ParameterError
 from ...files import require_writable, write_file
+from ...language import ENGLISH
 from .style import journal_style
+from .translated import translate_figure
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Set
 
     from matplotlib.figure import Figure
 
@@ -41,7 +43,9 @@ def require_drawable(path: Path) -> None:
     require_writable(path.parent)
 
 
-def write_figure(path: Path, draw: Callable[[], Figure]) -> None:
+def write_figure(
+    path: Path, draw: Callable[[], Figure], *, language: str = ENGLISH, names: Set[str] = frozenset()
+) -> None:
     """Draw in the house style and write in one piece; the same bytes for the same data.
 
     Parameters
@@ -50,6 +54,8 @@ def write_figure(path: Path, draw: Callable[[], Figure]) -> None:
         Ends in .png (1200 pixels wide), .svg or .pdf.
     draw
         Gives the figure; it is called inside the house style.
+    language, names
+        What its words are in: en, or a language that there is a catalogue of (de); names that users gave stay.
     """
     require_drawable(path)
     kind = path.suffix.lower().removeprefix(".")
@@ -57,6 +63,7 @@ def write_figure(path: Path, draw: Callable[[], Figure]) -> None:
         # a name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
         warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
         figure = draw()
+        translate_figure(figure, language, names=names)
         content = io.BytesIO()
         options: dict[str, Any] = {"dpi": PNG_WIDTH / figure.get_figwidth()} if kind == "png" else {}
         figure.savefig(content, format=kind, metadata=_NO_DATE[kind], **options)
