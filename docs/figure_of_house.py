@@ -80,7 +80,7 @@ def picture() -> str:
         parts.append(_floor(sorted(floor, key=lambda package: (package not in LEFT_TO_RIGHT, package)), y))
         y += FLOOR + GAP
     parts.append(_ground(ground, y))
-    height = y + FLOOR + 62
+    height = y + FLOOR + 72
     return "\n".join(
         [
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" role="img" aria-labelledby="t" '
@@ -116,10 +116,10 @@ def _ground(packages: list[str], y: float) -> str:
     others = ", ".join(package for package in packages if package != "compiled")
     words, lines = others.split(", "), [""]
     for word in words:
-        if len(lines[-1]) + len(word) > 88:
+        if len(lines[-1]) + len(word) > 105:
             lines.append("")
         lines[-1] += (", " if lines[-1] else "") + word
-    height = FLOOR + 8
+    height = FLOOR + 18
     left = WIDTH - 2 * EDGE - core - GAP
     text = "\n".join(
         f'<text x="{EDGE + 12}" y="{y + 20 + 16 * i}" font-size="12.5" fill="{INK}">{escape(line)}</text>'

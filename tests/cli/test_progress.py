@@ -69,7 +69,7 @@ def test_what_is_counted_says_how_long_it_takes(
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     monkeypatch.setenv("COLUMNS", "80")
     with Progress() as progress:
-        for moment, done in ((1.0, 0), (3.0, 1), (5.0, 2)):
+        for moment, done in ((1.0, 0), (3.0, 1), (5.0, 2), (22.0, 11)):
             clock[0] = 100.0 + moment
             progress(f"run {done} of 10")
         clock[0] += 1.0
@@ -79,6 +79,7 @@ def test_what_is_counted_says_how_long_it_takes(
         "run 0 of 10",
         "run 1 of 10, about 18 s left",
         "run 2 of 10, about 16 s left",
+        "run 11 of 10",
         "writing report.html",
     ]
 

@@ -77,7 +77,7 @@ class Progress:
         if self._begun is None or self._begun[0] != kind:
             self._begun = (kind, now, done)
         _, begun, before = self._begun
-        if done <= before:
+        if not before < done < total:
             return ""
         return f", about {(now - begun) * (total - done) / (done - before):.0f} s left"
 
