@@ -110,7 +110,8 @@ def tree(tmp_path: Path) -> Path:
         "src/skisnow/__init__.py": "",
         "src/skisnow/toy/area.py": "def area(a, b):\n    if a > 9:\n        return 0\n    return a * b\n",
         "tests/toy/test_area.py": "from skisnow.toy.area import area\n\ndef test_area():\n    assert area(2, 3) == 6\n",
-        ".gitignore": "left_out\n",
+        ".gitignore": "left_out\n*.so\n",
+        "src/skisnow/compiled/library.so": "",
         "left_out": "",
     }.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -124,6 +125,15 @@ def trials(tree: Path) -> Iterator[Trials]:
     with copied_tree(tree) as copy:
         assert not (copy / "left_out").exists()
         yield Trials(copy, package_tests("toy", root=tree), 60.0)
+
+
+def test_what_is_compiled_is_copied_beside_what_git_has(tree: Path) -> None:
+    with copied_tree(tree) as copy:
+        found = {str(each.relative_to(copy)) for each in copy.rglob("*") if each.is_file()}
+    assert "src/skisnow/compiled/library.so" in found
+    assert "tests/toy/test_area.py" in found
+    assert "left_out" not in found
+    assert not copy.exists()
 
 
 @pytest.mark.slow

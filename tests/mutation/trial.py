@@ -26,10 +26,10 @@ SURVIVED = "survived"
 
 @contextmanager
 def copied_tree(root: Path) -> Iterator[Path]:
-    """A folder with what git has of the tree, as it stands, and the compiled core; gone at the end."""
+    """A folder with what git has of the tree, as it stands, and all that is compiled; gone at the end."""
     listed = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     names = subprocess.run(listed, cwd=root, capture_output=True, text=True, check=True).stdout.split("\0")
-    names += [str(path.relative_to(root)) for path in root.glob("src/skisnow/compiled/_core.*")]  # built here
+    names += [str(path.relative_to(root)) for path in root.glob("src/skisnow/compiled/*.*")]  # with what is built here
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
         for name in filter(None, names):
             if (root / name).is_file():

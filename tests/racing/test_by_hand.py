@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import product
 from types import SimpleNamespace
 from typing import Any
@@ -16,13 +17,13 @@ from skisnow.course import MovingPoint, passages
 from skisnow.errors import ParameterError
 from skisnow.parallel.kept_rows import KeptRows
 from skisnow.parallel.pool import Pool
-from skisnow.racing import follower_line, quickest_line
+from skisnow.racing import by_surrogate, follower_line, quickest_line
 from skisnow.racing.by_surrogate import HOPES, SurrogateSearch, _least_within
 from skisnow.racing.line import cut, ways
 from skisnow.racing.quickest import _begun, _require, _search, _window
 from skisnow.racing.racers import Racer, run_score, skied
 from skisnow.racing.score import score_of
-from skisnow.racing.search import Evaluations
+from skisnow.racing.search import Evaluations, optimiser_within
 from skisnow.racing.surrogate import FAILED_MORE, Surrogate, learnable
 from skisnow.racing.worth import wider
 
@@ -121,6 +122,23 @@ def test_a_batch_is_asked_within_its_box_and_the_cube() -> None:
     assert least_of_bowl(Bowl((1.4, -3.0), (0, 0)), (0.9, 0.1), 0.3, 0.0) == pytest.approx([1.0, 0.0], abs=2e-3)
     along = least_of_bowl(Bowl((0.5, 0.5), (0, 0)), (0.4,), 0.3, 0.0, ((1.0,), (1.0,)))
     assert along == pytest.approx([0.5], abs=1e-3)
+
+
+def test_a_batch_is_asked_about_its_centre(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a deviation of 0.4 of half of the box, which ends where the cube does."""
+    asked: list[Any] = []
+
+    def kept(*told: Any) -> Any:
+        asked.append(told)
+        return optimiser_within(*told)
+
+    monkeypatch.setattr(by_surrogate, "optimiser_within", kept)
+    least_of_bowl(Bowl((0.5, 0.5), (0.0, 0.0)), (0.95, 0.5), 0.1, 0.0)
+    ((limits, mean, spread, seed),) = asked
+    assert limits == pytest.approx(np.array([[0.85, 1.0], [0.4, 0.6]]))
+    assert mean.tolist() == [0.95, 0.5]
+    assert spread == pytest.approx(0.04)
+    assert seed == (1, 2)
 
 
 def search_of(values: list[float], places: Any, **changes: Any) -> SurrogateSearch:
@@ -234,7 +252,7 @@ def test_the_time_of_a_race_that_failed() -> None:
 
 def test_a_wider_waist_is_widest_at_the_waist() -> None:
     """A parabola over the sidecut: all of it in its middle, three quarters half way out, none at its ends."""
-    ski = read_ski("slalom")
+    ski = replace(read_ski("slalom"), sidecut_middle=0.015)
     other = wider(ski, 2e-3)
     more = other.width - ski.width
     for share, part in ((0.0, 1.0), (0.5, 0.75), (-0.5, 0.75), (1.0, 0.0), (-1.0, 0.0)):
