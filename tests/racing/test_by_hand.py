@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -292,7 +293,7 @@ def test_a_search_begins_from_a_line_of_some_of_the_gates() -> None:
         _begun(SLALOM, 5, start)
 
 
-def test_batches_of_either_search() -> None:
+def test_batches_of_either_search(tmp_path: Path) -> None:
     pytest.importorskip("cmaes")
 
     def made(**named: Any) -> int:
@@ -303,6 +304,9 @@ def test_batches_of_either_search() -> None:
     assert made(search="surrogate", evaluations=1) == 1
     with pytest.raises(ParameterError, match="executor"):
         made(evaluations=1, executor=3)
+    with pytest.raises(ParameterError):
+        made(evaluations=1, executor=str(tmp_path / "none.toml"), checkpoint=tmp_path / "kept")
+    assert not (tmp_path / "kept").exists()
     assert (
         made(search="surrogate", evaluations=2) == 4
     )  # one is enough of turns alike; half of six numbers of each for itself
