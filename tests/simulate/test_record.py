@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +10,7 @@ import pytest
 
 from skisnow.dynamics import Ended
 from skisnow.scenario import read_scenario
-from skisnow.simulate.run_record import Moment, Record, _arc, _at_boot, _heading, at_nodes, turn_radius
+from skisnow.simulate.run_record import Record, _at_boot
 from skisnow.simulate.run_setup import set_up
 
 
@@ -77,36 +76,6 @@ def test_who_pays_for_what_the_snow_takes() -> None:
     assert both[4:6] == (0.0, -8.5)
 
 
-def moment(place: Any = (0.0, 0.0, 0.0), velocity: Any = (1.0, 0.0, 0.0), energies: Any = (0.0,) * 12) -> Moment:
-    nothing = np.zeros(0)
-    return Moment(
-        0.0, np.array(place, float), np.eye(3), np.array(velocity, float), tuple(energies), (), nothing,
-        (nothing, nothing), nothing, nothing,
-    )  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("first", "last", "gains"),
-    [
-        ((100.0, 50.0, 0.0, 0.0), (114.9, 50.0, 0.0, 0.0), False),  # 10 J and 5 % of 100
-        ((100.0, 50.0, 0.0, 0.0), (100.0, 50.0, 15.1, 0.0), True),
-        ((100.0, 500.0, 0.0, 0.0), (300.0, 280.0, 0.0, 0.0), False),  # 220 J of height became 200 of speed
-        ((100.0, 500.0, 0.0, 0.0), (325.9, 300.0, 0.0, 0.0), True),  # 25.9 against 10 + 5 % of 300
-        ((100.0, 500.0, 0.0, 0.0), (324.9, 300.0, 0.0, 0.0), False),
-        ((100.0, 50.0, 0.0, 0.0), (135.9, 50.0, 0.0, 20.0), False),  # of 20 that were given: 10 and 5 % of 120
-        ((100.0, 50.0, 0.0, 0.0), (136.1, 50.0, 0.0, 20.0), True),
-        ((100.0, 50.0, 0.0, 0.0), (116.1, 50.0, 0.0, -10.0), True),
-        ((100.0, 50.0, 0.0, 0.0), (math.nan, 50.0, 0.0, 0.0), True),
-    ],
-)
-def test_more_energy_than_there_was_is_told(first: Any, last: Any, gains: bool) -> None:
-    """Kinetic, potential, elastic in the skis, and what boots give; what is in the snow counts not."""
-    kept = [moment(energies=(*each[:3], 1e6 * i, *(0.0,) * 6, each[3], 0.0)) for i, each in enumerate((first, last))]
-    record = Record(set_up(read_scenario("carved-46m")))
-    record._moments = kept
-    assert record.gains_energy is gains
-
-
 def test_steps_that_cannot_go_on_are_an_outcome() -> None:
     record = Record(set_up(read_scenario("carved-46m")))
     for ended, outcome in ((Ended.STEP_TOO_SMALL, "step_too_small"), (Ended.NOT_FINITE, "not_finite")):
@@ -117,43 +86,3 @@ def test_steps_that_cannot_go_on_are_an_outcome() -> None:
 def replace_advance(setup: Any, ended: Ended) -> Any:
     names = ("dynamics", "place", "attitude", "velocity")
     return SimpleNamespace(advance=lambda *_: ended, **{name: getattr(setup, name) for name in names})
-
-
-def test_the_way_between_two_moments_is_that_of_an_arc() -> None:
-    """0.1 rad of a circle of 10 m; where one of them rests, or turns about, the chord."""
-    cos, sin = math.cos(0.1), math.sin(0.1)
-    end, chord = (10.0 * sin, 10.0 * (1.0 - cos), 0.0), 20.0 * math.sin(0.05)
-    start = moment(velocity=(4.0, 0.0, 0.0))
-    assert _arc(start, moment(end, (5.0 * cos, 5.0 * sin, 0.0))) == pytest.approx(1.0, rel=1e-6)
-    assert _arc(start, moment(end, (0.0, 0.0, 0.0))) == pytest.approx(chord)
-    assert _arc(start, moment(end, (-4.0, 0.1, 0.0))) == pytest.approx(chord)
-
-
-@pytest.mark.parametrize("side", [1.0, -1.0])
-def test_the_radius_of_a_circle(side: float) -> None:
-    time = np.linspace(0.0, 1.0, 101)
-    velocity = 6.0 * np.column_stack([np.cos(0.5 * time), side * np.sin(0.5 * time), np.zeros(101)])
-    normal = np.tile([0.0, 0.0, 1.0], (101, 1))
-    assert turn_radius(time, velocity, normal) == pytest.approx(np.full(101, side * 12.0), rel=1e-2)
-    assert turn_radius(time, velocity, normal)[1:-1] == pytest.approx(np.full(99, side * 12.0), rel=1e-4)
-    assert np.isinf(turn_radius(time, velocity * [1.0, 0.0, 1.0], normal)).all()
-    assert np.isinf(turn_radius(time, 1e-3 * velocity, normal)).all()
-    assert turn_radius(time[:1], velocity[:1], normal[:1]).tolist() == [math.inf]
-    assert np.isfinite(turn_radius(time[:2], velocity[:2], normal[:2])).all()
-
-
-def test_headings_go_on_beyond_half_a_turn() -> None:
-    angle = np.linspace(0.0, 7.0, 40)
-    attitude = np.zeros((40, 3, 3))
-    attitude[:, 0, 0], attitude[:, 1, 0] = np.cos(angle), np.sin(angle)
-    assert _heading(attitude, np.tile([0.0, 0.0, 1.0], (40, 1))) == pytest.approx(angle)
-
-
-def test_unknowns_stand_at_their_nodes() -> None:
-    """Of two skis with three nodes, the middle one held."""
-    dofs = np.arange(12.0).reshape(2, 6)
-    found = at_nodes(dofs, np.array([0, -1, 3]))
-    assert found.tolist() == [
-        [[0.0, 1.0, 2.0], [0.0, 0.0, 0.0], [3.0, 4.0, 5.0]],
-        [[6.0, 7.0, 8.0], [0.0, 0.0, 0.0], [9.0, 10.0, 11.0]],
-    ]
