@@ -105,6 +105,20 @@ def test_a_body_scales() -> None:
         body_of(7.0, 1.76)
 
 
+def test_a_body_is_the_mean_of_three_men() -> None:
+    """Weights (lb), heights and centres of mass (in), moments (lb in s²) standing and crouched, of the report."""
+    men = (
+        (173.5, 72.2, 32.2, (132.0 + 41.4, 119.0 + 37.3, 13.1 + 29.9)),
+        (147.3, 67.4, 29.8, (95.6 + 32.9, 81.9 + 30.4, 10.3 + 21.5)),
+        (203.0, 73.3, 31.8, (144.0 + 48.9, 129.0 + 41.9, 14.2 + 36.7)),
+    )
+    found = body_of(80.0, 1.7)
+    for i in range(3):
+        means = [0.5 * both[i] * 386.0886 / (weight * tall**2) for weight, tall, _, both in men]  # in/s² of gravity
+        assert found.inertia[i] == pytest.approx(80.0 * 1.7**2 * sum(means) / 3.0, rel=1e-5)
+    assert found.standing_height == pytest.approx(1.7 * sum(1.0 - below / tall for _, tall, below, _ in men) / 3.0)
+
+
 def test_segments_make_a_whole_body() -> None:
     """Winter's figure: hips at 0.530, shoulders at 0.818 of the height; a leg 0.161, an arm 0.050 of the mass."""
     legs = (segments.FOOT, segments.SHANK, segments.THIGH)
