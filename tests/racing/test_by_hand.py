@@ -1,4 +1,4 @@
-"""What a search is made of, by hand: the process, its boxes, scores, a wider ski, and what is just allowed."""
+"""What a search is made of, by hand: its boxes, scores, a wider ski, and what is just allowed."""
 
 from __future__ import annotations
 
@@ -18,14 +18,13 @@ from skisnow.course import MovingPoint, passages
 from skisnow.errors import ParameterError
 from skisnow.parallel.kept_rows import KeptRows
 from skisnow.parallel.pool import Pool
-from skisnow.racing import by_surrogate, follower_line, quickest_line
+from skisnow.racing import LineTurn, RacingLine, by_surrogate, follower_line, quickest_line
 from skisnow.racing.by_surrogate import HOPES, SurrogateSearch, _least_within
 from skisnow.racing.line import cut, ways
 from skisnow.racing.quickest import _begun, _require, _search, _window
 from skisnow.racing.racers import Racer, run_score, skied
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
-from skisnow.racing.surrogate import FAILED_MORE, Surrogate, learnable
 from skisnow.racing.worth import wider
 
 from .test_point import WAY, straight_course
@@ -34,68 +33,6 @@ from .test_search import Polyline, batches
 FloatArray = npt.NDArray[np.float64]
 SLALOM = scenario("slalom-20-gates")
 FOLLOWED = follower_line(SLALOM)
-DRAWN = np.random.default_rng(4).random((9, 2))
-GIVEN = 5.0 + np.sin(3.0 * DRAWN[:, 0]) + 0.5 * DRAWN[:, 1] ** 2
-
-
-def matern(first: FloatArray, second: FloatArray, lengths: FloatArray) -> FloatArray:
-    """(1 + √5 r + 5 r²/3) exp(-√5 r), one pair after the other."""
-    found = np.zeros((len(first), len(second)))
-    for i, j in product(range(len(first)), range(len(second))):
-        r = math.sqrt(sum(((a - b) / length) ** 2 for a, b, length in zip(first[i], second[j], lengths, strict=True)))
-        found[i, j] = (1.0 + math.sqrt(5.0) * r + 5.0 * r**2 / 3.0) * math.exp(-math.sqrt(5.0) * r)
-    return found
-
-
-def test_the_process_is_that_of_the_textbook() -> None:
-    """m + s k (K + σ² 1)⁻¹ z, and s² (1 - k (K + σ² 1)⁻¹ k), by plain linear algebra."""
-    known, asked = Surrogate.of(DRAWN, GIVEN, 2), np.array([[0.2, 0.4], [0.9, 1.3]])
-    inner = matern(DRAWN, DRAWN, known.lengths) + known.noise**2 * np.eye(9)
-    outer = matern(asked, DRAWN, known.lengths)
-    level, scale = np.mean(GIVEN), np.std(GIVEN)
-    mean = level + scale * outer @ np.linalg.solve(inner, (GIVEN - level) / scale)
-    variance = 1.0 - np.einsum("ij,ji->i", outer, np.linalg.solve(inner, outer.T))
-    found = known.at(asked)
-    assert found[0] == pytest.approx(mean, rel=1e-5)
-    assert found[1] == pytest.approx(scale * np.sqrt(variance), rel=1e-3)
-
-
-def test_the_process_is_the_likeliest() -> None:
-    """Of its length (the same for both numbers) and noise every other is less likely, with a pull towards 0.7."""
-    known = Surrogate.of(DRAWN, GIVEN + 0.05 * np.cos(40.0 * DRAWN[:, 0]), 1)
-    standard = np.sin(3.0 * DRAWN[:, 0]) + 0.5 * DRAWN[:, 1] ** 2 + 0.05 * np.cos(40.0 * DRAWN[:, 0])
-    standard = (standard - standard.mean()) / standard.std()
-
-    def misfit(length: float, noise: float) -> float:
-        inner = matern(DRAWN, DRAWN, np.full(2, length)) + (noise**2 + 1e-9) * np.eye(9)
-        likelihood = 0.5 * standard @ np.linalg.solve(inner, standard) + 0.5 * np.linalg.slogdet(inner)[1]
-        return float(likelihood + 0.1 * math.log(length / 0.7) ** 2)
-
-    length, noise = float(known.lengths[0]), known.noise
-    least = misfit(length, noise)
-    assert known.lengths[1] == length
-    others = [(length * 1.1, noise), (length / 1.1, noise), (length, max(noise * 1.2, 1e-3)), (length, noise / 1.2)]
-    assert all(misfit(*other) > least - 1e-6 for other in others if other[1] > 1e-3)
-    assert misfit(length * 1.3, noise) > least + 1e-3
-
-
-def test_values_that_are_all_alike_are_learnt() -> None:
-    assert Surrogate.of(DRAWN, np.full(9, 7.0), 2).at(DRAWN)[0] == pytest.approx(7.0)
-
-
-def test_failures_by_hand() -> None:
-    """Above the greatest time by 0.3, 0.8 a gate and 0.7 of the first metre, of the deviation of the times."""
-    times = [8.0, 8.1, 8.2, 8.3, 8.4]
-    deviation = float(np.std(times))
-    found = learnable([*times, 1000.4, 3002.0, 99_000.0, math.inf])
-    least, each_gate, each_metre = FAILED_MORE
-    assert found[:5].tolist() == times
-    assert found[5] == pytest.approx(8.4 + deviation * (least + each_gate + 0.4 * each_metre))
-    assert found[6] == pytest.approx(8.4 + deviation * (least + 3.0 * each_gate + each_metre))
-    assert found[7] == found[8] == pytest.approx(8.4 + deviation * (least + 5.0 * each_gate))
-    detour = learnable([8.0, 8.1, 8.2, 8.3, 20.0])
-    assert detour[4] == pytest.approx(8.2 + 3.0 * 0.2)  # of quarter widths above the median
-    assert learnable([2000.0, math.inf]) == pytest.approx(np.log([2000.0, 1e5]))
 
 
 class Bowl:
@@ -291,6 +228,19 @@ def test_a_search_begins_from_a_line_of_some_of_the_gates() -> None:
         _begun(SLALOM, None, start)
     with pytest.raises(ParameterError, match="gates is 5; it must be from 2 to 4"):
         _begun(SLALOM, 5, start)
+
+
+def test_a_search_begins_within_its_ranges() -> None:
+    course, start = cut(FOLLOWED, 2).course, FOLLOWED.start
+
+    def begun(**numbers: float) -> RacingLine:
+        turns = (LineTurn(aside=0.8), LineTurn(**({"aside": 0.8} | numbers)))
+        return _begun(SLALOM, 2, RacingLine(course, start, turns))
+
+    for name, low, high in (("aside", 0.25, 1.75), ("along", -0.25, 0.25), ("turning", 0.35, 1.0)):
+        assert [getattr(begun(**{name: value}).turns[1], name) for value in (low, high)] == [low, high]
+        with pytest.raises(ParameterError, match=f"gate 2: {name} is .* begins within {low:g} to {high:g}"):
+            begun(**{name: low - 0.01})
 
 
 def test_batches_of_either_search(tmp_path: Path) -> None:
