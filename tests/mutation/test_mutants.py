@@ -147,7 +147,7 @@ def test_what_no_test_asks_for_survives(tree: Path, trials: Trials) -> None:
     product = Mutant("arithmetic", source.index("*"), source.index("*") + 1, "/")
     limit = Mutant("comparison", source.index(">"), source.index(">") + 1, ">=")
     found = dict(verdicts([(path, product), (path, limit)], [trials]))
-    assert nearest(trials.reach, path, function_at(source, product.start)) == ["tests/toy/test_area.py"]
+    assert nearest(trials.reach, path, function_at(source, product.start)) == ["tests/toy/test_area.py::test_area"]
     assert found == {(path, product): CAUGHT, (path, limit): SURVIVED}
     assert place_of(path, limit, root=tree) == ("toy/area.py", "if a > 9:", "if a >= 9:")
     start = source.index("return a * b")
