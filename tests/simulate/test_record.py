@@ -86,3 +86,20 @@ def test_steps_that_cannot_go_on_are_an_outcome() -> None:
 def replace_advance(setup: Any, ended: Ended) -> Any:
     names = ("dynamics", "place", "attitude", "velocity")
     return SimpleNamespace(advance=lambda *_: ended, **{name: getattr(setup, name) for name in names})
+
+
+def test_what_is_told_of_the_skis_is_what_the_beams_and_boots_have() -> None:
+    """Deflection and twist at the free nodes; a stance between the edges at the boots."""
+    scenario = read_scenario("carved-46m", changes={"start.x_m": 3.0, "start.y_m": -2.0, "start.heading_deg": 0.0})
+    setup = set_up(scenario)
+    skis = Record(setup).histories()["skis"]
+    free = setup.dynamics.body.skis[0].unknown >= 0
+    dofs = setup.dynamics.beam_dofs.reshape(2, -1, 3)
+    assert skis.bending[0][:, free].tolist() == dofs[:, :, 0].tolist()
+    assert skis.twist[0][:, free].tolist() == dofs[:, :, 2].tolist()
+    assert np.abs(dofs[:, :, 0]).max() > 1e-3
+    left, right = skis.track[0]
+    stance, width = scenario.sledge.stance_width, float(scenario.ski.at(0.0).width)
+    assert left[1] - right[1] == pytest.approx(stance, rel=0.05)
+    assert 0.5 * (left + right)[:2] == pytest.approx([3.0, -2.0 + 0.5 * width], abs=0.5 * width)
+    assert (left[2], right[2]) == (0.0, 0.0)
