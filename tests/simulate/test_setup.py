@@ -36,12 +36,12 @@ def test_snow_that_does_not_bear_a_ski_a_decimetre_deep(load: float, sinks: bool
     ("height", "residual", "sinks", "outcome"),
     [
         (0.0, 0.0, False, "looped"),
-        (0.0, simulated_run.AT_REST, True, "looped"),
+        (0.0, run_setup.AT_REST, True, "looped"),
         (-1.01 * simulated_run.SINKING_DEPTH, 0.0, False, "sunk"),
         (-0.99 * simulated_run.SINKING_DEPTH, 0.0, False, "looped"),
-        (0.0, 2.0 * simulated_run.AT_REST, True, "sunk"),
+        (0.0, 2.0 * run_setup.AT_REST, True, "sunk"),
         (0.0, math.nan, True, "sunk"),
-        (0.0, 2.0 * simulated_run.AT_REST, False, "cannot stand"),
+        (0.0, 2.0 * run_setup.AT_REST, False, "cannot stand"),
         (0.0, math.nan, False, "cannot stand"),
     ],
 )
