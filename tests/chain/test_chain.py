@@ -22,6 +22,7 @@ from skisnow.chain.priors import MEASURED, PRIORS, inputs_with
 from skisnow.cli import main
 from skisnow.errors import ParameterError
 from skisnow.field.reference import reference_campaign
+from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
 from skisnow.inputs import values_of
 from skisnow.report.turn_dict import turn_dict
 from skisnow.scenario.prior import prior_of
@@ -76,6 +77,7 @@ def test_the_chain_asks_for_the_turn_with_each_contact_and_for_each_that_was_dra
     assert [each.values["ski.stiffness_factor"] for each in found.ensemble] == [each.stiffness_factor for each in drawn]
     assert found.analysis is analysis
     assert said[-1] == "run 13 of 13"
+    assert [f"the turn with the contact “{contact}”" for contact in found.runs] == said[:2]
     assert "is wider than that with" in found.sentences[0]
     assert "<" not in "".join(found.sentences)
 
@@ -129,6 +131,18 @@ def test_how_far_quick_ends_beside_the_turn_is_told(analysis: Analysis, monkeypa
     monkeypatch.setattr(chaining, "simulate", beside)
     monkeypatch.setattr(ensemble, "simulate", beside)
     assert skisnow.chain(analysis, "C", runs=3, workers=1).ensemble_error == pytest.approx(0.05)
+
+
+def test_the_usual_priors_are_what_their_origins_say() -> None:
+    """Half of a groove stays, or all but 2 %; μ from 0.023 to 0.139 about their middle; stiffness by 30 %."""
+    ratio, way, friction, stiffness = PRIORS
+    assert [1.0 - 1.0 / end for end in (ratio.low, ratio.high)] == pytest.approx([0.5, 0.98])
+    assert way.low == pytest.approx(1e3 * SHEAR_DISPLACEMENT)
+    assert way.high == 0.5
+    middle = math.sqrt(0.023 * 0.139)
+    assert [friction.low, friction.high] == pytest.approx([0.023 / middle, 0.139 / middle], rel=0.02)
+    assert [stiffness.low, stiffness.high] == pytest.approx([1.0 / 1.3, 1.3], rel=2e-3)
+    assert [each.about for each in PRIORS] == [False, False, True, False]
 
 
 def test_a_latin_hypercube_has_one_in_each_slice() -> None:
