@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
+import threading
+from concurrent.futures import Future, ThreadPoolExecutor
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 from skisnow.errors import ParameterError, SkisnowError
 from skisnow.parallel import dask_cluster
+from skisnow.parallel.batch import run_batch
 from skisnow.parallel.crews import LOST
 from skisnow.parallel.dask_cluster import SchedulerFile, batch_cluster, crew_of_client, is_plain
 
@@ -86,6 +88,33 @@ class LostWorkerError(Exception):
 
 
 LostWorkerError.__module__ = "distributed.scheduler"
+
+
+def test_it_is_looked_after_while_nothing_comes_and_not_while_rows_come(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is finished is taken from a scheduler that has gone; what is not ends the work, before it is computed."""
+    client, futures = Client(), list[Future[Any]]()
+    client.status = "closed"
+    points = [{"a": 1}, {"a": 2}]
+    assert run_batch(points, dict, executor=client) == points
+
+    class Waiting:
+        def submit(self, *_: Any) -> Future[Any]:
+            futures.append(Future())
+            return futures[-1]
+
+    monkeypatch.setattr(client, "get_executor", lambda **_: Waiting())
+    monkeypatch.setattr("skisnow.parallel.pool.LOOKED_AFTER_S", 0.01)
+
+    def give_up() -> None:
+        for each in futures:
+            each.set_exception(TimeoutError())
+
+    stop = threading.Timer(5.0, give_up)  # so that nobody waits for ever
+    stop.start()
+    with pytest.raises(SkisnowError, match=LOST):
+        run_batch(points, dict, executor=client)
+    stop.cancel()
+    assert not any(each.done() and not each.cancelled() for each in futures)
 
 
 def test_errors_of_dask_are_told() -> None:
