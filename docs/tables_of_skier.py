@@ -67,9 +67,7 @@ def off_balance(run: Run) -> list[npt.NDArray[np.float64]]:
 
 def slips(run: Run, first: float, last: float) -> float:
     """Median angle between skis and path in a time (°)."""
-    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
-    within = (run.time > first) & (run.time < last)
-    return float(np.degrees(np.median(np.abs(run.heading - path)[within])))
+    return float(np.median(np.abs(slip_of(run))[(run.time > first) & (run.time < last)]))
 
 
 def weights(run: Run) -> str:
@@ -156,6 +154,45 @@ def carved() -> Iterator[str]:
         yield f"| {'half' if number == 0 else number} | {' | '.join(cells)} |"
 
 
+def skidded() -> Iterator[str]:
+    """Turn by turn where the snow does not hold what later turns ask for."""
+    run = run_of("skier-12deg")
+    heads = ("speed (m/s)", "slip: median, greatest (°)", "smallest radius (m)", "of a carve so edged (m)", "shear (J)")
+    yield f"| turn | {' | '.join(heads)} | friction (J) | drag (J) |"
+    yield f"| --- |{' ---: |' * (len(heads) + 2)}"
+    skier = run.scenario.skier
+    assert skier is not None
+    for number in range(round(skier.turns - 0.5) + 1):
+        first = skier.first_turn + skier.turn_time * max(0.0, number - 0.5)
+        last = skier.first_turn + skier.turn_time * (number + 0.5)
+        yield f"| {number or 'half'} | {' | '.join(one_turn(run, first, last))} |"
+
+
+def one_turn(run: Run, first: float, last: float) -> list[str]:
+    """Of a turn from one time to another (s): speed, slip, smallest radius, that of a carve so edged, what is lost."""
+    within = (run.time > first) & (run.time < last)
+    turning, slip = turning_of(run), np.abs(slip_of(run))[within]
+    tightest = np.flatnonzero(within)[np.argmax(np.abs(turning[within]))]
+    carve = run.scenario.ski.sidecut_radius_of_edge_line * math.cos(math.radians(float(edges(run)[tightest])))
+    lost = [np.ptp(np.interp([first, last], run.time, run.energies[name])) for name in ("shear", "friction", "drag")]
+    found = [f"{run.speed[within].mean():.1f}", f"{np.median(slip):.1f}, {slip.max():.1f}"]
+    return [*found, f"{1.0 / abs(turning[tightest]):.1f}", f"{carve:.1f}", *(f"{each:.0f}" for each in lost)]
+
+
+def slip_of(run: Run) -> npt.NDArray[np.float64]:
+    """Angle from the path to the skis over time (°)."""
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    return np.asarray(np.degrees(run.heading - path))
+
+
+def turning_of(run: Run) -> npt.NDArray[np.float64]:
+    """Curvature of the boots' path, meant over 0.2 s (1/m)."""
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    turning = np.gradient(path, run.time) / np.maximum(run.speed, 0.1)
+    count = max(1, round(AVERAGED / steps_of(run)))
+    return np.convolve(turning, np.ones(count) / count, "same")
+
+
 def through(name: str, *changes: tuple[str, object]) -> list[str]:
     """Of a run through gates: passed, speed, time, greatest lean and edge angle, smallest radius."""
     run = run_of(name, *changes)
@@ -176,10 +213,8 @@ def through(name: str, *changes: tuple[str, object]) -> list[str]:
 
 def smallest_radius(run: Run) -> float:
     """Median over the turns of the smallest radius of the boots' path, of curvatures meant over 0.2 s (m)."""
-    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
-    turning = np.gradient(path, run.time) / np.maximum(run.speed, 0.1)
     count = max(1, round(AVERAGED / steps_of(run)))
-    smooth = np.convolve(turning, np.ones(count) / count, "same")[count:-count]
+    smooth = turning_of(run)[count:-count]
     sides = np.flatnonzero(np.diff(np.sign(smooth)))
     tops = [np.abs(part).max() for part in np.split(smooth, sides + 1)[1:-1] if len(part) > 2 * count]
     return float(1.0 / np.median(tops)) if tops else math.nan
@@ -274,6 +309,7 @@ TABLES: dict[str, Callable[[], Iterator[str]]] = {
     "linked": linked,
     "swings": swings,
     "carved": carved,
+    "skidded": skidded,
     "gates": gates,
     "racers": racers,
     "sensitivity": sensitivity,

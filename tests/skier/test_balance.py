@@ -100,6 +100,39 @@ def test_linked_turns_on_19_degrees(speed: float) -> None:
     assert (turns * [-1.0, 1.0, -1.0, 1.0] > 3.0).all()
 
 
+def one_turn(run: Run, number: int) -> tuple[float, float, float]:
+    """Median slip (°), greatest slip (°) and what shear took (J), of a whole turn."""
+    skier = run.scenario.skier
+    assert skier is not None
+    first, last = (skier.first_turn + skier.turn_time * (number + half) for half in (-0.5, 0.5))
+    within = (run.time > first) & (run.time < last)
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    slip = np.degrees(np.abs(run.heading - path))[within]
+    before, after = np.interp([first, last], run.time, run.energies["shear"])
+    return float(np.median(slip)), float(slip.max()), float(abs(after - before))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [3.0, 4.0, 5.0])
+def test_the_first_turn_carves_and_the_last_skids(speed: float) -> None:
+    """Where the snow holds less than later turns ask for: the pattern of the published simulation of linked turns."""
+    run = linked("skier-12deg", speed)
+    first, last = one_turn(run, 1), one_turn(run, 4)
+    assert first[0] < 0.5
+    assert first[2] < 40.0
+    assert last[0] > 2.5
+    assert last[1] > 5.0
+    assert last[2] > 600.0
+    assert np.abs(np.degrees(run.balance.lean)).max() < 45.0
+
+
+@pytest.mark.slow
+def test_on_a_race_piste_the_last_turn_carves_too() -> None:
+    run = linked("skier-10deg", 4.0)
+    assert one_turn(run, 1)[0] < 0.5
+    assert one_turn(run, 4)[0] < 0.5
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "share"), [("leg_gain", 0.5), ("edge_gain", 0.7), ("lag", 0.5), ("correction", 0.5), ("lean_more", 1.1)]
