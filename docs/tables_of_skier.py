@@ -13,9 +13,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+from watched_slope import DAY, write_profile
 
 from skisnow import Course, Gate, Run, Scenario, scenario, simulate, time_gates
 from skisnow.scenario import scenario_values
@@ -34,6 +37,68 @@ def run_of(name: str, *changes: tuple[str, object]) -> Run:
     """A run of a built-in scenario with changes, in the fast mode."""
     print(name, *changes, file=sys.stderr)
     return simulate(scenario(name, changes={"solver.method": "fast", **dict(changes)}))
+
+
+Misses: TypeAlias = npt.NDArray[np.float64]
+WATCHED = (
+    ("slalom-20-gates", 4420.0, 203.0),
+    ("slalom-20-gates", 11710.0, 203.0),
+    ("slalom-20-gates", 11770.0, 203.0),
+    ("giant-slalom-20-gates", 11600.0, 477.0),
+    ("giant-slalom-20-gates", 4210.0, 477.0),
+)
+"""Course, where it begins on the day's way and how long it is (m)."""
+
+
+def watched() -> Iterator[str]:
+    """Gates on the slope that a watch measured; as it stands where the day is not there."""
+    heads = ("from (m)", "slope: least, mean, greatest (°)", "passed", "speed: least, greatest (m/s)")
+    yield f"| course | {' | '.join(heads)} | greatest lean (°) | outcome |"
+    yield "| --- | ---: | ---: | ---: | ---: | ---: | --- |"
+    for name, begins, length in WATCHED:
+        with TemporaryDirectory() as folder:
+            profile = Path(folder) / "profile.csv"
+            angles = write_profile(profile, begins, length)
+            run = run_of(name, ("slope.kind", "profile"), ("slope.profile", str(profile)))
+        course = run.scenario.course
+        assert course is not None
+        passed = [each.outcome for each in time_gates(course, run).passages].count("passed")
+        slope = f"{angles.min():.1f}, {angles.mean():.1f}, {angles.max():.1f}"
+        speed = f"{run.speed.min():.1f}, {run.speed.max():.1f}"
+        told = f"{passed} of 20 | {speed} | {np.degrees(np.abs(run.balance.lean).max()):.0f}"
+        yield f"| `{name}` | {begins:.0f} | {slope} | {told} | {run.outcome.replace('_', ' ')} |"
+
+
+IN_TURNS: dict[str, Callable[[tuple[Misses, Misses]], str]] = {
+    "tan Ψ off by, median": lambda found: f"{100.0 * np.median(found[0]):.1f} %",
+    "… 95 % of the instants, within": lambda found: f"{100.0 * np.quantile(found[0], 0.95):.1f} %",
+    "… instants within 5 %": lambda found: f"{100.0 * np.mean(found[0] < 0.05):.0f} %",
+    "roll, I φ̈/(m z g_n tan Ψ), median": lambda found: f"{100.0 * np.median(found[1]):.1f} %",
+}
+TURN_TIMES = (1.5, 2.0, 3.0, 4.0, 6.0)
+
+
+def slowly() -> Iterator[str]:
+    """The slope formula in one turn on 3°, by how long the turn is: the middle half of it."""
+    yield f"| time of the turn (s) | {' | '.join(f'{each:g}' for each in TURN_TIMES)} |"
+    yield f"| --- |{' ---: |' * len(TURN_TIMES)}"
+    missed = [in_a_long_turn(each) for each in TURN_TIMES]
+    for row, told in IN_TURNS.items():
+        yield f"| {row} | {' | '.join(told(each) for each in missed)} |"
+
+
+def in_a_long_turn(time: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """By how much tan Ψ is off, and what the body's roll takes of it, in the middle half of a turn so long (s)."""
+    gentle = {"slope.angle_deg": 3.0, "start.speed_m_per_s": 8.0, "friction.mu_0": 0.02, "drag.drag_area_m2": 0.3}
+    plan = {"skier.turn_time_s": time, "skier.turns": 1.5, "run.duration_s": 0.8 + 1.5 * time}
+    run = run_of("skier-10deg", *(gentle | plan).items())
+    balance, sledge = run.balance, run.scenario.sledge
+    middle = (run.time > 0.8 + 0.75 * time) & (run.time < 0.8 + 1.25 * time) & np.isfinite(balance.pressure_lean)
+    tangent = np.tan(balance.balanced_lean)
+    rolls = np.convolve(np.gradient(np.gradient(balance.lean, run.time), run.time), np.ones(11) / 11.0, "same")
+    gravity = run.scenario.gravity * math.cos(math.radians(3.0))
+    share = sledge.inertia[0] * rolls / (sledge.mass * sledge.centre_of_mass[1] * gravity * tangent)
+    return np.abs(np.tan(balance.pressure_lean) / tangent - 1.0)[middle], np.abs(share)[middle]
 
 
 def steps_of(run: Run) -> float:
@@ -307,10 +372,12 @@ def _lean(run: Run) -> str:
 
 TABLES: dict[str, Callable[[], Iterator[str]]] = {
     "linked": linked,
+    "slowly": slowly,
     "swings": swings,
     "carved": carved,
     "skidded": skidded,
     "gates": gates,
+    "watched": watched,
     "racers": racers,
     "sensitivity": sensitivity,
 }
@@ -318,7 +385,7 @@ TABLES: dict[str, Callable[[], Iterator[str]]] = {
 
 def main() -> None:
     """Write the tables that are named, or all."""
-    for name in sys.argv[1:] or TABLES:
+    for name in sys.argv[1:] or (each for each in TABLES if each != "watched" or DAY.exists()):
         table = "\n".join(TABLES[name]())
         mark = f"<!-- table {name} -->\n"
         text = PAGE.read_text(encoding="utf-8")

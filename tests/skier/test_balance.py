@@ -64,6 +64,21 @@ def test_a_steady_turn_is_kept_and_a_push_of_50_N_is_survived() -> None:
     assert np.mean(balance.load[last].sum(axis=1)) == pytest.approx(75.0 * 9.81, rel=0.01)
 
 
+@pytest.mark.slow
+def test_the_slope_formula_holds_in_a_long_turn_and_less_in_a_short_one() -> None:
+    """tan Ψ = v²/(R g cos α) - tan α cos χ, each instant within 5 %, in the middle half of a turn of 6 s."""
+    shares = []
+    for time in (1.5, 6.0):
+        turn = tall(Skier(turn_time=time, turns=1.5), angle_deg=3.0, mu_0=0.02, drag_area_m2=0.3, speed_m_per_s=8.0)
+        run = simulate(turn.with_(duration_s=0.8 + 1.5 * time))
+        middle = (run.time > 0.8 + 0.75 * time) & (run.time < 0.8 + 1.25 * time)
+        balanced = np.tan(run.balance.balanced_lean[middle])
+        assert (np.abs(balanced) > 0.2).all()
+        shares.append(np.mean(np.abs(np.tan(run.balance.pressure_lean[middle]) / balanced - 1.0) < 0.05))
+    assert shares[1] == 1.0
+    assert shares[0] < 0.8
+
+
 def linked(name: str, speed: float) -> Run:
     run = simulate(scenario(name).with_(method="fast", speed_m_per_s=speed))
     assert run.outcome == "finished", speed
