@@ -10,7 +10,7 @@ import pytest
 from skisnow import Course, Gate, scenario
 from skisnow.errors import ParameterError
 from skisnow.scenario import Skier, scenario_values
-from skisnow.skier import body_of
+from skisnow.skier import body_of, segments
 from skisnow.skier.edges import Edges
 from skisnow.skier.legs import leg_poses
 from skisnow.skier.steering import LineThroughGates, TurnsOverTime, Underway
@@ -125,6 +125,41 @@ def test_a_body_scales() -> None:
     assert scenario("skier-10deg").sledge.inertia == pytest.approx(one.inertia, abs=0.06)
     with pytest.raises(ParameterError, match="from 20 to 200"):
         body_of(7.0, 1.76)
+
+
+def test_a_body_is_the_mean_of_three_men() -> None:
+    """Weights (lb), heights and centres of mass (in), moments (lb in s²) standing and crouched, of the report."""
+    men = (
+        (173.5, 72.2, 32.2, (132.0 + 41.4, 119.0 + 37.3, 13.1 + 29.9)),
+        (147.3, 67.4, 29.8, (95.6 + 32.9, 81.9 + 30.4, 10.3 + 21.5)),
+        (203.0, 73.3, 31.8, (144.0 + 48.9, 129.0 + 41.9, 14.2 + 36.7)),
+    )
+    found = body_of(80.0, 1.7)
+    for i in range(3):
+        means = [0.5 * both[i] * 386.0886 / (weight * tall**2) for weight, tall, _, both in men]  # in/s² of gravity
+        assert found.inertia[i] == pytest.approx(80.0 * 1.7**2 * sum(means) / 3.0, rel=1e-5)
+    assert found.standing_height == pytest.approx(1.7 * sum(1.0 - below / tall for _, tall, below, _ in men) / 3.0)
+
+
+def test_segments_make_a_whole_body() -> None:
+    """Winter's figure: hips at 0.530, shoulders at 0.818 of the height; a leg 0.161, an arm 0.050 of the mass."""
+    legs = (segments.FOOT, segments.SHANK, segments.THIGH)
+    arms = (segments.UPPER_ARM, segments.FOREARM)
+    assert sum(each.length for each in legs) == pytest.approx(0.530)
+    assert sum(each.length for each in (*legs, segments.TRUNK)) == pytest.approx(0.818)
+    assert [each.length for each in arms] == [0.186, 0.146]
+    assert sum(each.mass for each in legs) == pytest.approx(0.161)
+    assert sum(each.mass for each in arms) == pytest.approx(0.050)
+    assert 2.0 * (0.161 + 0.050) + segments.TRUNK.mass == pytest.approx(1.0)
+    assert [each.centre for each in (*legs, *arms)] == [0.5, 0.433, 0.433, 0.436, 0.682]
+    assert segments.TRUNK.centre == 0.66
+    assert (segments.SHOULDER_WIDTH, segments.HIP_WIDTH) == (0.259, 0.191)
+
+
+def test_heights_by_roll_inertia_are_kept_within_people() -> None:
+    roll = body_of(75.0, 1.8).inertia[0]
+    assert segments.height_of(150.0, 2.0 * roll) == pytest.approx(1.8)
+    assert (segments.height_of(75.0, 1e-3), segments.height_of(75.0, 1e3)) == (1.0, 2.3)
 
 
 def test_keys_of_a_skier() -> None:
