@@ -115,6 +115,7 @@ class ScoredLine:
             "passed": found.passed,
             "words": found.words,
             "gates": [list(each) for each in found.gates],
+            "margins": list(found.margins),
             "turns": [[each.aside, each.along, each.turning] for each in point.line.turns],
         }
 
@@ -122,7 +123,10 @@ class ScoredLine:
 def score_in(row: dict[str, Any]) -> Score:
     """The score of a row."""
     gates = tuple((outcome, time) for outcome, time in row["gates"])
-    return Score(value=row["value"], time=row["time"], passed=row["passed"], words=row["words"], gates=gates)
+    margins = tuple(row["margins"])
+    return Score(
+        value=row["value"], time=row["time"], passed=row["passed"], words=row["words"], gates=gates, margins=margins
+    )
 
 
 def turns_in(row: dict[str, Any]) -> tuple[LineTurn, ...]:
