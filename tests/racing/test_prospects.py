@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from scipy.stats import norm
 
 from skisnow.racing.prospects import MOST_MARGIN, Prospects, margins_of, times_of
+from skisnow.racing.score import Score, with_room
 from skisnow.racing.search import Evaluated
 
 RNG = np.random.default_rng(4)
@@ -77,3 +79,21 @@ def test_the_improvement_is_that_of_a_normal_value(hope: float) -> None:
     most = exact.max()
     expected = most + math.log(np.trapezoid(np.exp(exact - most), steps))
     assert _log_improvement(np.array([hope]))[0] == pytest.approx(expected, abs=0.02)
+
+
+def test_a_gate_has_to_be_passed_with_room() -> None:
+    """Two gates passed by 4 and 12 cm: with 5 cm of room the first one fails by 1 cm."""
+    gates = (("passed", 2.0), ("passed", 4.0))
+    score = Score(value=4.0, time=4.0, passed=2, words="finished", gates=gates, margins=(0.04, 0.12, 0.3))
+    assert with_room(score, 0.0) == score
+    assert with_room(score, 0.03).value == 4.0
+    assert with_room(score, 0.03).margins == pytest.approx((0.01, 0.09, 0.3))  # the last is no gate
+    narrow = with_room(score, 0.05)
+    assert narrow.value == pytest.approx(1000.01)
+    assert (narrow.time, narrow.passed) == (None, 1)
+    assert "gate 1 by less than 0.05 m" in narrow.words
+    both = with_room(score, 0.2)
+    assert both.value == pytest.approx(2000.0 + 0.16 + 0.08)
+    missed = replace(score, time=None, value=1000.3, passed=1, margins=(-0.3, None, 0.3))
+    assert with_room(missed, 0.05).value == 1000.3
+    assert with_room(missed, 0.05).margins == (-0.35, None, 0.3)

@@ -15,7 +15,7 @@ from skisnow.racing.by_surrogate import SurrogateSearch
 from skisnow.racing.search import Evaluations
 from skisnow.racing.surrogate import Surrogate
 
-from .test_search import EASY, Polyline, batches, cycloid, raced
+from .test_search import EASY, SLALOM, Polyline, batches, cycloid, raced
 
 PLACES = np.random.default_rng(1).random((40, 4))
 VALUES = 3.0 + np.sin(2.0 * PLACES[:, 0]) + PLACES[:, 1] ** 2 - 0.5 * PLACES[:, 2]
@@ -101,3 +101,11 @@ def test_turns_are_searched_alike_then_each_for_itself_and_gone_on_with(tmp_path
 def test_it_ends_where_three_batches_make_nothing_quicker() -> None:
     found = raced(EASY, search="surrogate", evaluations=60, settled=5.0)
     assert len(found.history) < 40
+
+
+@pytest.mark.slow
+def test_five_seeds_find_the_same_time_through_four_gates() -> None:
+    """By a point that may edge to 72°, for which the first line is not too tight."""
+    wide = SLALOM.with_(greatest_edge_deg=72.0)
+    found = [raced(wide, gates=4, search="surrogate", evaluations=60, seed=seed).score.time for seed in range(1, 6)]
+    assert found == pytest.approx([7.5] * 5, abs=0.01)

@@ -87,6 +87,7 @@ def quickest_line(
     window: int | None = None,
     step: int = 1,
     ahead: int = 2,
+    room: float = 0.05,
     seed: int = 0,
     workers: int | None = None,
     executor: ExecutorLike | None = None,
@@ -125,6 +126,9 @@ def quickest_line(
     ahead
         Gates behind a window that its evaluations race through as well, by the turns that are there: too fast a way to
         the window's last gate fails at them, or is slow.
+    room
+        Distance (m) by which both skis have to pass each pole at least, 0 to 1: a line that passes nearer fails. What
+        passes by less with one solver may straddle with another.
     seed
         Of every random number, from 0 on.
     workers
@@ -167,13 +171,13 @@ def quickest_line(
     """
     begun = _begun(scenario, gates, start)
     window, step = _window(len(begun.turns), window, step, ahead)
-    _require(evaluations=evaluations, population=population, spread=spread, settled=settled)
+    _require(evaluations=evaluations, population=population, spread=spread, settled=settled, room=room)
     search = _search(search, model)
     if evaluations > 1:
         require_cmaes()
     require_executor(executor)
     scenario = replace(scenario, course=begun.course)
-    racer = Racer(scenario, model)
+    racer = Racer(scenario, model, room)
     tell = progress or _silent
     settings = (evaluations, search, population, spread, settled, window, step, ahead, seed)
     kept = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
@@ -230,13 +234,15 @@ def _search(search: Search | None, model: RacerModel) -> Search:
     return search
 
 
-def _require(*, evaluations: int, population: int | None, spread: float, settled: float) -> None:
+def _require(*, evaluations: int, population: int | None, spread: float, settled: float, room: float) -> None:
     if evaluations < 1:
         raise ParameterError(f"evaluations is {evaluations}; at least 1 is needed")
     if population is not None and population < 4:
         raise ParameterError(f"population is {population}; at least 4 is needed")
     if not 0.0 < spread <= 1.0:
         raise ParameterError(f"spread is {spread:g}; it must be above 0 and at most 1")
+    if not 0.0 <= room <= 1.0:
+        raise ParameterError(f"room is {room:g}; it must be from 0 to 1")
     if not 0.0 <= settled < NOT_PASSED:
         raise ParameterError(f"settled is {settled:g}; it must be from 0 to below {NOT_PASSED:g}")
 

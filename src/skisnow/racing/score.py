@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from ..course import CourseResult, Passage
@@ -79,6 +79,22 @@ def score_of(result: CourseResult | None, end: tuple[float, float], *, finished:
     fault = words if result.fault is None or not finished else result.fault.words
     value = NOT_PASSED * missed + beside + min(left, FARTHEST)
     return Score(value=value, time=None, passed=result.passed, words=fault, gates=gates, margins=margins)
+
+
+def with_room(score: Score, room: float) -> Score:
+    """The same score where each gate has to be passed by `room` (m): margins are less by it, and may fail."""
+    if room == 0.0:
+        return score
+    margins = tuple(
+        each if each is None or i >= len(score.gates) else each - room for i, each in enumerate(score.margins)
+    )
+    narrow = [i for i, each in enumerate(margins) if each is not None and each <= 0.0]
+    if score.time is None or not narrow:
+        return replace(score, margins=margins)
+    words = f"the skis passed the pole of gate {narrow[0] + 1} by less than {room:g} m"
+    lacking = -sum(margins[i] or 0.0 for i in narrow)
+    value = NOT_PASSED * len(narrow) + lacking
+    return replace(score, value=value, time=None, passed=score.passed - len(narrow), words=words, margins=margins)
 
 
 def _margin(passage: Passage) -> float | None:
