@@ -16,9 +16,6 @@ from .search import Batches, Evaluated, optimiser_within
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-CURIOSITY: Final = (0.1, 1.0, 0.3, 1.0)
-"""Of a batch's places, one after the other: by how much of its deviation a time may come out other than expected
-(modelling assumption): the first is where it is expected to be the least."""
 PATIENCE: Final = 3
 """Batches without a better value that end a search with `settled` (modelling assumption)."""
 BOX: Final = (0.02, 0.5)
@@ -30,6 +27,30 @@ ASKED: Final = 50
 """Generations in which the least of the process is sought (modelling assumption)."""
 ALIKE: Final = 0.25
 """Share of all evaluations with the same numbers for all turns (modelling assumption)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Daring:
+    """How a place of a batch is chosen.
+
+    Attributes
+    ----------
+    curiosity
+        Times the deviation of a time, by which it may come out other than expected.
+    caution
+        Power of the probability of coming through: with 1 most races fail by millimetres in the end.
+    held
+        Share of all directions in which it stays at the centre, by chance: without it the places of a batch lie beside
+        one another.
+    """
+
+    curiosity: float
+    caution: float
+    held: float
+
+
+BATCH: Final = (Daring(0.1, 4.0, 0.0), Daring(1.0, 1.0, 0.5), Daring(0.3, 4.0, 0.5), Daring(1.0, 2.0, 0.0))
+"""The places of a batch (modelling assumption): the first is where the least is expected."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,9 +137,14 @@ class SurrogateSearch:
         known = Prospects.of(found, self.kinds)
         centre = self._numbers(directions, np.array(self._centre(known).place))
         chosen: list[FloatArray] = []
-        for curiosity in CURIOSITY:
+        for daring in BATCH:
             seed = (*self.seed, phase, len(found), len(chosen))
-            place = directions @ _best_within(known, directions, centre, box, curiosity, seed)
+            free = np.random.default_rng(seed).random(len(centre)) >= daring.held
+            if free.sum() < 2:  # CMA-ES needs two numbers
+                free[:] = True
+            moved = directions[:, free]
+            rest = directions @ np.where(free, 0.0, centre)
+            place = rest + moved @ _best_within(known, moved, rest, centre[free], box, daring, seed)
             chosen.append(place)
             known = known.believing(place)
         return chosen
@@ -139,15 +165,16 @@ class SurrogateSearch:
 
 
 def _best_within(
-    known: Prospects, directions: FloatArray, centre: FloatArray, box: float, curiosity: float, seed: Sequence[int]
-) -> FloatArray:
+    known: Prospects, directions: FloatArray, rest: FloatArray, centre: FloatArray, box: float, daring: Daring,
+    seed: Sequence[int],
+) -> FloatArray:  # fmt: skip
     """Where most is to be expected, within a box about the centre and the unit cube (m,)."""
     limits = np.stack([np.maximum(centre - box, 0.0), np.minimum(centre + box, 1.0)], axis=1)
     optimiser = optimiser_within(limits, np.clip(centre, *limits.T), 0.4 * box, seed)
     best, most = centre, -math.inf
     for _ in range(ASKED):
         asked = np.array([optimiser.ask() for _ in range(optimiser.population_size)])
-        values = known.worth(asked @ directions.T, curiosity)
+        values = known.worth(rest + asked @ directions.T, daring.curiosity, daring.caution)
         optimiser.tell(list(zip(asked, (-values).tolist(), strict=True)))
         if values.max() > most:
             best, most = asked[int(np.argmax(values))], float(values.max())

@@ -69,14 +69,16 @@ class Prospects:
         scatter = np.hypot(deviation, self.margins.noise * self.margins.scale)
         return np.asarray(np.sum(log_ndtr(mean / scatter), axis=1))
 
-    def worth(self, places: FloatArray, curiosity: float = 1.0) -> FloatArray:
+    def worth(self, places: FloatArray, curiosity: float = 1.0, caution: float = 1.0) -> FloatArray:
         """Logarithm of the time (s) by which places (m, d) may be expected to be quicker than the least.
 
-        `curiosity` multiplies the deviation of the time: near 0 only what is expected counts, not what may be.
+        `curiosity` multiplies the deviation of the time: near 0 only what is expected counts, not what may be;
+        `caution` is the power of the probability of coming through.
         """
         mean, deviation = self.time.at(places)
         deviation = deviation * curiosity
-        return np.asarray(_log_improvement((self.least - mean) / deviation) + np.log(deviation) + self.through(places))
+        gain = _log_improvement((self.least - mean) / deviation) + np.log(deviation)
+        return np.asarray(gain + caution * self.through(places))
 
     def believing(self, place: FloatArray) -> Prospects:
         """The same with a place that gives what is expected there."""
