@@ -8,8 +8,9 @@ TOOLS ?= .venv-tools
 DEMO ?= demo
 SEED ?= 1
 SBOM ?= dist/skisnow.cdx.json
+# three workers, since those that drive a browser or another process wait;
 # the same examples every time (test-all seeks others); neighbours stay in one process, which has what they share
-QUICK := -n 2 --dist worksteal -q --hypothesis-profile=ci
+QUICK := -n 3 --dist worksteal -q --hypothesis-profile=ci
 
 # tests start hundreds of Python processes; where compiled modules are not kept, each compiles the package anew
 unexport PYTHONDONTWRITEBYTECODE

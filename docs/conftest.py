@@ -9,6 +9,16 @@ import pytest
 if TYPE_CHECKING:
     from pathlib import Path
 
+LONG = {"docs/tutorials/campaign.md"}
+"""Pages that draw a whole report."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the long pages, which run with the slow tests."""
+    for item in items:
+        if item.nodeid.partition("::")[0] in LONG:
+            item.add_marker(pytest.mark.slow)
+
 
 @pytest.fixture(autouse=True)
 def _empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,9 +13,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+from watched_slope import DAY, write_profile
 
 from skisnow import Course, Gate, Run, Scenario, scenario, simulate, time_gates
 from skisnow.scenario import scenario_values
@@ -34,6 +37,68 @@ def run_of(name: str, *changes: tuple[str, object]) -> Run:
     """A run of a built-in scenario with changes, in the fast mode."""
     print(name, *changes, file=sys.stderr)
     return simulate(scenario(name, changes={"solver.method": "fast", **dict(changes)}))
+
+
+Misses: TypeAlias = npt.NDArray[np.float64]
+WATCHED = (
+    ("slalom-20-gates", 4420.0, 203.0),
+    ("slalom-20-gates", 11710.0, 203.0),
+    ("slalom-20-gates", 11770.0, 203.0),
+    ("giant-slalom-20-gates", 11600.0, 477.0),
+    ("giant-slalom-20-gates", 4210.0, 477.0),
+)
+"""Course, where it begins on the day's way and how long it is (m)."""
+
+
+def watched() -> Iterator[str]:
+    """Gates on the slope that a watch measured; as it stands where the day is not there."""
+    heads = ("from (m)", "slope: least, mean, greatest (°)", "passed", "speed: least, greatest (m/s)")
+    yield f"| course | {' | '.join(heads)} | greatest lean (°) | outcome |"
+    yield "| --- | ---: | ---: | ---: | ---: | ---: | --- |"
+    for name, begins, length in WATCHED:
+        with TemporaryDirectory() as folder:
+            profile = Path(folder) / "profile.csv"
+            angles = write_profile(profile, begins, length)
+            run = run_of(name, ("slope.kind", "profile"), ("slope.profile", str(profile)))
+        course = run.scenario.course
+        assert course is not None
+        passed = [each.outcome for each in time_gates(course, run).passages].count("passed")
+        slope = f"{angles.min():.1f}, {angles.mean():.1f}, {angles.max():.1f}"
+        speed = f"{run.speed.min():.1f}, {run.speed.max():.1f}"
+        told = f"{passed} of 20 | {speed} | {np.degrees(np.abs(run.balance.lean).max()):.0f}"
+        yield f"| `{name}` | {begins:.0f} | {slope} | {told} | {run.outcome.replace('_', ' ')} |"
+
+
+IN_TURNS: dict[str, Callable[[tuple[Misses, Misses]], str]] = {
+    "tan Ψ off by, median": lambda found: f"{100.0 * np.median(found[0]):.1f} %",
+    "… 95 % of the instants, within": lambda found: f"{100.0 * np.quantile(found[0], 0.95):.1f} %",
+    "… instants within 5 %": lambda found: f"{100.0 * np.mean(found[0] < 0.05):.0f} %",
+    "roll, I φ̈/(m z g_n tan Ψ), median": lambda found: f"{100.0 * np.median(found[1]):.1f} %",
+}
+TURN_TIMES = (1.5, 2.0, 3.0, 4.0, 6.0)
+
+
+def slowly() -> Iterator[str]:
+    """The slope formula in one turn on 3°, by how long the turn is: the middle half of it."""
+    yield f"| time of the turn (s) | {' | '.join(f'{each:g}' for each in TURN_TIMES)} |"
+    yield f"| --- |{' ---: |' * len(TURN_TIMES)}"
+    missed = [in_a_long_turn(each) for each in TURN_TIMES]
+    for row, told in IN_TURNS.items():
+        yield f"| {row} | {' | '.join(told(each) for each in missed)} |"
+
+
+def in_a_long_turn(time: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """By how much tan Ψ is off, and what the body's roll takes of it, in the middle half of a turn so long (s)."""
+    gentle = {"slope.angle_deg": 3.0, "start.speed_m_per_s": 8.0, "friction.mu_0": 0.02, "drag.drag_area_m2": 0.3}
+    plan = {"skier.turn_time_s": time, "skier.turns": 1.5, "run.duration_s": 0.8 + 1.5 * time}
+    run = run_of("skier-10deg", *(gentle | plan).items())
+    balance, sledge = run.balance, run.scenario.sledge
+    middle = (run.time > 0.8 + 0.75 * time) & (run.time < 0.8 + 1.25 * time) & np.isfinite(balance.pressure_lean)
+    tangent = np.tan(balance.balanced_lean)
+    rolls = np.convolve(np.gradient(np.gradient(balance.lean, run.time), run.time), np.ones(11) / 11.0, "same")
+    gravity = run.scenario.gravity * math.cos(math.radians(3.0))
+    share = sledge.inertia[0] * rolls / (sledge.mass * sledge.centre_of_mass[1] * gravity * tangent)
+    return np.abs(np.tan(balance.pressure_lean) / tangent - 1.0)[middle], np.abs(share)[middle]
 
 
 def steps_of(run: Run) -> float:
@@ -67,9 +132,7 @@ def off_balance(run: Run) -> list[npt.NDArray[np.float64]]:
 
 def slips(run: Run, first: float, last: float) -> float:
     """Median angle between skis and path in a time (°)."""
-    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
-    within = (run.time > first) & (run.time < last)
-    return float(np.degrees(np.median(np.abs(run.heading - path)[within])))
+    return float(np.median(np.abs(slip_of(run))[(run.time > first) & (run.time < last)]))
 
 
 def weights(run: Run) -> str:
@@ -156,6 +219,45 @@ def carved() -> Iterator[str]:
         yield f"| {'half' if number == 0 else number} | {' | '.join(cells)} |"
 
 
+def skidded() -> Iterator[str]:
+    """Turn by turn where the snow does not hold what later turns ask for."""
+    run = run_of("skier-12deg")
+    heads = ("speed (m/s)", "slip: median, greatest (°)", "smallest radius (m)", "of a carve so edged (m)", "shear (J)")
+    yield f"| turn | {' | '.join(heads)} | friction (J) | drag (J) |"
+    yield f"| --- |{' ---: |' * (len(heads) + 2)}"
+    skier = run.scenario.skier
+    assert skier is not None
+    for number in range(round(skier.turns - 0.5) + 1):
+        first = skier.first_turn + skier.turn_time * max(0.0, number - 0.5)
+        last = skier.first_turn + skier.turn_time * (number + 0.5)
+        yield f"| {number or 'half'} | {' | '.join(one_turn(run, first, last))} |"
+
+
+def one_turn(run: Run, first: float, last: float) -> list[str]:
+    """Of a turn from one time to another (s): speed, slip, smallest radius, that of a carve so edged, what is lost."""
+    within = (run.time > first) & (run.time < last)
+    turning, slip = turning_of(run), np.abs(slip_of(run))[within]
+    tightest = np.flatnonzero(within)[np.argmax(np.abs(turning[within]))]
+    carve = run.scenario.ski.sidecut_radius_of_edge_line * math.cos(math.radians(float(edges(run)[tightest])))
+    lost = [np.ptp(np.interp([first, last], run.time, run.energies[name])) for name in ("shear", "friction", "drag")]
+    found = [f"{run.speed[within].mean():.1f}", f"{np.median(slip):.1f}, {slip.max():.1f}"]
+    return [*found, f"{1.0 / abs(turning[tightest]):.1f}", f"{carve:.1f}", *(f"{each:.0f}" for each in lost)]
+
+
+def slip_of(run: Run) -> npt.NDArray[np.float64]:
+    """Angle from the path to the skis over time (°)."""
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    return np.asarray(np.degrees(run.heading - path))
+
+
+def turning_of(run: Run) -> npt.NDArray[np.float64]:
+    """Curvature of the boots' path, meant over 0.2 s (1/m)."""
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    turning = np.gradient(path, run.time) / np.maximum(run.speed, 0.1)
+    count = max(1, round(AVERAGED / steps_of(run)))
+    return np.convolve(turning, np.ones(count) / count, "same")
+
+
 def through(name: str, *changes: tuple[str, object]) -> list[str]:
     """Of a run through gates: passed, speed, time, greatest lean and edge angle, smallest radius."""
     run = run_of(name, *changes)
@@ -176,10 +278,8 @@ def through(name: str, *changes: tuple[str, object]) -> list[str]:
 
 def smallest_radius(run: Run) -> float:
     """Median over the turns of the smallest radius of the boots' path, of curvatures meant over 0.2 s (m)."""
-    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
-    turning = np.gradient(path, run.time) / np.maximum(run.speed, 0.1)
     count = max(1, round(AVERAGED / steps_of(run)))
-    smooth = np.convolve(turning, np.ones(count) / count, "same")[count:-count]
+    smooth = turning_of(run)[count:-count]
     sides = np.flatnonzero(np.diff(np.sign(smooth)))
     tops = [np.abs(part).max() for part in np.split(smooth, sides + 1)[1:-1] if len(part) > 2 * count]
     return float(1.0 / np.median(tops)) if tops else math.nan
@@ -272,9 +372,12 @@ def _lean(run: Run) -> str:
 
 TABLES: dict[str, Callable[[], Iterator[str]]] = {
     "linked": linked,
+    "slowly": slowly,
     "swings": swings,
     "carved": carved,
+    "skidded": skidded,
     "gates": gates,
+    "watched": watched,
     "racers": racers,
     "sensitivity": sensitivity,
 }
@@ -282,7 +385,7 @@ TABLES: dict[str, Callable[[], Iterator[str]]] = {
 
 def main() -> None:
     """Write the tables that are named, or all."""
-    for name in sys.argv[1:] or TABLES:
+    for name in sys.argv[1:] or (each for each in TABLES if each != "watched" or DAY.exists()):
         table = "\n".join(TABLES[name]())
         mark = f"<!-- table {name} -->\n"
         text = PAGE.read_text(encoding="utf-8")

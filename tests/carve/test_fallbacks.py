@@ -12,7 +12,7 @@ import pytest
 from skisnow.carve import equilibrium
 from skisnow.carve.equilibrium import _conditions, carve
 from skisnow.carve.laws import equivalent_snow
-from skisnow.carve.result import SINKING_DEPTH, equilibrium_of
+from skisnow.carve.result import SINKING_DEPTH, _depth_ratio, equilibrium_of
 from skisnow.carve.solve import Conditions, Solution, solved
 from skisnow.errors import ParameterError
 from skisnow.forces.penetration import HypoplasticPoint
@@ -156,3 +156,32 @@ def test_a_search_begins_where_a_straight_edge_bears_the_load() -> None:
     hardness, ratio = equivalent_snow(law, ski, math.radians(45.0), 800.0)
     assert depth * 1.024 >= hardness / (2.0 / 3.0 * 4e10) >= depth
     assert ratio == pytest.approx(4.0 * 1.5)  # the chord of p at e is a e, and linear snow has 2/3 of it
+
+
+def test_a_search_begins_on_a_base_no_wider_than_the_ski() -> None:
+    """p = a ε² at 60° and 16 cm: the wedge would reach 9 cm, the base half its width, r.
+
+    F = a (e³ - (e - r tan ϑ)³) L/(3 tan ϑ), the volume (e² - (e - r tan ϑ)²) L/(2 tan ϑ).
+    """
+    law, ski = Power(4e8, 2.0, unloading_ratio=4.0), plain_ski()
+    angle, deep = math.radians(60.0), 0.16
+    falls = 0.5 * float(ski.at(0.0).width) * math.tan(angle)
+    assert falls < deep
+
+    def force(depth: float) -> float:
+        return 4e8 * (depth**3 - (depth - falls) ** 3) * 0.9 * 1.6 / (3.0 * math.tan(angle))
+
+    def hardness(depth: float) -> float:
+        volume = (depth**2 - (depth - falls) ** 2) * 0.9 * 1.6 / (2.0 * math.tan(angle))
+        return force(depth) / volume
+
+    assert hardness(deep * 1.024) >= equivalent_snow(law, ski, angle, force(deep))[0] >= hardness(deep)
+
+
+def test_the_boots_own_station_is_neither_before_nor_behind() -> None:
+    """Twice as deep behind as before, whatever stands at 0; a ski on one side alone has no ratio."""
+    station, weight = np.array([0.4, 0.2, 0.0, -0.2, -0.4]), np.array([0.1, 0.3, 0.2, 0.3, 0.1])
+    depth = np.array([0.001, 0.001, 0.05, 0.002, -0.01])
+    assert _depth_ratio(station, weight, depth) == pytest.approx(2.0)
+    assert _depth_ratio(station, weight, np.array([0.001, 0.001, 0.05, -0.002, 0.0])) is None
+    assert _depth_ratio(station, weight, np.array([0.0, -0.001, 0.05, 0.002, 0.0])) is None

@@ -22,6 +22,7 @@ from skisnow.chain.priors import MEASURED, PRIORS, inputs_with
 from skisnow.cli import main
 from skisnow.errors import ParameterError
 from skisnow.field.reference import reference_campaign
+from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
 from skisnow.inputs import values_of
 from skisnow.report.turn_dict import turn_dict
 from skisnow.scenario.prior import prior_of
@@ -76,6 +77,7 @@ def test_the_chain_asks_for_the_turn_with_each_contact_and_for_each_that_was_dra
     assert [each.values["ski.stiffness_factor"] for each in found.ensemble] == [each.stiffness_factor for each in drawn]
     assert found.analysis is analysis
     assert said[-1] == "run 13 of 13"
+    assert [f"the turn with the contact “{contact}”" for contact in found.runs] == said[:2]
     assert "is wider than that with" in found.sentences[0]
     assert "<" not in "".join(found.sentences)
 
@@ -103,6 +105,52 @@ def test_all_that_is_not_known_is_drawn_over_its_prior(analysis: Analysis) -> No
         assert np.quantile(values, [0.0, 0.5, 1.0]) == pytest.approx([low, np.sqrt(low * high), high], rel=0.02)
     logs = np.log([[each[key] for key in (*MEASURED, *(prior.key for prior in PRIORS))] for each in drawn])
     assert np.max(np.abs(np.corrcoef(logs.T) - np.eye(6))) < 0.15  # 3 / √400
+
+
+def test_the_ensemble_is_computed_quickly_whatever_the_turn_asks_for(asked: list[Scenario]) -> None:
+    """Rows of 0.05 s of an error-controlled run, and what they are kept for."""
+    turn = skisnow.scenario("carved-46m").with_(duration_s=1.0)
+    row = ensemble.quickly(turn.with_(solver=replace(turn.solver, fixed=True, output_interval=0.01)))
+    (solver,) = (each.solver for each in asked)
+    assert (solver.method, solver.fixed, solver.output_interval) == ("fast", False, 0.05)
+    run = circle_run(radius=10.0 * (turn.contact.snow.snow_hardness / 4.42e8) ** 0.1, count=61)
+    assert row["outcome"] == run.outcome
+    assert np.array(row["track"]) == pytest.approx(np.array([run.time, run.place[:, 0], run.place[:, 1]]))
+    assert json.loads(json.dumps(row)) == row
+
+
+def test_how_far_quick_ends_beside_the_turn_is_told(analysis: Analysis, monkeypatch: pytest.MonkeyPatch) -> None:
+    """3 cm down and 4 cm aside: 5 cm."""
+
+    def beside(scenario: Scenario) -> Run:
+        run = replace(circle_run(radius=12.0, count=61), scenario=scenario)
+        return (
+            run if scenario.solver.method == "default" else replace(run, place=run.place + np.array([0.03, -0.04, 0.0]))
+        )
+
+    monkeypatch.setattr(chaining, "simulate", beside)
+    monkeypatch.setattr(ensemble, "simulate", beside)
+    assert skisnow.chain(analysis, "C", runs=3, workers=1).ensemble_error == pytest.approx(0.05)
+
+
+def test_the_usual_priors_are_what_their_origins_say() -> None:
+    """Half of a groove stays, or all but 2 %; μ from 0.023 to 0.139 about their middle; stiffness by 30 %."""
+    ratio, way, friction, stiffness = PRIORS
+    assert [1.0 - 1.0 / end for end in (ratio.low, ratio.high)] == pytest.approx([0.5, 0.98])
+    assert way.low == pytest.approx(1e3 * SHEAR_DISPLACEMENT)
+    assert way.high == 0.5
+    middle = math.sqrt(0.023 * 0.139)
+    assert [friction.low, friction.high] == pytest.approx([0.023 / middle, 0.139 / middle], rel=0.02)
+    assert [stiffness.low, stiffness.high] == pytest.approx([1.0 / 1.3, 1.3], rel=2e-3)
+    assert [each.about for each in PRIORS] == [False, False, True, False]
+
+
+def test_a_latin_hypercube_has_one_in_each_slice() -> None:
+    shares = ensemble.latin_hypercube(50, 3, np.random.default_rng(1))
+    assert shares.shape == (50, 3)
+    assert np.floor(np.sort(shares, axis=0) * 50.0).T.tolist() == [list(range(50))] * 3
+    assert np.ptp(shares * 50.0 % 1.0) > 0.9
+    assert np.abs(np.corrcoef(shares.T) - np.eye(3)).max() < 0.4
 
 
 def with_measured(analysis: Analysis, **known: Any) -> Analysis:

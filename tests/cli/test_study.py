@@ -170,7 +170,7 @@ def alive(process: int) -> bool:
     ("how", "code"),
     [
         (signal.SIGKILL, -signal.SIGKILL),
-        (signal.SIGINT, 130),
+        pytest.param(signal.SIGINT, 130, marks=pytest.mark.slow),
         pytest.param(signal.SIGTERM, 143, marks=pytest.mark.slow),
     ],
 )

@@ -58,6 +58,14 @@ def test_a_side_is_left_or_right() -> None:
         course(((10.0, -1.0), "up"))  # type: ignore[arg-type]
 
 
+def test_two_points_are_enough() -> None:
+    """A way of 60 m in 6 s."""
+    result = passages(WIDE, MovingPoint(np.array([0.0, 6.0]), np.array([(-5.0, 0.0), (55.0, 0.0)])), {})
+    assert result.times == pytest.approx((1.5, 2.5, 3.5), abs=1e-12)
+    with pytest.raises(ParameterError):
+        MovingPoint(np.array([0.0]), np.array([(-5.0, 0.0)]))
+
+
 def test_without_outer_poles_the_line_is_square_to_the_course() -> None:
     """At the ends the course goes from pole to pole, (10, ±2): 10 (x - 10) + 2 (0 + 1) = 0 at x = 9.8, and x = 30.2."""
     result = passages(ZIGZAG, along_x(), {})

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow.errors import ParameterError
 from skisnow.scenario import read_scenario
 
 from .balance import left_over
@@ -51,6 +52,26 @@ def test_place_and_heading_are_held() -> None:
         assert abs(heading - scenario.start.heading) < 1.1 * abs(roll * pitch)
         moved = np.hypot(*(dynamics.position[:2] - [3.0, -2.0]))
         assert moved < 1.1 * 0.04 * np.hypot(roll, pitch)  # lifted by less than 4 cm on the way
+
+
+def test_it_begins_where_it_was_moved_to_with_its_skis_as_bent() -> None:
+    """Two metres above the snow, turned by a quarter: 1 ms later it is 2 mm on, to its own front, and falls."""
+    dynamics = sledge(given())
+    assert dynamics.find_equilibrium() < 1e-9
+    bent = dynamics.beam_dofs.copy()
+    assert np.abs(bent).max() > 1e-3
+    turned = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    dynamics.move_to(np.array([7.0, -3.0, 2.0]), turned)
+    assert dynamics.position.tolist() == [7.0, -3.0, 2.0]
+    assert dynamics.rotation.tolist() == turned.tolist()
+    assert dynamics.beam_dofs.tolist() == bent.tolist()
+    dynamics.begin(np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    dynamics.advance(1e-3)
+    assert dynamics.position[:2] == pytest.approx([7.0, -2.998], abs=5e-5)
+    assert not dynamics.touches
+    for name, place, rotation in (("position", np.zeros(4), turned), ("rotation", np.zeros(3), np.zeros(3))):
+        with pytest.raises(ParameterError, match=f"{name} has shape"):
+            dynamics.move_to(place, rotation)
 
 
 @pytest.mark.parametrize(("edge_angle", "hardness"), HARD)

@@ -79,7 +79,8 @@ def test_intervals_are_1_96_standard_errors_with_stated_accuracy() -> None:
     assert found.interval[1] == pytest.approx(found.value + 1.959964 * found.standard_error, abs=1e-9)
 
 
-@pytest.mark.parametrize("seeds", [10, pytest.param(30, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("seeds", [10, 30])
 def test_errors_over_many_noises_are_what_the_intervals_say(seeds: int) -> None:
     """Over 30 seeds the squared errors in standard errors have mean 1, ± 0.26 as χ²/30; three times that is allowed.
 

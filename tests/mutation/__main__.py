@@ -125,7 +125,7 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1, help="copies of the tree that are tested at once (1)")
     parser.add_argument("--only", nargs="*", type=int, default=[], help="numbers of the errors to plant (all)")
-    parser.add_argument("--only-reaching", action="store_true", help="run the test files alone that reach the error")
+    parser.add_argument("--only-reaching", action="store_true", help="run the tests alone that reach the error")
     parser.add_argument("--reach", type=Path, help="file of which test reaches what; kept for the next time")
     parser.add_argument("--tests", nargs="*", default=[], help="further test files and folders that count")
     parser.add_argument(

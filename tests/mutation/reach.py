@@ -1,4 +1,4 @@
-"""A pytest plugin that writes down which functions of the program each test file calls, and how long it takes.
+"""A pytest plugin that writes down which functions of the program each test calls, and how long it takes.
 
 What a fixture of a module or session calls counts for all tests that use it. Processes that a test starts write down
 theirs by themselves (`children/sitecustomize.py`).
@@ -25,11 +25,11 @@ Function: TypeAlias = tuple[str, int]
 PLACE: Final = "SKISNOW_TESTS_REACH"
 """Variable of the environment with the path of what is written."""
 CURRENT, CALLS, SOURCE = (f"{PLACE}_{name}" for name in ("CURRENT", "CALLS", "SOURCE"))
-"""Those of the test file that runs now, of what other processes call, and of the folder that counts."""
+"""Those of the test that runs now, of what other processes call, and of the folder that counts."""
 
 
 class Reach:
-    """What has been called, by test file and by fixture."""
+    """What has been called, by test and by fixture."""
 
     def __init__(self, root: Path) -> None:
         self.source = f"{root / 'src'}{os.sep}"
@@ -46,7 +46,7 @@ class Reach:
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
-        name = str(item.path.relative_to(self.root))
+        name = item.nodeid
         self.now, start = self.calls[name], time.monotonic()
         Path(os.environ[CURRENT]).write_text(name, encoding="utf-8")
         sys.settrace(self.seen)
@@ -94,7 +94,7 @@ def function_at(source: str, start: int) -> int | None:
 
 
 def nearest(reach: Path, file: Path, line: int | None) -> list[str]:
-    """Test files that call the function of this file, or any where `line` is None, the quick ones first."""
+    """Tests that call the function of this file, or any where `line` is None, the quick ones first."""
     found: dict[str, tuple[float, list[tuple[str, int]]]] = json.loads(reach.read_text(encoding="utf-8"))
     calling = [
         (seconds, name)

@@ -110,7 +110,8 @@ def tree(tmp_path: Path) -> Path:
         "src/skisnow/__init__.py": "",
         "src/skisnow/toy/area.py": "def area(a, b):\n    if a > 9:\n        return 0\n    return a * b\n",
         "tests/toy/test_area.py": "from skisnow.toy.area import area\n\ndef test_area():\n    assert area(2, 3) == 6\n",
-        ".gitignore": "left_out\n",
+        ".gitignore": "left_out\n*.so\n",
+        "src/skisnow/compiled/library.so": "",
         "left_out": "",
     }.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -126,6 +127,15 @@ def trials(tree: Path) -> Iterator[Trials]:
         yield Trials(copy, package_tests("toy", root=tree), 60.0)
 
 
+def test_what_is_compiled_is_copied_beside_what_git_has(tree: Path) -> None:
+    with copied_tree(tree) as copy:
+        found = {str(each.relative_to(copy)) for each in copy.rglob("*") if each.is_file()}
+    assert "src/skisnow/compiled/library.so" in found
+    assert "tests/toy/test_area.py" in found
+    assert "left_out" not in found
+    assert not copy.exists()
+
+
 @pytest.mark.slow
 def test_what_no_test_asks_for_survives(tree: Path, trials: Trials) -> None:
     """The product is asked for, the limit is not; a loop without end is caught by time; the copy is left as it was."""
@@ -137,7 +147,7 @@ def test_what_no_test_asks_for_survives(tree: Path, trials: Trials) -> None:
     product = Mutant("arithmetic", source.index("*"), source.index("*") + 1, "/")
     limit = Mutant("comparison", source.index(">"), source.index(">") + 1, ">=")
     found = dict(verdicts([(path, product), (path, limit)], [trials]))
-    assert nearest(trials.reach, path, function_at(source, product.start)) == ["tests/toy/test_area.py"]
+    assert nearest(trials.reach, path, function_at(source, product.start)) == ["tests/toy/test_area.py::test_area"]
     assert found == {(path, product): CAUGHT, (path, limit): SURVIVED}
     assert place_of(path, limit, root=tree) == ("toy/area.py", "if a > 9:", "if a >= 9:")
     start = source.index("return a * b")

@@ -16,9 +16,11 @@ from types import MappingProxyType
 
 import pytest
 
+from .left_out import NAMES
 from .mutants import Mutant
 from .reach import CALLS, CURRENT, PLACE, SOURCE, function_at, nearest
 
+OWN = Path(__file__).parent
 CAUGHT = "caught"
 OUT_OF_TIME = "out of time"
 SURVIVED = "survived"
@@ -26,10 +28,10 @@ SURVIVED = "survived"
 
 @contextmanager
 def copied_tree(root: Path) -> Iterator[Path]:
-    """A folder with what git has of the tree, as it stands, and the compiled core; gone at the end."""
+    """A folder with what git has of the tree, as it stands, and all that is compiled; gone at the end."""
     listed = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     names = subprocess.run(listed, cwd=root, capture_output=True, text=True, check=True).stdout.split("\0")
-    names += [str(path.relative_to(root)) for path in root.glob("src/skisnow/compiled/_core.*")]  # built here
+    names += [str(path.relative_to(root)) for path in root.glob("src/skisnow/compiled/*.*")]  # with what is built here
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
         for name in filter(None, names):
             if (root / name).is_file():
@@ -45,14 +47,14 @@ class Trials:
     tree: Path
     tests: tuple[str, ...]  # files and folders below the tree
     limit: float  # s for each mutant
-    reach: Path | None = None  # which functions each test file calls, as `tests.mutation.reach` writes it
-    only_reaching: bool = False  # whether test files that do not call the changed function are left out
+    reach: Path | None = None  # which functions each test calls, as `tests.mutation.reach` writes it
+    only_reaching: bool = False  # whether tests that do not call the changed function are left out
     left_out: tuple[str, ...] = ()  # test files and folders that do not run
 
     def verdict(self, path: Path, mutant: Mutant) -> str:
         """Whether the tests catch the error in this file (given from the tree's top); the file is itself again.
 
-        The test files that call the changed function are asked before the others.
+        The tests that call the changed function are asked before the others, the quick ones before the slow ones.
         """
         file = self.tree / path
         source = file.read_bytes()
@@ -62,7 +64,7 @@ class Trials:
             file.write_text(mutant.planted(text), encoding="utf-8", newline="")
             status = self.status(first) if first else 0
             if status == 0 and not (first and self.only_reaching):
-                status = self.status(without=first)
+                status = self._status_of_others(first)
         finally:
             file.write_bytes(source)
         return OUT_OF_TIME if status is None else CAUGHT if status else SURVIVED
@@ -70,8 +72,7 @@ class Trials:
     def look(self) -> int | None:
         """Exit status of all tests; what they reach is written down."""
         assert self.reach is not None
-        own = Path(__file__).parent
-        paths = os.pathsep.join(map(str, (self.tree / "src", own, own / "children")))
+        paths = os.pathsep.join(map(str, (self.tree / "src", OWN, OWN / "children")))
         with tempfile.TemporaryDirectory(prefix="mutation-reach-") as folder:
             calls = Path(folder) / "calls"
             calls.touch()
@@ -79,18 +80,25 @@ class Trials:
             environment = {name: str(path) for name, path in told.items()}
             return self.status(more=("-p", "reach"), environment={"PYTHONPATH": paths, **environment})
 
+    def _status_of_others(self, names: Collection[str]) -> int | None:
+        """Exit status of all tests but these."""
+        paths = os.pathsep.join(map(str, (self.tree / "src", OWN)))
+        with tempfile.NamedTemporaryFile("w", encoding="utf-8", prefix="mutation-left-out-") as listed:
+            listed.writelines(f"{name}\n" for name in names)
+            listed.flush()
+            return self.status(more=("-p", "left_out"), environment={"PYTHONPATH": paths, NAMES: listed.name})
+
     def status(
         self,
         tests: Collection[str] = (),
         *,
-        without: Collection[str] = (),
         more: Collection[str] = (),
         environment: Mapping[str, str] = MappingProxyType({}),
     ) -> int | None:
         """Exit status of these tests or all, 0 where there are none; None where time ran out."""
         words = [sys.executable, "-m", "pytest", "-x", "-q", "--hypothesis-profile=ci", "--doctest-modules"]
         words += [word for name in ("cacheprovider", "xdist", "randomly") for word in ("-p", f"no:{name}")]
-        words += [*more, *(f"--ignore={name}" for name in (*self.left_out, *without)), *(tests or self.tests)]
+        words += [*more, *(f"--ignore={name}" for name in self.left_out), *(tests or self.tests)]
         own = {
             "PYTHONPATH": str(self.tree / "src"),
             "PYTHONDONTWRITEBYTECODE": "1",

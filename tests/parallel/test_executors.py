@@ -15,6 +15,7 @@ from skisnow.identify import identify
 from skisnow.parallel import chunk, crews, dask_cluster
 from skisnow.parallel.batch import run_batch
 from skisnow.parallel.chunk import Identity
+from skisnow.parallel.crews import LOST
 from skisnow.parallel.executors import require_executor
 from skisnow.parallel.kept_rows import KeptRows, row_text
 from skisnow.parallel.pool import Pool
@@ -132,6 +133,20 @@ def test_errors_of_an_executor_are_told_and_those_of_the_function_passed_on(erro
 
     with pytest.raises(SkisnowError if told else ZeroDivisionError, match=told or "of the function"):
         run_batch(POINTS, dict, executor=Failing())
+
+
+@pytest.mark.parametrize(("words", "added"), [("snow that is none", ""), (LOST, "; finished points are kept")])
+def test_advice_is_for_what_was_lost_and_not_for_what_the_function_refuses(words: str, added: str) -> None:
+    class Refusing(Here):
+        def submit(self, *_: Any, **__: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            future.set_exception(SkisnowError(words))
+            return future
+
+    with pytest.raises(SkisnowError) as told:
+        run_batch(POINTS, dict, executor=Refusing())
+    assert str(told.value).startswith(words + added)
+    assert added or str(told.value) == words
 
 
 def test_futures_that_a_lost_scheduler_cancels_are_told() -> None:

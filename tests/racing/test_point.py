@@ -49,6 +49,25 @@ def test_straight_glide() -> None:
     assert (math.sqrt(square[-1]), time[-1]) == pytest.approx(glide(RACER, 120.0), rel=1e-8)
 
 
+class Diagonal:
+    """Straight, half a metre to the left for each metre down."""
+
+    def at(self, x: float) -> tuple[float, float, float]:
+        return 0.5 * x, 0.5, 0.0
+
+
+def test_a_traverse_bears_what_pulls_aside_too() -> None:
+    """Without drag v² = v₀² + 2 (g sin α cos χ - μ √((g cos α)² + (g sin α sin χ)²)) s, tan χ = ½."""
+    racer, long = replace(RACER, slope_angle=0.6, friction=0.3, drag=0.0), math.sqrt(1.25)
+    x, square, time = racer.motion(Diagonal(), [0.0, 20.0])
+    pull, press = 9.81 * math.sin(0.6), 9.81 * math.cos(0.6)
+    gained = pull / long - 0.3 * math.hypot(press, pull * 0.5 / long)
+    speed = math.sqrt(16.0 + 2.0 * gained * 20.0 * long)
+    assert x[-1] == 20.0
+    assert math.sqrt(square[-1]) == pytest.approx(speed, rel=1e-9)
+    assert time[-1] == pytest.approx((speed - 4.0) / gained, rel=1e-4)
+
+
 def test_a_turn_on_level_snow_slows_down_as_the_load_grows() -> None:
     """Without drag v² = R g sinh(asinh(v₀²/(R g)) - 2 μ s/R)."""
     level = replace(RACER, slope_angle=0.0, drag=0.0, speed=9.0)

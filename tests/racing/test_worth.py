@@ -70,6 +70,10 @@ def test_what_a_variant_changes_of_the_snow_it_changes_of_each_snow() -> None:
     assert (stronger.snow_hardness, stronger.failure_shear_stress) == pytest.approx((2e8, 4.4e5))
     assert changes["stiffness 5 % more"].stiffness_factor == pytest.approx(1.05)
     assert changes["friction 10 % less"].contact.friction == pytest.approx(0.045)
+    stiffer = worth_changes(replace(SLALOM, stiffness_factor=1.2, contact=replace(SLALOM.contact, friction=0.1)))
+    assert stiffer["stiffness 5 % more"].stiffness_factor == pytest.approx(1.26)
+    assert stiffer["friction 10 % less"].contact.friction == pytest.approx(0.09)
+    assert stiffer["friction 10 % less"].stiffness_factor == 1.2
 
 
 def test_a_millimetre_more_waist_makes_the_sidecut_radius_larger() -> None:

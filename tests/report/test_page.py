@@ -271,8 +271,8 @@ def test_what_is_not_stated_is_said(campaign: Campaign, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("case", "figures"),
     [
-        ("only shear", 4),
-        ("only penetration", 6),
+        pytest.param("only shear", 4, marks=pytest.mark.slow),
+        pytest.param("only penetration", 6, marks=pytest.mark.slow),
         ("one of each", 3),
         ("nothing used", 0),
     ],

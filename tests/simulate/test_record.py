@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
+from skisnow.dynamics import Ended
 from skisnow.scenario import read_scenario
 from skisnow.simulate.run_record import Record, _at_boot
 from skisnow.simulate.run_setup import set_up
@@ -46,3 +50,56 @@ def test_moments_are_kept_replaced_and_dropped() -> None:
 def test_what_is_under_the_boot_lies_between_its_neighbours(node: list[float], at_boot: float) -> None:
     values = np.array([[4.0, 3.0, 2.0, 0.0], [8.0, 6.0, 4.0, 0.0]])
     assert _at_boot(np.array(node), values) == pytest.approx([at_boot, 2.0 * at_boot], rel=1e-12)
+
+
+def books(*, shear: float, normal: float) -> tuple[float, ...]:
+    """What a record keeps of energies and works (J) that stand here; 1 and 2 were in the snow at the start."""
+    dynamics: Any = SimpleNamespace(
+        snow_energies=(1.0, 2.0), energies=(100.0, 200.0, 7.0), work=(shear, 20.0, normal, 4.0, 5.0, 6.0),
+        work_given=(8.0, 9.0), contact=SimpleNamespace(delayed_energy=0.5), body=SimpleNamespace(skis=()), time=0.0,
+        position=np.zeros(3), rotation=np.eye(3), boots=None, boot_wrench=None, beam_dofs=np.zeros((0, 0)),
+    )  # fmt: skip
+    setup: Any = SimpleNamespace(dynamics=dynamics, place=np.zeros(3), attitude=np.eye(3), velocity=np.zeros(3))
+    record = Record(setup)
+    dynamics.snow_energies = (5.0, 3.0)
+    return record._present().energies
+
+
+def test_who_pays_for_what_the_snow_takes() -> None:
+    """30 J of the normal force less 4 that the snow keeps and 6.5 of its dashpot; of 10 J by shear one is kept."""
+    assert books(shear=10.0, normal=-30.0) == (100.0, 200.0, 7.0, 8.0, 19.5, 9.0, 20.0, 4.0, 5.0, 6.5, 8.0, 9.0)
+    pressed = books(shear=-2.0, normal=-30.0)  # an edge that is pressed deeper: penetration pays 3 J
+    assert pressed[4:6] == (16.5, 0.0)
+    lifted = books(shear=10.0, normal=-5.0)  # sideways motion pays for what lifts
+    assert lifted[4:6] == (0.0, 3.5)
+    both = books(shear=-2.0, normal=-5.0)
+    assert both[4:6] == (0.0, -8.5)
+
+
+def test_steps_that_cannot_go_on_are_an_outcome() -> None:
+    record = Record(set_up(read_scenario("carved-46m")))
+    for ended, outcome in ((Ended.STEP_TOO_SMALL, "step_too_small"), (Ended.NOT_FINITE, "not_finite")):
+        record.setup = replace_advance(record.setup, ended)
+        assert record.advance(0.1) == outcome
+
+
+def replace_advance(setup: Any, ended: Ended) -> Any:
+    names = ("dynamics", "place", "attitude", "velocity")
+    return SimpleNamespace(advance=lambda *_: ended, **{name: getattr(setup, name) for name in names})
+
+
+def test_what_is_told_of_the_skis_is_what_the_beams_and_boots_have() -> None:
+    """Deflection and twist at the free nodes; a stance between the edges at the boots."""
+    scenario = read_scenario("carved-46m", changes={"start.x_m": 3.0, "start.y_m": -2.0, "start.heading_deg": 0.0})
+    setup = set_up(scenario)
+    skis = Record(setup).histories()["skis"]
+    free = setup.dynamics.body.skis[0].unknown >= 0
+    dofs = setup.dynamics.beam_dofs.reshape(2, -1, 3)
+    assert skis.bending[0][:, free].tolist() == dofs[:, :, 0].tolist()
+    assert skis.twist[0][:, free].tolist() == dofs[:, :, 2].tolist()
+    assert np.abs(dofs[:, :, 0]).max() > 1e-3
+    left, right = skis.track[0]
+    stance, width = scenario.sledge.stance_width, float(scenario.ski.at(0.0).width)
+    assert left[1] - right[1] == pytest.approx(stance, rel=0.05)
+    assert 0.5 * (left + right)[:2] == pytest.approx([3.0, -2.0 + 0.5 * width], abs=0.5 * width)
+    assert (left[2], right[2]) == (0.0, 0.0)

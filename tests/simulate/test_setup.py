@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from skisnow import BootMoment, BootPose
-from skisnow.errors import ParameterError
+from skisnow.errors import ParameterError, SolverError
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import read_scenario
-from skisnow.simulate import run_setup
+from skisnow.simulate import run_setup, simulated_run
 from skisnow.simulate.run_setup import Setup, _drive, _strength_share, laid_out
 
 from ..carve.synthetic import plain_ski
@@ -30,6 +30,56 @@ def test_snow_that_does_not_bear_a_ski_a_decimetre_deep(load: float, sinks: bool
     snow = SimpleNamespace(contact=contact, start=SimpleNamespace(x=0.0, y=0.0), ski=ski)
     stub = cast("Any", SimpleNamespace(scenario=snow, numbers={"load_N": load}))
     assert cast("Any", Setup.sinks).fget(stub) is sinks
+
+
+@pytest.mark.parametrize(
+    ("height", "residual", "sinks", "outcome"),
+    [
+        (0.0, 0.0, False, "looped"),
+        (0.0, run_setup.AT_REST, True, "looped"),
+        (-1.01 * simulated_run.SINKING_DEPTH, 0.0, False, "sunk"),
+        (-0.99 * simulated_run.SINKING_DEPTH, 0.0, False, "looped"),
+        (0.0, 2.0 * run_setup.AT_REST, True, "sunk"),
+        (0.0, math.nan, True, "sunk"),
+        (0.0, 2.0 * run_setup.AT_REST, False, "cannot stand"),
+        (0.0, math.nan, False, "cannot stand"),
+    ],
+)
+def test_a_run_begins_where_its_sledge_stands(
+    height: float, residual: float, sinks: bool, outcome: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At rest by its own estimate and no deeper than the model goes; else it sinks, or is refused with the reason."""
+    contact = SimpleNamespace(require_finite_laws=lambda: None)
+    stub = SimpleNamespace(
+        height=height, static_residual=residual, sinks=sinks, dynamics=SimpleNamespace(contact=contact)
+    )
+    fakes: dict[str, Any] = {
+        "set_up": lambda *_, **__: stub,
+        "Record": lambda _: None,
+        "_loop": lambda *_: "looped",
+        "computed_run": lambda _setup, _record, said, _wall: said,
+        "replace": lambda said, **_: said,
+        "why_no_start": lambda _: "cannot stand",
+    }
+    for name, fake in fakes.items():
+        monkeypatch.setattr(simulated_run, name, fake)
+    try:
+        found = cast("Any", simulated_run.simulate)(None)
+    except SolverError as error:
+        found = str(error)
+    assert found == outcome
+
+
+def test_boots_that_nothing_carries_turn_as_a_level_between_their_skis() -> None:
+    """Skis at 0.2 and 0.4 rad, one up and one down as much: ahead at 0.3, left, and off the snow."""
+    boots = np.zeros((2, 6, 3))
+    boots[:, 1] = [[math.cos(0.2), math.sin(0.2), 0.3], [math.cos(0.4), math.sin(0.4), -0.1]]
+    dynamics, drive = SimpleNamespace(boots=boots), SimpleNamespace(held=True)
+    normal = np.array([0.0, 0.0, 1.0])
+    stub = SimpleNamespace(dynamics=dynamics, drive=drive, place=np.zeros(3), slope_normal=lambda *_: normal)
+    cos, sin = math.cos(0.3), math.sin(0.3)
+    found = cast("Any", Setup.attitude).fget(stub)
+    assert found == pytest.approx(np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]))
 
 
 def test_a_ski_that_bends_in_short_waves_has_five_elements_to_each(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import pytest
 from skisnow import Course, Gate, scenario
 from skisnow.errors import ParameterError
 from skisnow.scenario import Skier, scenario_values
-from skisnow.skier import body_of
+from skisnow.skier import body_of, segments
 from skisnow.skier.edges import Edges
 from skisnow.skier.legs import leg_poses
 from skisnow.skier.steering import LineThroughGates, TurnsOverTime, Underway
@@ -82,6 +82,28 @@ def test_a_carve_in_balance_leans_as_it_must() -> None:
     assert found.carving_acceleration(speed) == pytest.approx(STEEP * math.tan(lean))
 
 
+def test_what_the_snow_holds_bounds_what_a_carve_gets() -> None:
+    """A wedge in balance, tan ϑ = grip, holds 4 S_f² L/(H_V N) times the load of both skis; slope counts."""
+    turn, load = scenario("skier-12deg"), 736.0
+    found = Edges.of(turn, STEEP, Skier(edge_beyond_lean=0.0))
+    snow = turn.contact.snow
+    most = 4.0 * (snow.failure_shear_stress or 0.0) ** 2 * turn.ski.running_length / (snow.snow_hardness * load)
+    assert 0.3 < most < 0.6
+    assert found.holding(load) == pytest.approx(most)
+    for side in (1.0, -1.0):
+        inside, outside = 0.99 * side * most * STEEP, 4.0 * side * most * STEEP
+        assert found.held(inside, 0.0, load) == inside
+        assert found.held(inside - 1.0, 1.0, load) == inside - 1.0
+        assert found.held(outside, 0.0, load) == pytest.approx(2.0 * side * most * STEEP)  # as √tan ϑ
+        assert found.held(outside - 1.0, 1.0, load) == pytest.approx(2.0 * side * most * STEEP - 1.0)
+
+
+def test_a_race_piste_holds_whatever_is_asked() -> None:
+    found = edges()
+    assert found.held(11.0, 2.0, 736.0) == 11.0
+    assert found.holding(736.0) > 4.0
+
+
 def test_legs_keep_the_centre_of_mass_level_and_their_rates_are_those_of_their_poses() -> None:
     height, step = 0.6, 1e-6
     for aside in (0.0, 0.3, -0.5):
@@ -103,6 +125,41 @@ def test_a_body_scales() -> None:
     assert scenario("skier-10deg").sledge.inertia == pytest.approx(one.inertia, abs=0.06)
     with pytest.raises(ParameterError, match="from 20 to 200"):
         body_of(7.0, 1.76)
+
+
+def test_a_body_is_the_mean_of_three_men() -> None:
+    """Weights (lb), heights and centres of mass (in), moments (lb in s²) standing and crouched, of the report."""
+    men = (
+        (173.5, 72.2, 32.2, (132.0 + 41.4, 119.0 + 37.3, 13.1 + 29.9)),
+        (147.3, 67.4, 29.8, (95.6 + 32.9, 81.9 + 30.4, 10.3 + 21.5)),
+        (203.0, 73.3, 31.8, (144.0 + 48.9, 129.0 + 41.9, 14.2 + 36.7)),
+    )
+    found = body_of(80.0, 1.7)
+    for i in range(3):
+        means = [0.5 * both[i] * 386.0886 / (weight * tall**2) for weight, tall, _, both in men]  # in/s² of gravity
+        assert found.inertia[i] == pytest.approx(80.0 * 1.7**2 * sum(means) / 3.0, rel=1e-5)
+    assert found.standing_height == pytest.approx(1.7 * sum(1.0 - below / tall for _, tall, below, _ in men) / 3.0)
+
+
+def test_segments_make_a_whole_body() -> None:
+    """Winter's figure: hips at 0.530, shoulders at 0.818 of the height; a leg 0.161, an arm 0.050 of the mass."""
+    legs = (segments.FOOT, segments.SHANK, segments.THIGH)
+    arms = (segments.UPPER_ARM, segments.FOREARM)
+    assert sum(each.length for each in legs) == pytest.approx(0.530)
+    assert sum(each.length for each in (*legs, segments.TRUNK)) == pytest.approx(0.818)
+    assert [each.length for each in arms] == [0.186, 0.146]
+    assert sum(each.mass for each in legs) == pytest.approx(0.161)
+    assert sum(each.mass for each in arms) == pytest.approx(0.050)
+    assert 2.0 * (0.161 + 0.050) + segments.TRUNK.mass == pytest.approx(1.0)
+    assert [each.centre for each in (*legs, *arms)] == [0.5, 0.433, 0.433, 0.436, 0.682]
+    assert segments.TRUNK.centre == 0.66
+    assert (segments.SHOULDER_WIDTH, segments.HIP_WIDTH) == (0.259, 0.191)
+
+
+def test_heights_by_roll_inertia_are_kept_within_people() -> None:
+    roll = body_of(75.0, 1.8).inertia[0]
+    assert segments.height_of(150.0, 2.0 * roll) == pytest.approx(1.8)
+    assert (segments.height_of(75.0, 1e-3), segments.height_of(75.0, 1e3)) == (1.0, 2.3)
 
 
 def test_keys_of_a_skier() -> None:

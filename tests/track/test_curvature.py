@@ -44,6 +44,7 @@ def test_intervals_on_a_noisy_circle_cover_as_often_as_they_say() -> None:
         assert share == pytest.approx(0.95, abs=0.033)
 
 
+@pytest.mark.slow
 def test_standard_errors_are_those_of_repeated_tracks() -> None:
     """At the end of a track, where they are largest, and inside; 300 tracks tell a standard deviation within 4 %."""
     found = [

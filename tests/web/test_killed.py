@@ -66,9 +66,8 @@ def killed_while_entering(page: Page, served: Served, test: str, delay_s: float)
     return len(shown), len(kept | unanswered)
 
 
-@pytest.mark.parametrize(
-    "trials", [pytest.param(4, id="a few times"), pytest.param(50, id="fifty times", marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("trials", [pytest.param(4, id="a few times"), pytest.param(50, id="fifty times")])
 def test_nothing_that_was_shown_as_stored_is_lost(trials: int, page: Page, served: Served) -> None:
     create(page, served)
     place = page.url.split("?")[0]

@@ -1,6 +1,6 @@
 """Loaded by every Python that a test starts while `tests.mutation.reach` looks: it writes down what is called there.
 
-The file named by CURRENT holds the test file that runs now: a server that tests share is asked by one after another.
+The file named by CURRENT holds the test that runs now: a server that tests share is asked by one after another.
 """
 
 import os
@@ -9,11 +9,11 @@ import threading
 import time
 
 CURRENT, CALLS, SOURCE = (os.environ.get(f"SKISNOW_TESTS_REACH_{name}", "") for name in ("CURRENT", "CALLS", "SOURCE"))
-LOOK_EACH_S = 0.05
+LOOK_EACH_S = 0.01
 
 
 class Calls:
-    """Appends each function to the file of calls, once for each test file."""
+    """Appends each function to the file of calls, once for each test."""
 
     def __init__(self) -> None:
         self.file = os.open(CALLS, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o600)

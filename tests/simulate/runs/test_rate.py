@@ -48,7 +48,7 @@ def in_snow(setup: Setup) -> float:
     return setup.dynamics.snow_energies[0] + setup.dynamics.contact.groove_energy
 
 
-@pytest.mark.parametrize("changes", [DAMPED, DELAYED], ids=["damped", "delayed"])
+@pytest.mark.parametrize("changes", [DAMPED, pytest.param(DELAYED, marks=pytest.mark.slow)], ids=["damped", "delayed"])
 def test_what_the_normal_force_gives_is_in_the_snow_or_taken_by_its_rate(changes: dict[str, float]) -> None:
     setup = glided(**changes)
     before = in_snow(setup)
@@ -86,6 +86,7 @@ def test_a_turn_to_the_other_side_is_the_mirror_image(changes: dict[str, float],
     assert ends[1] == pytest.approx(ends[0] * [1.0, -1.0, 1.0], abs=within)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", [DAMPED, DELAYED], ids=["damped", "delayed"])
 def test_half_the_step_moves_the_end_as_little_as_without_it(changes: dict[str, float]) -> None:
     """Some 0.2 mm of 4 m at 1 ms, as snow that takes no time."""

@@ -1,0 +1,156 @@
+"""Snow as the core takes it: laws by their coefficients, strength by its share, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skisnow.contact import SnowContact, SnowField
+from skisnow.errors import ParameterError
+from skisnow.forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
+from skisnow.forces.penetration import HypoplasticPoint
+from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear
+from skisnow.geometry.surfaces import Grid
+
+from .test_contact import SKI
+
+H, S = 2e8, 5e5
+GRID = Grid(np.array([0.0, 1.0]), np.array([0.0, 2.0]), np.array([[0.5, 1.0], [1.5, 2.0]]))
+
+
+def snow(**changes: Any) -> SnowField:
+    return SnowField(**{"snow_hardness": H, "failure_shear_stress": S, "unloading_ratio": 10.0} | changes)
+
+
+class OwnShear:
+    """Of a user."""
+
+    def stress_and_thrust(self, depth: Any, edge_angle: Any) -> Any:
+        return np.stack([depth * 0.0 + 1.0, edge_angle * 0.0])
+
+
+class OwnFriction(FrictionLaw):
+    """Of a user."""
+
+    def _coefficient(self, speed: Any) -> Any:
+        return 0.1 + 0.0 * speed
+
+
+def test_snow_is_told_in_its_usual_units() -> None:
+    shown = repr(snow(friction=0.05))
+    assert "H_V 0.2 N/mm³, S_f 0.5 N/mm², k_u/H_V 10, friction 0.05, shear S_f" in shown
+    assert "penetration" not in shown
+    other = repr(snow(failure_shear_stress=GRID, friction=LinearFriction(0.04, 0.001)))
+    assert "S_f over the place" in other
+    assert "friction LinearFriction" in other
+    lawful = repr(snow(shear=ConstantShear(S), penetration=HypoplasticPoint(H, 10.0)))
+    assert "shear ConstantShear, penetration HypoplasticPoint" in lawful
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        *(({name: 0.0}, f"{name} is 0.0; it must be finite and above 0") for name in (
+            "slip_weakening", "shear_displacement", "edge_blend_angle", "fade_speed", "part_along", "part_across",
+            "retardation_time", "delayed_spacing", "strength_share",
+        )),
+        *(({name: -0.1}, f"{name} is -0.1; it must be finite and at least 0") for name in (
+            "knot_area", "damping", "delayed_share", "residual_ratio", "friction",
+        )),
+        ({"unloading_ratio": math.inf}, "unloading_ratio is inf"),
+        ({"residual_ratio": 1.01}, "residual_ratio is 1.01; it must be at most 1"),
+        ({"friction_acts_on": "edge"}, "friction_acts_on is 'edge'"),
+        ({"failure_shear_stress": GRID, "strength_share": 0.9}, "varies over the place itself; leave strength_share 1"),
+        ({"failure_shear_stress": GRID, "strength_share": GRID}, "varies over the place itself"),
+        ({"shear": OwnShear(), "strength_share": 0.9}, "strength_share does not act on OwnShear"),
+        ({"penetration": HypoplasticPoint(H, 10.0), "damping": 1.0}, "act beside H_V and k_u, not beside Hypoplastic"),
+        ({"penetration": HypoplasticPoint(H, 10.0), "delayed_share": 0.1}, "leave them 0, or give no penetration law"),
+    ],
+)  # fmt: skip
+def test_snow_that_cannot_be(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises(ParameterError, match=words):
+        snow(**changes)
+
+
+def test_snow_at_the_edge_of_what_can_be() -> None:
+    snow(residual_ratio=1.0, friction=0.0, knot_area=0.0, damping=0.0, delayed_share=0.0, unloading_ratio=1.0)
+    snow(residual_ratio=0.0, failure_shear_stress=0.0)
+    snow(failure_shear_stress=GRID, shear=ConstantShear(S), strength_share=0.9)
+
+
+def coefficients(friction: Any) -> list[float]:
+    law = snow(friction=friction)._friction()
+    return [law.constant, law.linear, law.square, law.film]
+
+
+def test_friction_laws_are_coefficients() -> None:
+    """μ = c₀ + c₁ v + c₂ v² + a/(1 + v/v₀)."""
+    assert coefficients(0.07) == coefficients(ConstantFriction(0.07)) == [0.07, 0.0, 0.0, 0.0]
+    assert coefficients(LinearFriction(0.04, 0.002)) == [0.04, 0.002, 0.0, 0.0]
+    assert coefficients(QuadraticFriction(0.04, 0.002, 1e-4)) == [0.04, 0.002, 1e-4, 0.0]
+    own = snow(friction=OwnFriction())
+    assert own.friction_in_python is own.friction
+    assert snow(friction=LinearFriction(0.04, 0.002)).friction_in_python is None
+    assert snow(friction=0.05).friction_in_python is None
+
+
+def test_a_water_film_is_its_own_formula() -> None:
+    law = WaterFilmFriction(dry_friction=0.2, lubricated_friction=0.02, viscous_slope=0.001, film_speed=3.0)
+    asked = snow(friction=law)._friction()
+    assert (asked.constant, asked.linear, asked.film, asked.film_speed) == (0.02, 0.001, 0.2, 3.0)
+
+
+def test_strength_is_that_of_the_law_times_its_share() -> None:
+    assert snow(strength_share=0.8)._strength() == pytest.approx(0.8 * S)
+    assert snow(shear=ConstantShear(3e5))._strength() == 3e5
+    shared = snow(strength_share=GRID)._strength()
+    assert isinstance(shared, Grid)
+    assert shared.values == pytest.approx(S * GRID.values)
+    assert snow(failure_shear_stress=GRID)._strength() is GRID
+    machined = MachiningShear(1e5, 0.3, least_shear_plane=0.2)
+    assert snow(shear=machined)._strength() == 1e5
+    for asked in (OwnShear(), MachiningShear(1e5, 0.3)):
+        assert snow(shear=asked).shear_in_python is asked
+    for law in (machined, ConstantShear(S), AngleShear(S, 0.5)):
+        assert snow(shear=law).shear_in_python is None
+    assert snow(shear=AngleShear(4e5, 0.5))._strength() == 4e5
+    assert snow(shear=AngleShear(4e5, 0.5))._shear().decrease == 0.5
+    assert snow(shear=machined)._shear().friction_angle == pytest.approx(math.atan(0.3))
+
+
+@pytest.mark.parametrize("spacing", [0.0, -0.01, math.nan, math.inf])
+def test_a_contact_needs_a_spacing_and_a_runner(spacing: float) -> None:
+    with pytest.raises(ParameterError, match=rf"spacing is {spacing} m; it must be above 0"):
+        SnowContact(snow(), [SKI], spacing=spacing)
+    with pytest.raises(ParameterError, match="one runner or more"):
+        SnowContact(snow(), [])
+    with pytest.raises(ParameterError, match="instruction_set is 'abacus'; this machine has"):
+        SnowContact(snow(), [SKI], instruction_set="abacus")
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"rotation": [np.diag([1.0, 1.0, -1.0])]}, "rotation is none"),
+        ({"rotation": [1.01 * np.eye(3)]}, "columns are off by 2.0e-02"),
+        ({"rotation": [np.eye(2)]}, r"rotation has shape \(1, 2, 2\)"),
+        ({"position": [[0.0, 0.0, math.nan]]}, "position holds a number that is not finite"),
+        ({"dt": -1e-9}, "dt is -1e-09 s"),
+        ({"dt": math.nan}, "dt is nan s"),
+        ({"velocity": [np.zeros(5)]}, "velocity has shape"),
+        ({"beams": [np.zeros((2, 3))] * 2}, "beam_dofs has 2 entries for 1 runners"),
+        ({"beams": [np.zeros((3, 3))]}, "beam_dofs has shape"),
+        ({"rates": [np.full((2, 3), math.inf)]}, "beam_rates holds"),
+    ],
+)
+def test_poses_that_cannot_be(changes: dict[str, Any], words: str) -> None:
+    usual: dict[str, Any] = {
+        "position": [np.zeros(3)], "rotation": [np.eye(3)], "velocity": None, "dt": 0.0, "beams": None, "rates": None,
+    }  # fmt: skip
+    contact = SnowContact(snow(), [SKI])
+    contact._asked(**usual)
+    with pytest.raises(ParameterError, match=words):
+        contact._asked(**usual | changes)
