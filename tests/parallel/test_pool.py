@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import signal
 import time
-from typing import Any
+from concurrent.futures import Future
+from typing import Any, cast
 
 import pytest
 
@@ -101,3 +102,23 @@ def test_a_chunk_tells_how_long_a_point_takes(
 
     monkeypatch.setattr("skisnow.parallel.chunk.time.perf_counter", lambda: clock[0])
     assert computed(lasting, list(enumerate(points))).seconds_per_point == each
+
+
+@pytest.mark.parametrize(
+    ("error", "finished", "at_once"), [(None, True, False), (None, False, True), (KeyboardInterrupt, True, True)]
+)
+def test_workers_are_ended_at_once_where_work_is_left_or_an_error_came(
+    error: type[BaseException] | None, finished: bool, at_once: bool
+) -> None:
+    pool, said, future = Pool(dict, 2, advice=""), list[bool](), Future[Any]()
+    if finished:
+        future.set_result(None)
+
+    class Ends:
+        def end(self, *, at_once: bool) -> None:
+            said.append(at_once)
+
+    pool._crew, pool._running = cast("Any", Ends()), {future}
+    pool.__exit__(error, None, None)
+    assert said == [at_once]
+    assert future.cancelled() is not finished
