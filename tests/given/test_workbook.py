@@ -56,6 +56,14 @@ def test_cells_are_texts_and_rows_keep_their_numbers() -> None:
     }
 
 
+def test_numbers_follow_those_that_were_typed_as_text_with_a_decimal_comma() -> None:
+    """Excel keeps a cell as text where it came so; its neighbours are numbers, and the two mean the same kind."""
+    mixed: list[list[Any]] = [["Tiefe", "Moment"], ["3,25", 43.5], ["4", 12.0], [1.25, 1e-7]]
+    assert read(packed(A=mixed))["A"] == [["Tiefe", "Moment"], ["3,25", "43,5"], ["4", "12"], ["1,25", "1e-07"]]
+    pointed: list[list[Any]] = [["a, b", "3.25"], [43.5, "x"]]
+    assert read(packed(A=pointed))["A"] == [["a, b", "3.25"], ["43.5", "x"]]
+
+
 def test_a_sheet_that_is_not_wanted_is_named_alone() -> None:
     assert workbook_sheets(packed(A=[["x"]], B=[["y"]]), wanted=lambda name: name == "B") == {"A": None, "B": [["y"]]}
 

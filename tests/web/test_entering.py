@@ -225,6 +225,28 @@ def test_a_series_on_a_phone_from_its_first_reading_to_the_last(page: Page, serv
     marks.get_by_text("The series has fewer than 3 load steps.").wait_for()
 
 
+def test_a_refused_last_reading_that_is_put_right_is_no_correction(page: Page, served: Served) -> None:
+    """What is stored is the number that was typed, though it stands there with a comma: nobody is asked why."""
+    page.set_viewport_size({"width": 390, "height": 844})
+    create(page, served)
+    fill(page, {"Name of the test": "1", "Site": "A", "Edge angle (°)": "30"})
+    page.keyboard.press("Enter")
+    page.get_by_label("Depth under 20 N (mm)").and_(page.locator(":focus")).wait_for()
+    page.get_by_label("Depth under 80 N (mm)").fill("3,o")
+    page.keyboard.press("Enter")
+    page.locator(".reading.refused").wait_for()
+    page.wait_for_function("document.activeElement.value?.slice(document.activeElement.selectionStart) === '3,o'")
+    ready(page)
+    page.keyboard.type("3,1\n")
+    page.locator(".reading[data-load='80'] .stored", has_text="stored").wait_for()
+    page.get_by_label("Depth under 20 N (mm)").focus()
+    ready(page)
+    page.get_by_label("Depth under 20 N (mm)").fill("1,2")
+    page.keyboard.press("Enter")
+    page.locator(".reading[data-load='20'] .stored", has_text="stored").wait_for()
+    assert page.get_by_label("Why", exact=True).count() == 0
+
+
 def test_a_campaign_without_a_plate_says_where_to_name_one(page: Page, served: Served) -> None:
     with Store.open(served.store) as store:
         id_ = Journals(store).begin('name = "Bare"\n')

@@ -34,7 +34,7 @@ from .test_day import PLATE, TOOL, VALUES
 from .test_entering import CUT
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser
+    from playwright.sync_api import Browser, Page
 
 SKIER = {"skier.steers": "turns"}
 """Values of a scenario that has one: its form has every key."""
@@ -148,3 +148,13 @@ def test_a_series_is_entered_in_german(chromium: Browser, served: Served, watche
     page.get_by_label("Depth under 20 N (mm)").wait_for()  # the same series, and what was typed is there
     context.close()
     assert watched.errors == []
+
+
+def test_all_links_of_the_head_stand_in_one_row_of_a_phone(page: Page, served: Served) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.set_extra_http_headers({"Accept-Language": "de"})
+    page.goto(served.address)
+    page.get_by_role("link", name="Simulieren").wait_for()
+    links = page.locator(".lab-head nav")
+    assert links.evaluate("each => each.scrollWidth - each.clientWidth") == 0
+    assert links.locator("a").last.evaluate("each => each.getBoundingClientRect().right") <= 390

@@ -97,6 +97,34 @@ def test_what_is_no_ski_is_said_and_other_files_are_not_read(tmp_path: Path) -> 
         read_ski_files(str(tmp_path), ["mine.toml", "rows.csv"], {})
 
 
+def test_a_field_that_is_missing_is_said_there_and_at_the_button(page: Page, served: Served) -> None:
+    page.set_extra_http_headers({"Accept-Language": "de"})
+    page.goto(f"{served.address}skis")
+    page.locator("summary", has_text="Gemessenen Ski hinzufügen").click()
+    form = page.locator(".adding > .fields")
+    for place, text in enumerate(("Prototyp", "1593", "1396", "1458", "116", "68", "101")):
+        form.locator("input").nth(place).fill(text)
+    page.get_by_role("button", name="Diesen Ski hinzufügen").click()
+    page.get_by_text("Nicht gespeichert: Masse eines Skis (kg)", exact=True).wait_for()
+    form.get_by_text("hier fehlt eine Zahl", exact=True).wait_for()
+    page.wait_for_function("document.activeElement.getAttribute('aria-label') === 'Masse eines Skis (kg)'")
+
+
+def test_a_chart_has_the_numbers_of_the_language_and_its_words_side_by_side(page: Page, served: Served) -> None:
+    """On a phone the name of the axis stands above the words at its ends, where one row is too short for all."""
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.set_extra_http_headers({"Accept-Language": "de"})
+    page.goto(f"{served.address}skis")
+    chart = page.locator("svg[role=img]").first
+    chart.get_by_text("−0,5", exact=True).wait_for()
+    assert chart.get_by_text("0.5").count() == 0
+    boxes = [chart.get_by_text(words).bounding_box() for words in ("◂ Ende", "Stelle (m), Schuh = 0", "Schaufel ▸")]
+    tail, name, tip = (box for box in boxes if box is not None)
+    assert name["y"] + name["height"] <= tail["y"] + 2 and tail["x"] + tail["width"] < tip["x"]
+    field = page.get_by_label("Breite (mm) bei 0,268 m", exact=True)
+    assert "," in field.input_value() and "." not in field.input_value()
+
+
 @pytest.mark.slow
 def test_a_ski_maker_sees_what_five_per_cent_do(page: Page, served: Served) -> None:
     """Sidecut and stiffness of a ski that was measured: the carved radii of both stand beside each other."""

@@ -25,6 +25,10 @@ WIDER_THAN_THEIR_BOX = """() =>
     .filter((each) => each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).display !== "inline"
         || each.getBoundingClientRect().right > document.documentElement.clientWidth + 1)
     .map((each) => `${each.tagName} ${each.textContent.slice(0, 60)}`)"""
+NAMES_THAT_RUN_OVER_THEIR_NUMBERS = """() =>
+    [...document.querySelectorAll("td[data-name]")]
+    .filter((each) => getComputedStyle(each, "::before").whiteSpace !== "normal")
+    .map((each) => each.dataset.name)"""
 A4_PX = 680
 """180 mm of text at 96 pixels an inch."""
 
@@ -51,6 +55,7 @@ def test_a_telephone_shows_figures_and_tables_whole(page: Page, reports: tuple[P
     page.goto(reports[which].as_uri())
     assert page.evaluate("document.documentElement.scrollWidth") == 390
     assert page.evaluate(WIDER_THAN_THEIR_BOX) == []
+    assert page.evaluate(NAMES_THAT_RUN_OVER_THEIR_NUMBERS) == []
     wide = page.locator("figure.wide img").first
     drawn = wide.evaluate("(each) => [each.naturalWidth, each.clientWidth]")
     assert drawn[1] > 0.9 * drawn[0]  # the words of the figure have their own size, within a tenth

@@ -33,6 +33,7 @@ MOST_COLUMNS: Final = 1_000
 MOST_ELEMENTS: Final = 8_000_000
 DEEPEST_ELEMENT: Final = 64
 
+_TYPED_FRACTION: Final = re.compile(r"\s*[+-]?[0-9]++([.,])[0-9]++\s*")
 _CHUNK: Final = 1 << 18
 _OLD_KIND: Final = b"\xd0\xcf\x11\xe0"
 _DAMAGED: Final = (
@@ -53,7 +54,8 @@ def workbook_sheets(data: bytes, *, wanted: Callable[[str], bool]) -> dict[str, 
     Returns
     -------
     Rows by the names of the sheets, in their order; None for those that are not wanted. Numbers have a decimal point,
-    days are written as 2026-11-23 and times as 2026-11-23T09:10:00, line breaks in a cell are spaces.
+    or a decimal comma where other cells of the sheet are numbers that were typed as text with a comma; days are written
+    as 2026-11-23 and times as 2026-11-23T09:10:00, line breaks in a cell are spaces.
 
     Raises
     ------
@@ -84,12 +86,18 @@ def _undamaged(doing: Callable[[], Any]) -> Any:
 def _rows(sheet: Any) -> Rows:
     sheet.reset_dimensions()  # what the file says of its own size is not believed
     found: Rows = []
+    fractions: list[tuple[int, int]] = []
+    typed = {".": 0, ",": 0}
 
     def read() -> None:
         for cells in sheet.iter_rows(values_only=True):
             if len(found) >= MOST_ROWS:
                 raise GivenError(f"has more than {MOST_ROWS} rows in the sheet {sheet.title!r}. Take some out.")
             texts = [_text(value) for value in cells]
+            for value in cells:
+                if isinstance(value, str) and (fraction := _TYPED_FRACTION.fullmatch(value)):
+                    typed[fraction[1]] += 1
+            fractions.extend((len(found), place) for place, text in enumerate(texts) if isinstance(cells[place], float))
             while texts and not texts[-1]:
                 texts.pop()
             if len(texts) > MOST_COLUMNS:
@@ -100,6 +108,9 @@ def _rows(sheet: Any) -> Rows:
     _undamaged(read)
     while found and not found[-1]:
         found.pop()
+    if typed[","] > typed["."]:  # then a reader would take 43.5 for a thousand
+        for row, place in fractions:
+            found[row][place] = found[row][place].replace(".", ",")
     return found
 
 

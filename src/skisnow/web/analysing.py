@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ..errors import SkisnowError
+from ..errors import FieldDataError, SkisnowError
 from ..estimate import analyse
 from ..field import QUALITY_FLAGS, campaign_of_files
+from ..field.problems import Problem, lines_of
 from ..field.quality_flags import ALWAYS_EXCLUDE
 from ..report import write_report
 from ..report.figures import DRAWERS
@@ -85,15 +86,22 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Why there is no answer, in a sentence. An exception would not travel between processes whole."""
+    """Why there is no answer, in a sentence, and where files are at fault a line for each error in them.
+
+    An exception would not travel between processes whole.
+    """
 
     said: str
+    errors: tuple[str, ...] = ()
 
 
 def numbers_of(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
     """Analyse a campaign whose files are at hand."""
     try:
         analysis = analyse(_chosen(campaign_of_files(files.contents, others=files.others), choice))
+    except FieldDataError as error:
+        wrong = (each for each in error.problems if isinstance(each, Problem) and each.severity == "error")
+        return Refusal(str(error), tuple(lines_of(wrong)))
     except SkisnowError as error:
         return Refusal(str(error))
     data = ReportData(analysis)

@@ -18,7 +18,7 @@ from .layout import heading, sentence
 from .worded import Words, html_words, named
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable, Set
+    from collections.abc import Awaitable, Callable, Sequence, Set
     from typing import TypeAlias
 
     from nicegui.events import ValueChangeEventArguments
@@ -105,7 +105,14 @@ class AnalysisView:
         self._results.clear()
         self._tables.clear()
         self._figures.clear()
-        self._status.set_text(self._page.refused)
+        if not refusal.errors:
+            self._status.set_text(self._page.refused)
+            return
+        self._status.set_text("This campaign cannot be analysed yet. What is wrong in its files:")
+        with self._results:
+            _list_of_errors(refusal.errors)
+            if self._page.kind == "kept":
+                sentence("Put the files right and import them again. Single cells can be put right under Correct.")
 
     def _show(self, found: Analysed) -> None:
         first, self._page.analysed = not self._choices.default_slot.children, found
@@ -202,6 +209,14 @@ class AnalysisView:
         self._page.choice = choice
         self._status.set_text("Computing …")
         await self.compute()
+
+
+def _list_of_errors(lines: Sequence[str]) -> None:
+    """Each as the command says it: in English, with headings and cells to be copied as they are written."""
+    with ui.element("ul").props("lang=en").classes("errors"):
+        for line in lines:
+            with ui.element("li"):
+                ui.label(line)
 
 
 def _behind(words: str, fill: Callable[[], None]) -> None:

@@ -2,6 +2,7 @@
 import { toRaw } from "vue";
 
 const LEFT = 70, RIGHT = 12, EDGE = 10, BOTTOM = 48, TICK = 6, LEGEND = 22, LETTER = 8.2;
+const FONT = "14px system-ui, sans-serif", APART = 8, ROW = 18, ONE_ROW = 6 + LEGEND;
 const INK = "#14181c", GRID = "#d8dee4", ZERO = "#8b96a1";
 
 function made(kind, attributes, text) {
@@ -10,6 +11,16 @@ function made(kind, attributes, text) {
   if (text !== undefined) element.textContent = text;
   return element;
 }
+
+const canvas = document.createElement("canvas").getContext("2d");
+
+function wide(text) {
+  canvas.font = FONT;
+  return canvas.measureText(text).width;
+}
+
+// Whether the name of the axis and the words at its ends lie over one another in one row of this length.
+const crowded = (name, ends, length) => wide(name) / 2 + Math.max(...ends.map(wide)) + APART > length / 2;
 
 // 1, 2 or 5 times a power of ten, so that at most `most` steps lie between the ends.
 function stepOf(span, most) {
@@ -103,8 +114,13 @@ export default {
       const lines = panel.lines;
       const xRange = extent(lines.flatMap((line) => line.x), panel.from_zero.includes("x"));
       const yRange = panel.range || extent(lines.flatMap((line) => line.y), panel.from_zero.includes("y"));
-      const right = width - RIGHT, bottom = this.height - BOTTOM;
+      const right = width - RIGHT;
+      const [before, behind] = panel.ends ?? ["", ""];
+      const ends = [before && `◂ ${before}`, behind && `${behind} ▸`];
+      const row = (before || behind) && crowded(panel.x, ends, right - LEFT) ? ROW : 0;
       const [names, top] = legend(lines, this.styles, LEFT, right);
+      const height = this.height + row + Math.max(0, top - ONE_ROW);
+      const bottom = this.bottom = height - BOTTOM - row;
       this.top = top;
       this.across = scale(xRange, LEFT, right);
       this.up = scale(yRange, bottom, top);
@@ -112,27 +128,26 @@ export default {
       for (const [value, text] of ticks(xRange, right - LEFT, 70)) {
         const x = this.across(value);
         children.push(made("path", { d: `M${x} ${top}V${bottom + TICK}`, stroke: value === 0 ? ZERO : GRID }));
-        children.push(made("text", { x, y: bottom + 20, "text-anchor": "middle" }, text));
+        children.push(made("text", { x, y: bottom + 20, "text-anchor": "middle" }, text.replace(".", panel.mark)));
       }
       for (const [value, text] of ticks(yRange, bottom - top, 38)) {
         const y = this.up(value);
         children.push(made("path", { d: `M${LEFT - TICK} ${y}H${right}`, stroke: value === 0 ? ZERO : GRID }));
-        children.push(made("text", { x: LEFT - 10, y: y + 5, "text-anchor": "end" }, text));
+        children.push(made("text", { x: LEFT - 10, y: y + 5, "text-anchor": "end" }, text.replace(".", panel.mark)));
       }
-      children.push(made("text", { x: (LEFT + right) / 2, y: this.height - 8, "text-anchor": "middle" }, panel.x));
-      const [before, behind] = panel.ends ?? ["", ""];
-      if (before) children.push(made("text", { x: LEFT, y: this.height - 8, class: "end" }, `◂ ${before}`));
-      if (behind) children.push(made("text", { x: right, y: this.height - 8, "text-anchor": "end", class: "end" }, `${behind} ▸`));
+      children.push(made("text", { x: (LEFT + right) / 2, y: height - 8 - row, "text-anchor": "middle" }, panel.x));
+      if (before) children.push(made("text", { x: LEFT, y: height - 8, class: "end" }, ends[0]));
+      if (behind) children.push(made("text", { x: right, y: height - 8, "text-anchor": "end", class: "end" }, ends[1]));
       const middle = (top + bottom) / 2;
       children.push(made("text", { x: 16, y: middle, "text-anchor": "middle", transform: `rotate(-90 16 ${middle})` }, panel.y));
       // a window of its own: what is beyond the range is cut off
       const inside = made("svg", { x: LEFT, y: top, width: Math.max(0, right - LEFT), height: bottom - top,
                                    viewBox: `${LEFT} ${top} ${Math.max(1, right - LEFT)} ${bottom - top}` });
       inside.append(...lines.map((line) => drawn(line, this.styles[line.style], this.across, this.up)));
-      this.svg.setAttribute("viewBox", `0 0 ${width} ${this.height}`);
-      this.svg.setAttribute("height", this.height);
+      this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+      this.svg.setAttribute("height", height);
       this.svg.setAttribute("aria-label", panel.label);
-      this.svg.style.font = "14px system-ui, sans-serif";
+      this.svg.style.font = FONT;
       this.svg.style.fill = INK;
       this.svg.replaceChildren(...children, inside);
       this.$el.dataset.drawn = Number(this.$el.dataset.drawn || 0) + 1;
@@ -153,11 +168,11 @@ export default {
       const at = this.across(nearest[0][0]), text = nearest.map((pair) => pair[1].toPrecision(3)).join(" · ");
       this.reading = made("g", { "aria-hidden": "true" });
       this.reading.append(
-        made("path", { d: `M${at} ${this.top}V${this.height - BOTTOM}`, stroke: INK }),
+        made("path", { d: `M${at} ${this.top}V${this.bottom}`, stroke: INK }),
         made("text", { x: at > this.svg.clientWidth / 2 ? at - 6 : at + 6, y: this.top + 14, "font-weight": 700,
                        "text-anchor": at > this.svg.clientWidth / 2 ? "end" : "start",
                        stroke: "#fff", "stroke-width": 4, "paint-order": "stroke" },
-             `${nearest[0][0].toFixed(3).replace("-", "−")}: ${text.replaceAll("-", "−")}`));
+             `${nearest[0][0].toFixed(3)}: ${text}`.replaceAll("-", "−").replaceAll(".", toRaw(this.panel).mark)));
       this.svg.append(this.reading);
     },
   },

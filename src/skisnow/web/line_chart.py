@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from nicegui.element import Element
 
+from ..language.catalogue import DECIMAL
 from ..report.number_formatting import significant
 from .language import said
 
@@ -61,7 +62,7 @@ class LineChart(Element, component="line_chart.js"):
 
     def __init__(self, x: str, y: str, words: str, *, height: int = 240, ends: tuple[str, str] = ("", "")) -> None:
         super().__init__()
-        self._titles = {"x": said(x), "y": said(y), "ends": [said(each) for each in ends]}
+        self._titles = {"x": said(x), "y": said(y), "ends": [said(each) for each in ends], "mark": said(DECIMAL)[1]}
         self._words = words
         self._drawn: list[tuple[ChartLine, dict[str, Any]]] = []
         self._props["height"] = height

@@ -98,7 +98,9 @@ class ScenarioField:
             return ui.switch(said(called(self.key)), value=text == ON).classes("field")
         if self.key.choices:
             return choice(called(self.key), list(self.key.choices), text or None)
-        return field(called(self.key), text, numeric=self.key.kind in ("number", "whole number"))
+        if self.key.kind in ("number", "whole number"):
+            return field(called(self.key), said(text), numeric=True)
+        return field(called(self.key), text)
 
     @property
     def text(self) -> str:

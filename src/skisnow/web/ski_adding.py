@@ -53,17 +53,28 @@ class SkiAdding:
 
     async def _add(self) -> None:
         name = " ".join(str(self._name.value or "").split())
+        for each in self._fields.values():
+            each.error = None
         try:
             self._skis.require_new(name)
             text = measured_text(name, {key: str(each.value or "") for key, each in self._fields.items()})
             await run.io_bound(confined, OF_A_SKI, check_ski_texts, text, "")
             await run.io_bound(self._skis.save_texts, name, text, "")
         except SkisnowError as error:
-            self._said.set_text(f"Not saved: {error_sentence(error)}")
-            self._said.classes(add="bad")
+            self._refuse(error_sentence(error))
             return
         self._said.set_text("")
         self._added(name)
+
+    def _refuse(self, why: str) -> None:
+        """Say it at the button, and where one field is at fault at that field, too, where the focus goes."""
+        self._said.set_text(f"Not saved: {why}")
+        self._said.classes(add="bad")
+        for key, words in MEASURED.items():
+            if why.startswith(f"{words}: "):
+                self._fields[key].error = "a number is needed here"
+                self._fields[key].run_method("select")
+                self._said.set_text(f"Not saved: {words}")
 
 
 def _file_form() -> None:

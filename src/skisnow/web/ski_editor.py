@@ -108,12 +108,13 @@ class SkiEditor:
             self._draw_table(cells)
         for place, each in self._cells.items():
             if (each.value or "") == self._shown[place]:
-                self._shown[place] = cells[place]
-                each.set_value(cells[place])
+                self._shown[place] = said(cells[place], each.client)
+                each.set_value(self._shown[place])
 
     def _draw_table(self, cells: Mapping[tuple[str, int], str]) -> None:
         self._table.clear()
-        self._cells, self._shown = {}, dict(cells)
+        self._cells = {}
+        self._shown = {place: said(text, self._table.client) for place, text in cells.items()}
         with self._table, ui.element("table").classes("cells"):
             with ui.element("thead"), ui.element("tr"):
                 for words in (POSITION, *CELLS.values()):

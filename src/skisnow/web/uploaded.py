@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 UNDESCRIBED: Final = (
     "there is no campaign.toml in it, nor a workbook (.xlsx) with the sheets campaign, tools and plates; choose the "
-    "folder of a campaign, a zip of it, or such a workbook"
+    "folder of a campaign, a zip of it, or such a workbook. Beside tables of your own, skisnow new campaign FOLDER "
+    "writes a campaign.toml to be filled in"
 )
 
 

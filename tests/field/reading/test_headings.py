@@ -84,6 +84,7 @@ def test_the_proposal_is_one_line_a_file_and_does_what_it_says(
              "turning_angle_deg", "snow_density_kg_per_m3"],
         ),
         (DENSITY, ["Proben-Nr.", "Stelle", "ρ", "Schneedichte (kg/m3)"], ["sample", "site", "snow_density_kg_per_m3"]),
+        (DENSITY, ["Versuch", "Ort", "Dichte [kg/m³]"], ["sample", "site", "snow_density_kg_per_m3"]),
         (DROP_CONE, ["Test", "Ort", "Wdh", "Fallkegel [mm]"], ["test", "site", "drop_cone_depth_mm"]),
         (PENETRATION, ["Essai", "Lieu", "Outil", "Angle [°]", "Force [N]", "Profondeur [mm]"],
          ["experiment", "site", "tool", "edge_angle_deg", "load_N", "depth_mm"]),

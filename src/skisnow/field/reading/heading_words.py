@@ -20,7 +20,7 @@ WORDS: Final = {
     "recording": "recording aufzeichnung messung profil enregistrement registrazione",
     "file": "file datei dateiname fichier",
     "surface_mm": "surface oberflaeche schneeoberflaeche",
-    "sample": "sample probe proben nr nummer nr dichteprobe messung echantillon campione",
+    "sample": "sample probe proben nr nummer nr dichteprobe messung versuch test echantillon campione",
     "test": "test versuch messung nummer nr essai prova",
     "site": "site ort messort standort stelle messstelle platz hang piste feld lieu luogo",
     "spot": "spot punkt messpunkt position place",

@@ -6,6 +6,7 @@ import textwrap
 from typing import TYPE_CHECKING, Final
 
 from matplotlib.gridspec import GridSpec
+from matplotlib.ticker import FixedLocator
 
 from .panels import left_title, panels_of
 from .style import MM_PER_INCH, legend_below
@@ -13,6 +14,7 @@ from .style import MM_PER_INCH, legend_below
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.gridspec import GridSpecBase
     from matplotlib.text import Text
 
 WIDTH_MM: Final = 96.0
@@ -20,6 +22,14 @@ WIDTH_MM: Final = 96.0
 _LETTER_MM: Final = 1.55
 _EQUAL: Final = 0.62
 """Of the height, where a panel has the same scale along both axes and grows narrower with the figure (about)."""
+_LEAST_PLAN: Final = 0.35
+"""Height of a plan over its width, at least: room for the words at a flat line."""
+_ABOVE_PLAN: Final = 0.15
+"""Height over the width of a plan that is added for the words at the ends of a line, most of it above (about)."""
+_MOST_TICKS: Final = 4
+"""Of numbers that were chosen one by one, beside another panel."""
+_AROUND_PLAN_MM: Final = 16.0
+"""Numbers, name of the axis and the line of words above a plan (about)."""
 _BESIDE_MM: Final = 16.0
 """Ticks and label at the left of a panel, or a scale of colours at its right (about)."""
 
@@ -33,10 +43,13 @@ def narrow(figure: Figure) -> None:
         _stack(figure, panels)
         height_mm = 20.0 + (0.75 * height_mm - 8.0) * len(panels)
         columns = 1
-    elif any(axes.get_aspect() != "auto" for axes in panels):
-        height_mm *= _EQUAL
+    elif plans := [axes for axes in panels if axes.get_aspect() != "auto"]:
+        height_mm = height_mm * _EQUAL if _is_one_row(panels) else _with_plans(plans, height_mm)
     figure.set_size_inches(WIDTH_MM / MM_PER_INCH, height_mm / MM_PER_INCH)
     for axes in panels:
+        if columns > 1 and isinstance(axes.xaxis.get_major_locator(), FixedLocator):
+            ticks = axes.get_xticks()
+            axes.set_xticks(ticks[:: 2 if len(ticks) > _MOST_TICKS else 1])
         _wrap(axes, int((WIDTH_MM / columns - _BESIDE_MM) / _LETTER_MM))
     if figure.get_suptitle():
         figure.suptitle(_broken(figure.get_suptitle(), int(WIDTH_MM / _LETTER_MM)), x=0.01, ha="left", fontsize=8.0)
@@ -53,6 +66,30 @@ def legends_again(figure: Figure) -> None:
                 handle.set_label(text.get_text())
         legend.remove()
         legend_below(figure, [each for each in handles if each is not None])
+
+
+def _with_plans(plans: list[Axes], height_mm: float) -> float:
+    """Make the rows of plans as high as their scale needs, and leave the others as they are; gives the height."""
+    grid = _grid_of(plans[0])
+    ratios = [float(each) for each in grid.get_height_ratios()]  # type: ignore[arg-type, union-attr]  # numbers
+    rows = [height_mm * ratio / sum(ratios) for ratio in ratios]
+    for axes in plans:
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        across = abs(right - left)
+        more = max(_ABOVE_PLAN * across, _LEAST_PLAN * across - (high - low))
+        axes.set_ylim(low - 0.35 * more, high + 0.65 * more)  # what stands at the line stands above it
+        place = axes.get_subplotspec()
+        if place is not None:
+            row = place.rowspan.start
+            rows[row] = min((high - low + more) / across * (WIDTH_MM - _BESIDE_MM), rows[row]) + _AROUND_PLAN_MM
+    grid.set_height_ratios(rows)
+    return sum(rows)
+
+
+def _grid_of(axes: Axes) -> GridSpecBase:
+    place = axes.get_subplotspec()
+    assert place is not None  # panels stand in a grid
+    return place.get_gridspec()
 
 
 def _columns(panels: list[Axes]) -> int:

@@ -12,6 +12,7 @@ from ...field.reading.table_forms import BRANCH
 from ...field.store.stored_tables import cell_of
 from ..answering import asking_button, form
 from ..fields import button, field
+from ..language import said
 from ..layout import sentence
 from ..local_time import minute_words
 from ..worded import Words
@@ -80,7 +81,7 @@ def ask_reason(
 
     with place, form("card ask", sends=done):
         sentence(words)
-        reason = field("Why", usual, wide=True)
+        reason = field("Why", said(usual), wide=True)
         reason.on("keydown.esc", left)
         with ui.element("div").classes("acts"):
             asking_button(act[0], done, "main")

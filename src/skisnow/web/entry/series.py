@@ -325,6 +325,9 @@ class SeriesForm:
         if cells is None:
             self._view.say(f"Not corrected: {'; '.join(faults([depth]))}.", "bad")
             return False
+        if cells["depth_mm"] == row.cells["depth_mm"]:  # the same number, with a comma
+            depth.set_value(cells["depth_mm"])
+            return True
 
         def correct(why: str) -> bool:
             if not self._view.correct(test, entered.sequence, cells, why):

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from ..settings import Lab
 
 HERE = "/"
+UNREAD = (
+    "no table of this campaign can be read; what is wrong in its files stands under Analysis in the list of campaigns"
+)
 
 
 def add_page(lab: Lab) -> None:
@@ -31,7 +34,7 @@ def add_page(lab: Lab) -> None:
             return
         file = table or next(iter(session.tables), "")
         if file not in session.tables:
-            raise ParameterError("this campaign has no such table")
+            raise ParameterError("this campaign has no such table" if session.tables else UNREAD)
         with framed(session.stored.name or "Campaign", here=HERE, keeps=True):
             sentence("Imported: its files stay as they came in. What is corrected here stands beside them.", "quiet")
             further = {"Analysis": analysis("kept", session.id), "Export": export("kept", session.id)}

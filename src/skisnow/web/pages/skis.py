@@ -13,6 +13,7 @@ from ..confined import OF_A_SKI, confined
 from ..error_pages import error_sentence
 from ..fields import button, choice, field, link, said_options
 from ..lab_skis import FILE, TABLE, LabSkis, check_ski_texts, texts_of_ski
+from ..language import said
 from ..layout import framed, heading, sentence
 from ..line_chart import STYLES, ChartLine, LineChart
 from ..names import carving
@@ -226,4 +227,4 @@ def _table(drawn: list[SkiDrawing]) -> None:
                         with ui.element("td").style(f"color: {STYLES[number]['colour']}"):
                             Words(each.facts[key])
     for each in drawn:
-        sentence(f"{each.name}: {each.source}", "quiet")
+        sentence(f"{each.name}: {said(each.source)}", "quiet")

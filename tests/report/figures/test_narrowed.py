@@ -1,0 +1,52 @@
+"""Figures laid out again for a telephone: no word lies over another one."""
+
+from __future__ import annotations
+
+import io
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import pytest
+
+from skisnow.report.figures.narrowed import WIDTH_MM, narrow
+from skisnow.report.figures.panels import left_title, letter_panels
+from skisnow.report.figures.run_track import run_track
+from skisnow.report.figures.style import MM_PER_INCH, journal_style
+from skisnow.report.figures.translated import translate_figure
+
+from ..runs import circle_run
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
+
+
+def words_of(axes: Axes) -> list[Text]:
+    """What stands in and above a panel, and the numbers at its axes."""
+    low, high = axes.get_ylim()
+    left, right = axes.get_xlim()
+    found = [each for each in axes.get_yticklabels() if low <= each.get_position()[1] <= high]
+    found += [each for each in axes.get_xticklabels() if left <= each.get_position()[0] <= right]
+    title = left_title(axes)
+    return [each for each in (*found, *axes.texts, *([title] if title else [])) if each.get_text().strip()]
+
+
+def over_one_another(figure: Figure) -> list[tuple[str, str]]:
+    figure.savefig(io.BytesIO(), format="svg")  # lays the panels out
+    found = []
+    for axes in figure.axes:
+        boxes = [(each.get_text(), each.get_window_extent()) for each in words_of(axes)]
+        found += [(a, b) for (a, one), (b, other) in combinations(boxes, 2) if one.overlaps(other)]
+    return found
+
+
+@pytest.mark.parametrize(("radius", "duration", "language"), [(17.0, 2.0, "de"), (12.0, 4.0, "en")])
+def test_a_run_from_above(radius: float, duration: float, language: str) -> None:
+    with journal_style():
+        figure = run_track(circle_run(radius=radius, duration=duration))
+        translate_figure(figure, language)
+        letter_panels(figure)
+        narrow(figure)
+        assert figure.get_figwidth() * MM_PER_INCH == pytest.approx(WIDTH_MM)
+        assert over_one_another(figure) == []
