@@ -10,7 +10,9 @@ import pytest
 
 from skisnow.course.gate_gaps import GateGap
 from skisnow.errors import ParameterError
+from skisnow.identify import words
 from skisnow.identify.identification import Identification
+from skisnow.language import catalogue
 from skisnow.report import gaps_report, identify_report, turn_report
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style
@@ -97,3 +99,14 @@ def test_a_language_without_texts_is_refused_before_anything_is_written(
         with pytest.raises(ParameterError, match="one of en, de; 'xx' is given"):
             write(tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_every_warning_about_identified_values_has_its_german_one() -> None:
+    """Whatever pair, whatever value: as the report shows them, each with its full stop."""
+    pairs = [f"mu_0 and mu_1 are hardly told apart (correlation 0.998): {each}" for each in words._HELPS.values()]
+    alone = [f"S_f cannot be identified: it has no effect on these data. {each}" for each in words._ALONE.values()]
+    further = [words.model_warning(0.9), words.noise_warning(3.0), words.few_points(4, 2) or ""]
+    told = catalogue("de")
+    german = [told.translated(f"{each}.") for each in (*pairs, *alone, *further)]
+    assert [each for each in german if ENGLISH.search(each)] == []
+    assert "kaum zu trennen (Korrelation 0.998): beide bremsen" in german[0]

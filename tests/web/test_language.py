@@ -17,7 +17,7 @@ if "nicegui" in MISSING:
 from skisnow.carve.result import REMEDIES
 from skisnow.errors import ParameterError
 from skisnow.field import QUALITY_FLAGS
-from skisnow.field.store import Journals, Store
+from skisnow.field.store import Journals, NewEntry, Store
 from skisnow.field.store.description import Description, description_text
 from skisnow.language import Catalogue, catalogue, languages
 from skisnow.language.catalogue import DECIMAL, read_catalogue
@@ -158,3 +158,18 @@ def test_all_links_of_the_head_stand_in_one_row_of_a_phone(page: Page, served: S
     links = page.locator(".lab-head nav")
     assert links.evaluate("each => each.scrollWidth - each.clientWidth") == 0
     assert links.locator("a").last.evaluate("each => each.getBoundingClientRect().right") <= 390
+
+
+def test_the_tests_so_far_are_listed_in_german(page: Page, served: Served) -> None:
+    with Store.open(served.store) as store:
+        journals = Journals(store)
+        id_ = journals.begin(description_text(Description(VALUES | {"name": "Tag"}, [TOOL], [PLATE])))
+        cells = {"experiment": "S1", "site": "A", "plate": "plate", "edge_angle_deg": "90", "depth_mm": "4.5"}
+        given = {**cells, "spot": "", "lever_arm_mm": "250", "moment_Nm": "15.4"}
+        journals.append(id_, NewEntry(action="add", file="shear.csv", test="S1", position=0, cells=given), seen=0)
+    page.set_extra_http_headers({"Accept-Language": "de"})
+    page.goto(f"{served.address}enter/{id_}?table=shear.csv")
+    listed = page.locator(".so-far li").first
+    listed.wait_for(timeout=30_000)
+    for words in ("Name des Versuchs S1 · Messort A · ", "Kantwinkel (°) 90 · Tiefe (mm) 4,5 · ", "Moment (N m) 15,4"):
+        assert words in listed.inner_text()

@@ -9,6 +9,7 @@ from nicegui import ui
 from ...field.reading.turning import TURNING
 from ..answering import asking_button, form
 from ..fields import choice, field
+from ..language import said
 from ..layout import heading, sentence
 from ..worded import Words, named
 from ..words import label
@@ -186,8 +187,9 @@ class SingleForm:
                         self._so_far(test, row)
 
     def _so_far(self, test: ReplayedTest, row: ReplayedRow) -> None:
-        words = [f"{label(column)} {row.cells[column]}" for column in self._columns if row.cells.get(column)]
-        Words(" · ".join(words) + (f" · cancelled: {test.cancelled}" if test.cancelled else ""))
+        given = [column for column in self._columns if row.cells.get(column)]
+        words = [f"{said(label(column))} {row.cells[column]}" for column in given]  # no part is looked up again
+        Words(" · ".join(words) + (said(f" · cancelled: {test.cancelled}") if test.cancelled else ""))
 
         def look() -> None:
             self._draw(row.cells, (test, row))
