@@ -142,6 +142,16 @@ def test_what_is_no_gpx_course_is_refused(tmp_path: Path, text: str, said: str) 
     assert str(error.value).startswith(str(path))
 
 
+def test_16_mib_of_gpx_are_read(tmp_path: Path) -> None:
+    """A file of zeros, which is no GPX, but not too large before it has a byte more."""
+    path = tmp_path / "course.gpx"
+    for size, said in ((2**24, "is no GPX that can be read"), (2**24 + 1, "is too large: at most 16 MiB are read")):
+        with path.open("wb") as stream:
+            stream.truncate(size)
+        with pytest.raises(ParameterError, match=said):
+            read_course(path)
+
+
 def test_degrees_need_to_know_where_x_points(tmp_path: Path) -> None:
     named = [(east, north, f"<desc>{side}</desc>") for east, north, side in POINTS]
     path = written(tmp_path, gpx(named), "course.gpx")
