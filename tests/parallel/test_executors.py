@@ -189,6 +189,15 @@ def test_dask_that_is_not_installed_is_told_before_the_work(monkeypatch: pytest.
         require_executor("tcp://127.0.0.1:8786")
 
 
+@pytest.mark.parametrize("executor", [None, "threads", "processes", Here()])
+def test_what_is_on_this_computer_needs_no_scheduler(executor: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(_: object) -> None:
+        raise ParameterError("a scheduler was looked for")
+
+    monkeypatch.setattr(dask_cluster, "require_scheduler", refuse)
+    require_executor(executor)
+
+
 SLURM = '[slurm]\njobs = 4\ncores = 16\nmemory = "32GB"\nwalltime = "02:00:00"\n'
 
 
