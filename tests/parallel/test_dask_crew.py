@@ -211,3 +211,27 @@ def test_a_scheduler_that_dask_does_not_reach_is_told(monkeypatch: pytest.Monkey
     monkeypatch.setattr(dask_cluster, "_distributed", lambda: Distributed)
     with pytest.raises(SkisnowError, match=r"no scheduler answers at tcp://h:1 \(tcp://h:1 refused for 30 s\)"):
         crew_of_scheduler("tcp://h:1", dict)
+
+
+def test_jobs_of_a_batch_system_are_ended_behind_the_client(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """So many jobs as the file says, a client of their cluster, whose threads count."""
+    said: list[Any] = []
+    cluster = SimpleNamespace(scale=lambda *, jobs: said.append(jobs), close=lambda: said.append("cluster closed"))
+
+    class ClusterClient(Client):
+        def __init__(self, of: Any) -> None:
+            super().__init__()
+            assert of is cluster
+
+        def close(self) -> None:
+            said.append("client closed")
+
+    monkeypatch.setattr(dask_cluster, "_distributed", lambda: SimpleNamespace(Client=ClusterClient))
+    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: SimpleNamespace(SLURMCluster=lambda **_: cluster))
+    file = tmp_path / "scheduler.toml"
+    file.write_text('[slurm]\njobs = 3\ncores = 2\nmemory = "2GB"\n', encoding="utf-8")
+    crew = crew_of_scheduler(file, dict)
+    assert crew.size() == 7
+    assert crew.submit([(0, {"n": 1})]).result().rows == [(0, '{"n":1}')]
+    crew.end(at_once=False)
+    assert said == [3, "client closed", "cluster closed"]
