@@ -217,6 +217,13 @@ def test_a_bend_tells_a_side_from_a_twentieth_of_a_radian_on(bend: float, side: 
     assert _bends(place) == [other, side, other]
 
 
+def test_a_straight_stretch_has_no_sides_whichever_way_it_goes() -> None:
+    """East, north, and then west over three poles: two bends to the left, and none."""
+    assert _bends(np.array([(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (-9.0, 9.0)])) == [
+        "left", "right", "right", None, None,
+    ]  # fmt: skip
+
+
 def test_gates_that_lead_back_to_one_place_have_no_direction() -> None:
     places = (("a", (0.0, 0.0)), ("b", (10.0, 0.0)), ("c", (0.0, 0.0)))
     gates = tuple(Gate(name=name, turning=place, side="left") for name, place in places)
