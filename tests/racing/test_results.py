@@ -13,7 +13,17 @@ import pytest
 from skisnow import scenario
 from skisnow.course.gate_gaps import GateGap
 from skisnow.errors import ParameterError
-from skisnow.racing import LineTurn, PointRacer, RacingLine, Score, Worth, drawn_for_race, follower_line, write_line
+from skisnow.racing import (
+    LineTurn,
+    PointRacer,
+    RacingLine,
+    Score,
+    Worth,
+    drawn_for_race,
+    follower_line,
+    quickest,
+    write_line,
+)
 from skisnow.racing.line import cut
 from skisnow.racing.quickest import _fingerprint
 from skisnow.racing.racers import Racer
@@ -162,7 +172,7 @@ def test_gaps_at_gates_are_those_on_the_own_snow() -> None:
     mine = score(3.0, ("passed", 1.0), ("passed", 3.0))
     base = score(2.5, ("passed", 1.2), ("passed", 2.5))
     other = score(9.0, ("passed", 4.0), ("passed", 9.0))
-    found = Worth(name="wax", scores=(mine, other), base=(base, base)).gaps(["a", "b"])
+    found = Worth(name="wax", scores=(mine, other), base=(base, other)).gaps(["a", "b"])
     assert all(isinstance(each, GateGap) for each in found)
     assert [each.gap for each in found] == pytest.approx([-0.2, 0.5])
 
@@ -188,7 +198,7 @@ def test_a_comparison_is_told_and_kept(tmp_path: Path) -> None:
         compared(base, {"same": base}, line, [])
 
 
-def test_a_checkpoint_is_that_of_its_search() -> None:
+def test_a_checkpoint_is_that_of_its_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every setting, the racer and the line are in its mark."""
     racer, settings = Racer(SLALOM, "point"), (10, "cma", None, 0.1, 0.0, 3, 1, 0)
     mark = _fingerprint(racer, OTHER, settings)
@@ -201,6 +211,13 @@ def test_a_checkpoint_is_that_of_its_search() -> None:
         _fingerprint(racer, OTHER, (1, *settings[1:])),
     ]
     assert len({mark, *others}) == 6
+    versions = {"skisnow": "1", "cmaes": "1"}
+    monkeypatch.setattr(quickest, "version", versions.__getitem__)
+    single = (1, *settings[1:])
+    before = [_fingerprint(racer, OTHER, each) for each in (settings, single)]
+    versions["cmaes"] = "2"  # which a search of one evaluation does not ask for
+    after = [_fingerprint(racer, OTHER, each) for each in (settings, single)]
+    assert [one == other for one, other in zip(before, after, strict=True)] == [False, True]
 
 
 def test_a_spread_of_ten_is_the_greatest() -> None:
