@@ -10,14 +10,30 @@ import math
 import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
-from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
-import numpy.typing as npt
+from measures_of_skier import (
+    FloatArray,
+    edges,
+    in_a_long_turn,
+    muscles,
+    off_balance,
+    rate_step,
+    residual,
+    run_of,
+    slip_of,
+    slips,
+    smallest_radius,
+    spaced,
+    swing,
+    turning_of,
+    weights,
+)
+from watched_slope import DAY, write_profile
 
-from skisnow import Course, Gate, Run, Scenario, scenario, simulate, time_gates
+from skisnow import Run, Scenario, time_gates
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS
 
@@ -25,71 +41,52 @@ PAGE = Path(__file__).resolve().parent / "validation/skier.md"
 SHARE = 0.2
 SHORT = 4.0
 FOR_GATES = ("skier.pole_clearance_m", "skier.sight_s", "skier.line_rate_per_s")
-BAND = (5.0, 12.0)
-AVERAGED = 0.2
+
+WATCHED = (
+    ("slalom-20-gates", 4420.0, 203.0),
+    ("slalom-20-gates", 11710.0, 203.0),
+    ("slalom-20-gates", 11770.0, 203.0),
+    ("giant-slalom-20-gates", 11600.0, 477.0),
+    ("giant-slalom-20-gates", 4210.0, 477.0),
+)
+"""Course, where it begins on the day's way and how long it is (m)."""
 
 
-@cache
-def run_of(name: str, *changes: tuple[str, object]) -> Run:
-    """A run of a built-in scenario with changes, in the fast mode."""
-    print(name, *changes, file=sys.stderr)
-    return simulate(scenario(name, changes={"solver.method": "fast", **dict(changes)}))
+def watched() -> Iterator[str]:
+    """Gates on the slope that a watch measured; as it stands where the day is not there."""
+    heads = ("from (m)", "slope: least, mean, greatest (°)", "passed", "speed: least, greatest (m/s)")
+    yield f"| course | {' | '.join(heads)} | greatest lean (°) | outcome |"
+    yield "| --- | ---: | ---: | ---: | ---: | ---: | --- |"
+    for name, begins, length in WATCHED:
+        with TemporaryDirectory() as folder:
+            profile = Path(folder) / "profile.csv"
+            angles = write_profile(profile, begins, length)
+            run = run_of(name, ("slope.kind", "profile"), ("slope.profile", str(profile)))
+        course = run.scenario.course
+        assert course is not None
+        passed = [each.outcome for each in time_gates(course, run).passages].count("passed")
+        slope = f"{angles.min():.1f}, {angles.mean():.1f}, {angles.max():.1f}"
+        speed = f"{run.speed.min():.1f}, {run.speed.max():.1f}"
+        told = f"{passed} of 20 | {speed} | {np.degrees(np.abs(run.balance.lean).max()):.0f}"
+        yield f"| `{name}` | {begins:.0f} | {slope} | {told} | {run.outcome.replace('_', ' ')} |"
 
 
-def steps_of(run: Run) -> float:
-    """Between two rows (s)."""
-    return float(np.median(np.diff(run.time)))
+IN_TURNS: dict[str, Callable[[tuple[FloatArray, FloatArray]], str]] = {
+    "tan Ψ off by, median": lambda found: f"{100.0 * np.median(found[0]):.1f} %",
+    "… 95 % of the instants, within": lambda found: f"{100.0 * np.quantile(found[0], 0.95):.1f} %",
+    "… instants within 5 %": lambda found: f"{100.0 * np.mean(found[0] < 0.05):.0f} %",
+    "roll, I φ̈/(m z g_n tan Ψ), median": lambda found: f"{100.0 * np.median(found[1]):.1f} %",
+}
+TURN_TIMES = (1.5, 2.0, 3.0, 4.0, 6.0)
 
 
-def swing(run: Run, first: float = 1.0, last: float = math.inf) -> float:
-    """Rms of the load of the outer ski between 5 and 12 Hz, in a time (N)."""
-    within = (run.time > first) & (run.time < last)
-    load = run.balance.load[within]
-    parts, rates = np.fft.rfft(load - load.mean(axis=0), axis=0), np.fft.rfftfreq(len(load), steps_of(run))
-    parts[(rates < BAND[0]) | (rates > BAND[1])] = 0.0
-    left, right = np.fft.irfft(parts, len(load), axis=0).T
-    return float(np.sqrt(np.mean(np.where(run.balance.lean[within] > 0.0, right, left) ** 2)))
-
-
-def edges(run: Run) -> npt.NDArray[np.float64]:
-    """Edge angle over time (°)."""
-    return np.degrees(run.balance.lean + run.balance.angulation)
-
-
-def off_balance(run: Run) -> list[npt.NDArray[np.float64]]:
-    """By how much tan Ψ is off, by the slope formula and with roll and rise, where it is above 0.3, after 1 s."""
-    balance, found = run.balance, []
-    for formula in (balance.balanced_lean, balance.rolling_lean):
-        turning = (run.time > 1.0) & (np.abs(np.tan(formula)) > 0.3) & np.isfinite(balance.pressure_lean)
-        found.append(np.abs(np.tan(balance.pressure_lean[turning]) / np.tan(formula[turning]) - 1.0))
-    return found
-
-
-def slips(run: Run, first: float, last: float) -> float:
-    """Median angle between skis and path in a time (°)."""
-    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
-    within = (run.time > first) & (run.time < last)
-    return float(np.degrees(np.median(np.abs(run.heading - path)[within])))
-
-
-def weights(run: Run) -> str:
-    """Greatest force on the boots, of both and of one, meant over 0.1 s, over the weight."""
-    assert run.boots is not None
-    half = max(1, round(0.05 / steps_of(run)))
-    forces = run.boots.force.sum(axis=1), run.boots.force[:, 0], run.boots.force[:, 1]
-    even = np.ones(2 * half + 1) / (2 * half + 1)
-    most = [np.convolve(np.linalg.norm(each, axis=1), even, "same")[half:-half].max() for each in forces]
-    weight = run.scenario.sledge.mass * run.scenario.gravity
-    return f"{most[0] / weight:.1f}, {max(most[1:]) / weight:.1f}"
-
-
-def _residual(run: Run) -> float:
-    assert run.energy_balance_error is not None
-    return 1e6 * abs(run.energy_balance_error)
-
-
-def _rate_step(run: Run) -> float:
-    return float(np.abs(np.diff(edges(run), n=2)).max() / steps_of(run))
+def slowly() -> Iterator[str]:
+    """The slope formula in one turn on 3°, by how long the turn is: the middle half of it."""
+    yield f"| time of the turn (s) | {' | '.join(f'{each:g}' for each in TURN_TIMES)} |"
+    yield f"| --- |{' ---: |' * len(TURN_TIMES)}"
+    missed = [in_a_long_turn(each) for each in TURN_TIMES]
+    for row, told in IN_TURNS.items():
+        yield f"| {row} | {' | '.join(told(each) for each in missed)} |"
 
 
 LINKED: dict[str, Callable[[Run], str]] = {
@@ -100,25 +97,17 @@ LINKED: dict[str, Callable[[Run], str]] = {
     ),
     "leg, shortest and longest (m)": lambda run: f"{run.balance.leg.min():.2f}, {run.balance.leg.max():.2f}",
     "edge angle changes in 10 ms by at most (°)": lambda run: f"{np.abs(np.diff(edges(run))).max():.1f}",
-    "edge rate changes in 10 ms by at most (°/s)": lambda run: (
-        f"{np.abs(np.diff(edges(run), n=2)).max() / steps_of(run):.0f}"
-    ),
+    "edge rate changes in 10 ms by at most (°/s)": lambda run: f"{rate_step(run):.0f}",
     "slope formula: median of the error of tan Ψ": lambda run: f"{100.0 * np.median(off_balance(run)[0]):.1f} %",
     "with roll and rise: median": lambda run: f"{100.0 * np.median(off_balance(run)[1]):.1f} %",
     "… instants within 5 %": lambda run: f"{100.0 * np.mean(off_balance(run)[1] < 0.05):.0f} %",
     "load of the outer ski, 5 to 12 Hz, rms (N)": lambda run: f"{swing(run):.0f}",
     "one ski in the air, of the time": lambda run: f"{100.0 * np.mean(run.balance.load.min(axis=1) < 10.0):.0f} %",
     "greatest force on both boots, on one, in weights": weights,
-    "energy residual over all energy": lambda run: f"{_residual(run):.0f} · 10⁻⁶",
+    "energy residual over all energy": lambda run: f"{residual(run):.0f} · 10⁻⁶",
     "work of the muscles (J)": lambda run: f"{run.energies['boots'][-1]:.0f}",
     "of it given, taken (J)": lambda run: "{:.0f}, {:.0f}".format(*muscles(run)),
 }
-
-
-def muscles(run: Run) -> tuple[float, float]:
-    """Work of the muscles where they give and where they take (J)."""
-    steps = np.diff(run.energies["boots"])
-    return float(steps[steps > 0.0].sum()), float(steps[steps < 0.0].sum())
 
 
 def linked() -> Iterator[str]:
@@ -156,6 +145,31 @@ def carved() -> Iterator[str]:
         yield f"| {'half' if number == 0 else number} | {' | '.join(cells)} |"
 
 
+def skidded() -> Iterator[str]:
+    """Turn by turn where the snow does not hold what later turns ask for."""
+    run = run_of("skier-12deg")
+    heads = ("speed (m/s)", "slip: median, greatest (°)", "smallest radius (m)", "of a carve so edged (m)", "shear (J)")
+    yield f"| turn | {' | '.join(heads)} | friction (J) | drag (J) |"
+    yield f"| --- |{' ---: |' * (len(heads) + 2)}"
+    skier = run.scenario.skier
+    assert skier is not None
+    for number in range(round(skier.turns - 0.5) + 1):
+        first = skier.first_turn + skier.turn_time * max(0.0, number - 0.5)
+        last = skier.first_turn + skier.turn_time * (number + 0.5)
+        yield f"| {number or 'half'} | {' | '.join(one_turn(run, first, last))} |"
+
+
+def one_turn(run: Run, first: float, last: float) -> list[str]:
+    """Of a turn from one time to another (s): speed, slip, smallest radius, that of a carve so edged, what is lost."""
+    within = (run.time > first) & (run.time < last)
+    turning, slip = turning_of(run), np.abs(slip_of(run))[within]
+    tightest = np.flatnonzero(within)[np.argmax(np.abs(turning[within]))]
+    carve = run.scenario.ski.sidecut_radius_of_edge_line * math.cos(math.radians(float(edges(run)[tightest])))
+    lost = [np.ptp(np.interp([first, last], run.time, run.energies[name])) for name in ("shear", "friction", "drag")]
+    found = [f"{run.speed[within].mean():.1f}", f"{np.median(slip):.1f}, {slip.max():.1f}"]
+    return [*found, f"{1.0 / abs(turning[tightest]):.1f}", f"{carve:.1f}", *(f"{each:.0f}" for each in lost)]
+
+
 def through(name: str, *changes: tuple[str, object]) -> list[str]:
     """Of a run through gates: passed, speed, time, greatest lean and edge angle, smallest radius."""
     run = run_of(name, *changes)
@@ -174,17 +188,6 @@ def through(name: str, *changes: tuple[str, object]) -> list[str]:
     ]
 
 
-def smallest_radius(run: Run) -> float:
-    """Median over the turns of the smallest radius of the boots' path, of curvatures meant over 0.2 s (m)."""
-    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
-    turning = np.gradient(path, run.time) / np.maximum(run.speed, 0.1)
-    count = max(1, round(AVERAGED / steps_of(run)))
-    smooth = np.convolve(turning, np.ones(count) / count, "same")[count:-count]
-    sides = np.flatnonzero(np.diff(np.sign(smooth)))
-    tops = [np.abs(part).max() for part in np.split(smooth, sides + 1)[1:-1] if len(part) > 2 * count]
-    return float(1.0 / np.median(tops)) if tops else math.nan
-
-
 GATES = (
     ("slalom-20-gates", 7.0),
     ("slalom-20-gates", 8.0),
@@ -201,20 +204,6 @@ def gates() -> Iterator[str]:
     yield "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
     for name, angle in GATES:
         yield f"| `{name}` | {angle:g} | {' | '.join(through(name, ('slope.angle_deg', angle)))} |"
-
-
-@cache
-def spaced(distance: float, across: float, edge: float, angle: float) -> Run:
-    """Ten slalom gates so far apart down the slope and across (m), with a greatest edge angle and a slope (°)."""
-    poles = ((12.0 + distance * i, 0.5 * across * (-1) ** i) for i in range(10))
-    found = tuple(
-        Gate(name=str(i), turning=place, side="left" if place[1] > 0.0 else "right") for i, place in enumerate(poles, 1)
-    )
-    base = scenario("slalom-20-gates", changes={"solver.method": "fast", "slope.angle_deg": angle})
-    assert base.skier is not None
-    skier = replace(base.skier, greatest_edge=math.radians(edge))
-    print("spaced", distance, angle, file=sys.stderr)
-    return simulate(base.with_(course=Course(gates=found), skier=skier))
 
 
 def racers() -> Iterator[str]:
@@ -272,9 +261,12 @@ def _lean(run: Run) -> str:
 
 TABLES: dict[str, Callable[[], Iterator[str]]] = {
     "linked": linked,
+    "slowly": slowly,
     "swings": swings,
     "carved": carved,
+    "skidded": skidded,
     "gates": gates,
+    "watched": watched,
     "racers": racers,
     "sensitivity": sensitivity,
 }
@@ -282,7 +274,7 @@ TABLES: dict[str, Callable[[], Iterator[str]]] = {
 
 def main() -> None:
     """Write the tables that are named, or all."""
-    for name in sys.argv[1:] or TABLES:
+    for name in sys.argv[1:] or (each for each in TABLES if each != "watched" or DAY.exists()):
         table = "\n".join(TABLES[name]())
         mark = f"<!-- table {name} -->\n"
         text = PAGE.read_text(encoding="utf-8")

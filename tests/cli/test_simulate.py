@@ -315,7 +315,7 @@ def test_list_names_the_built_in_scenarios_and_prints_one(capsys: Printed) -> No
     assert main(["simulate", "--list"]) == 0
     names = capsys.readouterr().out.split()
     assert names[:2] + names[3:4] == ["carved-46m", "carver-42m", "giant-slalom-67m"]
-    assert {"skier-10deg", "skier-19deg", "slalom-20-gates", "giant-slalom-20-gates"} < set(names)
+    assert {"skier-10deg", "skier-12deg", "skier-19deg", "slalom-20-gates", "giant-slalom-20-gates"} < set(names)
     assert main(["simulate", "carver-42m", "--list"]) == 0
     assert 'published = "race-piste"' in capsys.readouterr().out
     assert main(["simulate", "carver-42", "--list"]) == 1

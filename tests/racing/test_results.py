@@ -43,16 +43,16 @@ OTHER = RacingLine(
 @pytest.mark.parametrize(
     ("gates", "window", "step", "turns", "searched"),
     [
-        (5, 3, 1, [3, 4, 5], [3, 3, 3]),
-        (6, 3, 2, [3, 5, 6], [3, 3, 2]),
-        (6, 3, 3, [3, 6], [3, 3]),
+        (5, 3, 1, [5, 5, 5, 5], [5, 3, 3, 3]),
+        (6, 3, 2, [6, 5, 6, 6], [6, 3, 3, 2]),
+        (6, 3, 3, [6, 5, 6], [6, 3, 3]),
         (4, 4, 1, [4], [4]),
     ],
 )
 def test_a_window_moves_on_to_the_last_gate(
     gates: int, window: int, step: int, turns: list[int], searched: list[int]
 ) -> None:
-    """Of so many gates behind each other, the last window perhaps of fewer; one evaluation each: where it begins."""
+    """The whole, then so many gates behind each other, raced through two more; one evaluation each: where it begins."""
     found = raced(EASY, gates=gates, window=window, step=step, evaluations=1)
     assert [len(each.row["turns"]) for each in found.history] == turns
     assert [len(each.place) for each in found.history] == [3 * count for count in searched]
@@ -60,13 +60,13 @@ def test_a_window_moves_on_to_the_last_gate(
     assert found.start_score == Racer(found.scenario, "point").score(found.start)
 
 
-def test_a_turn_that_enters_begins_as_the_last_but_one() -> None:
-    """Ten evaluations of two turns, of which the best go on; the third begins as the first of them was found."""
+def test_a_turn_that_enters_begins_as_the_whole_had_it() -> None:
+    """The whole once, ten evaluations of two turns, of which the best go on; the third begins as the line began."""
     found = raced(EASY, gates=3, window=2, evaluations=10)
-    first, second = found.history[:10], found.history[10]
+    whole, first, second = found.history[0].place, found.history[1:11], found.history[11]
     best = min(first, key=lambda each: each.value).place
     assert best[:3] != pytest.approx(best[3:])
-    assert second.place == pytest.approx((*best[3:], *best[:3]))
+    assert second.place == pytest.approx((*best[3:], *whole[6:]))
 
 
 def test_a_line_that_is_given_stays_where_it_was_not_searched() -> None:

@@ -64,6 +64,21 @@ def test_a_steady_turn_is_kept_and_a_push_of_50_N_is_survived() -> None:
     assert np.mean(balance.load[last].sum(axis=1)) == pytest.approx(75.0 * 9.81, rel=0.01)
 
 
+@pytest.mark.slow
+def test_the_slope_formula_holds_in_a_long_turn_and_less_in_a_short_one() -> None:
+    """tan Ψ = v²/(R g cos α) - tan α cos χ, each instant within 5 %, in the middle half of a turn of 6 s."""
+    shares = []
+    for time in (1.5, 6.0):
+        turn = tall(Skier(turn_time=time, turns=1.5), angle_deg=3.0, mu_0=0.02, drag_area_m2=0.3, speed_m_per_s=8.0)
+        run = simulate(turn.with_(duration_s=0.8 + 1.5 * time))
+        middle = (run.time > 0.8 + 0.75 * time) & (run.time < 0.8 + 1.25 * time)
+        balanced = np.tan(run.balance.balanced_lean[middle])
+        assert (np.abs(balanced) > 0.2).all()
+        shares.append(np.mean(np.abs(np.tan(run.balance.pressure_lean[middle]) / balanced - 1.0) < 0.05))
+    assert shares[1] == 1.0
+    assert shares[0] < 0.8
+
+
 def linked(name: str, speed: float) -> Run:
     run = simulate(scenario(name).with_(method="fast", speed_m_per_s=speed))
     assert run.outcome == "finished", speed
@@ -98,6 +113,39 @@ def test_linked_turns_on_19_degrees(speed: float) -> None:
     lean = np.degrees(run.balance.lean)
     turns = np.interp([1.7, 2.9, 4.1, 5.3], run.time, lean)
     assert (turns * [-1.0, 1.0, -1.0, 1.0] > 3.0).all()
+
+
+def one_turn(run: Run, number: int) -> tuple[float, float, float]:
+    """Median slip (°), greatest slip (°) and what shear took (J), of a whole turn."""
+    skier = run.scenario.skier
+    assert skier is not None
+    first, last = (skier.first_turn + skier.turn_time * (number + half) for half in (-0.5, 0.5))
+    within = (run.time > first) & (run.time < last)
+    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
+    slip = np.degrees(np.abs(run.heading - path))[within]
+    before, after = np.interp([first, last], run.time, run.energies["shear"])
+    return float(np.median(slip)), float(slip.max()), float(abs(after - before))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [3.0, 4.0, 5.0])
+def test_the_first_turn_carves_and_the_last_skids(speed: float) -> None:
+    """Where the snow holds less than later turns ask for: the pattern of the published simulation of linked turns."""
+    run = linked("skier-12deg", speed)
+    first, last = one_turn(run, 1), one_turn(run, 4)
+    assert first[0] < 0.5
+    assert first[2] < 40.0
+    assert last[0] > 2.5
+    assert last[1] > 5.0
+    assert last[2] > 600.0
+    assert np.abs(np.degrees(run.balance.lean)).max() < 45.0
+
+
+@pytest.mark.slow
+def test_on_a_race_piste_the_last_turn_carves_too() -> None:
+    run = linked("skier-10deg", 4.0)
+    assert one_turn(run, 1)[0] < 0.5
+    assert one_turn(run, 4)[0] < 0.5
 
 
 @pytest.mark.slow

@@ -82,6 +82,28 @@ def test_a_carve_in_balance_leans_as_it_must() -> None:
     assert found.carving_acceleration(speed) == pytest.approx(STEEP * math.tan(lean))
 
 
+def test_what_the_snow_holds_bounds_what_a_carve_gets() -> None:
+    """A wedge in balance, tan ϑ = grip, holds 4 S_f² L/(H_V N) times the load of both skis; slope counts."""
+    turn, load = scenario("skier-12deg"), 736.0
+    found = Edges.of(turn, STEEP, Skier(edge_beyond_lean=0.0))
+    snow = turn.contact.snow
+    most = 4.0 * (snow.failure_shear_stress or 0.0) ** 2 * turn.ski.running_length / (snow.snow_hardness * load)
+    assert 0.3 < most < 0.6
+    assert found.holding(load) == pytest.approx(most)
+    for side in (1.0, -1.0):
+        inside, outside = 0.99 * side * most * STEEP, 4.0 * side * most * STEEP
+        assert found.held(inside, 0.0, load) == inside
+        assert found.held(inside - 1.0, 1.0, load) == inside - 1.0
+        assert found.held(outside, 0.0, load) == pytest.approx(2.0 * side * most * STEEP)  # as √tan ϑ
+        assert found.held(outside - 1.0, 1.0, load) == pytest.approx(2.0 * side * most * STEEP - 1.0)
+
+
+def test_a_race_piste_holds_whatever_is_asked() -> None:
+    found = edges()
+    assert found.held(11.0, 2.0, 736.0) == 11.0
+    assert found.holding(736.0) > 4.0
+
+
 def test_legs_keep_the_centre_of_mass_level_and_their_rates_are_those_of_their_poses() -> None:
     height, step = 0.6, 1e-6
     for aside in (0.0, 0.3, -0.5):

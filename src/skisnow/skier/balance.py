@@ -97,6 +97,9 @@ class BalancedSkier:
     _asked: float = 0.0  # acceleration that balance asks for
     _acceleration: float = 0.0  # of the feet to the left
     _correction: float = 0.0
+    _slip: float = 0.0  # angle between skis and path, since the snow did not hold what was wanted (rad)
+    _holds: float = field(init=False)  # of the load, aside, edged for balance
+    _held: float = 1.0  # share of what the edges would take aside that the snow holds
     _gravity: float = field(init=False)
     _downhill: float = field(init=False)
     _rate: float = field(init=False)
@@ -107,6 +110,7 @@ class BalancedSkier:
         self.skier = self.scenario.skier
         self._stand_on(self.scenario.start.x, self.scenario.start.y)
         self.edges = Edges.of(self.scenario, self._gravity, self.skier)
+        self._holds = self.edges.holding(self._weight)
         self.steering = self._steering()
         self._rate = self._rate_at(0.0)
 
@@ -169,7 +173,7 @@ class BalancedSkier:
             wanted, planned = self._foreseen(moment.until, seen)
             self._learn(seen, planned, dt)
             wanted += self._correction / (1.0 + self.skier.leg_gain)  # it fades as errors do
-            balanced, wanted = planned + self._correction, self.skier.lean_more * wanted
+            balanced, wanted = planned + self._correction, max(1.0, self.skier.lean_more * self._held) * wanted
             error = self._step_aside(seen, wanted, balanced, dt)
             self._step_edge(moment.until, seen, error, dt)
             self.records.append(BalanceRecord(moment.until, seen, balanced, wanted, self._edge[0]))
@@ -195,7 +199,7 @@ class BalancedSkier:
         """Where the capture point should be, and where the centre of mass would be in balance now (m)."""
         skier, step = self.skier, self.skier.foresight_step
         change, speed = skier.edge_change, max(seen.speed, skier.slowest)
-        lag, fading = skier.lag / speed, skier.leg_gain * self._rate
+        lag, fading = self._lag(seen.speed), skier.leg_gain * self._rate
         most, (turn, rate), acceleration = self._most(seen.speed), self._turn, self._acceleration
         at = Underway(now, *seen.place, seen.course, seen.speed, acceleration)
         total = weights = first = 0.0
@@ -204,7 +208,8 @@ class BalancedSkier:
             at.time = now + later
             rate += step * (change**2 * (self._planned(at, most) - turn) - 2.0 * change * rate)
             turn += step * rate
-            target = most * turn + self._asked * math.exp(-fading * later)
+            wished = most * turn + self._asked * math.exp(-fading * later)
+            target = self.edges.held(wished, self._downhill * math.sin(at.heading), self._weight)
             acceleration += (target - acceleration) * step / (lag + step)
             balanced = self._height * (acceleration + self._downhill * math.sin(at.heading)) / self._gravity
             first = balanced if i == 0 else first
@@ -258,11 +263,21 @@ class BalancedSkier:
         self._asked += _share_of(dt, skier.share_filter) * (asked - self._asked)
         ahead = most * self._turn[0] + self._asked
         lag = skier.lag / max(seen.speed, skier.slowest)
-        self._acceleration += (ahead - self._acceleration) * dt / (lag + dt)
-        grip = (ahead + self._downhill * math.sin(seen.course)) / self._gravity
+        slope = self._downhill * math.sin(seen.course)
+        held = self.edges.held(ahead, slope, self._weight)
+        self._held = (held + slope) / (ahead + slope) if held != ahead else 1.0
+        self._acceleration += (held - self._acceleration) * dt / (lag + dt)
+        grip = (ahead + slope) / self._gravity
+        slip = abs(math.remainder(seen.heading - seen.course, 2.0 * math.pi))
+        self._slip = slip if self.edges.slips(grip, self._weight) else min(self._slip, slip)
         wanted = self.edges.angle(ahead, grip, max(seen.speed, skier.slowest), self._weight)
         later = turning + (swift**2 * (wanted - edge) - 2.0 * swift * turning) * dt
         self._edge = [edge + 0.5 * (turning + later) * dt, later]
+
+    def _lag(self, speed: float) -> float:
+        """Until the path has the curvature that is wanted (s): skis that slip aside have to come round first."""
+        most = self._gravity * self._holds
+        return self.skier.lag / max(speed, self.skier.slowest) + self._slip * speed / most
 
     @property
     def edge_steps(self) -> FloatArray:

@@ -54,6 +54,38 @@ class Edges:
         """Edge angle (rad) that holds so many times the load (N) of both skis aside, and no more."""
         return math.atan(grip**2 * load / (2.0 * self.softness))
 
+    def holding(self, load: float) -> float:
+        """How many times the load (N) of both skis they hold aside, edged as a carve in balance is then."""
+        grip = 1.0
+        for _ in range(60):  # the error halves at least
+            grip = self._hold(grip, load)
+        return grip
+
+    def slips(self, grip: float, load: float) -> bool:
+        """Whether so many times the load (N) aside are more than one ski alone would hold, edged for balance."""
+        return abs(grip) > self._hold(abs(grip), load) / math.sqrt(2.0)
+
+    def _hold(self, grip: float, load: float) -> float:
+        """How many times the load (N) a wedge holds that is edged for balance at so many times the load aside."""
+        edge = min(math.atan(grip) + self.beyond_lean, self.greatest)
+        return math.sqrt(2.0 * self.softness * math.tan(edge) / load)
+
+    def held(self, acceleration: float, slope: float, load: float) -> float:
+        """What of an acceleration to the left the snow gives a carve (m/s²).
+
+        Parameters
+        ----------
+        acceleration
+            Wanted, to the left (m/s²).
+        slope
+            Share of gravity along the slope that the skis hold besides, to the left (m/s²).
+        load
+            Of both skis (N).
+        """
+        wanted = (acceleration + slope) / self.gravity
+        most = self._hold(abs(wanted), load)
+        return acceleration if abs(wanted) <= most else math.copysign(most, wanted) * self.gravity - slope
+
     def angle(self, acceleration: float, grip: float, speed: float, load: float) -> float:
         """Edge angle (rad) for an acceleration to the left (m/s²), which takes so many times the load (N) aside."""
         carving = min(math.atan(abs(grip)) + self.beyond_lean, self.greatest)
