@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
+from scipy.special import erfcx
 from scipy.stats import norm
 
 from skisnow.racing.prospects import MOST_MARGIN, Prospects, margins_of, times_of
@@ -99,3 +101,23 @@ def test_a_gate_has_to_be_passed_with_room() -> None:
     missed = replace(score, time=None, value=1000.3, passed=1, margins=(-0.3, None, 0.3))
     assert with_room(missed, 0.05).value == 1000.3
     assert with_room(missed, 0.05).margins == (-0.35, None, 0.3)
+
+
+def test_far_below_0_an_improvement_is_that_of_the_scaled_error_function() -> None:
+    """φ(z) (1 - |z| √(π/2) erfcx(|z|/√2)); what the series leaves out at -30 is 105/30⁶."""
+    from skisnow.racing.prospects import _log_improvement
+
+    rest = 1.0 - 30.0 * math.sqrt(math.pi / 2.0) * float(erfcx(30.0 / math.sqrt(2.0)))
+    expected = -450.0 - 0.5 * math.log(2.0 * math.pi) + math.log(rest)
+    assert _log_improvement(np.array([-30.0]))[0] == pytest.approx(expected, abs=3e-7)
+
+
+def test_who_misses_a_gate_has_less_margin_than_who_straddles_its_pole() -> None:
+    from skisnow.racing.score import ABREAST, _margin
+
+    found = [
+        _margin(cast("Any", SimpleNamespace(clearance=clearance, outcome=outcome)))
+        for clearance, outcome in ((-0.2, "missed"), (-0.2, "straddled"), (0.3, "passed"), (None, "not_reached"))
+    ]
+    assert found == [-0.2 - ABREAST, -0.2, 0.3, None]
+    assert ABREAST > 0.0
