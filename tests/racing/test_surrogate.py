@@ -64,7 +64,7 @@ def test_kinds_of_values_have_their_own_mean_and_deviation() -> None:
     assert two.believing(PLACES[35]).at(PLACES[30:])[0] == pytest.approx(mean, abs=1e-4)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_a_brachistochrone_of_pieces_in_forty_evaluations(seed: int) -> None:
     """Whose optimum obeys Snell, as the other test says; a simplex finds its time."""
     pytest.importorskip("cmaes")

@@ -91,6 +91,7 @@ def test_where_nothing_comes_through_the_window_before_is_searched_again() -> No
     assert best.value <= searched.done[0].value
 
 
+@pytest.mark.slow
 def test_the_whole_course_is_searched_alike_first() -> None:
     searched = Searched()
     best = searched.best(BEGUN, "surrogate", 4, 2, 18)
