@@ -10,17 +10,30 @@ import math
 import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
+from measures_of_skier import (
+    FloatArray,
+    edges,
+    in_a_long_turn,
+    muscles,
+    off_balance,
+    rate_step,
+    residual,
+    run_of,
+    slip_of,
+    slips,
+    smallest_radius,
+    spaced,
+    swing,
+    turning_of,
+    weights,
+)
 from watched_slope import DAY, write_profile
 
-from skisnow import Course, Gate, Run, Scenario, scenario, simulate, time_gates
+from skisnow import Run, Scenario, time_gates
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS
 
@@ -28,18 +41,7 @@ PAGE = Path(__file__).resolve().parent / "validation/skier.md"
 SHARE = 0.2
 SHORT = 4.0
 FOR_GATES = ("skier.pole_clearance_m", "skier.sight_s", "skier.line_rate_per_s")
-BAND = (5.0, 12.0)
-AVERAGED = 0.2
 
-
-@cache
-def run_of(name: str, *changes: tuple[str, object]) -> Run:
-    """A run of a built-in scenario with changes, in the fast mode."""
-    print(name, *changes, file=sys.stderr)
-    return simulate(scenario(name, changes={"solver.method": "fast", **dict(changes)}))
-
-
-Misses: TypeAlias = npt.NDArray[np.float64]
 WATCHED = (
     ("slalom-20-gates", 4420.0, 203.0),
     ("slalom-20-gates", 11710.0, 203.0),
@@ -69,7 +71,7 @@ def watched() -> Iterator[str]:
         yield f"| `{name}` | {begins:.0f} | {slope} | {told} | {run.outcome.replace('_', ' ')} |"
 
 
-IN_TURNS: dict[str, Callable[[tuple[Misses, Misses]], str]] = {
+IN_TURNS: dict[str, Callable[[tuple[FloatArray, FloatArray]], str]] = {
     "tan Ψ off by, median": lambda found: f"{100.0 * np.median(found[0]):.1f} %",
     "… 95 % of the instants, within": lambda found: f"{100.0 * np.quantile(found[0], 0.95):.1f} %",
     "… instants within 5 %": lambda found: f"{100.0 * np.mean(found[0] < 0.05):.0f} %",
@@ -87,74 +89,6 @@ def slowly() -> Iterator[str]:
         yield f"| {row} | {' | '.join(told(each) for each in missed)} |"
 
 
-def in_a_long_turn(time: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """By how much tan Ψ is off, and what the body's roll takes of it, in the middle half of a turn so long (s)."""
-    gentle = {"slope.angle_deg": 3.0, "start.speed_m_per_s": 8.0, "friction.mu_0": 0.02, "drag.drag_area_m2": 0.3}
-    plan = {"skier.turn_time_s": time, "skier.turns": 1.5, "run.duration_s": 0.8 + 1.5 * time}
-    run = run_of("skier-10deg", *(gentle | plan).items())
-    balance, sledge = run.balance, run.scenario.sledge
-    middle = (run.time > 0.8 + 0.75 * time) & (run.time < 0.8 + 1.25 * time) & np.isfinite(balance.pressure_lean)
-    tangent = np.tan(balance.balanced_lean)
-    rolls = np.convolve(np.gradient(np.gradient(balance.lean, run.time), run.time), np.ones(11) / 11.0, "same")
-    gravity = run.scenario.gravity * math.cos(math.radians(3.0))
-    share = sledge.inertia[0] * rolls / (sledge.mass * sledge.centre_of_mass[1] * gravity * tangent)
-    return np.abs(np.tan(balance.pressure_lean) / tangent - 1.0)[middle], np.abs(share)[middle]
-
-
-def steps_of(run: Run) -> float:
-    """Between two rows (s)."""
-    return float(np.median(np.diff(run.time)))
-
-
-def swing(run: Run, first: float = 1.0, last: float = math.inf) -> float:
-    """Rms of the load of the outer ski between 5 and 12 Hz, in a time (N)."""
-    within = (run.time > first) & (run.time < last)
-    load = run.balance.load[within]
-    parts, rates = np.fft.rfft(load - load.mean(axis=0), axis=0), np.fft.rfftfreq(len(load), steps_of(run))
-    parts[(rates < BAND[0]) | (rates > BAND[1])] = 0.0
-    left, right = np.fft.irfft(parts, len(load), axis=0).T
-    return float(np.sqrt(np.mean(np.where(run.balance.lean[within] > 0.0, right, left) ** 2)))
-
-
-def edges(run: Run) -> npt.NDArray[np.float64]:
-    """Edge angle over time (°)."""
-    return np.degrees(run.balance.lean + run.balance.angulation)
-
-
-def off_balance(run: Run) -> list[npt.NDArray[np.float64]]:
-    """By how much tan Ψ is off, by the slope formula and with roll and rise, where it is above 0.3, after 1 s."""
-    balance, found = run.balance, []
-    for formula in (balance.balanced_lean, balance.rolling_lean):
-        turning = (run.time > 1.0) & (np.abs(np.tan(formula)) > 0.3) & np.isfinite(balance.pressure_lean)
-        found.append(np.abs(np.tan(balance.pressure_lean[turning]) / np.tan(formula[turning]) - 1.0))
-    return found
-
-
-def slips(run: Run, first: float, last: float) -> float:
-    """Median angle between skis and path in a time (°)."""
-    return float(np.median(np.abs(slip_of(run))[(run.time > first) & (run.time < last)]))
-
-
-def weights(run: Run) -> str:
-    """Greatest force on the boots, of both and of one, meant over 0.1 s, over the weight."""
-    assert run.boots is not None
-    half = max(1, round(0.05 / steps_of(run)))
-    forces = run.boots.force.sum(axis=1), run.boots.force[:, 0], run.boots.force[:, 1]
-    even = np.ones(2 * half + 1) / (2 * half + 1)
-    most = [np.convolve(np.linalg.norm(each, axis=1), even, "same")[half:-half].max() for each in forces]
-    weight = run.scenario.sledge.mass * run.scenario.gravity
-    return f"{most[0] / weight:.1f}, {max(most[1:]) / weight:.1f}"
-
-
-def _residual(run: Run) -> float:
-    assert run.energy_balance_error is not None
-    return 1e6 * abs(run.energy_balance_error)
-
-
-def _rate_step(run: Run) -> float:
-    return float(np.abs(np.diff(edges(run), n=2)).max() / steps_of(run))
-
-
 LINKED: dict[str, Callable[[Run], str]] = {
     "outcome": lambda run: run.outcome,
     "speed, least and greatest (m/s)": lambda run: f"{run.speed.min():.1f}, {run.speed.max():.1f}",
@@ -163,25 +97,17 @@ LINKED: dict[str, Callable[[Run], str]] = {
     ),
     "leg, shortest and longest (m)": lambda run: f"{run.balance.leg.min():.2f}, {run.balance.leg.max():.2f}",
     "edge angle changes in 10 ms by at most (°)": lambda run: f"{np.abs(np.diff(edges(run))).max():.1f}",
-    "edge rate changes in 10 ms by at most (°/s)": lambda run: (
-        f"{np.abs(np.diff(edges(run), n=2)).max() / steps_of(run):.0f}"
-    ),
+    "edge rate changes in 10 ms by at most (°/s)": lambda run: f"{rate_step(run):.0f}",
     "slope formula: median of the error of tan Ψ": lambda run: f"{100.0 * np.median(off_balance(run)[0]):.1f} %",
     "with roll and rise: median": lambda run: f"{100.0 * np.median(off_balance(run)[1]):.1f} %",
     "… instants within 5 %": lambda run: f"{100.0 * np.mean(off_balance(run)[1] < 0.05):.0f} %",
     "load of the outer ski, 5 to 12 Hz, rms (N)": lambda run: f"{swing(run):.0f}",
     "one ski in the air, of the time": lambda run: f"{100.0 * np.mean(run.balance.load.min(axis=1) < 10.0):.0f} %",
     "greatest force on both boots, on one, in weights": weights,
-    "energy residual over all energy": lambda run: f"{_residual(run):.0f} · 10⁻⁶",
+    "energy residual over all energy": lambda run: f"{residual(run):.0f} · 10⁻⁶",
     "work of the muscles (J)": lambda run: f"{run.energies['boots'][-1]:.0f}",
     "of it given, taken (J)": lambda run: "{:.0f}, {:.0f}".format(*muscles(run)),
 }
-
-
-def muscles(run: Run) -> tuple[float, float]:
-    """Work of the muscles where they give and where they take (J)."""
-    steps = np.diff(run.energies["boots"])
-    return float(steps[steps > 0.0].sum()), float(steps[steps < 0.0].sum())
 
 
 def linked() -> Iterator[str]:
@@ -244,20 +170,6 @@ def one_turn(run: Run, first: float, last: float) -> list[str]:
     return [*found, f"{1.0 / abs(turning[tightest]):.1f}", f"{carve:.1f}", *(f"{each:.0f}" for each in lost)]
 
 
-def slip_of(run: Run) -> npt.NDArray[np.float64]:
-    """Angle from the path to the skis over time (°)."""
-    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
-    return np.asarray(np.degrees(run.heading - path))
-
-
-def turning_of(run: Run) -> npt.NDArray[np.float64]:
-    """Curvature of the boots' path, meant over 0.2 s (1/m)."""
-    path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
-    turning = np.gradient(path, run.time) / np.maximum(run.speed, 0.1)
-    count = max(1, round(AVERAGED / steps_of(run)))
-    return np.convolve(turning, np.ones(count) / count, "same")
-
-
 def through(name: str, *changes: tuple[str, object]) -> list[str]:
     """Of a run through gates: passed, speed, time, greatest lean and edge angle, smallest radius."""
     run = run_of(name, *changes)
@@ -276,15 +188,6 @@ def through(name: str, *changes: tuple[str, object]) -> list[str]:
     ]
 
 
-def smallest_radius(run: Run) -> float:
-    """Median over the turns of the smallest radius of the boots' path, of curvatures meant over 0.2 s (m)."""
-    count = max(1, round(AVERAGED / steps_of(run)))
-    smooth = turning_of(run)[count:-count]
-    sides = np.flatnonzero(np.diff(np.sign(smooth)))
-    tops = [np.abs(part).max() for part in np.split(smooth, sides + 1)[1:-1] if len(part) > 2 * count]
-    return float(1.0 / np.median(tops)) if tops else math.nan
-
-
 GATES = (
     ("slalom-20-gates", 7.0),
     ("slalom-20-gates", 8.0),
@@ -301,20 +204,6 @@ def gates() -> Iterator[str]:
     yield "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |"
     for name, angle in GATES:
         yield f"| `{name}` | {angle:g} | {' | '.join(through(name, ('slope.angle_deg', angle)))} |"
-
-
-@cache
-def spaced(distance: float, across: float, edge: float, angle: float) -> Run:
-    """Ten slalom gates so far apart down the slope and across (m), with a greatest edge angle and a slope (°)."""
-    poles = ((12.0 + distance * i, 0.5 * across * (-1) ** i) for i in range(10))
-    found = tuple(
-        Gate(name=str(i), turning=place, side="left" if place[1] > 0.0 else "right") for i, place in enumerate(poles, 1)
-    )
-    base = scenario("slalom-20-gates", changes={"solver.method": "fast", "slope.angle_deg": angle})
-    assert base.skier is not None
-    skier = replace(base.skier, greatest_edge=math.radians(edge))
-    print("spaced", distance, angle, file=sys.stderr)
-    return simulate(base.with_(course=Course(gates=found), skier=skier))
 
 
 def racers() -> Iterator[str]:

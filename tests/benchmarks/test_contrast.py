@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import math
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -146,7 +145,6 @@ def test_strength_by_hand() -> None:
 
 
 def test_the_page_says_what_the_kept_pairs_say() -> None:
-    sys.path.insert(0, str(DOCS))
     write_numbers: Any = importlib.import_module("write_numbers")
     page = "gallery/turn-contrast.md"
     assert write_numbers.anew(page) == (DOCS / page).read_text(encoding="utf-8")

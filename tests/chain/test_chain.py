@@ -145,6 +145,25 @@ def test_the_usual_priors_are_what_their_origins_say() -> None:
     assert [each.about for each in PRIORS] == [False, False, True, False]
 
 
+def test_each_input_has_a_column_of_shares_in_its_order(analysis: Analysis, monkeypatch: pytest.MonkeyPatch) -> None:
+    """H_V and S_f at 2.5 % and the median, then a quarter and an eighth of the logarithm of two priors."""
+
+    def shares(count: int, inputs: int, generator: np.random.Generator) -> np.ndarray:
+        assert (count, inputs) == (1, 4)
+        assert generator.random() == np.random.default_rng(8).random()
+        return np.array([[0.025, 0.5, 0.25, 0.125]])
+
+    monkeypatch.setattr(ensemble, "latin_hypercube", shares)
+    snow = analysis.snow("C", unloading_ratio=10.0)
+    two = (prior_of("snow.unloading_ratio=2:32"), prior_of("ski.stiffness_factor=0.25:4"))
+    (first,) = ensemble.drawn_scenarios(skisnow.scenario("carved-46m").with_(snow=snow), two, 1, 8)
+    assert snow.snow_hardness_interval is not None
+    assert first.contact.snow.snow_hardness == pytest.approx(snow.snow_hardness_interval[0])
+    assert first.contact.snow.failure_shear_stress == pytest.approx(snow.failure_shear_stress)
+    assert first.contact.unloading_ratio == pytest.approx(4.0)
+    assert first.stiffness_factor == pytest.approx(0.25 * math.sqrt(2.0))
+
+
 def test_a_latin_hypercube_has_one_in_each_slice() -> None:
     shares = ensemble.latin_hypercube(50, 3, np.random.default_rng(1))
     assert shares.shape == (50, 3)

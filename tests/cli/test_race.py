@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from skisnow.cli import main
-from skisnow.racing import quickest
+from skisnow.racing.windows import Windows
 
 Printed = pytest.CaptureFixture[str]
 EASY = [
@@ -93,7 +93,7 @@ def test_interrupted_it_says_where_the_races_are(
     def stopped(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(quickest, "_searched", stopped)
+    monkeypatch.setattr(Windows, "searched", stopped)
     assert race(tmp_path, "--evaluations", "1") == 130
     assert "The same command goes on" in capsys.readouterr().err
     assert not (tmp_path / "race.json").exists()

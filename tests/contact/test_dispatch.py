@@ -8,6 +8,9 @@ from pathlib import Path
 import pytest
 
 from skisnow.compiled import core
+from skisnow.contact import SnowContact, SnowField
+
+from .conftest import straight
 
 CPUINFO = Path("/proc/cpuinfo")
 
@@ -22,3 +25,11 @@ def test_every_instruction_set_of_this_processor_is_found() -> None:
     expected += ["avx2"] if "avx2" in flags else []
     expected += ["avx512"] if {"avx512f", "avx512dq", "avx512vl"} <= set(flags) else []
     assert core.instruction_sets() == expected
+
+
+def test_a_contact_tells_which_it_uses() -> None:
+    """The one that is asked for; the last, widest one where none is."""
+    found = core.instruction_sets()
+    for asked in (None, *found):
+        contact = SnowContact(SnowField(2e8, 5e5, 10.0), [straight()], instruction_set=asked)
+        assert contact.instruction_set == (asked or found[-1])

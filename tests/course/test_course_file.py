@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from skisnow.course import Course, Gate, MovingPoint, course_warnings, on_slope, passages, read_course
+from skisnow.course.course_file import _bends
 from skisnow.errors import ParameterError
 from skisnow.scenario import read_scenario
 
@@ -141,6 +142,16 @@ def test_what_is_no_gpx_course_is_refused(tmp_path: Path, text: str, said: str) 
     assert str(error.value).startswith(str(path))
 
 
+def test_16_mib_of_gpx_are_read(tmp_path: Path) -> None:
+    """A file of zeros, which is no GPX, but not too large before it has a byte more."""
+    path = tmp_path / "course.gpx"
+    for size, said in ((2**24, "is no GPX that can be read"), (2**24 + 1, "is too large: at most 16 MiB are read")):
+        with path.open("wb") as stream:
+            stream.truncate(size)
+        with pytest.raises(ParameterError, match=said):
+            read_course(path)
+
+
 def test_degrees_need_to_know_where_x_points(tmp_path: Path) -> None:
     named = [(east, north, f"<desc>{side}</desc>") for east, north, side in POINTS]
     path = written(tmp_path, gpx(named), "course.gpx")
@@ -162,7 +173,8 @@ def giant(*, apart: float = 24.0, width: float = 6.0, number: int = 5) -> Course
 def test_rules_of_giant_slalom() -> None:
     """ICR 901.2.3: 4 to 8 m wide, 10 m apart; 901.2.4: 4 changes of direction fit 27 to 36 m of drop."""
     assert course_warnings(giant(), drop=30.0) == ()
-    assert course_warnings(giant(), drop=None) == ()
+    assert course_warnings(giant(), drop=None) == course_warnings(giant(), drop=0.0) == ()
+    assert "4 times over 1 m of drop; FIS ICR 901.2 asks for 0 to 0" in course_warnings(giant(), drop=0.8)[0]
     assert course_warnings(giant(width=3.0))[0] == "gate 1 is 3.00 m wide; FIS ICR 901.2 asks for 4 to 8 m"
     assert len(course_warnings(giant(width=9.0))) == 5
     near = course_warnings(giant(apart=7.0))
@@ -191,3 +203,38 @@ def test_a_scenario_lays_degrees_on_its_slope(tmp_path: Path) -> None:
         np.testing.assert_allclose(
             [gate.turning for gate in found.gates], [(-n * stretched, e) for e, n, _ in POINTS], atol=1e-3
         )
+
+
+@pytest.mark.parametrize(
+    ("bend", "side"), [(0.04, None), (0.06, "right"), (-0.04, None), (-0.06, "left"), (2.0, "right")]
+)
+def test_a_bend_tells_a_side_from_a_twentieth_of_a_radian_on(bend: float, side: str | None) -> None:
+    """The turning pole of a bend to the left is passed on the right; an end is passed on the other side."""
+    place = np.array([(0.0, 0.0), (9.0, 3.0)])
+    angle = math.atan2(3.0, 9.0) + bend
+    place = np.vstack([place, place[1] + 20.0 * np.array([math.cos(angle), math.sin(angle)])])
+    other = {"left": "right", "right": "left", None: None}[side]
+    assert _bends(place) == [other, side, other]
+
+
+def test_a_straight_stretch_has_no_sides_whichever_way_it_goes() -> None:
+    """East, north, and then west over three poles: two bends to the left, and none."""
+    assert _bends(np.array([(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (-9.0, 9.0)])) == [
+        "left", "right", "right", None, None,
+    ]  # fmt: skip
+
+
+def test_gates_that_lead_back_to_one_place_have_no_direction() -> None:
+    places = (("a", (0.0, 0.0)), ("b", (10.0, 0.0)), ("c", (0.0, 0.0)))
+    gates = tuple(Gate(name=name, turning=place, side="left") for name, place in places)
+    with pytest.raises(ParameterError, match="gates before and behind b stand at one place"):
+        Course(gates=gates)
+
+
+def test_gates_without_a_height_lie_on_the_ellipsoid(tmp_path: Path) -> None:
+    """East of 47° N, 11° E by 0.001°: N cos φ sin Δλ, N = a/√(1 - e² sin² φ)."""
+    points = "".join(f'<wpt lat="47" lon="{lon}"><desc>left</desc></wpt>' for lon in ("11", "11.001"))
+    found = read_course(written(tmp_path, f"<gpx>{points}</gpx>", "course.gpx"))
+    normal = 6378137.0 / math.sqrt(1.0 - 0.00669437999014 * math.sin(math.radians(47.0)) ** 2)
+    east = normal * math.cos(math.radians(47.0)) * math.sin(math.radians(0.001))
+    assert found.gates[1].turning[0] == pytest.approx(east, rel=1e-8)

@@ -76,3 +76,13 @@ def test_other_courses_are_not_compared_and_damage_is_named(pair: tuple[Path, Pa
     (pair[1] / "gates.csv").write_text(f"{HEAD}\n1,left,passed,soon,,,,1,2\n", encoding="utf-8")
     with pytest.raises(ParameterError, match=r"gates\.csv cannot be read.*soon"):
         gate_gaps(*pair)
+
+
+@pytest.mark.parametrize(("beside", "same"), [(0.4, True), (-0.6, False)])
+def test_a_course_beside_the_fall_line_is_the_same_where_its_gates_are(
+    tmp_path: Path, beside: float, same: bool
+) -> None:
+    """All gates 0.4 m to the left in both; -0.6 m is 1 m away and another course, as it is from either side."""
+    pair = (folder_of(tmp_path / "a", [1.0, 2.0], beside=0.4), folder_of(tmp_path / "b", [1.1, 2.3], beside=beside))
+    for one, other in (pair, pair[::-1]):
+        assert (gate_gaps(one, other) is not None) is same

@@ -136,6 +136,16 @@ def test_a_course_that_is_gone_up_is_not_passed() -> None:
     assert outcomes(passages(WIDE, along_x(y=-3.0, start=40.0, speed=-10.0), {}))[0] == "not_reached"
 
 
+@pytest.mark.parametrize(("y", "words"), [(-1.0, "to the right of its turning pole"), (4.0, "beyond its outer pole")])
+def test_over_a_pole_is_not_between_the_poles(y: float, words: str) -> None:
+    """A point of the track stands on the pole itself: nothing is rounded."""
+    time, down = np.array([0.0, 1.0, 2.0]), np.array([(9.0, y), (10.0, y), (11.0, y)])
+    found = passages(WIDE, MovingPoint(time, down), {}).passages[0]
+    assert (found.outcome, found.clearance) == ("missed", 0.0)
+    assert found.words == f"gate 1 was missed: 0.00 m {words}"
+    assert passages(WIDE, MovingPoint(time, down[::-1]), {}).passages[0].outcome == "not_reached"
+
+
 def test_a_track_that_ends_leaves_gates_not_reached() -> None:
     result = passages(WIDE, along_x(seconds=2.0), {})
     assert outcomes(result) == ["passed", "not_reached", "not_reached"]

@@ -1,12 +1,10 @@
 """Schemas and tables of keys say what the dataclasses declare."""
 
 import importlib
-import sys
 from pathlib import Path
 from typing import Any
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-sys.path.insert(0, str(DOCS))
 write_inputs: Any = importlib.import_module("write_inputs")
 
 

@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-sys.path.insert(0, str(DOCS))
 write_numbers: Any = importlib.import_module("write_numbers")
 PAGES = write_numbers.pages()
 ALWAYS = {

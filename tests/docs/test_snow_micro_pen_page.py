@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,6 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
 def test_tables_of_the_page() -> None:
-    sys.path.insert(0, str(DOCS))
     printed: Any = importlib.import_module("tables_of_snow_micro_pen")
     profiles = [read_snow_micro_pen(recording(name)) for name in (LONG, SHORT)]
     page = (DOCS / "methods" / "snow-micro-pen.md").read_text(encoding="utf-8")

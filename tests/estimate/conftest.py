@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
 
 from skisnow.field import Campaign, read_campaign
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))  # the benchmarks draw series, too
 
 CAMPAIGN_TOML = """
 name = "test"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,7 +14,14 @@ from skisnow.errors import ParameterError, SkisnowError
 from skisnow.parallel import dask_cluster
 from skisnow.parallel.batch import run_batch
 from skisnow.parallel.crews import LOST
-from skisnow.parallel.dask_cluster import SchedulerFile, batch_cluster, crew_of_client, is_plain
+from skisnow.parallel.dask_cluster import (
+    SchedulerFile,
+    batch_cluster,
+    crew_of_client,
+    crew_of_scheduler,
+    is_plain,
+    require_scheduler,
+)
 
 
 class Client:
@@ -174,3 +182,56 @@ def test_who_does_not_answer_is_told_with_what_to_start() -> None:
     for asked in (SchedulerFile(address="tls://h:1"), SchedulerFile(address="tcp://h:1", tls={"cert": "c"})):
         assert "runs with certificates" in dask_cluster._unanswered(asked, OSError("refused"))
     assert [is_plain(f"{kind}://h:1") for kind in ("tcp", "tls", "wss", "ws")] == [True, False, False, True]
+
+
+def test_what_a_scheduler_needs_is_asked_for_before_the_work_begins(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Dask for an address, the certificates that are named, and dask-jobqueue for a batch system alone."""
+    asked: list[str] = []
+    monkeypatch.setattr(dask_cluster, "_distributed", lambda: asked.append("distributed"))
+    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: asked.append("jobqueue"))
+    require_scheduler("tcp://h:1")
+    assert asked == ["distributed"]
+    file = tmp_path / "scheduler.toml"
+    file.write_text('[slurm]\ncores = 2\nmemory = "2GB"\n', encoding="utf-8")
+    require_scheduler(file)
+    assert asked == ["distributed", "distributed", "jobqueue"]
+    file.write_text('address = "tls://h:1"\n[tls]\nca_file = "none.pem"\n', encoding="utf-8")
+    with pytest.raises(ParameterError, match=r"none\.pem: no certificate can be read"):
+        require_scheduler(file)
+
+
+def test_a_scheduler_that_dask_does_not_reach_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Distributed:
+        @staticmethod
+        def Client(address: str, *, timeout: float, **_: Any) -> None:
+            raise OSError(f"{address} refused for {timeout:g} s")
+
+    monkeypatch.setattr(dask_cluster, "_distributed", lambda: Distributed)
+    with pytest.raises(SkisnowError, match=r"no scheduler answers at tcp://h:1 \(tcp://h:1 refused for 30 s\)"):
+        crew_of_scheduler("tcp://h:1", dict)
+
+
+def test_jobs_of_a_batch_system_are_ended_behind_the_client(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """So many jobs as the file says, a client of their cluster, whose threads count."""
+    said: list[Any] = []
+    cluster = SimpleNamespace(scale=lambda *, jobs: said.append(jobs), close=lambda: said.append("cluster closed"))
+
+    class ClusterClient(Client):
+        def __init__(self, of: Any) -> None:
+            super().__init__()
+            assert of is cluster
+
+        def close(self) -> None:
+            said.append("client closed")
+
+    monkeypatch.setattr(dask_cluster, "_distributed", lambda: SimpleNamespace(Client=ClusterClient))
+    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: SimpleNamespace(SLURMCluster=lambda **_: cluster))
+    file = tmp_path / "scheduler.toml"
+    file.write_text('[slurm]\njobs = 3\ncores = 2\nmemory = "2GB"\n', encoding="utf-8")
+    crew = crew_of_scheduler(file, dict)
+    assert crew.size() == 7
+    assert crew.submit([(0, {"n": 1})]).result().rows == [(0, '{"n":1}')]
+    crew.end(at_once=False)
+    assert said == [3, "client closed", "cluster closed"]

@@ -189,6 +189,15 @@ def test_dask_that_is_not_installed_is_told_before_the_work(monkeypatch: pytest.
         require_executor("tcp://127.0.0.1:8786")
 
 
+@pytest.mark.parametrize("executor", [None, "threads", "processes", Here()])
+def test_what_is_on_this_computer_needs_no_scheduler(executor: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(_: object) -> None:
+        raise ParameterError("a scheduler was looked for")
+
+    monkeypatch.setattr(dask_cluster, "require_scheduler", refuse)
+    require_executor(executor)
+
+
 SLURM = '[slurm]\njobs = 4\ncores = 16\nmemory = "32GB"\nwalltime = "02:00:00"\n'
 
 
@@ -200,6 +209,9 @@ SLURM = '[slurm]\njobs = 4\ncores = 16\nmemory = "32GB"\nwalltime = "02:00:00"\n
         ('adress = "tcp://a:1"', "adress is no key of a scheduler. Is address meant"),
         ('address = "a:1"', "address is 'a:1'; it must be a text such as"),
         ('address = "tcp://a:1"\nwait_s = 0', "wait_s is 0; it must be a number above 0"),
+        ('address = "tcp://a:1"\nwait_s = true', "wait_s is True; it must be a number above 0"),
+        ('address = "tcp://a:1"\nwait_s = "5"', "wait_s is '5'; it must be a number above 0"),
+        (SLURM.replace("4", "true"), "slurm.jobs is True; it must be a whole number"),
         ('address = "tls://a:1"\ntls = 3', "it must be a table, begun by the line"),
         ('address = "tls://a:1"\n[tls]\nca = "a.pem"', "tls.ca is no key"),
         ('address = "tls://a:1"\n[tls]\nca_file = 3', "it must be the path of a PEM file"),

@@ -89,6 +89,7 @@ def test_two_runs_at_once_are_refused(place: Path) -> None:
     for _ in range(2):
         with pytest.raises(OutputError, match="another run"):
             KeptRows.opened(place, "f")
+    assert first._database.execute("PRAGMA busy_timeout").fetchone() == (0,)  # nobody waits for the other
     first.add([(0, "{}")])
     first.close()
     assert rows_in(place) == {0: {}}

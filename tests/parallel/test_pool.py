@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 import signal
 import time
-from typing import Any
+from concurrent.futures import Future
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
 from skisnow.errors import ParameterError, SkisnowError
 from skisnow.parallel.chunk import computed
-from skisnow.parallel.crews import LARGEST_FOR_A_PIPE, _in_worker
+from skisnow.parallel.crews import LARGEST_FOR_A_PIPE, ProcessCrew, _in_worker
 from skisnow.parallel.kept_rows import NumberedText
 from skisnow.parallel.pool import Pool, workers_in_force
 
@@ -101,3 +103,36 @@ def test_a_chunk_tells_how_long_a_point_takes(
 
     monkeypatch.setattr("skisnow.parallel.chunk.time.perf_counter", lambda: clock[0])
     assert computed(lasting, list(enumerate(points))).seconds_per_point == each
+
+
+@pytest.mark.parametrize(
+    ("error", "finished", "at_once"), [(None, True, False), (None, False, True), (KeyboardInterrupt, True, True)]
+)
+def test_workers_are_ended_at_once_where_work_is_left_or_an_error_came(
+    error: type[BaseException] | None, finished: bool, at_once: bool
+) -> None:
+    pool, said, future = Pool(dict, 2, advice=""), list[bool](), Future[Any]()
+    if finished:
+        future.set_result(None)
+
+    class Ends:
+        def end(self, *, at_once: bool) -> None:
+            said.append(at_once)
+
+    pool._crew, pool._running = cast("Any", Ends()), {future}
+    pool.__exit__(error, None, None)
+    assert said == [at_once]
+    assert future.cancelled() is not finished
+
+
+@pytest.mark.parametrize(("at_once", "order"), [(True, ["let go", "shut down"]), (False, ["shut down", "let go"])])
+def test_processes_are_let_go_before_or_behind_their_last_point(at_once: bool, order: list[str]) -> None:
+    """A process whose leash is closed ends; nothing of the crew stays, and it may end twice."""
+    done: list[str] = []
+    crew: Any = ProcessCrew(dict, 2)
+    crew._leash = SimpleNamespace(close=lambda: done.append("let go"))
+    crew._executor = SimpleNamespace(shutdown=lambda **_: done.append("shut down"))
+    crew.end(at_once=at_once)
+    crew.end(at_once=at_once)
+    assert done == order
+    assert (crew._leash, crew._executor) == (None, None)

@@ -19,7 +19,7 @@ from skisnow.errors import ParameterError
 from skisnow.parallel.kept_rows import KeptRows
 from skisnow.parallel.pool import Pool
 from skisnow.racing import LineTurn, RacingLine, by_surrogate, follower_line, quickest_line
-from skisnow.racing.by_surrogate import HOPES, SurrogateSearch, _least_within
+from skisnow.racing.by_surrogate import BATCH, Daring, SurrogateSearch, _best_within
 from skisnow.racing.line import cut, ways
 from skisnow.racing.quickest import _begun, _require, _search, _window
 from skisnow.racing.racers import Racer, run_score, skied
@@ -41,15 +41,17 @@ class Bowl:
     def __init__(self, least: Any, unknown: Any) -> None:
         self.least, self.unknown = np.array(least), np.array(unknown)
 
-    def at(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def worth(self, places: FloatArray, curiosity: float, caution: float) -> FloatArray:
+        assert caution == 4.0
         away, near = np.sum((places - self.least) ** 2, axis=1), np.sum((places - self.unknown) ** 2, axis=1)
-        return away, 3.0 - near
+        return np.asarray(curiosity * (3.0 - near) - away)
 
 
 def least_of_bowl(bowl: Bowl, centre: Any, box: float, hope: float, directions: Any = ((1, 0), (0, 1))) -> FloatArray:
     pytest.importorskip("cmaes")
     known: Any = bowl
-    return _least_within(known, np.array(directions, float), np.array(centre), box, hope, (1, 2))
+    moved = np.array(directions, float)
+    return _best_within(known, moved, np.zeros(len(moved)), np.array(centre), box, Daring(hope, 4.0, 0.0), (1, 2))
 
 
 def test_a_batch_is_asked_within_its_box_and_the_cube() -> None:
@@ -81,19 +83,21 @@ def test_a_batch_is_asked_about_its_centre(monkeypatch: pytest.MonkeyPatch) -> N
 
 def search_of(values: list[float], places: Any, **changes: Any) -> SurrogateSearch:
     """A search with evaluations that are made."""
-    found = [SimpleNamespace(place=tuple(place), value=value) for place, value in zip(places, values, strict=True)]
+    found = [
+        SimpleNamespace(place=tuple(place), value=value, row={}) for place, value in zip(places, values, strict=True)
+    ]
     least = found[int(np.argmin(values))]
     made: Any = SimpleNamespace(found=found, least=least)
     return SurrogateSearch(batches=made, count=9, kinds=2, spread=0.1, seed=(3,), **changes)
 
 
 def test_a_batch_begins_where_the_least_is_expected() -> None:
-    """A bowl with its least at (0.3, 0.6), evaluated on a grid: the first hope finds it, each place is its own."""
+    """A bowl with its least at (0.3, 0.6), evaluated on a grid: the first finds it, each place is its own."""
     pytest.importorskip("cmaes")
     places = np.array(list(product((0.1, 0.3, 0.5, 0.7), (0.2, 0.4, 0.6, 0.8))))
     values = (2.0 + (places[:, 0] - 0.3) ** 2 + (places[:, 1] - 0.6) ** 2).tolist()
     chosen = search_of(values, places)._chosen(np.eye(2), 0.1, 1)
-    assert len(chosen) == len(HOPES)
+    assert len(chosen) == len(BATCH)
     assert chosen[0] == pytest.approx([0.3, 0.6], abs=0.03)
     assert all(np.abs(each - [0.3, 0.6]).max() < 0.1 + 1e-9 for each in chosen)
     assert len({tuple(each) for each in chosen}) == 4
@@ -126,7 +130,7 @@ class Asked:
 
     def evaluate(self, batch: Any) -> None:
         self.sizes.append(len(batch))
-        self.found += [SimpleNamespace(place=tuple(each), value=self.function(each)) for each in batch]
+        self.found += [SimpleNamespace(place=tuple(each), value=self.function(each), row={}) for each in batch]
 
 
 def asked_by(function: Any, start: Any, **changes: Any) -> Asked:
@@ -142,7 +146,7 @@ def bowl(place: FloatArray) -> float:
 
 
 def test_turns_alike_are_drawn_alike_first() -> None:
-    """Of four numbers in two turns: the start, 6 alike, of 14 evaluations half alike, then 2 of each for itself."""
+    """Of four numbers in two turns: the start, 6 alike, a quarter of 14 alike, then 2 of each for itself."""
     made = asked_by(bowl, [0.4, 0.6, 0.4, 0.6])
     assert made.sizes == [1, 6, 2, 4, 4]
     assert [each.place[:2] == pytest.approx(each.place[2:]) for each in made.found] == [True] * 7 + [False] * 10
@@ -157,9 +161,9 @@ def test_turns_alike_are_drawn_alike_first() -> None:
     assert single.sizes == [1, 1, 4]
 
 
-def test_it_ends_where_two_batches_are_alike_or_the_box_is_small() -> None:
+def test_it_ends_where_three_batches_gain_nothing_or_the_box_is_small() -> None:
     flat = asked_by(lambda _: 3.0, [0.4, 0.6], count=400, settled=1e-3)
-    assert flat.sizes == [1, 1, 4]
+    assert flat.sizes == [1, 1, 4, 4, 4]
     shrunk = asked_by(lambda _: 3.0, [0.4, 0.6], count=400, spread=0.03)
     assert shrunk.sizes == [1, 1, 4, 4]  # half of twice the spread, a fifth less after each: 30, 24, 19 thousandths
 
@@ -206,16 +210,16 @@ def test_a_skier_is_scored_by_its_run() -> None:
 
 
 def test_what_is_just_allowed() -> None:
-    _require(evaluations=1, population=4, spread=1.0, settled=0.0)
-    _require(evaluations=2, population=None, spread=0.01, settled=999.0)
-    for wrong in ({"spread": 1.01}, {"settled": 1000.0}):
+    _require(evaluations=1, population=4, spread=1.0, settled=0.0, room=1.0)
+    _require(evaluations=2, population=None, spread=0.01, settled=999.0, room=0.0)
+    for wrong in ({"spread": 1.01}, {"settled": 1000.0}, {"room": -0.1}):
         with pytest.raises(ParameterError):
-            _require(**({"evaluations": 1, "population": None, "spread": 0.1, "settled": 0.0} | wrong))  # type: ignore[arg-type]
-    assert _window(6, None, 1) == (6, 1)
-    assert (_window(6, 2, 2), _window(6, 6, 6)) == ((2, 2), (6, 6))
+            _require(**({"evaluations": 1, "population": None, "spread": 0.1, "settled": 0.0, "room": 0.0} | wrong))  # type: ignore[arg-type]
+    assert _window(6, None, 1, 0) == (6, 1)
+    assert (_window(6, 2, 2, 9), _window(6, 6, 6, 0)) == ((2, 2), (6, 6))
     for window, step in ((1, 1), (7, 1), (3, 0)):
         with pytest.raises(ParameterError):
-            _window(6, window, step)
+            _window(6, window, step, 0)
     assert (_search(None, "skier"), _search(None, "point"), _search("cma", "skier")) == ("surrogate", "cma", "cma")
 
 

@@ -9,7 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.racing.surrogate import FAILED_MORE, Surrogate, learnable
+from skisnow.racing.prospects import times_of
+from skisnow.racing.search import Evaluated
+from skisnow.racing.surrogate import Surrogate
 
 FloatArray = npt.NDArray[np.float64]
 DRAWN = np.random.default_rng(4).random((9, 2))
@@ -61,16 +63,14 @@ def test_values_that_are_all_alike_are_learnt() -> None:
     assert Surrogate.of(DRAWN, np.full(9, 7.0), 2).at(DRAWN)[0] == pytest.approx(7.0)
 
 
-def test_failures_by_hand() -> None:
-    """Above the greatest time by 0.3, 0.8 a gate and 0.7 of the first metre, of the deviation of the times."""
-    times = [8.0, 8.1, 8.2, 8.3, 8.4]
-    deviation = float(np.std(times))
-    found = learnable([*times, 1000.4, 3002.0, 99_000.0, math.inf])
-    least, each_gate, each_metre = FAILED_MORE
-    assert found[:5].tolist() == times
-    assert found[5] == pytest.approx(8.4 + deviation * (least + each_gate + 0.4 * each_metre))
-    assert found[6] == pytest.approx(8.4 + deviation * (least + 3.0 * each_gate + each_metre))
-    assert found[7] == found[8] == pytest.approx(8.4 + deviation * (least + 5.0 * each_gate))
-    detour = learnable([8.0, 8.1, 8.2, 8.3, 20.0])
-    assert detour[4] == pytest.approx(8.2 + 3.0 * 0.2)  # of quarter widths above the median
-    assert learnable([2000.0, math.inf]) == pytest.approx(np.log([2000.0, 1e5]))
+def test_times_of_failures_by_hand() -> None:
+    """A failure has its time at the last gate; one without, or a detour, three quarter widths above the median."""
+    times = [8.0, 8.1, 8.2, 8.3]
+    found = [Evaluated(i, (0.0,), {"value": time}) for i, time in enumerate(times)]
+    straddled = Evaluated(4, (0.0,), {"value": 1000.4, "gates": [["straddled", 4.0], ["passed", 8.4]]})
+    fell = Evaluated(5, (0.0,), {"value": 2003.0, "gates": [["passed", 4.0], ["not_reached", None]]})
+    most = 8.2 + 3.0 * 0.2
+    assert times_of([*found, straddled, fell]) == pytest.approx([*times, 8.4, most])
+    detour = Evaluated(6, (0.0,), {"value": 20.0})
+    assert times_of([*found, straddled, detour])[5] == pytest.approx(8.25 + 3.0 * 0.25)
+    assert times_of([fell, Evaluated(7, (0.0,), {"value": math.inf})]) == pytest.approx(np.log([2003.0, 1e6]))

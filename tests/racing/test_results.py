@@ -13,7 +13,17 @@ import pytest
 from skisnow import scenario
 from skisnow.course.gate_gaps import GateGap
 from skisnow.errors import ParameterError
-from skisnow.racing import LineTurn, PointRacer, RacingLine, Score, Worth, drawn_for_race, follower_line, write_line
+from skisnow.racing import (
+    LineTurn,
+    PointRacer,
+    RacingLine,
+    Score,
+    Worth,
+    drawn_for_race,
+    follower_line,
+    quickest,
+    write_line,
+)
 from skisnow.racing.line import cut
 from skisnow.racing.quickest import _fingerprint
 from skisnow.racing.racers import Racer
@@ -33,16 +43,16 @@ OTHER = RacingLine(
 @pytest.mark.parametrize(
     ("gates", "window", "step", "turns", "searched"),
     [
-        (5, 3, 1, [3, 4, 5], [3, 3, 3]),
-        (6, 3, 2, [3, 5, 6], [3, 3, 2]),
-        (6, 3, 3, [3, 6], [3, 3]),
+        (5, 3, 1, [5, 5, 5, 5], [5, 3, 3, 3]),
+        (6, 3, 2, [6, 5, 6, 6], [6, 3, 3, 2]),
+        (6, 3, 3, [6, 5, 6], [6, 3, 3]),
         (4, 4, 1, [4], [4]),
     ],
 )
 def test_a_window_moves_on_to_the_last_gate(
     gates: int, window: int, step: int, turns: list[int], searched: list[int]
 ) -> None:
-    """Of so many gates behind each other, the last window perhaps of fewer; one evaluation each: where it begins."""
+    """The whole, then so many gates behind each other, raced through two more; one evaluation each: where it begins."""
     found = raced(EASY, gates=gates, window=window, step=step, evaluations=1)
     assert [len(each.row["turns"]) for each in found.history] == turns
     assert [len(each.place) for each in found.history] == [3 * count for count in searched]
@@ -50,13 +60,13 @@ def test_a_window_moves_on_to_the_last_gate(
     assert found.start_score == Racer(found.scenario, "point").score(found.start)
 
 
-def test_a_turn_that_enters_begins_as_the_last_but_one() -> None:
-    """Ten evaluations of two turns, of which the best go on; the third begins as the first of them was found."""
+def test_a_turn_that_enters_begins_as_the_whole_had_it() -> None:
+    """The whole once, ten evaluations of two turns, of which the best go on; the third begins as the line began."""
     found = raced(EASY, gates=3, window=2, evaluations=10)
-    first, second = found.history[:10], found.history[10]
+    whole, first, second = found.history[0].place, found.history[1:11], found.history[11]
     best = min(first, key=lambda each: each.value).place
     assert best[:3] != pytest.approx(best[3:])
-    assert second.place == pytest.approx((*best[3:], *best[:3]))
+    assert second.place == pytest.approx((*best[3:], *whole[6:]))
 
 
 def test_a_line_that_is_given_stays_where_it_was_not_searched() -> None:
@@ -162,7 +172,7 @@ def test_gaps_at_gates_are_those_on_the_own_snow() -> None:
     mine = score(3.0, ("passed", 1.0), ("passed", 3.0))
     base = score(2.5, ("passed", 1.2), ("passed", 2.5))
     other = score(9.0, ("passed", 4.0), ("passed", 9.0))
-    found = Worth(name="wax", scores=(mine, other), base=(base, base)).gaps(["a", "b"])
+    found = Worth(name="wax", scores=(mine, other), base=(base, other)).gaps(["a", "b"])
     assert all(isinstance(each, GateGap) for each in found)
     assert [each.gap for each in found] == pytest.approx([-0.2, 0.5])
 
@@ -188,7 +198,7 @@ def test_a_comparison_is_told_and_kept(tmp_path: Path) -> None:
         compared(base, {"same": base}, line, [])
 
 
-def test_a_checkpoint_is_that_of_its_search() -> None:
+def test_a_checkpoint_is_that_of_its_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every setting, the racer and the line are in its mark."""
     racer, settings = Racer(SLALOM, "point"), (10, "cma", None, 0.1, 0.0, 3, 1, 0)
     mark = _fingerprint(racer, OTHER, settings)
@@ -201,6 +211,13 @@ def test_a_checkpoint_is_that_of_its_search() -> None:
         _fingerprint(racer, OTHER, (1, *settings[1:])),
     ]
     assert len({mark, *others}) == 6
+    versions = {"skisnow": "1", "cmaes": "1"}
+    monkeypatch.setattr(quickest, "version", versions.__getitem__)
+    single = (1, *settings[1:])
+    before = [_fingerprint(racer, OTHER, each) for each in (settings, single)]
+    versions["cmaes"] = "2"  # which a search of one evaluation does not ask for
+    after = [_fingerprint(racer, OTHER, each) for each in (settings, single)]
+    assert [one == other for one, other in zip(before, after, strict=True)] == [False, True]
 
 
 def test_a_spread_of_ten_is_the_greatest() -> None:

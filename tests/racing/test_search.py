@@ -74,7 +74,7 @@ def cycloid(x: float, y: float, down: float) -> float:
 
 def raced(asked: Scenario = SLALOM, **named: Any) -> QuickestLine:
     pytest.importorskip("cmaes")
-    usual: dict[str, Any] = {"gates": 2, "model": "point", "evaluations": 40, "workers": 1}
+    usual: dict[str, Any] = {"gates": 2, "model": "point", "evaluations": 40, "workers": 1, "room": 0.0}
     return quickest_line(asked, **usual | named)
 
 
@@ -158,6 +158,8 @@ def test_a_window_that_moves_on_finds_what_the_whole_search_finds() -> None:
         ({"evaluations": 0}, "evaluations is 0"),
         ({"population": 3}, "population is 3"),
         ({"spread": 0.0}, "spread is 0"),
+        ({"room": 1.5}, "room is 1.5"),
+        ({"ahead": -1}, "ahead is -1"),
         ({"settled": -1.0}, "settled is -1"),
         ({"search": "grid"}, "search is .grid."),
         ({"window": 3}, "window is 3"),

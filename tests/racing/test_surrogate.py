@@ -5,15 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pytest
+from scipy.optimize import minimize
 
 from skisnow.parallel.kept_rows import KeptRows
 from skisnow.parallel.pool import Pool
 from skisnow.racing.by_surrogate import SurrogateSearch
 from skisnow.racing.search import Evaluations
-from skisnow.racing.surrogate import Surrogate, learnable
+from skisnow.racing.surrogate import Surrogate
 
-from .test_search import EASY, Polyline, batches, cycloid, raced
+from .test_search import EASY, SLALOM, Polyline, batches, cycloid, raced
 
 PLACES = np.random.default_rng(1).random((40, 4))
 VALUES = 3.0 + np.sin(2.0 * PLACES[:, 0]) + PLACES[:, 1] ** 2 - 0.5 * PLACES[:, 2]
@@ -30,7 +32,7 @@ def test_it_gives_back_what_it_was_given_and_knows_what_is_between() -> None:
     assert np.abs(mean - VALUES[30:]).max() < 4.0 * deviation.max()
     assert known.lengths[3] > 2.0 * known.lengths[0]
     far = known.at(np.full((1, 4), 40.0))
-    assert (far[0][0], far[1][0]) == pytest.approx((known.level, known.scale), rel=1e-6)
+    assert (far[0][0], far[1][0]) == pytest.approx((float(known.level), float(known.scale)), rel=1e-6)
 
 
 def test_scatter_is_taken_for_scatter() -> None:
@@ -52,28 +54,32 @@ def test_numbers_of_one_kind_have_one_length() -> None:
     assert Surrogate.of(PLACES, VALUES, 2).lengths.tolist()[:2] == Surrogate.of(PLACES, VALUES, 2).lengths.tolist()[2:]
 
 
-def test_failures_count_little_more_than_the_greatest_time_and_keep_their_order() -> None:
-    values = [8.0, 8.2, 1000.3, 8.1, 1000.1, 2000.1, np.inf, 20.0, 8.3]
-    found = learnable(values)
-    assert found[[0, 1, 3, 8]] == pytest.approx([8.0, 8.2, 8.1, 8.3])
-    assert found.max() < 10.0
-    assert found[7] < 9.0  # a detour
-    assert np.argsort(found).tolist() == [0, 3, 1, 8, 7, 4, 2, 5, 6]
-    assert np.isfinite(learnable([1000.3, np.inf])).all()
+def test_kinds_of_values_have_their_own_mean_and_deviation() -> None:
+    two = Surrogate.of(PLACES[:30], np.stack([VALUES[:30], 10.0 - 4.0 * VALUES[:30]], axis=1), 4)
+    one = Surrogate.of(PLACES[:30], VALUES[:30], 4)
+    (mean, deviation), (alone, _) = two.at(PLACES[30:]), one.at(PLACES[30:])
+    assert mean[:, 0] == pytest.approx(alone, abs=0.05)
+    assert mean[:, 1] == pytest.approx(10.0 - 4.0 * mean[:, 0])
+    assert deviation[:, 1] == pytest.approx(4.0 * deviation[:, 0])
+    assert two.believing(PLACES[35]).at(PLACES[30:])[0] == pytest.approx(mean, abs=1e-4)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_a_brachistochrone_of_pieces_in_thirty_evaluations(seed: int) -> None:
-    """Whose optimum obeys Snell, as the other test says."""
+def test_a_brachistochrone_of_pieces_in_forty_evaluations(seed: int) -> None:
+    """Whose optimum obeys Snell, as the other test says; a simplex finds its time."""
     pytest.importorskip("cmaes")
     line = Polyline()
     with Pool(line, 1, advice="") as pool:
         made = Evaluations(pool, KeptRows(), [])
-        search = SurrogateSearch(batches=batches(made), count=30, kinds=3, spread=0.2, seed=(seed,))
+        search = SurrogateSearch(batches=batches(made), count=38, kinds=3, spread=0.2, seed=(seed,))
         best = search.least(np.full(3, 0.5))
-    assert len(made.done) < 34
-    exact = cycloid(line.x[-1], line.aside, line.down)
-    assert exact < best.value < 1.025 * exact
+    assert len(made.done) < 42
+
+    def time_of(place: npt.NDArray[np.float64]) -> float:
+        return float(line(tuple(place.tolist()))["value"])
+
+    least = minimize(time_of, np.full(3, 0.3), method="Nelder-Mead").fun
+    assert cycloid(line.x[-1], line.aside, line.down) < least < best.value < 1.0005 * least
     length, speed, rise = line.pieces(line.aside * np.array(best.place))
     assert rise / length / speed == pytest.approx(np.full(4, (rise / length / speed).mean()), rel=0.1)
 
@@ -92,6 +98,14 @@ def test_turns_are_searched_alike_then_each_for_itself_and_gone_on_with(tmp_path
     assert told == []
 
 
-def test_it_ends_where_all_of_two_batches_are_alike() -> None:
+def test_it_ends_where_three_batches_make_nothing_quicker() -> None:
     found = raced(EASY, search="surrogate", evaluations=60, settled=5.0)
-    assert len(found.history) < 30
+    assert len(found.history) < 40
+
+
+@pytest.mark.slow
+def test_five_seeds_find_the_same_time_through_four_gates() -> None:
+    """By a point that may edge to 72°, for which the first line is not too tight."""
+    wide = SLALOM.with_(greatest_edge_deg=72.0)
+    found = [raced(wide, gates=4, search="surrogate", evaluations=60, seed=seed).score.time for seed in range(1, 6)]
+    assert found == pytest.approx([7.5] * 5, abs=0.01)

@@ -76,6 +76,12 @@ def test_what_a_variant_changes_of_the_snow_it_changes_of_each_snow() -> None:
     assert stiffer["friction 10 % less"].stiffness_factor == 1.2
 
 
+def test_a_snow_whose_strength_is_not_known_is_raced_on_by_nobody() -> None:
+    snow = replace(SLALOM.contact.snow, failure_shear_stress=None, failure_shear_stress_interval=None)
+    with pytest.raises(ParameterError, match="has no failure shear stress S_f; a turn needs it"):
+        compared(SLALOM, {"same": SLALOM}, LINE, [snow], model="point", workers=1)
+
+
 def test_a_millimetre_more_waist_makes_the_sidecut_radius_larger() -> None:
     slalom = read_ski("slalom")
     other = wider(slalom, 1e-3)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from skisnow.dynamics import Ended
-from skisnow.scenario import read_scenario
+from skisnow.scenario import Plane, read_scenario
 from skisnow.simulate.run_record import Record, _at_boot
-from skisnow.simulate.run_setup import set_up
+from skisnow.simulate.run_setup import Setup, set_up
 
 
 def chords(record: Record) -> float:
@@ -103,3 +105,32 @@ def test_what_is_told_of_the_skis_is_what_the_beams_and_boots_have() -> None:
     assert left[1] - right[1] == pytest.approx(stance, rel=0.05)
     assert 0.5 * (left + right)[:2] == pytest.approx([3.0, -2.0 + 0.5 * width], abs=0.5 * width)
     assert (left[2], right[2]) == (0.0, 0.0)
+
+
+def test_the_track_of_a_ski_is_its_lower_edge_and_its_middle_where_it_is_flat() -> None:
+    """A ski 0.3 m to the left of its boots' middle, 0.06 m wide, rolled by 0.2 rad to either side about its way."""
+    ski = SimpleNamespace(boot=np.array([0.0, 0.3, -0.05]), axes=np.eye(3))
+    parts: Any = SimpleNamespace(
+        scenario=SimpleNamespace(
+            ski=SimpleNamespace(at=lambda _: SimpleNamespace(width=0.06, base_height=0.02)), slope=Plane(0.4)
+        ),
+        dynamics=SimpleNamespace(body=SimpleNamespace(skis=[ski])),
+    )
+    place = np.tile([5.0, 1.0, 0.03], (3, 1))
+    attitude = Rotation.from_rotvec([[0.0, 0.0, 0.0], [0.2, 0.0, 0.0], [-0.2, 0.0, 0.0]]).as_matrix()
+    found = Record._tracks(cast("Any", SimpleNamespace(setup=parts)), place, attitude)
+    cos, sin = math.cos(0.2), math.sin(0.2)
+    aside = [1.3, 1.0 + 0.27 * cos + 0.03 * sin, 1.0 + 0.33 * cos - 0.03 * sin]
+    assert found[:, 0] == pytest.approx(np.array([[5.0, y, 0.0] for y in aside]), abs=1e-12)
+
+
+def test_boots_are_moved_before_the_sledge_goes_on() -> None:
+    """To the time it goes to, if that is later than now."""
+    done: list[Any] = []
+    dynamics: Any = SimpleNamespace(time=1.0, advance=lambda until: done.append(("advance", until)))
+    drive: Any = SimpleNamespace(move=lambda of, until, distance: done.append((of is dynamics, until, distance)))
+    nothing: Any = SimpleNamespace()
+    setup = Setup(nothing, dynamics, nothing, np.zeros(3), {}, 0.0, drive)
+    setup.advance(1.0, 7.0)
+    setup.advance(1.5, 7.0)
+    assert done == [("advance", 1.0), (True, 1.5, 7.0), ("advance", 1.5)]

@@ -88,12 +88,12 @@ def test_least_radius_keeps_its_side() -> None:
 
 
 def test_radius_of_the_turn_is_not_that_of_its_start() -> None:
-    """Left out: the first half second, what is slower than 1 m/s, and what is straight. Without their sign."""
+    """Left out: the first half second, what is no faster than 1 m/s, and what is straight. Without their sign."""
     run = straight_run(ASKED.scenario)
     radius, velocity = np.full(len(run.time), -20.0), run.velocity.copy()
     radius[run.time < 0.5 - 1e-9] = 0.01
     radius[-30:-10] = 0.02
-    velocity[-30:-10] = (0.9, 0.0, 0.0)
+    velocity[-30:-20], velocity[-20:-10] = (0.9, 0.0, 0.0), (1.0, 0.0, 0.0)
     radius[-10:] = math.inf
     counted = np.flatnonzero((run.time >= 0.5 - 1e-9) & (np.arange(len(run.time)) < len(run.time) - 30))
     radius[counted[:20]] = 12.0  # 20 of 121 moments

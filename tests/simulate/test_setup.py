@@ -12,9 +12,9 @@ import pytest
 from skisnow import BootMoment, BootPose
 from skisnow.errors import ParameterError, SolverError
 from skisnow.geometry.surfaces import Grid
-from skisnow.scenario import read_scenario
+from skisnow.scenario import Plane, read_scenario
 from skisnow.simulate import run_setup, simulated_run
-from skisnow.simulate.run_setup import Setup, _drive, _strength_share, laid_out
+from skisnow.simulate.run_setup import Setup, _drive, _start, _strength_share, laid_out
 
 from ..carve.synthetic import plain_ski
 from .runs.sledges import load, scenario
@@ -68,6 +68,39 @@ def test_a_run_begins_where_its_sledge_stands(
     except SolverError as error:
         found = str(error)
     assert found == outcome
+
+
+@pytest.mark.parametrize(
+    ("edge", "above"), [(0.0, -0.01), (math.pi / 6.0, 0.01), (-math.pi / 6.0, 0.01), (math.pi / 2.0, 0.03)]
+)
+def test_a_sledge_begins_as_high_over_the_snow_as_its_lower_edges_are_deep(edge: float, above: float) -> None:
+    """A waist of 0.08 m, 10 mm deep: edged by 30° the middle of its base is 0.04 m sin 30° - 0.01 m over the snow."""
+    ski = SimpleNamespace(at=lambda _: SimpleNamespace(width=0.08))
+    parts: dict[str, Any] = {"slope": Plane(0.3), "ski": ski, "sledge": SimpleNamespace(edge_angle=edge)}
+    begun = SimpleNamespace(x=2.0, y=3.0, heading=math.pi / 3.0)
+    place, rotation = _start(cast("Any", SimpleNamespace(start=begun, **parts)), 0.01)
+    assert place == pytest.approx([2.0, 3.0, above], abs=1e-12)
+    cos, sin = 0.5, math.sqrt(0.75)
+    assert rotation == pytest.approx(np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]))
+
+
+@pytest.mark.parametrize(
+    ("parts", "flying", "skied", "outcome"),
+    [
+        ({"leaning": 1.04}, 0.29, False, None),
+        ({"leaning": 1.05}, 0.3, False, "tipped_over"),
+        ({"leaning": 1.05}, 0.3, True, "fell"),
+        ({"height": -0.6}, 0.3, False, "airborne"),
+        ({"height": -0.51, "past_end": True}, 0.0, False, "sunk"),
+        ({"height": -0.49, "past_end": True}, 0.0, False, "end_of_slope"),
+    ],
+)
+def test_what_ends_a_run_on_its_way(parts: dict[str, Any], flying: float, skied: bool, outcome: str | None) -> None:
+    """Leaning by more than 60°, 0.3 s in the air, half a metre in the snow, the end of the slope: the first counts."""
+    scenario = SimpleNamespace(skier=object() if skied else None)
+    usual: dict[str, Any] = {"leaning": 0.0, "height": 0.0, "past_end": False}
+    stub = cast("Any", SimpleNamespace(scenario=scenario, **usual | parts))
+    assert simulated_run._ended(stub, flying) == outcome
 
 
 def test_boots_that_nothing_carries_turn_as_a_level_between_their_skis() -> None:

@@ -41,6 +41,8 @@ def test_edged_skis_carry_from_their_edge_to_the_waterline() -> None:
     inner, outer = 0.25 + 0.02 - 0.035, 0.25 + 0.035
     assert carried(12.5e6, 45.0) == pytest.approx((inner, outer))
     assert carried(12.5e6, -45.0) == pytest.approx((outer, inner))
+    # where the tangent is a quarter it is half as deep and twice as wide
+    assert carried(12.5e6, math.degrees(math.atan(0.25))) == pytest.approx((inner + 0.02, outer))
 
 
 def test_in_soft_snow_and_flat_the_whole_base_carries() -> None:

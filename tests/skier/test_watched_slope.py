@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,6 @@ import pytest
 
 from skisnow import scenario, simulate, time_gates
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs"))
 watched_slope: Any = importlib.import_module("watched_slope")
 
 

@@ -73,6 +73,14 @@ def _add_search(parser: argparse.ArgumentParser) -> None:
         "--step", type=whole_number(1, MOST_GATES), default=1, metavar="N", help="gates that a window moves on by"
     )
     parser.add_argument(
+        "--ahead", type=whole_number(0, MOST_GATES), default=2, metavar="N",
+        help="gates behind a window that are raced through as well; left out: 2",
+    )  # fmt: skip
+    parser.add_argument(
+        "--room", type=number("m", lowest=0.0, highest=1.0), default=0.05, metavar="METRES",
+        help="by which both skis have to pass each pole at least; left out: 0.05",
+    )  # fmt: skip
+    parser.add_argument(
         "--line", type=Path, metavar="LINE.csv", help="the line to begin from; left out: that of the skier itself"
     )
     parser.add_argument("--seed", type=seed_number, default=0, metavar="N", help="of every random number")
@@ -133,7 +141,7 @@ def _raced(options: argparse.Namespace) -> _Raced:
         found = quickest_line(
             scenario.with_(method="fast"), gates=options.gates, model=options.model, start=start,
             evaluations=options.evaluations, search=options.search, settled=options.settled,
-            window=options.window, step=options.step, seed=options.seed,
+            window=options.window, step=options.step, ahead=options.ahead, room=options.room, seed=options.seed,
             checkpoint=options.out / KEPT, progress=progress, **computing,
         )  # fmt: skip
         checked, run = _checked(found, scenario, progress)

@@ -178,5 +178,5 @@ def _verdict(gate: Gate, line: GateLine, low: float, high: float) -> tuple[GateO
             return "straddled", f"the {pole} pole of gate {gate.name} was straddled: it passed between the skis"
     if high <= 0.0:
         other = "right" if gate.side == "left" else "left"
-        return "missed", f"gate {gate.name} was missed: {-high:.2f} m to the {other} of its turning pole"
+        return "missed", f"gate {gate.name} was missed: {abs(high):.2f} m to the {other} of its turning pole"
     return "missed", f"gate {gate.name} was missed: {low - line.width:.2f} m beyond its outer pole"

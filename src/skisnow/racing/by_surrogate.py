@@ -11,15 +11,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
-from .score import NOT_PASSED
+from .prospects import Prospects, passed_of
 from .search import Batches, Evaluated, optimiser_within
-from .surrogate import Surrogate, learnable
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-HOPES: Final = (0.0, 1.0, 0.5, 2.0)
-"""By how many deviations below its mean the process is asked, one place of a batch after the other: the first where
-it expects the least, the last where it knows little (modelling assumption)."""
+PATIENCE: Final = 3
+"""Batches without a better value that end a search with `settled` (modelling assumption)."""
 BOX: Final = (0.02, 0.5)
 """Half of the box about the best in which it is asked: the least, below which the search is over, and the greatest, in
 shares of each range (modelling assumption)."""
@@ -27,8 +25,32 @@ BOX_CHANGES: Final = (0.8, 1.3)
 """Of that box after a batch without a better value, and with one (modelling assumption)."""
 ASKED: Final = 50
 """Generations in which the least of the process is sought (modelling assumption)."""
-ALIKE: Final = 0.5
+ALIKE: Final = 0.25
 """Share of all evaluations with the same numbers for all turns (modelling assumption)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Daring:
+    """How a place of a batch is chosen.
+
+    Attributes
+    ----------
+    curiosity
+        Times the deviation of a time, by which it may come out other than expected.
+    caution
+        Power of the probability of coming through: with 1 most races fail by millimetres in the end.
+    held
+        Share of all directions in which it stays at the centre, by chance: without it the places of a batch lie beside
+        one another.
+    """
+
+    curiosity: float
+    caution: float
+    held: float
+
+
+BATCH: Final = (Daring(0.1, 4.0, 0.0), Daring(1.0, 1.0, 0.5), Daring(0.3, 4.0, 0.5), Daring(1.0, 2.0, 0.0))
+"""The places of a batch (modelling assumption): the first is where the least is expected."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +70,7 @@ class SurrogateSearch:
     seed
         Numbers from 0 on.
     settled
-        Ends the search before, where all values of two batches lie within so much.
+        Above 0: ends the search before, where three batches on end have not made the least less by so much.
     """
 
     batches: Batches
@@ -58,8 +80,8 @@ class SurrogateSearch:
     seed: Sequence[int]
     settled: float = 0.0
 
-    def least(self, start: FloatArray) -> Evaluated:
-        """The least; where all turns begin alike they are searched alike at first, then each for itself.
+    def least(self, start: FloatArray, *, alike: bool = True) -> Evaluated:
+        """The least; where all turns begin `alike` they are searched so at first, then each for itself.
 
         References
         ----------
@@ -68,13 +90,24 @@ class SurrogateSearch:
         * Eriksson and others (2019), "Scalable global optimization via local Bayesian optimization", Advances in Neural
           Information Processing Systems 32, doi 10.48550/arXiv.1910.01739.
         """
-        self.batches.evaluate([np.asarray(start, float)])
-        turns = len(start) // self.kinds
-        each_alike = np.tile(np.eye(self.kinds), (turns, 1))
-        if turns > 1 and np.array_equal(np.tile(start[: self.kinds], turns), start):
-            self._narrow(each_alike, self.first_of(self.kinds), math.ceil(ALIKE * self.count), 0)
+        if alike and self.begins_alike(start):
+            self.least_alike(start, math.ceil(ALIKE * self.count))
+        else:
+            self.batches.evaluate([np.asarray(start, float)])
         self._narrow(np.eye(len(start)), len(start) // 2, self.count, 1)
         return self.batches.least
+
+    def least_alike(self, start: FloatArray, count: int) -> Evaluated:
+        """The least of about `count` evaluations that have the same numbers for all turns, as the start has."""
+        directions = np.tile(np.eye(self.kinds), (len(start) // self.kinds, 1))
+        self.batches.evaluate([np.asarray(start, float)])
+        self._narrow(directions, self.first_of(self.kinds), count, 0)
+        return self.batches.least
+
+    def begins_alike(self, start: FloatArray) -> bool:
+        """Whether there are turns that all have the same numbers."""
+        turns = len(start) // self.kinds
+        return turns > 1 and np.array_equal(np.tile(start[: self.kinds], turns), start)
 
     @staticmethod
     def first_of(numbers: int) -> int:
@@ -88,30 +121,42 @@ class SurrogateSearch:
         begin = self._numbers(directions, np.array(self.batches.least.place))
         if len(self.batches.found) < count:
             self.batches.evaluate([directions @ np.clip(begin + box * (2.0 * each - 1.0), 0.0, 1.0) for each in shares])
+        waited = 0
         while len(self.batches.found) < count and box > BOX[0]:
             before = self.batches.least.value
             self.batches.evaluate(self._chosen(directions, box, phase))
             better = self.batches.least.value < before - self.settled
             box = min(BOX[1], box * BOX_CHANGES[better])
-            last = [each.value for each in self.batches.found[-2 * len(HOPES) :]]
-            if max(last) - min(last) < self.settled:
+            waited = 0 if better else waited + 1
+            if self.settled > 0.0 and waited == PATIENCE:
                 return
 
     def _chosen(self, directions: FloatArray, box: float, phase: int) -> list[FloatArray]:
         """A batch, each place as if those before it had given what is expected."""
-        places = np.array([each.place for each in self.batches.found])
-        values = learnable([each.value for each in self.batches.found])
-        known = Surrogate.of(places, values, self.kinds)
-        passed = np.array([each.value < NOT_PASSED for each in self.batches.found])
-        expected = np.where(passed | ~passed.any(), known.at(places)[0], np.inf)
-        centre = self._numbers(directions, places[int(np.argmin(expected))])
+        found = self.batches.found
+        known = Prospects.of(found, self.kinds)
+        centre = self._numbers(directions, np.array(self._centre(known).place))
         chosen: list[FloatArray] = []
-        for hope in HOPES:
-            seed = (*self.seed, phase, len(self.batches.found), len(chosen))
-            place = directions @ _least_within(known, directions, centre, box, hope, seed)
+        for daring in BATCH:
+            seed = (*self.seed, phase, len(found), len(chosen))
+            free = np.random.default_rng(seed).random(len(centre)) >= daring.held
+            if free.sum() < 2:  # CMA-ES needs two numbers
+                free[:] = True
+            moved = directions[:, free]
+            rest = directions @ np.where(free, 0.0, centre)
+            place = rest + moved @ _best_within(known, moved, rest, centre[free], box, daring, seed)
             chosen.append(place)
             known = known.believing(place)
         return chosen
+
+    def _centre(self, known: Prospects) -> Evaluated:
+        """What came through and is expected to be the quickest; where nothing did, what failed by the least."""
+        found = self.batches.found
+        passed = passed_of(found)
+        if not passed.any():
+            return self.batches.least
+        expected = known.time.at(np.array([each.place for each in found]))[0]
+        return found[int(np.argmin(np.where(passed, expected, np.inf)))]
 
     @staticmethod
     def _numbers(directions: FloatArray, place: FloatArray) -> FloatArray:
@@ -119,20 +164,20 @@ class SurrogateSearch:
         return np.asarray(np.linalg.lstsq(directions, place)[0], np.float64)
 
 
-def _least_within(
-    known: Surrogate, directions: FloatArray, centre: FloatArray, box: float, hope: float, seed: Sequence[int]
-) -> FloatArray:
-    """Where mean less `hope` deviations is least, within a box about the centre and the unit cube (m,)."""
+def _best_within(
+    known: Prospects, directions: FloatArray, rest: FloatArray, centre: FloatArray, box: float, daring: Daring,
+    seed: Sequence[int],
+) -> FloatArray:  # fmt: skip
+    """Where most is to be expected, within a box about the centre and the unit cube (m,)."""
     limits = np.stack([np.maximum(centre - box, 0.0), np.minimum(centre + box, 1.0)], axis=1)
     optimiser = optimiser_within(limits, np.clip(centre, *limits.T), 0.4 * box, seed)
-    best, least = centre, math.inf
+    best, most = centre, -math.inf
     for _ in range(ASKED):
         asked = np.array([optimiser.ask() for _ in range(optimiser.population_size)])
-        mean, deviation = known.at(asked @ directions.T)
-        values = mean - hope * deviation
-        optimiser.tell(list(zip(asked, values.tolist(), strict=True)))
-        if values.min() < least:
-            best, least = asked[int(np.argmin(values))], float(values.min())
+        values = known.worth(rest + asked @ directions.T, daring.curiosity, daring.caution)
+        optimiser.tell(list(zip(asked, (-values).tolist(), strict=True)))
+        if values.max() > most:
+            best, most = asked[int(np.argmax(values))], float(values.max())
         if optimiser.should_stop():
             break
     return best

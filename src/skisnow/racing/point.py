@@ -146,6 +146,7 @@ class PointRacer:
         result, end = self.raced(line)
         found = score_of(result, end, finished=True, words="finished")
         tight = self.least_radius * line.greatest_curvature() - 1.0
+        found = replace(found, margins=(*found.margins, -tight))
         if tight > 0.0:
             failed = NOT_PASSED if found.time is not None else found.value
             return replace(found, value=failed + tight, time=None, words="the line is too tight")

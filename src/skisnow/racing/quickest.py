@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Final, Literal, TypeAlias, get_args
-
-import numpy as np
-import numpy.typing as npt
+from typing import get_args
 
 from ..content import pieces_of
 from ..errors import ParameterError
@@ -19,21 +16,11 @@ from ..parallel.kept_rows import KeptRows
 from ..parallel.pool import Pool, workers_in_force
 from ..scenario import Scenario
 from ..shown import Facts, Shown, amount
-from .by_surrogate import SurrogateSearch
-from .line import RacingLine, course_of, cut, follower_line, with_numbers
-from .racers import LinePoint, Racer, RacerModel, ScoredLine, score_in, turns_in
+from .line import RacingLine, course_of, cut, follower_line
+from .racers import Racer, RacerModel, ScoredLine, score_in, turns_in
 from .score import NOT_PASSED, Score
-from .search import Batches, Evaluated, Evaluations, least_of, require_cmaes
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
-Progress: TypeAlias = Callable[[str], None]
-Search: TypeAlias = Literal["surrogate", "cma"]
-
-RANGES: Final = {"aside": (0.25, 1.75), "along": (-0.25, 0.25), "turning": (0.35, 1.0)}
-"""Of aside (m), along and turning, within which a line is looked for (modelling assumption: nearer to a pole than half
-a stance nobody passes)."""
-_WIDTH: Final = np.array([high - low for low, high in RANGES.values()])
-_LOW: Final = np.array([low for low, _ in RANGES.values()])
+from .search import Evaluated, Evaluations, require_cmaes
+from .windows import RANGES, How, Progress, Search, Windows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False, eq=False)
@@ -99,6 +86,8 @@ def quickest_line(
     settled: float = 0.0,
     window: int | None = None,
     step: int = 1,
+    ahead: int = 2,
+    room: float = 0.05,
     seed: int = 0,
     workers: int | None = None,
     executor: ExecutorLike | None = None,
@@ -132,7 +121,14 @@ def quickest_line(
         last two, lie within so much (s).
     window, step
         Search the turns of so many gates at once, the turns before them as found, then move on by `step` gates; None:
-        all at once. A turn that enters begins as the last but one that was found, or as `start` has it.
+        all at once. The whole course is searched first, its turns alike where they begin so: turns that no window has
+        had stay as they were found there. Where no line of a window comes through, the window before is searched again.
+    ahead
+        Gates behind a window that its evaluations race through as well, by the turns that are there: too fast a way to
+        the window's last gate fails at them, or is slow.
+    room
+        Distance (m) by which both skis have to pass each pole at least, 0 to 1: a line that passes nearer fails. What
+        passes by less with one solver may straddle with another.
     seed
         Of every random number, from 0 on.
     workers
@@ -174,75 +170,30 @@ def quickest_line(
     * The page docs/how-to/race.md.
     """
     begun = _begun(scenario, gates, start)
-    count, (window, step) = len(begun.turns), _window(len(begun.turns), window, step)
-    _require(evaluations=evaluations, population=population, spread=spread, settled=settled)
+    window, step = _window(len(begun.turns), window, step, ahead)
+    _require(evaluations=evaluations, population=population, spread=spread, settled=settled, room=room)
     search = _search(search, model)
     if evaluations > 1:
         require_cmaes()
     require_executor(executor)
     scenario = replace(scenario, course=begun.course)
-    racer = Racer(scenario, model)
+    racer = Racer(scenario, model, room)
     tell = progress or _silent
-    settings = (evaluations, search, population, spread, settled, window, step, seed)
+    settings = (evaluations, search, population, spread, settled, window, step, ahead, seed)
     kept = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
     advice = "finished evaluations are kept. Start again, with fewer workers"
     try:
         with Pool(ScoredLine(racer), workers_in_force(workers), advice=advice, executor=executor) as pool:
             made = Evaluations(pool, kept, [])
-            line = begun
-            for first in range(0, max(1, count - window + step), step):
-                part = cut(line, min(first + window, count))
-                how = _How(search, evaluations, population, spread, settled, seed, tell)
-                found = _searched(made, part, first, how)
-                turns, left = turns_in(found.row), line.turns[len(part.turns) :]
-                if start is None:
-                    left = turns[-2:-1] * len(left)
-                line = RacingLine(line.course, line.start, (*turns, *left))
+            how = How(search, evaluations, population, spread, settled, seed, tell)
+            found = Windows(made, how, window, step, ahead).searched(begun)
     finally:
         kept.close()
-    started = score_in(made.done[0].row) if window == count else racer.score(begun)
     return QuickestLine(
         scenario=scenario, model=model, line=RacingLine(begun.course, begun.start, turns_in(found.row)),
-        score=score_in(found.row), start=begun, start_score=started, history=tuple(made.done), seed=seed,
+        score=score_in(found.row), start=begun, start_score=score_in(made.done[0].row), history=tuple(made.done),
+        seed=seed,
     )  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class _How:
-    """How a window is searched: the arguments of `quickest_line`."""
-
-    search: Search
-    evaluations: int
-    population: int | None
-    spread: float
-    settled: float
-    seed: int
-    tell: Progress
-
-
-def _searched(made: Evaluations, part: RacingLine, first: int, how: _How) -> Evaluated:
-    """The least over the turns of a line from a gate on."""
-
-    def point_of(place: FloatArray) -> LinePoint:
-        numbers = (_LOW + place.reshape(-1, len(_LOW)) * _WIDTH).ravel().tolist()
-        return LinePoint(with_numbers(part, numbers, first), tuple(place.tolist()))
-
-    def told(done: int, least: float) -> None:
-        best = f"best {least:.3f} s" if least < NOT_PASSED else "no line through all gates yet"
-        how.tell(f"gates {first + 1} to {len(part.turns)}: {done} of {how.evaluations} evaluations, {best}")
-
-    numbers = [[each.aside, each.along, each.turning] for each in part.turns[first:]]
-    place = np.clip((np.array(numbers) - _LOW) / _WIDTH, 0.0, 1.0).ravel()
-    seed = (how.seed, first)
-    batches = Batches(evaluations=made, point_of=point_of, told=told, first=len(made.done))
-    if how.search == "cma" or how.evaluations == 1:
-        return least_of(
-            batches, place, count=how.evaluations, population=how.population, spread=how.spread, seed=seed,
-            settled=how.settled,
-        )  # fmt: skip
-    return SurrogateSearch(
-        batches=batches, count=how.evaluations, kinds=len(_LOW), spread=how.spread, seed=seed, settled=how.settled
-    ).least(place)
 
 
 def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> RacingLine:
@@ -264,12 +215,14 @@ def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> R
     return cut(line, count)
 
 
-def _window(gates: int, window: int | None, step: int) -> tuple[int, int]:
+def _window(gates: int, window: int | None, step: int, ahead: int) -> tuple[int, int]:
     window = gates if window is None else window
     if not 2 <= window <= gates:
         raise ParameterError(f"window is {window}; it must be from 2 to the {gates} gates of the course")
     if not 1 <= step <= window:
         raise ParameterError(f"step is {step}; it must be from 1 to the window's {window} gates")
+    if ahead < 0:
+        raise ParameterError(f"ahead is {ahead}; it must be 0 or more")
     return window, step
 
 
@@ -281,13 +234,15 @@ def _search(search: Search | None, model: RacerModel) -> Search:
     return search
 
 
-def _require(*, evaluations: int, population: int | None, spread: float, settled: float) -> None:
+def _require(*, evaluations: int, population: int | None, spread: float, settled: float, room: float) -> None:
     if evaluations < 1:
         raise ParameterError(f"evaluations is {evaluations}; at least 1 is needed")
     if population is not None and population < 4:
         raise ParameterError(f"population is {population}; at least 4 is needed")
     if not 0.0 < spread <= 1.0:
         raise ParameterError(f"spread is {spread:g}; it must be above 0 and at most 1")
+    if not 0.0 <= room <= 1.0:
+        raise ParameterError(f"room is {room:g}; it must be from 0 to 1")
     if not 0.0 <= settled < NOT_PASSED:
         raise ParameterError(f"settled is {settled:g}; it must be from 0 to below {NOT_PASSED:g}")
 

@@ -13,7 +13,7 @@ from ..skier import BalancedSkier
 from ..skier.seen import Moment
 from .line import FollowedLine, LineTurn, RacingLine, skier_of
 from .point import PointRacer
-from .score import Score, score_of
+from .score import Score, score_of, with_room
 
 RacerModel: TypeAlias = Literal["skier", "point"]
 
@@ -79,16 +79,20 @@ class Racer:
         With course and skier.
     model
         "skier": a whole simulated run; "point": a mass on the line.
+    room
+        Distance (m) from each pole, below which a gate counts as not passed.
     """
 
     scenario: Scenario
     model: RacerModel
+    room: float = 0.0
 
     def score(self, line: RacingLine) -> Score:
         """How good a line is."""
-        if self.model == "point":
-            return PointRacer.of(self.scenario).score(line)
-        return run_score(skied(self.scenario, line))
+        raced = (
+            PointRacer.of(self.scenario).score(line) if self.model == "point" else run_score(skied(self.scenario, line))
+        )
+        return with_room(raced, self.room)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +119,7 @@ class ScoredLine:
             "passed": found.passed,
             "words": found.words,
             "gates": [list(each) for each in found.gates],
+            "margins": list(found.margins),
             "turns": [[each.aside, each.along, each.turning] for each in point.line.turns],
         }
 
@@ -122,7 +127,10 @@ class ScoredLine:
 def score_in(row: dict[str, Any]) -> Score:
     """The score of a row."""
     gates = tuple((outcome, time) for outcome, time in row["gates"])
-    return Score(value=row["value"], time=row["time"], passed=row["passed"], words=row["words"], gates=gates)
+    margins = tuple(row["margins"])
+    return Score(
+        value=row["value"], time=row["time"], passed=row["passed"], words=row["words"], gates=gates, margins=margins
+    )
 
 
 def turns_in(row: dict[str, Any]) -> tuple[LineTurn, ...]:

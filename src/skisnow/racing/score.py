@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
-from ..course import CourseResult
+from ..course import CourseResult, Passage
 from ..shown import ShownFields
 
 NOT_PASSED: Final = 1000.0
 """What a gate that is not passed adds, so that any way that passes more gates is better (it moves no time)."""
 FARTHEST: Final = 100.0
 """Distance (m) beyond which a failure is as bad as at it."""
+ABREAST: Final = 0.45
+"""Distance (m) between the outer sides of a racer, by which a pole beyond both was missed by more than clearance says
+(modelling assumption; moves no time)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -31,6 +34,9 @@ class Score(ShownFields):
         How it ended.
     gates
         Of each gate what became of it and the time from the start (s), None where it was not crossed.
+    margins
+        Of each gate by how much it was passed: the least distance from its poles (m); below 0: by how much it was not.
+        None where it was not crossed.
     """
 
     value: float
@@ -38,6 +44,7 @@ class Score(ShownFields):
     passed: int
     words: str
     gates: tuple[tuple[str, float | None], ...] = ()
+    margins: tuple[float | None, ...] = ()
 
 
 def score_of(result: CourseResult | None, end: tuple[float, float], *, finished: bool, words: str) -> Score:
@@ -58,9 +65,10 @@ def score_of(result: CourseResult | None, end: tuple[float, float], *, finished:
         return Score(value=float("inf"), time=None, passed=0, words=words)
     times = [None if each.time is None else each.time - result.start_time for each in result.passages]
     gates = tuple((each.outcome, time) for each, time in zip(result.passages, times, strict=True))
+    margins = tuple(_margin(each) for each in result.passages)
     last = times[-1]
     if finished and result.fault is None and last is not None:
-        return Score(value=last, time=last, passed=result.passed, words=words, gates=gates)
+        return Score(value=last, time=last, passed=result.passed, words=words, gates=gates, margins=margins)
     beside = sum(
         min(max(-each.clearance, 0.0), FARTHEST)
         for each in result.passages
@@ -70,4 +78,26 @@ def score_of(result: CourseResult | None, end: tuple[float, float], *, finished:
     missed = max(1, len(result.passages) - result.passed)
     fault = words if result.fault is None or not finished else result.fault.words
     value = NOT_PASSED * missed + beside + min(left, FARTHEST)
-    return Score(value=value, time=None, passed=result.passed, words=fault, gates=gates)
+    return Score(value=value, time=None, passed=result.passed, words=fault, gates=gates, margins=margins)
+
+
+def with_room(score: Score, room: float) -> Score:
+    """The same score where each gate has to be passed by `room` (m): margins are less by it, and may fail."""
+    if room == 0.0:
+        return score
+    margins = tuple(
+        each if each is None or i >= len(score.gates) else each - room for i, each in enumerate(score.margins)
+    )
+    narrow = [i for i, each in enumerate(margins) if each is not None and each <= 0.0]
+    if score.time is None or not narrow:
+        return replace(score, margins=margins)
+    words = f"the skis passed the pole of gate {narrow[0] + 1} by less than {room:g} m"
+    lacking = -sum(margins[i] or 0.0 for i in narrow)
+    value = NOT_PASSED * len(narrow) + lacking
+    return replace(score, value=value, time=None, passed=score.passed - len(narrow), words=words, margins=margins)
+
+
+def _margin(passage: Passage) -> float | None:
+    if passage.clearance is None:
+        return None
+    return passage.clearance - (ABREAST if passage.outcome == "missed" else 0.0)

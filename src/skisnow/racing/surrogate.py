@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
@@ -11,8 +10,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import minimize
-
-from .score import NOT_PASSED
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -22,14 +19,6 @@ NOISE: Final = (1e-3, 0.5)
 """Within which the deviation of one evaluation is, over that of all values (modelling assumption)."""
 SMALLEST: Final = 1e-9
 """Added to the kernel's diagonal, for rounding."""
-FAILED_MORE: Final = (0.3, 0.8, 0.7)
-"""By how many of the passed values' deviations a failure counts above the greatest of them: at least, for each gate,
-for each metre, of which one counts (modelling assumption): so near that the process stays smooth."""
-MOST_GATES: Final = 5.0
-"""Gates of a failure that count (modelling assumption)."""
-MOST_PASSED: Final = 3.0
-"""Of the passed values' quarter widths above the median, beyond which a time counts as so much (modelling
-assumption)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +32,7 @@ class Surrogate:
     lengths
         (d,) of the kernel.
     level, scale
-        Mean and deviation of the values.
+        Mean and deviation of the values: of one kind, or (q,) of kinds that have lengths and noise together.
     noise
         Deviation of one value, over `scale`.
 
@@ -55,8 +44,8 @@ class Surrogate:
 
     places: FloatArray
     lengths: FloatArray
-    level: float
-    scale: float
+    level: FloatArray
+    scale: FloatArray
     noise: float
     _factor: tuple[FloatArray, bool]
     _weights: FloatArray
@@ -70,17 +59,20 @@ class Surrogate:
         places
             (n, d), n from 2 on.
         values
-            (n,) finite.
+            (n,) or (n, q), finite.
         kinds
             Divides d.
         """
-        level, scale = float(values.mean()), float(values.std()) or 1.0
+        level, scale = values.mean(axis=0), np.asarray(values.std(axis=0))
+        scale = np.where(scale > 0.0, scale, 1.0)
         standard = (values - level) / scale
+        columns = 1 if values.ndim == 1 else values.shape[1]
 
         def misfit(logs: FloatArray) -> float:
             lengths = np.tile(np.exp(logs[:kinds]), places.shape[1] // kinds)
             factor = _factored(places, lengths, math.exp(logs[kinds]))
-            known = 0.5 * standard @ cho_solve(factor, standard) + float(np.sum(np.log(np.diag(factor[0]))))
+            known = 0.5 * np.sum(standard * cho_solve(factor, standard))
+            known += columns * np.sum(np.log(np.diag(factor[0])))
             return float(known + 0.1 * np.sum((logs[:kinds] - math.log(0.7)) ** 2))
 
         bounds = [(math.log(low), math.log(high)) for low, high in (*(LENGTHS,) * kinds, NOISE)]
@@ -91,17 +83,23 @@ class Surrogate:
 
     @classmethod
     def _with(
-        cls, places: FloatArray, standard: FloatArray, lengths: FloatArray, level: float, scale: float, noise: float
+        cls,
+        places: FloatArray,
+        standard: FloatArray,
+        lengths: FloatArray,
+        level: FloatArray,
+        scale: FloatArray,
+        noise: float,
     ) -> Surrogate:
         factor = _factored(places, lengths, noise)
         return cls(places, lengths, level, scale, noise, factor, cho_solve(factor, standard))
 
     def at(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Mean and standard deviation (m,) of what places (m, d) give."""
+        """Mean and standard deviation, (m,) or (m, q), of what places (m, d) give."""
         kernel = _kernel(places, self.places, self.lengths)
         mean = self.level + self.scale * (kernel @ self._weights)
         left = 1.0 - np.sum(kernel * cho_solve(self._factor, kernel.T).T, axis=1)
-        return mean, self.scale * np.sqrt(np.maximum(left, 1e-12))
+        return mean, np.multiply.outer(np.sqrt(np.maximum(left, 1e-12)), self.scale)
 
     def believing(self, place: FloatArray) -> Surrogate:
         """The same one with a place added that gives what it expects there."""
@@ -110,26 +108,9 @@ class Surrogate:
             _kernel(self.places, self.places, self.lengths) @ self._weights + (self.noise**2 + SMALLEST) * self._weights
         )
         return self._with(
-            np.vstack([self.places, place]), np.append(known, expected), self.lengths, self.level, self.scale,
+            np.vstack([self.places, place]), np.concatenate([known, expected]), self.lengths, self.level, self.scale,
             self.noise,
         )  # fmt: skip
-
-
-def learnable(values: Sequence[float]) -> FloatArray:
-    """Values of evaluations, of which failures count as little more than the greatest time, in their order."""
-    given = np.asarray(values, float)
-    passed = np.isfinite(given) & (given < NOT_PASSED)
-    if not passed.any():
-        return np.log(np.where(np.isfinite(given), given, NOT_PASSED * 100.0))
-    low, middle, high = np.quantile(given[passed], [0.25, 0.5, 0.75])
-    known = np.minimum(given, middle + MOST_PASSED * max(high - low, 1e-6))
-    deviation, worst = max(float(known[passed].std()), 1e-6), float(known[passed].max())
-    gates, beside = np.divmod(np.where(np.isfinite(given), given, NOT_PASSED * 100.0), NOT_PASSED)
-    gates = np.minimum(gates, MOST_GATES)
-    least, each_gate, each_metre = FAILED_MORE
-    return np.where(
-        passed, known, worst + deviation * (least + each_gate * gates + each_metre * np.minimum(beside, 1.0))
-    )
 
 
 def _factored(places: FloatArray, lengths: FloatArray, noise: float) -> tuple[FloatArray, bool]:

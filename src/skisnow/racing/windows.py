@@ -1,0 +1,135 @@
+"""Where in a course a line is searched: all turns at once, or those of a window that moves on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .by_surrogate import SurrogateSearch
+from .line import RacingLine, cut, with_numbers
+from .racers import LinePoint, turns_in
+from .score import NOT_PASSED
+from .search import Batches, Evaluated, Evaluations, least_of
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+Progress: TypeAlias = Callable[[str], None]
+Search: TypeAlias = Literal["surrogate", "cma"]
+
+RANGES: Final = {"aside": (0.25, 1.75), "along": (-0.25, 0.25), "turning": (0.35, 1.0)}
+"""Of aside (m), along and turning, within which a line is looked for (modelling assumption: nearer to a pole than half
+a stance nobody passes)."""
+_WIDTH: Final = np.array([high - low for low, high in RANGES.values()])
+_LOW: Final = np.array([low for low, _ in RANGES.values()])
+
+
+@dataclass(frozen=True, slots=True)
+class How:
+    """How a window is searched: the arguments of `quickest_line`."""
+
+    search: Search
+    evaluations: int
+    population: int | None
+    spread: float
+    settled: float
+    seed: int
+    tell: Progress
+
+
+@dataclass(frozen=True, slots=True)
+class Windows:
+    """A search over a course.
+
+    Attributes
+    ----------
+    made
+        Where evaluations are made.
+    how
+        Each window is searched.
+    window, step, ahead
+        See `quickest_line`.
+    """
+
+    made: Evaluations
+    how: How
+    window: int
+    step: int
+    ahead: int
+
+    def searched(self, begun: RacingLine) -> Evaluated:
+        """The best line through all gates, the first evaluation at where it begins."""
+        count = len(begun.turns)
+        if self.window == count:
+            return self._part(begun, 0, count, count)
+        best = self._whole(begun)
+        line = _as_found(begun, best)
+        first, end = 0, min(self.window + self.ahead, count)
+        while True:
+            last = min(first + self.window, count)
+            found = self._part(line, first, last, end)
+            if found.value < NOT_PASSED:
+                line = _as_found(line, found)
+                if end == count and found.value < best.value:
+                    best = found
+                if last == count:
+                    return best
+                first, end = first + self.step, min(first + self.step + self.window + self.ahead, count)
+            elif first == 0:
+                return best
+            else:
+                first = max(0, first - self.step)
+
+    def _whole(self, begun: RacingLine) -> Evaluated:
+        """Of the whole course: all turns alike, where they begin so and a process says where; else as it begins."""
+        asked = self._batches(begun, 0, len(begun.turns), len(begun.turns))
+        search, place = self._surrogate(asked, 0), _place(begun, 0, len(begun.turns))
+        if self.how.search == "surrogate" and search.begins_alike(place):
+            return search.least_alike(place, self.how.evaluations)
+        asked.evaluate([place])
+        return asked.least
+
+    def _part(self, line: RacingLine, first: int, last: int, end: int) -> Evaluated:
+        """The least over the turns from a gate on and before another, raced up to an end."""
+        batches, place = self._batches(line, first, last, end), _place(line, first, last)
+        how = self.how
+        if how.search == "cma" or how.evaluations == 1:
+            return least_of(
+                batches, place, count=how.evaluations, population=how.population, spread=how.spread,
+                seed=(how.seed, first), settled=how.settled,
+            )  # fmt: skip
+        return self._surrogate(batches, first).least(place, alike=self.window == len(line.turns))
+
+    def _surrogate(self, batches: Batches, first: int) -> SurrogateSearch:
+        how = self.how
+        return SurrogateSearch(
+            batches=batches, count=how.evaluations, kinds=len(_LOW), spread=how.spread, seed=(how.seed, first),
+            settled=how.settled,
+        )  # fmt: skip
+
+    def _batches(self, line: RacingLine, first: int, last: int, end: int) -> Batches:
+        part, how = cut(line, end), self.how
+
+        def point_of(place: FloatArray) -> LinePoint:
+            numbers = (_LOW + place.reshape(-1, len(_LOW)) * _WIDTH).ravel().tolist()
+            return LinePoint(with_numbers(part, numbers, first), tuple(place.tolist()))
+
+        def told(done: int, least: float) -> None:
+            best = f"best {least:.3f} s" if least < NOT_PASSED else "no line through all gates yet"
+            how.tell(f"gates {first + 1} to {last}: {done} of {how.evaluations} evaluations, {best}")
+
+        return Batches(evaluations=self.made, point_of=point_of, told=told, first=len(self.made.done))
+
+
+def _as_found(line: RacingLine, found: Evaluated) -> RacingLine:
+    """A line with the turns that were found, and behind them its own."""
+    turns = turns_in(found.row)
+    return RacingLine(line.course, line.start, (*turns, *line.turns[len(turns) :]))
+
+
+def _place(line: RacingLine, first: int, last: int) -> FloatArray:
+    """Where the turns of a line from a gate on and before another lie in the unit cube."""
+    numbers = [[each.aside, each.along, each.turning] for each in line.turns[first:last]]
+    return np.clip((np.array(numbers) - _LOW) / _WIDTH, 0.0, 1.0).ravel()
