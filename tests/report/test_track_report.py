@@ -106,5 +106,11 @@ def test_text_counts_and_defines() -> None:
     assert "carrier phase" not in text
     mixed = track_text(values | {"solutions": {"fixed": 90, "float": 8, "code": 2}})
     assert re.search(r"\ncarrier phase +90 points fixed to whole cycles, 8 float, 2 by the code alone\n", mixed)
+    dated = values | {"start": "2026-01-12T10:00:07.25+00:00", "time_scale": "UTC"}
+    assert re.search(r"\nstart +12 January 2026, 10:00:07 UTC\n", track_text(dated))
+    assert re.search(
+        r"\nstart +12 January 2026, 10:00:07\n",
+        track_text(dated | {"start": "2026-01-12T10:00:07", "time_scale": "local"}),
+    )
     many = values | {"turns": values["turns"] * 20}
     assert "and 40 more" in track_text(many)

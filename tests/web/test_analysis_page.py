@@ -89,6 +89,14 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
     page.get_by_text(told(more - ("layered" not in first["flags"])), exact=True).wait_for(timeout=DRAWING_MS)
     page.locator("summary", has_text="Every penetration experiment").press("Enter")
     page.locator("details[open] table").get_by_text(str(first["experiment"]), exact=True).wait_for()
+    page.set_viewport_size({"width": 390, "height": 844})
+    wide = page.locator(".table", has=page.locator("caption", has_text="Table 2")).first
+    wide.evaluate("(each) => each.scrollTo(each.scrollWidth, 0)")
+    assert wide.evaluate("(each) => each.scrollLeft") > 100
+    for stays in (wide.locator("caption"), wide.locator("tbody th").first):  # what the numbers are of
+        seen = stays.bounding_box()
+        assert seen is not None
+        assert seen["x"] >= 0 and seen["x"] + seen["width"] <= 390
 
 
 def test_what_is_wrong_in_the_files_stands_line_by_line(page: Page, served: Served, tmp_path: Path) -> None:

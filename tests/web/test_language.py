@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from .conftest import MISSING, PATIENCE_MS, Served, Watched, fill, ready
+from .conftest import MISSING, PATIENCE_MS, Served, Watched, fill, has_text, ready
 
 if "nicegui" in MISSING:
     pytest.skip("the web lab is not installed", allow_module_level=True)
@@ -144,6 +144,15 @@ def test_a_series_is_entered_in_german(chromium: Browser, served: Served, watche
     assert english.intersection(map(str.strip, page.locator("body").inner_text().splitlines())) == set()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     assert page.evaluate(CUT) == []
+    depth = page.get_by_label("Tiefe unter 20 N (mm)")
+    has_text(depth, "1,5")
+    page.reload()
+    has_text(depth, "1,5")
+    ready(page)
+    depth.press("Enter")  # as it stands there: no correction
+    depth.fill("1,7")
+    depth.press("Enter")
+    page.get_by_text("20 N: aus 1,5 mm werden 1,7 mm.").wait_for()
     page.get_by_role("link", name="English").click()
     page.get_by_label("Depth under 20 N (mm)").wait_for()  # the same series, and what was typed is there
     context.close()

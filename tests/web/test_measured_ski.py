@@ -19,6 +19,7 @@ from .conftest import Served, fill
 
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
+from skisnow.language import catalogue
 from skisnow.web.measured_ski import add_ski, measured_text, read_ski_files, ski_of_uploads
 
 if TYPE_CHECKING:
@@ -90,8 +91,13 @@ def test_what_is_no_ski_is_said_and_other_files_are_not_read(tmp_path: Path) -> 
     (tmp_path / "mine.toml").write_text(WITH_TABLE.replace("rows.csv", "../rows.csv"), encoding="utf-8")
     with pytest.raises(ParameterError, match="choose that file, too"):
         read_ski_files(str(tmp_path), ["mine.toml", "rows.csv"], {})
-    with pytest.raises(ParameterError, match="choose one ski"):
+    with pytest.raises(
+        ParameterError, match=r"a table alone tells neither .* names it \(table = 'rows\.csv'\)"
+    ) as alone:
         read_ski_files(str(tmp_path), ["rows.csv"], {})
+    assert catalogue("de").translated(str(alone.value)).startswith("eine Tabelle allein sagt weder Länge noch Masse")
+    with pytest.raises(ParameterError, match="choose one ski"):
+        read_ski_files(str(tmp_path), ["mine.toml", "other.toml"], {})
     (tmp_path / "mine.toml").write_text(WITH_TABLE.replace("1396", "-1"), encoding="utf-8")
     with pytest.raises(ParameterError, match=r"^mine\.toml: running_length_mm is -1"):
         read_ski_files(str(tmp_path), ["mine.toml", "rows.csv"], {})

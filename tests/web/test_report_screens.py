@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from PIL import Image
 
 from skisnow.estimate import analyse
 from skisnow.field.reference import reference_campaign
@@ -59,6 +61,27 @@ def test_a_telephone_shows_figures_and_tables_whole(page: Page, reports: tuple[P
     wide = page.locator("figure.wide img").first
     drawn = wide.evaluate("(each) => [each.naturalWidth, each.clientWidth]")
     assert drawn[1] > 0.9 * drawn[0]  # the words of the figure have their own size, within a tenth
+
+
+@pytest.mark.slow
+def test_a_shadow_says_that_rows_of_a_long_table_follow(page: Page, reports: tuple[Path, Path]) -> None:
+    """At the lower edge of its box, until the last row is in sight."""
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.goto(reports[0].as_uri())
+    table = page.locator(".table").filter(has_text="The nine candidate models").first
+    table.scroll_into_view_if_needed()
+
+    def lower_edge() -> int:
+        """Grey value beside the words, a pixel above the edge."""
+        picture = Image.open(io.BytesIO(table.screenshot())).convert("L")
+        return int(picture.getpixel((picture.width // 2, picture.height - 2)))  # type: ignore[arg-type]
+
+    table.evaluate(
+        "(each) => { for (const row of each.querySelectorAll('table > *')) row.style.color = 'transparent' }"
+    )
+    assert lower_edge() < 240
+    table.evaluate("(each) => each.scrollTo(0, each.scrollHeight)")
+    assert lower_edge() == 255
 
 
 @pytest.mark.slow

@@ -81,6 +81,7 @@ def test_a_scheduler_computes_in_place_of_processes(tmp_path: Path, capsys: pyte
     here, there = Studies(tmp_path), Studies(tmp_path, "tcp://host:8786")
     job = here.ask_for(TURNS)
     assert "--workers" in here._command(job)
+    assert here._command(here.ask_for(TURNS, "de"))[-4:-1] == ["--language", "de", "--figure"]
     assert here.workers >= 1
     assert there._command(job)[2:4] == ["--scheduler", "tcp://host:8786"]
     assert "--workers" not in there._command(job)

@@ -113,10 +113,22 @@ def test_a_study_in_german(chromium: Browser, served: Served) -> None:
     page.get_by_text("13 Punkte. Dauert etwa").wait_for()
     ready(page)
     fill(page, {"Erste Eingabe: Anzahl der Werte": "2"})
+    choose(page, "Zweite Eingabe", "Last (N)")
+    page.get_by_label("Zweite Eingabe: von", exact=True).wait_for()
     page.get_by_role("button", name="Studie starten").click()
-    page.get_by_text("2 Punkte: Gleichgewicht 2.").wait_for(timeout=LONG_MS)
+    page.get_by_text("Nicht begonnen: Last (N): beide Enden des Bereichs eintippen").wait_for()
+    values = {"Zweite Eingabe: von": "600,123", "Zweite Eingabe: bis": "800", "Zweite Eingabe: Anzahl der Werte": "2"}
+    fill(page, values)
+    page.get_by_text("4 Punkte. Dauert etwa").wait_for()
+    page.get_by_role("button", name="Studie starten").click()
+    page.get_by_text("; Last (N): 600,123 bis 800, 2 Werte").wait_for()
+    page.get_by_text("4 Punkte: Gleichgewicht 4.").wait_for(timeout=LONG_MS)
     page.get_by_role("link", name="Tabelle und Bild").click()
     page.get_by_role("columnheader", name="Gecarvter Radius (m)").wait_for()
+    page.get_by_role("cell", name="10,0", exact=True).first.wait_for()
+    page.get_by_text("Schneehärte H_V (N/mm³): 0,2; Scherfestigkeit S_f (N/mm²): 0,5").wait_for()
+    page.get_by_text("Last (N): 600,1", exact=True).wait_for()
+    assert page.get_by_text("auf Englisch").count() == 0  # nor is the map
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     context.close()
 

@@ -116,6 +116,24 @@ MOST_ALIKE: Final = 10
 """Problems of one kind in one column that a terminal shows one by one."""
 
 
+def _once_a_name(problems: Iterable[Problem]) -> list[Problem]:
+    """An unknown tool or plate once for a file, with the number of its experiments: it is one thing to put right."""
+    together: dict[object, list[Problem]] = {}
+    for number, problem in enumerate(problems):
+        name = (problem.code, problem.file, problem.value)
+        together.setdefault(name if problem.code in _NAMES else number, []).append(problem)
+    return [_of_all(alike) for alike in together.values()]
+
+
+_NAMES: Final = ("unknown_tool", "unknown_plate")
+
+
+def _of_all(alike: Sequence[Problem]) -> Problem:
+    first, more = alike[0], len(alike) - 1
+    where = f"{first.experiment} and {more} more, up to row {alike[-1].row}"
+    return replace(first, experiment=where) if more else first
+
+
 def _several(problems: Sequence[Problem]) -> Iterator[str]:
     """A line each; of more than some of one kind in one column the first, and how many more there are."""
     kinds = [(problem.severity, problem.code, problem.file, problem.column) for problem in problems]
@@ -131,7 +149,7 @@ def _several(problems: Sequence[Problem]) -> Iterator[str]:
 
 
 def lines_of(problems: Iterable[Problem]) -> list[str]:
-    """A line for each problem, and one for all together that need no action.
+    """A line for each problem, one for an unknown tool or plate, and one for all together that need no action.
 
     >>> told = [warning("separator", f"{name}.csv", value="semicolon", allowed="", action="", needs_action=False)
     ...         for name in ("shear", "density")]
@@ -145,5 +163,5 @@ def lines_of(problems: Iterable[Problem]) -> list[str]:
             kept = f"column {problem.value!r} kept as text" if problem.code == "unknown_column" else problem.value
             files.setdefault(kept or problem.code, []).append(problem.file)
     notes = "; ".join(f"{what} in {', '.join(dict.fromkeys(where))}" for what, where in files.items())
-    lines = list(_several([problem for problem in every if problem.needs_action]))
+    lines = list(_several(_once_a_name(problem for problem in every if problem.needs_action)))
     return [*lines, f"note: nothing need be done: {notes}."] if notes else lines

@@ -228,7 +228,7 @@ def outcome_sentences(run: Run) -> list[Markup]:
         prose(
             "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m, "
             "5 % of the time below {lower} m.",
-            first=_number(float(run.heading[0]) / DEGREE), last=_number(float(run.heading[-1]) / DEGREE),
+            first=_angle(float(run.heading[0])), last=_angle(float(run.heading[-1])),
             radius=_number(run.turn_radius_quantile(0.5)), lower=_number(run.turn_radius_quantile(0.05)),
         )
     )  # fmt: skip
@@ -254,7 +254,7 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
     """Programs, steps, time."""
     provenance = summary["provenance"]
     versions = ", ".join(f"{name} {number}" for name, number in provenance.get("versions", {}).items())
-    numbers = ", ".join(f"{name.replace('_', ' ')} {_number(value)}" for name, value in run.numbers.items())
+    numbers = ", ".join(map(_named, run.numbers, run.numbers.values()))
     rate = run.simulated_s / run.wall_s if run.wall_s > 0.0 else None
     return [
         prose("Programs: {versions}.", versions=versions or f"skisnow {version('skisnow')}"),
@@ -269,6 +269,27 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
             file=Markup("<code>run.nc</code>"),
         ),
     ]  # fmt: skip
+
+
+_UNITS: Final = {"m": " m", "mm": " mm", "s": " s", "N": " N", "kg": " kg"}
+"""Of numbers whose names end in it."""
+
+
+def _named(name: str, value: float) -> str:
+    """A number of the computation with its name and unit; what counts something is a whole number.
+
+    >>> _named("load_N", 390.0), _named("elements", 92.0)
+    ('load 390 N', 'elements 92')
+    """
+    words, _, unit = name.rpartition("_")
+    words, after = (words, _UNITS[unit]) if unit in _UNITS and words else (name, "")
+    digits = whole(int(value)) if float(value).is_integer() else _number(value)
+    return f"{words.replace('_', ' ')} {digits}{after}"
+
+
+def _angle(angle: float) -> str:
+    """Degrees to three digits; less than a thousandth is none: no heading is that exact."""
+    return _number(angle / DEGREE if abs(angle) >= 0.001 * DEGREE else 0.0)
 
 
 def _number(value: float | None, digits: int = 3) -> str:

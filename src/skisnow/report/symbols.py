@@ -103,9 +103,11 @@ def latex_escaped(text: str) -> str:
 def figure_text(text: str, *, longest: int = 28) -> str:
     """Text that a user wrote, as it stands in a figure: no mathtext, one line, not endless.
 
-    A leading underscore would hide a legend's entry; a thin space before it does not show.
+    A long one is shortened in its middle, as names that are alike mostly differ at their ends. A leading underscore
+    would hide a legend's entry; a thin space before it does not show.
     """
     line = " ".join("".join(letter if letter.isprintable() else " " for letter in text).split()) or "(no name)"
-    short = line if len(line) <= longest else line[: longest - 1].rstrip() + "…"
+    head = longest // 2
+    short = line if len(line) <= longest else f"{line[:head].rstrip()}…{line[head + 1 - longest :].lstrip()}"
     escaped = short.replace("$", r"\$")
     return f" {escaped}" if escaped.startswith("_") else escaped

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, Final
 
+from .dates import date_words
 from .number_formatting import counted, significant
 
 if TYPE_CHECKING:
@@ -61,7 +63,7 @@ def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     smoothing = values["smoothing"]
     yield "points", f"{values['points']} in {_plain(values['duration_s'], 4)} s, time scale {values['time_scale']}"
     if values["start"]:
-        yield "start", values["start"]
+        yield "start", _moment(values["start"], values["time_scale"])
     if values.get("solutions"):
         yield (
             "carrier phase",
@@ -73,6 +75,13 @@ def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "noise of the places", f"{_plain(smoothing['place_noise_m'], 2)} m a coordinate, about the smoothed track"
     yield "smoothing", f"cubics by least squares in windows of {_plain(smoothing['window_s'])} s"
     yield "resolution", _resolution(smoothing)
+
+
+def _moment(start: str, time_scale: str) -> str:
+    """When a track begins, to the second, in its own time scale."""
+    found = datetime.fromisoformat(start)
+    scale = "" if time_scale == "local" else f" {time_scale}"
+    return f"{date_words(found.date().isoformat())}, {found:%H:%M:%S}{scale}"
 
 
 _DISTANCE_WORDS: Final = {

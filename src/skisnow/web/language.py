@@ -56,3 +56,8 @@ def said(text: str, client: Client | None = None) -> str:
     """A text in the language of the page, its numbers as there."""
     words = catalogue(language_of(client))
     return words.with_numbers(words.translated(text))
+
+
+def said_list(text: str, client: Client | None = None) -> str:
+    """A list such as ``Load (N): 400 to 1200, 4 values; ski: mine``, its names and values each by themselves."""
+    return "; ".join(": ".join(said(word, client) for word in part.split(": ", 1)) for part in text.split("; "))

@@ -133,6 +133,11 @@ def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]
     elif len(files) == 1:
         place = Path(folder) / files[0]
         _require_own_files(place, names)
+    elif not files and not designs and names:
+        raise ParameterError(
+            "a table alone tells neither length nor mass of a ski; choose it together with a .toml file that names it "
+            f"(table = '{names[0]}'): “Download the file” on the page gives one to begin with"
+        )
     else:
         raise ParameterError(
             "choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM"

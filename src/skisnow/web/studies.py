@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Final
 
 from ..errors import ParameterError, SkisnowError
 from ..files import write_file
+from ..language import ENGLISH
 from ..parallel.executors import LOCAL
 from ..parallel.kept_rows import KeptRows
 from ..parallel.pool import available_cores
@@ -84,8 +85,8 @@ class Studies(Runs):
         """All studies, the newest first."""
         return [job for job in self.jobs() if isinstance(job, StudyJob)]
 
-    def ask_for(self, asked: StudyAsked) -> StudyJob:
-        """Put a study at the end of the queue; it is on the disk when this returns.
+    def ask_for(self, asked: StudyAsked, language: str = ENGLISH) -> StudyJob:
+        """Put a study at the end of the queue; it is on the disk when this returns. ``language`` is that of its map.
 
         Raises
         ------
@@ -113,6 +114,7 @@ class Studies(Runs):
         job = StudyJob(
             name, asked.of, asked.fixed_words(), now.isoformat(), given=asked.varied_words(), points=points,
             workers=self.workers, method=asked.method, unit_s=asked.unit_s,
+            language=language,
         )  # fmt: skip
         self._keep(job)
         return job
@@ -164,7 +166,7 @@ class Studies(Runs):
         folder = self.folder / job.name
         by = [] if self.scheduler is None else ["--scheduler", self.scheduler]
         here = ["--workers", str(self.workers)] if self.workers else []
-        figure = ["--figure", str(folder / FIGURE)] if job.scenario == CARVE else []
+        figure = ["--language", job.language, "--figure", str(folder / FIGURE)] if job.scenario == CARVE else []
         return ["study", str(folder / STUDY), *by, *here, *figure]
 
     async def _ended_as(self, job: Job, last: str, took_s: float, *, cancelled: bool) -> Job:

@@ -96,6 +96,8 @@ class AxisFields:
         """
         key = self._keys[self.name]
         words = called(key)
+        if not all(str(each.value or "").strip() for each in self._ends):
+            raise ParameterError(f"{words}: type both ends of what it goes through")
         low, high = (
             typed_number(f"{words}, the {end} end", str(each.value or ""))
             for each, end in zip(self._ends, ("lower", "upper"), strict=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from skisnow.field import Problem, check_campaign, read_campaign
+from skisnow.field.problems import lines_of
 
 WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
 Where = tuple[str, str, int | None, str | None, str | None, str | None]
@@ -76,6 +77,18 @@ def test_unknown_tool_is_told_once_in_each_experiment(
         ("unknown_tool", PEN, 5, "tool", "P2", "disc"),
     ]
     assert "disc 100, piece, roll" in problems[0].allowed
+
+
+def test_unknown_tool_of_two_experiments_is_one_line(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    table = small_campaign[PEN].replace("piece", "Piece").replace("disc 100", "Piece")
+    small_campaign[PEN] = table.replace("P2,Nord,Piece,0", "P2,Nord,Piece,30")
+    problems = check_campaign(write_campaign(small_campaign))
+    lines = [line for line in lines_of(problems) if "unknown_tool" in line]
+    assert [problem.experiment for problem in problems if problem.code == "unknown_tool"] == ["P1", "P2"]
+    assert len(lines) == 1
+    assert "penetration.csv, row 2, column tool (experiment P1 and 1 more, up to row 5): found 'Piece'" in lines[0]
 
 
 @pytest.mark.parametrize("tool", ["disc 100", "roll"])

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 
 from skisnow.report.figures.narrowed import WIDTH_MM, narrow
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Text
 
+    from skisnow.simulate.run import Run
+
 
 def words_of(axes: Axes) -> list[Text]:
     """What stands in and above a panel, and the numbers at its axes."""
@@ -29,7 +33,8 @@ def words_of(axes: Axes) -> list[Text]:
     found = [each for each in axes.get_yticklabels() if low <= each.get_position()[1] <= high]
     found += [each for each in axes.get_xticklabels() if left <= each.get_position()[0] <= right]
     title = left_title(axes)
-    return [each for each in (*found, *axes.texts, *([title] if title else [])) if each.get_text().strip()]
+    every = (*found, *axes.texts, *([title] if title else []))
+    return [each for each in every if each.get_visible() and each.get_text().strip()]
 
 
 def over_one_another(figure: Figure) -> list[tuple[str, str]]:
@@ -50,3 +55,26 @@ def test_a_run_from_above(radius: float, duration: float, language: str) -> None
         narrow(figure)
         assert figure.get_figwidth() * MM_PER_INCH == pytest.approx(WIDTH_MM)
         assert over_one_another(figure) == []
+
+
+def long_run() -> Run:
+    """Over 200 m down the fall line in 32 s, two metres to each side of it twenty times."""
+    run = circle_run()
+    time = np.linspace(0.0, 32.0, len(run.time))
+    x, phase = 200.0 * time / 32.0, np.pi * time / 1.6
+    place = np.stack([x, 2.0 * np.sin(phase), np.zeros_like(x)], axis=1)
+    track = np.stack([place + np.array([0.0, aside, 0.0]) for aside in (0.25, -0.25)], axis=1)
+    heading = np.arctan(2.0 * np.pi / 10.0 * np.cos(phase))
+    return replace(run, time=time, place=place, heading=heading, skis=replace(run.skis, track=track))
+
+
+@pytest.mark.parametrize("on_a_telephone", [False, True])
+def test_a_long_flat_run_has_room_for_its_times(*, on_a_telephone: bool) -> None:
+    with journal_style():
+        figure = run_track(long_run())
+        letter_panels(figure)
+        if on_a_telephone:
+            narrow(figure)
+        assert over_one_another(figure) == []
+        times = [each.get_text() for each in words_of(figure.axes[0]) if each.get_text().endswith(" s")]
+        assert len([each for each in times if not each.startswith("finished")]) >= (4 if on_a_telephone else 10)

@@ -153,6 +153,8 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
         ("time_s,x_m,y\n0,1,2\n", ["missing_column", "column y_m"]),
         ("time,latt,lon\n0,46,7\n", ["missing_column", "column lat", "'latt'"]),
         ("x_m,y_m\n0,1\n", ["missing_column", "column time_s"]),
+        ("Zeit [s];x [m];y (m)\n0;1,5;2\n", ["Likely time_s for 'Zeit [s]', x_m for 'x [m]', y_m for 'y (m)'."]),
+        ("Zeit,Breite,Länge,Höhe_m\n0,46,7,9\n", ["time for 'Zeit', lat for 'Breite', lon for 'Länge', alt_m for"]),
         ("time_s,x_m,y_m\n0,1,2\n1,one,2\n", ["not_a_number", "row 3, column x_m", "'one'", "decimal point"]),
         ("time_s,x_m,y_m\n0,1,2\n\n1,nan,2\n", ["not_a_number", "row 4, column x_m", "'nan'"]),
         ("time_s;x_m;y_m\n0;1,5;2,5\n1;1.5;2,5\n", ["not_a_number", "row 3, column x_m", "'1.5'", "decimal comma"]),
@@ -176,6 +178,11 @@ def test_refused(tmp_path: Path, content: str | bytes, told: list[str]) -> None:
     message = refused(tmp_path, content)
     for words in told:
         assert words in message
+
+
+def test_a_heading_in_another_unit_stands_for_no_column(tmp_path: Path) -> None:
+    message = refused(tmp_path, "Zeit [ms];x [cm];y [m];Geschwindigkeit [km/h];v m/s\n0;1;2;3;4\n")
+    assert message.endswith("Likely y_m for 'y [m]', speed_m_per_s for 'v m/s'.")
 
 
 def test_dates_that_run_backwards_are_told_as_dates(tmp_path: Path) -> None:

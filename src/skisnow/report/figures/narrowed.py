@@ -10,6 +10,7 @@ from matplotlib.ticker import FixedLocator
 
 from .panels import left_title, panels_of
 from .style import MM_PER_INCH, legend_below
+from .time_labels import thin_out
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,7 +82,9 @@ def _with_plans(plans: list[Axes], height_mm: float) -> float:
         place = axes.get_subplotspec()
         if place is not None:
             row = place.rowspan.start
-            rows[row] = min((high - low + more) / across * (WIDTH_MM - _BESIDE_MM), rows[row]) + _AROUND_PLAN_MM
+            height = min((high - low + more) / across * (WIDTH_MM - _BESIDE_MM), rows[row])
+            rows[row] = height + _AROUND_PLAN_MM
+            thin_out(axes, min(height / (high - low + more), (WIDTH_MM - 2.0 * _BESIDE_MM) / across))
     grid.set_height_ratios(rows)
     return sum(rows)
 

@@ -14,6 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from ...scenario import Plane
 from ...units import MM
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
+from .time_labels import MARK, thin_out
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,6 +32,8 @@ CUTOUT: Final = 2.0
 """Length (m) of track that is drawn a second time, large."""
 _MARGIN: Final = 0.6
 _LARGEST_MM, _SMALLEST_MM = 130.0, 32.0
+_PLAN_MM: Final = DOUBLE_MM - 22.0
+"""Width of the plan."""
 _FRAME_MM: Final = 38.0
 _DETAIL_MM: Final = 38.0
 _LEAST_REACH: Final = 2.0
@@ -43,7 +46,7 @@ _LABEL_POINTS: Final = 12.0
 
 def run_track(run: Run) -> Figure:
     """Draw the whole run with equal scales, and below it the grooves over a short distance at half time."""
-    limits = track_limits(run.skis.track.reshape(-1, 3))
+    limits = _with_room(track_limits(run.skis.track.reshape(-1, 3)))
     height = plan_height_mm(limits)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DETAIL_MM + _FRAME_MM)
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 12.0, _DETAIL_MM))
@@ -66,7 +69,14 @@ def track_limits(points: FloatArray) -> tuple[float, float, float, float]:
 def plan_height_mm(limits: tuple[float, float, float, float]) -> float:
     """Height that a plan as wide as the figure needs, within reason."""
     x_low, x_high, y_low, y_high = limits
-    return float(np.clip((y_high - y_low) / (x_high - x_low) * (DOUBLE_MM - 22.0), _SMALLEST_MM, _LARGEST_MM))
+    return float(np.clip((y_high - y_low) / (x_high - x_low) * _PLAN_MM, _SMALLEST_MM, _LARGEST_MM))
+
+
+def _with_room(limits: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    """Limits as high as the lowest plan: what a long run is flatter is room for the words at its line."""
+    x_low, x_high, y_low, y_high = limits
+    lacking = max((x_high - x_low) * _SMALLEST_MM / _PLAN_MM - (y_high - y_low), 0.0)
+    return x_low, x_high, y_low - 0.4 * lacking, y_high + 0.6 * lacking
 
 
 def plan_axes(axes: Axes, limits: tuple[float, float, float, float], *, profile: bool = False) -> None:
@@ -90,6 +100,7 @@ def draw_plan(axes: Axes, run: Run, limits: tuple[float, float, float, float]) -
         axes.plot(run.skis.track[:, ski, 0], run.skis.track[:, ski, 1], color=colour, linewidth=0.9)
     _time_marks(axes, run)
     plan_axes(axes, limits, profile=not isinstance(run.scenario.slope, Plane))
+    thin_out(axes, min(_PLAN_MM / (limits[1] - limits[0]), _LARGEST_MM / (limits[3] - limits[2])))
 
 
 def _time_marks(axes: Axes, run: Run) -> None:
@@ -99,10 +110,15 @@ def _time_marks(axes: Axes, run: Run) -> None:
     axes.plot(x, y, linestyle="none", marker="o", markersize=2.6, color=BLACK, zorder=4)
     aside = np.interp(marks, run.time, np.unwrap(run.heading))
     for mark, at_x, at_y, angle in zip(marks, x, y, aside, strict=True):
-        offset = (-_LABEL_POINTS * math.sin(angle), _LABEL_POINTS * math.cos(angle))
+        aside_points, above_points = -_LABEL_POINTS * math.sin(angle), _LABEL_POINTS * math.cos(angle)
+        words, is_first = ("start", True) if mark == 0.0 else (f"{mark:g} s", False)
+        offset = (
+            max(aside_points, 0.0) if is_first else aside_points,
+            above_points,
+        )  # clear of the numbers at the axis
         axes.annotate(
-            "start" if mark == 0.0 else f"{mark:g} s", (float(at_x), float(at_y)), offset, textcoords="offset points",
-            ha="center", va="center", fontsize=6.5,
+            words, (float(at_x), float(at_y)), offset, textcoords="offset points",
+            ha="left" if is_first else "center", va="center", fontsize=6.5, gid=MARK,
         )  # fmt: skip
     axes.plot(*run.place[-1, :2], linestyle="none", marker="s", markersize=3.4, color=BLACK, zorder=4)
     ended = f"{run.outcome.replace('_', ' ')} at {run.simulated_s:.2f} s"

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...spreadsheet_text import number
 from ..point import FARTHEST
+from .likely_columns import likely_columns
 from .recording import Recording
 from .refusal import refusal
 from .text import Cells, cells_of, decimal_mark_of, moment, require_width
@@ -117,7 +118,10 @@ class _Table:
 
     def _missing(self, column: str) -> Exception:
         near = difflib.get_close_matches(column, self.header, n=1, cutoff=0.6)
+        likely = likely_columns(self.header)
         hint = f" Is {near[0]!r} meant to be it?" if near else ""
+        if likely:
+            hint = f" Likely {', '.join(f'{name} for {heading!r}' for heading, name in likely.items())}."
         return refusal(
             "missing_column",
             self.name,

@@ -14,6 +14,7 @@ from ..error_pages import error_sentence
 from ..fields import button, choice, link, said_options
 from ..job_list import JobList
 from ..lab_skis import FILE, TABLE, LabSkis
+from ..language import language_of, said_list
 from ..layout import framed, heading, sentence
 from ..runs import Runs
 from ..scenario_fields import ScenarioField, called, in_labels
@@ -204,7 +205,7 @@ class _Form:
         """Put the study into the queue, when it can be one."""
         try:
             asked = self._asked()
-            job = await run.io_bound(self._studies.ask_for, asked)
+            job = await run.io_bound(self._studies.ask_for, asked, language_of())
         except SkisnowError as error:
             keys = [each.key for each in self._fields.values()]
             self._status.set_text(f"Not begun: {in_labels(error_sentence(error), *keys)}")
@@ -288,7 +289,8 @@ class _Card:
     def show(self, job: StudyJob) -> None:
         """Show how it stands now."""
         of = CARVED if job.scenario == CARVE else job.scenario
-        self._words.set_text(" · ".join(filter(None, (of, job.given, job.state, job.said))))
+        given = said_list(job.given, self._words.client)
+        self._words.set_text(" · ".join(filter(None, (of, given, job.state, job.said))))
         self._progress.set_text(self._studies.progress if job.state == "running" else "")
         self._progress.set_visibility(bool(self._progress.text))
         self._cancel.set_visibility(job.state in ("waiting", "running"))

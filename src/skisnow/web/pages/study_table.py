@@ -16,7 +16,7 @@ from ...language import ENGLISH
 from ...report.number_formatting import significant
 from ..error_pages import error_sentence, plain_page
 from ..fields import choice, link
-from ..language import language_of, said
+from ..language import language_of, said, said_list
 from ..layout import framed, heading, sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
 from ..scenario_fields import called, written
@@ -73,13 +73,14 @@ def add_page(lab: Lab) -> None:
         if found is None:
             raise ParameterError("the lab is about to end")
         with framed("Study", here=HERE):
-            _asked(next((job for job in studies.jobs() if job.name == name), None))
+            job = next((job for job in studies.jobs() if job.name == name), None)
+            _asked(job)
             with ui.element("div").classes("acts"):
                 link("Download everything", _file_address(name, ALL), "main")
                 link("Download the table", _file_address(name, TABLE))
             _Found(*found)
             if (studies.folder / name / FIGURE).is_file():
-                _map(name)
+                _map(name, job.language if job is not None else ENGLISH)
 
     @app.get(f"{FILES}/{{name}}/{{file}}")
     async def files(request: Request, name: str, file: str) -> Response:
@@ -100,16 +101,16 @@ def _asked(job: Job | None) -> None:
     """What varies, and the numbers that are fixed."""
     if job is not None:
         keys = study_keys(job.scenario)
-        sentence(job.given, "quiet")
-        sentence("; ".join(f"{called(keys[name])}: {value}" for name, value in job.changes.items()), "quiet")
+        sentence(said_list(job.given), "quiet")
+        sentence(said_list("; ".join(f"{called(keys[name])}: {value}" for name, value in job.changes.items())), "quiet")
 
 
-def _map(name: str) -> None:
+def _map(name: str, language: str) -> None:
     with ui.element("figure"):
         ui.element("img").props(f'src="{_file_address(name, FIGURE)}"').props["alt"] = said(
             "Turn radius over the inputs that vary, as skisnow study draws it"
         )
-    if language_of() != ENGLISH:
+    if language_of() != language == ENGLISH:
         sentence("Figures and the report are in English.", "quiet")
 
 
@@ -150,7 +151,8 @@ class _Found:
         rows = [row for row in self._table.rows if not self._other or row[self._other] == value]
         rows.sort(key=lambda row: row[self._x])
         styles = {each: style for style, each in enumerate(dict.fromkeys((0, count // 2, count - 1)))}
-        name = f"{called(self._keys[self._other])}: {written(value)}" if self._other and number in styles else ""
+        other = f"{said(called(self._keys[self._other]))}: {_short(value)}" if self._other else ""
+        name = other if number in styles else ""
         x, y = ([row[each] for row in rows] for each in (self._x, result))
         return ChartLine(x, y, styles.get(number, BEHIND), name=name)
 
@@ -172,11 +174,16 @@ class _Found:
             )
 
 
+def _short(value: Any) -> str:
+    """A value of what varies, to four digits as in the map."""
+    return f"{value:.4g}" if isinstance(value, float) else written(value)
+
+
 def _row(row: dict[str, Any], columns: list[str]) -> None:
     outcome = str(row["outcome"]).replace("_", " ") + (f": {row['reason']}" if row["outcome"] == "error" else "")
     with ui.element("tr"):
         for name in columns:
             with ui.element("td").classes("n"):
-                ui.label("–" if row[name] is None else significant(row[name]))
+                Words("–" if row[name] is None else significant(row[name]))
         with ui.element("td"):
             Words(outcome)
