@@ -15,9 +15,10 @@ QUICK := -n 3 --dist worksteal -q --hypothesis-profile=ci
 # tests start hundreds of Python processes; where compiled modules are not kept, each compiles the package anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo test test-all test-minimum coverage lint tidy sanitize docs bench lock sbom clean
+.PHONY: help set-up demo test test-all test-minimum coverage lint tidy sanitize docs bench lock sbom clean
 
 help:
+	@echo "make set-up    what all the others need, in $(VENV)/"
 	@echo "make demo      a synthetic campaign to snow parameters and a simulated turn, and a slalom to watch, in $(DEMO)/"
 	@echo "make test      the tests that take minutes, not hours"
 	@echo "make test-all  those and the long ones"
@@ -79,6 +80,8 @@ demo: $(VENV)/.skisnow
 	@echo
 	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser,"
 	@echo "and $(DEMO)/slalom/replay.html: a skier through twenty gates, in three dimensions."
+
+set-up: $(VENV)/.skisnow-dev
 
 test: $(VENV)/.skisnow-dev
 	$(BIN)/python -m pytest $(QUICK)
