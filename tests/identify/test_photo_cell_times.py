@@ -140,6 +140,7 @@ def test_a_free_clock_takes_an_offset_away_and_knows_less() -> None:
     assert error > fisher_errors([0, 1])[0]
 
 
+@pytest.mark.slow
 def test_profile_and_bootstrap_agree_with_the_curvature_of_a_nearly_linear_problem() -> None:
     """Profiles: the times are linear in mu to 10⁻³ over an interval. Bootstrap: 27 residuals in stretches, ± 25 %."""
     noise = SD * np.random.default_rng(5).standard_normal(len(STATION))

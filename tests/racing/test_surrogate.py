@@ -84,6 +84,7 @@ def test_a_brachistochrone_of_pieces_in_forty_evaluations(seed: int) -> None:
     assert rise / length / speed == pytest.approx(np.full(4, (rise / length / speed).mean()), rel=0.1)
 
 
+@pytest.mark.slow
 def test_turns_are_searched_alike_then_each_for_itself_and_gone_on_with(tmp_path: Path) -> None:
     kept = tmp_path / "kept"
     found = raced(EASY, search="surrogate", evaluations=22, seed=2, checkpoint=kept)

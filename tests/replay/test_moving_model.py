@@ -88,6 +88,7 @@ def test_exaggeration_takes_bending_and_twist_alone(replay: Replay) -> None:
     assert np.abs(by_hand(1.2345, 6.0) - by_hand(1.2345)).max() > 0.05
 
 
+@pytest.mark.slow
 def test_a_simulated_run_is_met_at_moments_that_are_no_keys(simulated: Run) -> None:
     fine = replay_of_run(simulated)
     model = GlbFile(moving_replay_model(fine))

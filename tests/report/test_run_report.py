@@ -159,6 +159,7 @@ def test_run_that_did_not_stay_finite_is_drawn_up_to_there(run: Run, tmp_path: P
     assert not re.search(r"\bnan\b", words)
 
 
+@pytest.mark.slow
 def test_run_that_never_touches_the_snow_is_drawn(run: Run, tmp_path: Path) -> None:
     above = {name: 0.0 * getattr(run.skis, name) for name in ("force_per_length", "shear_per_length")}
     skis = replace(run.skis, edge_depth=np.full_like(run.skis.edge_depth, -0.1), **above)

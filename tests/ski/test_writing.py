@@ -62,6 +62,7 @@ def test_only_a_toml_file_is_written(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), n=st.integers(750, 900), bevel=st.floats(0.0, 0.08), middle=st.floats(-0.1, 0.1))
 def test_any_table_survives(

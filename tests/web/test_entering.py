@@ -68,6 +68,7 @@ def test_the_curve_follows_the_readings(page: Page, served: Served) -> None:
     assert sorted(top, reverse=True) == list(top)  # under more and more load, which counts upwards
 
 
+@pytest.mark.slow
 def test_discs_that_are_taken_off_have_fields_of_their_own(page: Page, served: Served) -> None:
     """They come behind the loading, are told from it everywhere, and give k_u/H_V beside the same H_V."""
     create(page, served)

@@ -49,6 +49,7 @@ def test_curves_begin_at_the_start_and_show_the_largest() -> None:
     assert "fall line" in slope.get_xlabel()
 
 
+@pytest.mark.slow
 def test_long_curves_are_thinned_and_keep_their_largest() -> None:
     place = winding(50_000)
     other = place.copy()

@@ -105,6 +105,7 @@ def run_in_pipe(changes: dict[str, float]) -> Run:
     return run
 
 
+@pytest.mark.slow
 def test_without_loss_speed_is_height_over_rollers() -> None:
     """Along the bottom of the pipe, on elastic snow, without friction and drag: v² = v₀² + 2 g (z₀ - z).
 
