@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.mutation.__main__ import (
+    EQUIVALENTS,
     changed_lines,
     drawn,
     files_beside,
@@ -155,3 +157,13 @@ def test_what_no_test_asks_for_survives(tree: Path, trials: Trials) -> None:
     assert Trials(trials.tree, trials.tests, 2.0).verdict(path, endless) == OUT_OF_TIME
     assert (trials.tree / path).read_text() == source
     assert trials.status() == 0
+
+
+def test_every_equivalent_stands_in_its_file() -> None:
+    """Of a line that was changed since, nothing is known."""
+    package = Path(__file__).resolve().parents[2] / "src" / "skisnow"
+    named = tomllib.loads(EQUIVALENTS.read_text(encoding="utf-8"))["equivalent"]
+    assert len(named) > 10
+    for each in named:
+        lines = {line.strip() for line in (package / each["file"]).read_text(encoding="utf-8").splitlines()}
+        assert set(map(str.strip, each["was"].splitlines())) <= lines, f"{each['file']}: {each['was']}"
