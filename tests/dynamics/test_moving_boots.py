@@ -126,10 +126,13 @@ def test_a_boot_meets_both_ends_of_its_motion_with_their_rates() -> None:
     assert after[1:4] - last.axes == pytest.approx(np.cross(last.turning, last.axes) * 1e-5, abs=1e-8)
 
 
-@pytest.mark.parametrize("asides", [(0.0,), (0.3, 0.0, -0.3)])
-def test_any_number_of_skis(asides: tuple[float, ...]) -> None:
-    """A sledge on one ski that is held upright by nothing but its flat base, and on three."""
-    scenario = given(sledge__edge_angle_deg=0.0, sledge__centre_of_mass_height_m=0.05, start__heading_deg=0.0)
+@pytest.mark.parametrize(("asides", "clamped_m"), [((0.0,), 0.3), ((0.0,), 0.75), ((0.3, 0.0, -0.3), 0.3)])
+def test_any_number_of_skis(asides: tuple[float, ...], clamped_m: float) -> None:
+    """On one ski, upright by nothing but its flat base, on one that two stiff bindings hold, and on three."""
+    scenario = given(
+        sledge__edge_angle_deg=0.0, sledge__centre_of_mass_height_m=0.05, start__heading_deg=0.0,
+        ski__clamp_length_m=clamped_m,
+    )  # fmt: skip
     ski = clamped_ski(scenario, 40)
     body = sledge_body(
         scenario.sledge, ski, damping_ratio=0.02, gravity=gravity(scenario), drag=0.0, drag_height=0.0, asides=asides
