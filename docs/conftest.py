@@ -9,8 +9,8 @@ import pytest
 if TYPE_CHECKING:
     from pathlib import Path
 
-LONG = {"docs/tutorials/campaign.md"}
-"""Pages that draw a whole report."""
+LONG = {"docs/tutorials/campaign.md", "docs/how-to/in-python.md"}
+"""Pages that draw whole reports, or simulate for long."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

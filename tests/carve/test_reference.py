@@ -119,7 +119,8 @@ def test_a_boot_that_takes_no_moment_of_the_side_force(moment: float) -> None:
     compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, boot_is_free=True, moment=moment))
 
 
-@pytest.mark.parametrize("boot_is_free", [pytest.param(False, marks=pytest.mark.slow), True])
+@pytest.mark.slow
+@pytest.mark.parametrize("boot_is_free", [False, True])
 def test_a_side_force_that_goes_as_the_force_on_the_base(boot_is_free: bool) -> None:
     compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, by_reaction=True, boot_is_free=boot_is_free))
 

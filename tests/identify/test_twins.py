@@ -82,6 +82,7 @@ def half(case: str, seed: int) -> list[tuple[str, Row]]:
     return [(case, {"value": f"{seed / 2:g}"})]
 
 
+@pytest.mark.slow
 def test_two_processes_keep_the_rows_of_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(Path(__file__).parents[2])  # a fresh process finds the twin by its name
     asked = [("a", seed) for seed in range(5)]

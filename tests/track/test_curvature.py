@@ -28,6 +28,7 @@ def test_circle_without_noise(radius: float) -> None:
     assert np.all(np.diff(motion.heading) * radius > 0.0)  # more than a whole turn, without a jump
 
 
+@pytest.mark.slow
 def test_intervals_on_a_noisy_circle_cover_as_often_as_they_say() -> None:
     """One point of each of 400 tracks, 0.95 ± 0.0109 by chance: three of these either way."""
     covered = {"heading": 0, "curvature": 0, "radius": 0}

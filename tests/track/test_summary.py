@@ -113,6 +113,7 @@ def test_gap_is_said() -> None:
     assert np.isfinite(summary.motion.curvature).all()
 
 
+@pytest.mark.slow
 def test_million_points_fit() -> None:
     """Seconds and some hundred MB; nothing is timed here, but a loop over points or a full matrix would not end."""
     made = track(circle(15.0, 8.0, duration=20_000.0, interval=0.1), noise=NOISE)

@@ -27,6 +27,8 @@ _LETTERS_UPRIGHT: Final = 115
 _LONGEST_TEXT: Final = 30
 _TEXT_WIDTH: Final = "45mm"
 """Of a column with longer texts, which are broken."""
+_ALIGNED: Final = ("number", "count", "angle", "seconds")
+"""Kinds of single numbers, which siunitx aligns by their points."""
 _COMMAND: Final = re.compile(r"\\[A-Za-z]+|[{}$]")
 _PLAIN: Final = re.compile(r"(-?)(\d+)(?:\.(\d+))?")
 _UNITS: Final = str.maketrans({"²": "^2", "³": "^3", "·": ".", " ": ".", "°": r"\degree", "%": r"\percent"})
@@ -97,7 +99,7 @@ def _column(column: Column, values: Sequence[Any]) -> list[str]:
 
 def _plain_numbers(column: Column, values: Sequence[Any]) -> list[str | None] | None:
     """Numbers without a power of ten as siunitx's S columns want them; None where one is something else."""
-    if column.kind not in ("number", "count", "angle") or all(value is None for value in values):
+    if column.kind not in _ALIGNED or all(value is None for value in values):
         return None
     texts = [None if value is None else _bare(column, value) for value in values]
     return texts if all(text is None or _PLAIN.fullmatch(text) for text in texts) else None
@@ -106,7 +108,7 @@ def _plain_numbers(column: Column, values: Sequence[Any]) -> list[str | None] | 
 def _bare(column: Column, value: float) -> str:
     if column.kind == "number":
         return number_formatting.significant(value, column.digits, style="plain")
-    return f"{value:.6g}" if column.kind == "angle" else str(value)
+    return _SET[column.kind](value, column.digits)
 
 
 def _alignment(column: Column, cells: Sequence[str]) -> str:
@@ -114,7 +116,7 @@ def _alignment(column: Column, cells: Sequence[str]) -> str:
         is_broken = max(map(_letters, cells), default=0) > _LONGEST_TEXT and any(" " in cell for cell in cells)
         return rf">{{\raggedright\arraybackslash}}p{{{_TEXT_WIDTH}}}" if is_broken else "l"
     found = [match for cell in cells if (match := _PLAIN.fullmatch(cell))]
-    if not found or column.kind not in ("number", "count", "angle"):
+    if not found or column.kind not in _ALIGNED:
         return "r"
     sign = "-" if any(match[1] for match in found) else ""
     whole, places = (max(len(match[group] or "") for match in found) for group in (2, 3))
@@ -149,6 +151,7 @@ _SET: Final[dict[Kind, Callable[[Any, int], str]]] = {
     "tick": lambda value, _: r"$\checkmark$" if value else "",
     "count": lambda value, _: str(value),
     "angle": lambda value, _: f"{value:.6g}",
+    "seconds": lambda value, _: f"{value:.2f}",
     "number": lambda value, digits: number_formatting.significant(value, digits, style="latex"),
     "p": lambda value, _: number_formatting.probability(value, style="latex"),
     "interval": lambda value, digits: f"{{{number_formatting.interval(value, digits, style='latex')}}}",

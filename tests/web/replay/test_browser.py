@@ -114,7 +114,9 @@ def played(apart_ms: float) -> str:
     return f"""
         const real = window.requestAnimationFrame, waiting = [];
         window.requestAnimationFrame = (deed) => waiting.push(deed);
+        replay.stage.drawn = () => ({{ then: (deed) => deed() }}); // at once
         replay.seek(1.0); replay.play();
+        delete replay.stage.drawn;
         waiting.shift()(5000); waiting.shift()({5000 + apart_ms});
         replay.pause(); window.requestAnimationFrame = real;
         return replay.time;"""
@@ -322,6 +324,48 @@ def test_effects_step_down_where_the_machine_is_slow_and_stay_where_it_was_chose
     seen.does("replay.drawAs('low')")
     quick = "for (let i = 0; i < 200; i++) replay.sharpness.took(5);"
     assert seen.does(quick + read) == [0.5, 0]
+
+
+def test_it_steps_up_when_it_has_kept_up_for_long(seen: Watched) -> None:
+    """Where drawing is another process, the first pictures of a level seem quick before it falls behind."""
+    quick = "for (let i = 0; i < {}; i++) replay.sharpness.took(5); return replay.sharpness.place;"
+    seen.does("replay.drawAs('auto')")
+    assert seen.does(quick.format(89)) == 4
+    assert seen.does(quick.format(1)) == 5
+
+
+def test_the_time_runs_from_the_first_picture_on(seen: Watched) -> None:
+    """However long the browser takes to draw it."""
+    found = seen.does("""return (async () => {
+        const { stage } = replay;
+        let drawn;
+        stage.drawn = () => new Promise((done) => { drawn = done; });
+        replay.pause(); replay.seek(0); replay.play();
+        delete stage.drawn;
+        const picture = () => new Promise(requestAnimationFrame);
+        for (let i = 0; i < 5; i++) await picture();
+        const before = replay.time;
+        drawn();
+        while (replay.time === 0) await picture();
+        replay.pause();
+        return [before, replay.time > 0];
+    })()""")
+    assert found == [0, True]
+
+
+def test_played_twice_it_is_drawn_once_a_picture(seen: Watched) -> None:
+    drawn = seen.does("""return (async () => {
+        const picture = () => new Promise(requestAnimationFrame);
+        replay.rate = 0.1;
+        replay.seek(0); replay.play(); await replay.stage.drawn(); await picture();
+        replay.pause(); replay.play(); await replay.stage.drawn(); await picture();
+        const before = replay.frames;
+        for (let i = 0; i < 10; i++) await picture();
+        replay.pause();
+        replay.rate = 1;
+        return replay.frames - before;
+    })()""")
+    assert 9 <= drawn <= 13  # the last one is drawn finer, and a level may change
 
 
 @pytest.mark.slow

@@ -53,8 +53,8 @@ class Player {
     this.#fill();
     this.#listen(root);
     new ResizeObserver(() => this.resize()).observe(this.parts.canvas.parentElement);
-    this.resize();
-    if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
+    if (window.matchMedia("(prefers-reduced-motion: reduce)").matches) this.resize();
+    else this.play();
   }
 
   #fill() {
@@ -143,7 +143,7 @@ class Player {
     this.resize();
     let before = null;
     const next = (now) => {
-      if (!this.playing) return;
+      if (this.next !== next) return; // paused, and perhaps played again
       const gone = before === null ? 0 : Math.min(now - before, LONGEST);
       this.time = Math.min(this.time + (this.rate * gone) / 1000, this.end);
       before = now;
@@ -152,12 +152,14 @@ class Player {
       if (this.time >= this.end) this.pause();
       else requestAnimationFrame(next);
     };
-    requestAnimationFrame(next);
+    this.next = next;
+    this.stage.drawn().then(() => requestAnimationFrame(next));
   }
 
   pause() {
     if (!this.playing) return;
     this.playing = false;
+    this.next = null;
     this.parts.play.textContent = said("Play");
     if (this.film) this.#endFilm();
     this.resize();

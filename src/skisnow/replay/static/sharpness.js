@@ -10,7 +10,8 @@ const LEVELS = [
 const FULL = 4;
 const SLOW = 36; // ms between pictures above which it steps down: 28 a second
 const QUICK = 21; // ms below which it may step up
-const PATIENCE = 12; // pictures between changes
+const PATIENCE = 12; // pictures before it steps down
+const TRUST = 90; // pictures before it steps up: a drawing process takes some in before it falls behind
 const MISSES = 2; // times that a level proved too much before it is left alone
 
 /** The ratio of a picture that stands still: edges are smooth when two are made one. */
@@ -53,7 +54,7 @@ export class Sharpness {
     this.mean = this.mean === null ? time : 0.8 * this.mean + 0.2 * time;
     this.since += 1;
     if (this.since < PATIENCE) return false;
-    const way = this.mean > SLOW ? -1 : this.mean < QUICK ? 1 : 0;
+    const way = this.mean > SLOW ? -1 : this.mean < QUICK && this.since >= TRUST ? 1 : 0;
     const next = Math.min(Math.max(this.place + way, 0), LEVELS.length - 1);
     if (next === this.place || (way > 0 && this.missed[next] >= MISSES)) return false;
     if (way < 0) this.missed[this.place] += 1;

@@ -129,6 +129,17 @@ export class Stage {
     return pose;
   }
 
+  /** Until what was asked for is drawn: without a graphics card the very first picture takes a second or two. */
+  async drawn() {
+    const gl = this.renderer.getContext();
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    while (!gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) {
+      await new Promise(requestAnimationFrame);
+    }
+    gl.deleteSync(fence);
+  }
+
   #mark(time) {
     if (!this.track) return;
     const place = this.track.placeAt(time);

@@ -13,10 +13,7 @@ if TYPE_CHECKING:
 
 def gates_table(result: CourseResult) -> Table:
     """A row for each gate, times to a hundredth of a second."""
-    rows = [
-        tuple(_hundredths(row[name]) if name in ("time_s", "split_s") else row[name] for name in COLUMNS)
-        for row in gate_rows(result)
-    ]
+    rows = [tuple(_words(row[name]) for name in COLUMNS) for row in gate_rows(result)]
     fault = result.fault
     return Table(
         "gates",
@@ -25,20 +22,16 @@ def gates_table(result: CourseResult) -> Table:
             Column("gate", "Gate", "text"),
             Column("side", "Side", "text"),
             Column("outcome", "Outcome", "text"),
-            Column("time_s", "Time", "text", unit="s"),
-            Column("split_s", "From the gate before", "text", unit="s"),
+            Column("time_s", "Time", "seconds", unit="s"),
+            Column("split_s", "From the gate before", "seconds", unit="s"),
             Column("speed_m_per_s", "Speed", unit="m/s"),
             Column("clearance_m", "From the pole", unit="m"),
             Column("x_m", "Turning pole x", unit="m", digits=4),
             Column("y_m", "y", unit="m", digits=3),
         ),
-        [tuple(_words(cell) for cell in row) for row in rows],
+        rows,
         note="" if fault is None else f"{fault.words[0].upper()}{fault.words[1:]}.",
     )
-
-
-def _hundredths(value: float | None) -> str | None:
-    return None if value is None else f"{value:.2f}"
 
 
 def _words(cell: object) -> object:
