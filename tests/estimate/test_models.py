@@ -14,6 +14,7 @@ from skisnow.estimate.model_choice import bootstrap_intervals, compare_nested_ro
 from skisnow.estimate.models import MODELS, NESTED_PAIRS, Model, ModelFit, fit_models, select_model, why_no_choice
 from skisnow.estimate.readings import Readings
 from skisnow.geometry import SkiPiece
+from skisnow.language import catalogue
 from skisnow.snow.published.moessner_2013 import PRINTED_RMSE_N
 
 from .conftest import MakeCampaign
@@ -304,9 +305,14 @@ def test_a_law_that_is_worse_than_no_force_is_warned_of(make_campaign: MakeCampa
     size = math.sqrt(np.mean([100.0**2, 200.0**2, 300.0**2, 400.0**2]))
     worst = max(results["models"], key=lambda row: row["rmse_N"])
     assert worst["rmse_N"] > size
-    (warning,) = (text for text in results["warnings"] if text.startswith(f"The rmse of {worst['id']} ("))
-    assert f"({worst['rmse_N']:.5g} N)" in warning
-    assert f"loads, {size:.4g} N" in warning
+    words = Model(*(worst[key] for key in ("hardness", "a", "b"))).words
+    many = sum(row["rmse_N"] > size for row in results["models"])
+    (warning,) = (text for text in results["warnings"] if text.startswith(f"{many} of the nine candidate models "))
+    assert f" than their root mean square, {size:.4g} N; the rmse of {words} is {worst['rmse_N']:.5g} N." in warning
+    assert worst["id"] not in warning
+    german = catalogue("de").translated(warning)
+    assert german.startswith(f"{many} der neun Modelle ")
+    assert "candidate" not in german and "readings" not in german
 
 
 @pytest.mark.parametrize(

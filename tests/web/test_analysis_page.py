@@ -70,6 +70,10 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
     page.get_by_text(told(pressed), exact=True).wait_for(timeout=DRAWING_MS)
     drawn = page.locator("figure img").count()
     assert drawn >= 8
+    page.set_viewport_size({"width": 390, "height": 844})
+    is_of_a_phone = "({ currentSrc, src }) => currentSrc.length > 5000 && currentSrc !== src"
+    page.wait_for_function(f"[...document.querySelectorAll('picture:has(source) img')].some({is_of_a_phone})")
+    page.set_viewport_size({"width": 1280, "height": 720})
     page.locator("summary", has_text="Included experiments").press("Enter")
     first = next(row for row in results["penetration"]["experiments"] if row["used"])
     words = f"Penetration {first['experiment']}, {first['site']}, {first['edge_angle_deg']:g}°"

@@ -12,7 +12,7 @@ import pytest
 
 from skisnow.study import read_study, run_study
 
-from .conftest import PATIENCE_MS, Served, fill, killed_and_started_again, ready, settled
+from .conftest import PATIENCE_MS, Served, fill, has_text, killed_and_started_again, ready, settled
 from .test_runs import choose
 
 if TYPE_CHECKING:
@@ -50,6 +50,8 @@ def test_what_cannot_be_studied_is_said_before_anything_begins(page: Page, serve
     fill(page, {f"{FIRST}: number of values": "40"})
     page.get_by_text("40 points. Will take about").wait_for()
     choose(page, SECOND, "Load (N)")
+    has_text(page.get_by_label(f"{SECOND}: from"), "400")
+    has_text(page.get_by_label(f"{SECOND}: to"), "1200")
     fill(page, {f"{SECOND}: from": "300", f"{SECOND}: to": "200"})
     page.get_by_text("400 points. Will take about").wait_for()
     page.get_by_label("Load (N)", exact=True).wait_for(state="hidden")  # it varies

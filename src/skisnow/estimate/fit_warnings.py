@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 POOR: Final = 0.5
 """A selected law whose rmse is above this share of the loads' rms leaves a quarter of their squares open (modelling
 assumption)."""
-_LISTED: Final = 3
 _DEPTH: Final = " with errors in depth"
 _ACTION: Final = "Look for wrong units, depths or tools, and for snow that follows none of these laws."
 
@@ -38,11 +37,11 @@ def _poor(selected: ModelFit | None, size: float) -> Iterator[str]:
 
 
 def _worse_than_nothing(fits: tuple[ModelFit, ...], how: str, size: float) -> Iterator[str]:
-    rows = sorted((fit for fit in fits if fit.rmse > size), key=lambda fit: -fit.rmse)
+    rows = [fit for fit in fits if fit.rmse > size]
     if rows:
-        more = f" and {len(rows) - _LISTED} more" if len(rows) > _LISTED else ""
-        listed = ", ".join(f"{fit.model.id} ({fit.rmse:.5g} N)" for fit in rows[:_LISTED])
+        worst = max(rows, key=lambda fit: fit.rmse)
         yield (
-            f"The rmse of {listed}{more}{how} is above the root mean square of the loads, {size:.4g} N: "
-            f"no force at all would describe the readings better. {_ACTION}"
+            f"{len(rows)} of the nine candidate models{how} {'misses' if len(rows) == 1 else 'miss'} the loads by more "
+            f"than their root mean square, {size:.4g} N; the rmse of {worst.model.words} is {worst.rmse:.5g} N. "
+            f"No force at all would describe the readings better. {_ACTION}"
         )

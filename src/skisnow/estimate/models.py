@@ -39,6 +39,17 @@ class Model:
         return f"{self.hardness}:a={self.a},b={self.b}"
 
     @property
+    def words(self) -> str:
+        """The row in a few words, for tables and sentences.
+
+        >>> Model("H_V", "none", "one").words, Model("H_A", "linear", "linear").words
+        ('H_V; b = 1', 'H_A; a, b linear')
+        """
+        if self.a == "none":
+            return f"{self.hardness}; b {'= 1' if self.b == 'one' else self.b}"
+        return f"{self.hardness}; a, b {self.b}" if self.a == self.b else f"{self.hardness}; a {self.a}, b {self.b}"
+
+    @property
     def n_parameters(self) -> int:
         """Nominal number of fitted parameters."""
         return _N_PARAMETERS[self.a] + _N_PARAMETERS[self.b]

@@ -101,7 +101,7 @@ _SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
     "angle": lambda value, _: Markup(f"{value:.6g}"),
     "seconds": lambda value, _: Markup(f"{value:.2f}"),
     "number": lambda value, digits: Markup(number_formatting.significant(value, digits)),
-    "p": lambda value, _: Markup.escape(number_formatting.probability(value)),
+    "p": lambda value, _: Markup.escape(number_formatting.probability(value).replace(" ", "\u00a0")),
     "interval": lambda value, digits: Markup(number_formatting.interval(value, digits)),
     "range": lambda value, digits: Markup(number_formatting.from_to(value, digits)),
     "estimate": _estimate,

@@ -245,11 +245,17 @@ def _counts(found: Numbers) -> str:
     )
 
 
+def _data_uri(svg: str) -> str:
+    return f"data:image/svg+xml;base64,{b64encode(svg.encode()).decode('ascii')}"
+
+
 def _figure(shown: Shown, names: Set[str]) -> None:
-    data = b64encode(shown.svg.encode()).decode("ascii")
     with ui.element("figure"):
-        image = ui.element("img")
-        image.props["src"] = f"data:image/svg+xml;base64,{data}"
+        with ui.element("picture"):
+            if shown.narrow:
+                ui.element("source").props('media="(max-width: 46rem)"').props["srcset"] = _data_uri(shown.narrow)
+            image = ui.element("img")
+        image.props["src"] = _data_uri(shown.svg)
         image.props["alt"] = said(shown.alt)
         with ui.element("figcaption"):
             html_words(shown.caption, names)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
@@ -26,6 +27,40 @@ TO: Final = "To"
 VALUES: Final = "Number of values"
 LOG: Final = "Even in the logarithm"
 _USUAL: Final = "10"
+_BEGINS: Final = {
+    "edge_angle_deg": (10.0, 70.0),
+    "load_N": (400.0, 1200.0),
+    "H_V_N_per_mm3": (0.1, 10.0),
+    "S_f_N_per_mm2": (0.02, 0.2),
+    "unloading_ratio": (1.0, 50.0),
+    "moment_Nm": (-50.0, 50.0),
+    "speed_m_per_s": (6.0, 12.0),
+    "angle_deg": (5.0, 20.0),
+    "mu_0": (0.02, 0.1),
+    "drag_area_m2": (0.3, 0.8),
+    "mass_kg": (60.0, 120.0),
+}
+"""By the last part of an input's name what stands in the fields at first, to be typed over (modelling assumption: a
+skier on groomed snow)."""
+
+
+def begins(key: Quantity) -> tuple[float, float] | None:
+    """Ends that an input goes through at first; of one with a default from its half to its double, as far as allowed.
+
+    >>> from skisnow.inputs import Quantity
+    >>> begins(Quantity("load_N", "")), begins(Quantity("w_m", "", default=0.8, highest=1.0))
+    ((400.0, 1200.0), (0.4, 1.0))
+    """
+    name = key.name.rpartition(".")[2]
+    if name in _BEGINS:
+        return _BEGINS[name]
+    default = key.default
+    if key.usual is not None or isinstance(default, bool) or not isinstance(default, int | float) or default <= 0.0:
+        return key.usual
+    low, high = max(default / 2.0, key.lowest), min(default * 2.0, key.highest)
+    if key.kind == "whole number":
+        low, high = float(math.ceil(low)), float(math.floor(high))
+    return (low, high) if math.isfinite(high) and low < high else None
 
 
 class AxisFields:
@@ -75,8 +110,8 @@ class AxisFields:
         return "" if name == NOTHING else name
 
     def _another(self) -> None:
-        usual = self._keys[self.name].usual if self.name else None
-        for each, end in zip(self._ends, usual or (None, None), strict=True):
+        ends = begins(self._keys[self.name]) if self.name else None
+        for each, end in zip(self._ends, ends or (None, None), strict=True):
             each.set_value("" if end is None else f"{end:g}")
         self._show()
         self._changed()

@@ -3,11 +3,11 @@
 import { row } from "./motion.js";
 import * as THREE from "./three.module.min.js";
 
-const LONGEST = 0.55; // m, of the largest force per length of the run
+const LONG = 0.3; // m, of a force per length that a twentieth of those in the run exceed: its largest may be a moment's
 const LEAST = 0.02; // share of it below which none is drawn
 const EVERY = 0.06; // m between arrows, at least
 const WHOLE = 0.0011; // m for each N of a whole ski's force
-const COLOURS = { along: 0xd55e00, whole: 0x7a1fa2 };
+const COLOURS = { along: 0xd55e00, whole: 0xb43be0 };
 const AWAY = new THREE.Vector3(0, 0, 1);
 
 /** Force of each ski (N): its force per length, summed along it by trapezoids. */
@@ -24,11 +24,18 @@ export function wholeForces(run, at) {
   });
 }
 
+/** A force per length (N/m) that a twentieth of those in the run exceed. */
+function large(run) {
+  const pressed = run.arrays.force_per_length.values.filter((force) => force > 0).sort();
+  return pressed.length ? pressed[Math.floor(0.95 * pressed.length)] : 1;
+}
+
 /** Arrows that `show(pose, sections)` sets; sections of both skis are those that motion.js gives. */
-export function forceArrows(run, most) {
+export function forceArrows(run) {
+  const most = large(run);
   const chosen = spaced(run.arrays.station.values);
   const along = arrows(2 * chosen.length, 0.007, COLOURS.along);
-  const whole = arrows(2, 0.016, COLOURS.whole);
+  const whole = arrows(2, 0.02, COLOURS.whole, { over: true }); // else it would be hidden in a skier's leg
   const group = new THREE.Group();
   group.add(...along.meshes, ...whole.meshes);
   const count = run.arrays.station.values.length;
@@ -41,7 +48,7 @@ export function forceArrows(run, most) {
         const own = force.subarray(ski * count, (ski + 1) * count);
         chosen.forEach((j, i) => {
           const share = own[j] / most;
-          along.set(ski * chosen.length + i, ...placed(sections[ski], j), share > LEAST ? LONGEST * share : 0);
+          along.set(ski * chosen.length + i, ...placed(sections[ski], j), share > LEAST ? LONG * share : 0);
         });
         const [place, away] = centre(run, sections[ski], own);
         whole.set(ski, place, away, WHOLE * sums[ski]);
@@ -77,14 +84,14 @@ function centre(run, section, force) {
 }
 
 /** So many arrows of one thickness and colour: a shaft and a head each. */
-function arrows(number, radius, colour) {
-  const material = new THREE.MeshLambertMaterial({ color: colour });
+function arrows(number, radius, colour, { over = false } = {}) {
+  const material = new THREE.MeshBasicMaterial({ color: colour, depthTest: !over });
   const shaft = new THREE.CylinderGeometry(radius, radius, 1, 8).translate(0, 0.5, 0).rotateX(Math.PI / 2);
   const head = new THREE.ConeGeometry(2.6 * radius, 6 * radius, 10).translate(0, 3 * radius, 0).rotateX(Math.PI / 2);
   const meshes = [shaft, head].map((geometry) => new THREE.InstancedMesh(geometry, material, number));
   for (const each of meshes) {
     each.frustumCulled = false;
-    each.renderOrder = 6;
+    each.renderOrder = over ? 7 : 6;
   }
   const [matrix, turn] = [new THREE.Matrix4(), new THREE.Quaternion()];
   return {

@@ -54,7 +54,7 @@ export class Stage {
     this.groove = groove(run, { most: this.scales.depth, order: 4 });
     this.surface = surface(run);
     this.fallLine = fallLine(run);
-    this.arrows = forceArrows(run, this.scales.force);
+    this.arrows = forceArrows(run);
     this.plume = plume(run);
     this.lines = grid(run);
     this.path = path(run);

@@ -111,10 +111,10 @@ def _narrow_svg(drawing: Drawing) -> str:
     return _svg(drawing)
 
 
-def svg_of(drawing: Drawing) -> str:
-    """Draw it for a page alone."""
+def svgs_of(drawing: Drawing) -> tuple[str, str]:
+    """Draw it for a page alone, and a wide one once more for a telephone (empty where there is none)."""
     letter_panels(drawing.figure)
-    return _svg(drawing)
+    return _svg(drawing), _narrow_svg(drawing) if drawing.wide else ""
 
 
 def _svg(drawing: Drawing) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ...estimate.models import MODELS
 from ...snow.published.moessner_2013 import PRINTED_RMSE_N
 from ..table import ROWS_IN_HTML, Column, Table
 
@@ -34,17 +35,8 @@ def _term(letter: str, form: str, measure: str) -> str:
 
 
 def row_name(model_id: str) -> str:
-    """A row in a few words, for tables and sentences.
-
-    >>> row_name("H_V:a=none,b=one"), row_name("H_A:a=linear,b=linear"), row_name("H_V:a=none,b=linear")
-    ('H_V; b = 1', 'H_A; a, b linear', 'H_V; b linear')
-    """
-    hardness, forms = _forms(model_id)
-    if forms["a"] == "none":
-        return f"{hardness}; b = 1" if forms["b"] == "one" else f"{hardness}; b {forms['b']}"
-    return (
-        f"{hardness}; a, b {forms['b']}" if forms["a"] == forms["b"] else f"{hardness}; a {forms['a']}, b {forms['b']}"
-    )
+    """A row in a few words, for tables and sentences."""
+    return next(model.words for model in MODELS if model.id == model_id)
 
 
 def _forms(model_id: str) -> tuple[str, dict[str, str]]:

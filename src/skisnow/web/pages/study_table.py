@@ -106,7 +106,7 @@ def _asked(job: Job | None) -> None:
 
 
 def _map(name: str, language: str) -> None:
-    with ui.element("figure"):
+    with named(ui.element("figure").classes("map").props("tabindex=0 role=region"), "Map"):
         ui.element("img").props(f'src="{_file_address(name, FIGURE)}"').props["alt"] = said(
             "Turn radius over the inputs that vary, as skisnow study draws it"
         )
