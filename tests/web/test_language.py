@@ -15,8 +15,9 @@ if "nicegui" in MISSING:
     pytest.skip("the web lab is not installed", allow_module_level=True)
 
 from skisnow.carve.result import REMEDIES
-from skisnow.errors import ParameterError
-from skisnow.field import QUALITY_FLAGS
+from skisnow.errors import FieldDataError, ParameterError
+from skisnow.field import QUALITY_FLAGS, Problem, campaign_of_files
+from skisnow.field.problems import lines_of
 from skisnow.field.store import Journals, NewEntry, Store
 from skisnow.field.store.description import Description, description_text
 from skisnow.language import Catalogue, catalogue, languages
@@ -25,6 +26,7 @@ from skisnow.language.known import FOLDER
 from skisnow.report.ski_drawing import ski_drawing
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
+from skisnow.web.analysis_view import NAMES_IN_FILES
 from skisnow.web.pages.simulate import basic, expert
 from skisnow.web.scenario_fields import called, range_words
 from skisnow.web.study_asked import CARVE, study_keys
@@ -82,6 +84,53 @@ def test_messages_are_translated_with_the_messages_in_them() -> None:
         "Die Reihe hat weniger als 3 Laststufen. Gefunden: 2; ohne Markierung wäre mindestens 3 Laststufen. Der Versuch"
         " bleibt und wird gezählt, geht aber nicht in die Schätzungen ein."
     )
+
+
+DESCRIBED = """load_steps_N = [20, 40]
+tool = [{ name = "ski", shape = "ski", length_mm = 200, width_mm = 62 }]
+plate = [{ name = "plate", length_mm = "100" }]
+plaze = 1
+"""
+HEAD = "experiment,site,tool,edge_angle_deg,load_N,depth_mm"
+
+
+@pytest.mark.parametrize(
+    ("table", "german"),
+    [
+        (
+            f"{HEAD}\n1,A,ski,30,20,x\n",
+            "penetration.csv, Zeile 2, Spalte depth_mm (Versuch 1): steht da 'x'; erlaubt: eine Zahl ab 0. "
+            "Schreibe eine schlichte Zahl wie 12.5, ohne Einheit, Bemerkung oder Tausendertrennzeichen.",
+        ),
+        (
+            f"{HEAD}\n1,A,ski,30,20,1\n1,B,ski,30,40,2\n",
+            "Spalte site (Versuch 1): steht da 'B'; erlaubt: ein Wert von site in einem Versuch; Zeile 2 hat 'A'. "
+            "Berichtige die Zelle, oder gib den Zeilen, die ein anderer Versuch waren, einen anderen Namen.",
+        ),
+        (
+            "Versuch,Ort,Werkzeug,Winkel [°],Last [N]\n1,A,ski,30,20\n",
+            "erlaubt: experiment, site, tool, edge_angle_deg, load_N, depth_mm, oder Überschriften, die campaign.toml "
+            'ihnen zuordnet. Schreibe dies oben in campaign.toml, wenn es stimmt: columns.penetration = {"Versuch" = ',
+        ),
+        (f"{HEAD}\n", "Kopfzeile und mindestens eine Zeile. Fülle die Datei, oder nimm sie aus der Kampagne."),
+        (
+            f"{HEAD}\n1,A,ski,30,20,1\n",
+            "campaign.toml, Spalte plate[1].length_mm: steht da '100'; erlaubt: eine endliche Zahl über 0. "
+            "Schreibe eine Zahl mit Dezimalpunkt, ohne Anführungszeichen.",
+        ),
+        (
+            f"{HEAD}\n1,A,ski,30,20,1\n",
+            "Spalte plaze: steht da 'plaze'; erlaubt: der Schlüssel plate. Ist plate gemeint? "
+            "Berichtige oder entferne den Schlüssel.",
+        ),
+    ],
+)
+def test_what_is_wrong_in_files_is_said_with_their_own_names(table: str, german: str) -> None:
+    with pytest.raises(FieldDataError) as caught:
+        campaign_of_files({"campaign.toml": DESCRIBED.encode(), "penetration.csv": table.encode()})
+    words = GERMAN.keeping(NAMES_IN_FILES)
+    wrong = (each for each in caught.value.problems if isinstance(each, Problem))
+    assert german in "\n".join(map(words.translated, lines_of(wrong)))
 
 
 def test_a_further_language_is_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
+from ..field.reading.campaign_file import TOP_KEYS
+from ..field.reading.table_forms import TABLES
 from ..report.number_formatting import counted
 from .analysing import Choice, Numbers, Refusal, choosable_flags
 from .error_pages import error_sentence
-from .language import language_of, said
+from .language import language_of, said, said_as_written
 from .layout import heading, sentence
 from .worded import Words, html_words, named
 
@@ -34,6 +36,8 @@ LONG_TABLES: Final = {
 }
 FIRST_TABLE: Final = "sites"
 MOST_LISTED: Final = 400
+NAMES_IN_FILES: Final = frozenset(TOP_KEYS).union(*(form.known for form in TABLES))
+"""Columns and keys, which are the same in every language."""
 
 
 class OpenAnalysis:
@@ -212,11 +216,11 @@ class AnalysisView:
 
 
 def _list_of_errors(lines: Sequence[str]) -> None:
-    """Each as the command says it: in English, with headings and cells to be copied as they are written."""
-    with ui.element("ul").props("lang=en").classes("errors"):
+    """With headings and cells to be copied as they are written."""
+    with ui.element("ul").classes("errors"):
         for line in lines:
             with ui.element("li"):
-                ui.label(line)
+                ui.label(said_as_written(line, NAMES_IN_FILES))
 
 
 def _behind(words: str, fill: Callable[[], None]) -> None:

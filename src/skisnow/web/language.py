@@ -10,6 +10,8 @@ from nicegui import Client, ui
 from ..language import ENGLISH, catalogue, languages
 
 if TYPE_CHECKING:
+    from collections.abc import Set
+
     from starlette.requests import Request
 
 COOKIE: Final = "skisnow-language"
@@ -56,6 +58,11 @@ def said(text: str, client: Client | None = None) -> str:
     """A text in the language of the page, its numbers as there."""
     words = catalogue(language_of(client))
     return words.with_numbers(words.translated(text))
+
+
+def said_as_written(text: str, names: Set[str]) -> str:
+    """A text in the language of the page; names and numbers as they stand in the file that it tells of."""
+    return catalogue(language_of()).keeping(names).translated(text)
 
 
 def said_list(text: str, client: Client | None = None) -> str:

@@ -100,7 +100,7 @@ CAMPAIGN_KEYS: Final = {key.name: key for key in own_quantities(CampaignFile)}
 """Keys with one value or a list of numbers."""
 (PLATE_LENGTH,) = own_quantities(Plate)
 _SECTIONS: Final = ("tool", "plate", "screening", COLUMNS_KEY, "snow_micro_pen", "weather")
-_TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], *_SECTIONS)
+TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], *_SECTIONS)
 
 
 def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
@@ -121,7 +121,7 @@ def read_campaign_file(text: str, found: list[Problem]) -> CampaignFile | None:
     if parsed is None:
         return None
     top = TomlValues(CAMPAIGN_FILE, parsed, "", found)
-    top.refuse_misspelt(_TOP_KEYS)
+    top.refuse_misspelt(TOP_KEYS)
     tools, tool_names, flat_tools = _tools(top)
     plates, plate_names = _plates(top)
     return CampaignFile(
