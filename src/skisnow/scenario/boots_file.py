@@ -25,6 +25,8 @@ OF_SLEDGE: Final = ("forward_m", "aside_m", "up_m")
 OF_SLOPE: Final = ("x_m", "y_m", "z_m")
 _RESULTS: Final = ("_N", "_N_m", "_vx", "_vy", "_vz", "_px", "_py", "_pz", "_mx", "_my", "_mz")
 """Ends of names of what a run's own boots hold besides: forces and moments, which are not read."""
+EDGE: Final = "_edge_angle_deg"
+GREATEST_EDGE_DEG: Final = 90.0
 _MOST_BYTES: Final = 1 << 28
 _HEAD_END: Final = "endheader"
 
@@ -76,7 +78,28 @@ def _rows(path: Path, text: str) -> tuple[list[list[str]], int]:
     ends = [i for i, line in enumerate(lines) if line.strip().lower() == _HEAD_END]
     if not ends:
         raise ParameterError(f"{path} has no line {_HEAD_END}, which ends the head of a .mot or .sto file; add it")
-    return [line.split() for line in lines[ends[0] + 1 :] if line.strip()], ends[0] + 3
+    rows = [line.split() for line in lines[ends[0] + 1 :] if line.strip()]
+    _require_said(path, dict(_key(line) for line in lines[: ends[0]]), rows)
+    return rows, ends[0] + 3
+
+
+def _key(line: str) -> tuple[str, str]:
+    key, _, value = line.partition("=")
+    return key.strip().lower(), value.strip()
+
+
+def _require_said(path: Path, said: Mapping[str, str], rows: list[list[str]]) -> None:
+    """The table is as its head says: none of it is missing, its angles are in degrees."""
+    columns, below = (len(rows[0]), len(rows) - 1) if rows else (0, 0)
+    for key, there in (("nRows", below), ("nColumns", columns)):
+        if said.get(key.lower(), "").isdecimal() and int(said[key.lower()]) != there:
+            found = f"{path}: the head says {key}={said[key.lower()]}, there are {there}"
+            raise ParameterError(f"{found}; the file is cut or joined, or put the head right")
+    if said.get("indegrees", "").lower() == "no":
+        raise ParameterError(
+            f"{path}: the head says inDegrees=no, and angles of boots are in degrees; multiply them by 57.29578 and "
+            "write inDegrees=yes"
+        )
 
 
 def _is_read(name: str) -> bool:
@@ -116,6 +139,12 @@ def _column(path: Path, rows: list[list[str]], head: list[str], place: int, firs
         if not math.isfinite(values[i]):
             raise ParameterError(
                 f"{path}, row {i + first}, column {head[place]}: {row[place].strip()!r} is no finite number; write one"
+                f"{' with a decimal point' if ',' in row[place] else ''}"
+            )
+        if head[place].endswith(EDGE) and abs(values[i]) > GREATEST_EDGE_DEG:
+            raise ParameterError(
+                f"{path}, row {i + first}, column {head[place]}: {values[i]:g} is beyond ±{GREATEST_EDGE_DEG:g}, a ski "
+                "on its side; put the row right or leave it out"
             )
     return values
 

@@ -93,6 +93,9 @@ def read_motion(path: str | Path) -> MotionTable:
     said = _whole(head.get("nRows"))
     if said is not None and said != len(rows):
         raise ParameterError(f"{path}: the head says nRows={said}, there are {len(rows)}; the file is cut or joined")
+    wide = _whole(head.get("nColumns"))
+    if wide is not None and wide != len(names):
+        raise ParameterError(f"{path}: the head says nColumns={wide}, there are {len(names)}; put the head right")
     numbers = np.array([_numbers(path, number, cells, names) for number, cells in rows]).reshape(-1, len(names))
     degrees = head.get("inDegrees", "yes").strip().lower() != "no"
     others = {key: value for key, value in head.items() if key not in ("nRows", "nColumns", "inDegrees", "version")}
