@@ -104,7 +104,7 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
 
 
 def test_what_is_wrong_in_the_files_stands_line_by_line(page: Page, served: Served, tmp_path: Path) -> None:
-    """The mapping that is proposed can be copied as it is, on a German page too: no word of it is translated."""
+    """The mapping that is proposed can be copied as it is, on a German page too: no word of it is translated, those around it are."""
     (tmp_path / "campaign.toml").write_text('name = "Hang"\n[[plate]]\nname = "Platte"\nlength_mm = 100\n', "utf-8")
     headings = "Versuch;Ort;Platte;Kantwinkel [°];Tiefe [mm];Hebelarm [mm];Drehmoment [Nm]"
     (tmp_path / "shear.csv").write_text(f"{headings}\nS1;Süd;Platte;90;4,5;250;15,4\n", "utf-8")
@@ -113,9 +113,10 @@ def test_what_is_wrong_in_the_files_stands_line_by_line(page: Page, served: Serv
     page.set_extra_http_headers({"Accept-Language": "de"})
     page.goto(f"{served.address}analysis/kept/{id_}")
     page.get_by_text("Was in ihren Dateien falsch ist").wait_for()
-    lines = page.locator("ul.errors[lang=en] li")
+    lines = page.locator("ul.errors li")
     assert lines.count() == 1
     assert '"Platte" = "plate", "Kantwinkel [°]" = "edge_angle_deg", "Tiefe [mm]" = "depth_mm"' in lines.inner_text()
+    assert "Schreibe dies oben in campaign.toml, wenn es stimmt: columns.shear = {" in lines.inner_text()
     page.goto(f"{served.address}correct/{id_}")
     page.get_by_text("keine Tabelle dieser Kampagne lässt sich lesen").first.wait_for()
 
