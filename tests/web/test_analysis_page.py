@@ -104,7 +104,7 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
 
 
 def test_what_is_wrong_in_the_files_stands_line_by_line(page: Page, served: Served, tmp_path: Path) -> None:
-    """The mapping that is proposed can be copied as it is, on a German page too: no word of it is translated, those around it are."""
+    """The mapping that is proposed can be copied as it is from a German page: only the words around it are German."""
     (tmp_path / "campaign.toml").write_text('name = "Hang"\n[[plate]]\nname = "Platte"\nlength_mm = 100\n', "utf-8")
     headings = "Versuch;Ort;Platte;Kantwinkel [°];Tiefe [mm];Hebelarm [mm];Drehmoment [Nm]"
     (tmp_path / "shear.csv").write_text(f"{headings}\nS1;Süd;Platte;90;4,5;250;15,4\n", "utf-8")
