@@ -76,6 +76,7 @@ def test_a_table_of_another_program(tmp_path: Path) -> None:
     [
         (MOT.replace("endheader\n", ""), "has no line endheader"),
         (MOT.replace("nRows=2", "nRows=5"), "the head says nRows=5, there are 2"),
+        (MOT.replace("nColumns=3", "nColumns=4"), "the head says nColumns=4, there are 3"),
         (MOT.replace("0.75", "O.75"), "line 11, column knee_angle_r: 'O.75' is no number"),
         (MOT.replace("0.75\t", ""), "line 11: 2 cells stand under 3 names"),
         (MOT.replace("0.01\t", "0.00\t"), "time of row 2 is 0 s; it must be finite and rise"),

@@ -75,7 +75,7 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
         (MOT.replace("2 20", "2 inf"), "a.sto", r"'inf' is no finite number"),
         (MOT.replace("2 20", "2"), "a.mot", "row 7: 1 cells stand under 2 names"),
         (MOT.replace("EndHeader\n", ""), "a.mot", "has no line endheader"),
-        (MOT.replace("2 20\n", ""), "a.mot", r"a\.mot: the head says nRows=4, there are 3; the file is cut or joined"),
+        (MOT.replace("2 20\n", ""), "a.mot", r"a\.mot: the head says nRows=4, there are 3; it is cut or joined"),
         (MOT.replace("nRows=4", "nColumns=3"), "a.sto", r"a\.sto: the head says nColumns=3, there are 2"),
         (
             MOT.replace("nRows=4", "inDegrees = No"),
@@ -101,6 +101,11 @@ def test_a_table_of_opensim_is_read_behind_its_head(tmp_path: Path) -> None:
     assert found.at.tolist() == [0.0, 1.0, 2.0, 3.0]
     assert found.axes[3, 0] == pytest.approx(axes_of(math.radians(30.0), 0.0, 0.0))
     assert found.axes[3, 1] == pytest.approx(np.eye(3))
+
+
+def test_places_alone_have_no_degrees(tmp_path: Path) -> None:
+    places = MOT.replace("nRows=4", "inDegrees=no").replace("left_edge_angle_deg", "left_up_m")
+    assert read_boots(table(tmp_path, places, "a.sto")).place[3, 0, 2] == 30.0
 
 
 def test_a_scenario_given_in_python_is_changed_as_a_file() -> None:

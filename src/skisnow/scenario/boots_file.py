@@ -15,6 +15,7 @@ import numpy.typing as npt
 from ..errors import ParameterError
 from ..geometry.boot_axes import axes_of
 from ..given import plain_text
+from ..given.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
 from ..inputs import meant
 from ..units import DEGREE
 from .boots import Boots
@@ -25,10 +26,10 @@ OF_SLEDGE: Final = ("forward_m", "aside_m", "up_m")
 OF_SLOPE: Final = ("x_m", "y_m", "z_m")
 _RESULTS: Final = ("_N", "_N_m", "_vx", "_vy", "_vz", "_px", "_py", "_pz", "_mx", "_my", "_mz")
 """Ends of names of what a run's own boots hold besides: forces and moments, which are not read."""
-EDGE: Final = "_edge_angle_deg"
-GREATEST_EDGE_DEG: Final = 90.0
+_EDGE: Final = "_edge_angle_deg"
+_ON_ITS_SIDE: Final = 90.0
+"""Edge angle (°) of a ski that stands on its edge: beyond it the base looks up."""
 _MOST_BYTES: Final = 1 << 28
-_HEAD_END: Final = "endheader"
 
 
 def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float = 0.0) -> Boots:
@@ -75,31 +76,19 @@ def _rows(path: Path, text: str) -> tuple[list[list[str]], int]:
         except csv.Error as error:
             raise ParameterError(f"{path} is no CSV text ({error})") from error
     lines = text.splitlines()
-    ends = [i for i, line in enumerate(lines) if line.strip().lower() == _HEAD_END]
+    ends = [i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END]
     if not ends:
-        raise ParameterError(f"{path} has no line {_HEAD_END}, which ends the head of a .mot or .sto file; add it")
+        raise ParameterError(f"{path} has no line {HEAD_END}, which ends the head of a .mot or .sto file; add it")
     rows = [line.split() for line in lines[ends[0] + 1 :] if line.strip()]
-    _require_said(path, dict(_key(line) for line in lines[: ends[0]]), rows)
-    return rows, ends[0] + 3
-
-
-def _key(line: str) -> tuple[str, str]:
-    key, _, value = line.partition("=")
-    return key.strip().lower(), value.strip()
-
-
-def _require_said(path: Path, said: Mapping[str, str], rows: list[list[str]]) -> None:
-    """The table is as its head says: none of it is missing, its angles are in degrees."""
-    columns, below = (len(rows[0]), len(rows) - 1) if rows else (0, 0)
-    for key, there in (("nRows", below), ("nColumns", columns)):
-        if said.get(key.lower(), "").isdecimal() and int(said[key.lower()]) != there:
-            found = f"{path}: the head says {key}={said[key.lower()]}, there are {there}"
-            raise ParameterError(f"{found}; the file is cut or joined, or put the head right")
-    if said.get("indegrees", "").lower() == "no":
+    said = head_of_motion(lines[: ends[0]])
+    names = rows[0] if rows else []
+    require_whole(path, said, rows=max(len(rows) - 1, 0), columns=len(names))
+    if any(name.endswith(ANGLES) for name in names) and not is_in_degrees(said):
         raise ParameterError(
             f"{path}: the head says inDegrees=no, and angles of boots are in degrees; multiply them by 57.29578 and "
             "write inDegrees=yes"
         )
+    return rows, ends[0] + 3
 
 
 def _is_read(name: str) -> bool:
@@ -141,9 +130,9 @@ def _column(path: Path, rows: list[list[str]], head: list[str], place: int, firs
                 f"{path}, row {i + first}, column {head[place]}: {row[place].strip()!r} is no finite number; write one"
                 f"{' with a decimal point' if ',' in row[place] else ''}"
             )
-        if head[place].endswith(EDGE) and abs(values[i]) > GREATEST_EDGE_DEG:
+        if head[place].endswith(_EDGE) and abs(values[i]) > _ON_ITS_SIDE:
             raise ParameterError(
-                f"{path}, row {i + first}, column {head[place]}: {values[i]:g} is beyond ±{GREATEST_EDGE_DEG:g}, a ski "
+                f"{path}, row {i + first}, column {head[place]}: {values[i]:g} is beyond ±{_ON_ITS_SIDE:g}, a ski "
                 "on its side; put the row right or leave it out"
             )
     return values

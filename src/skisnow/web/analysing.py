@@ -15,7 +15,7 @@ from ..field.problems import Problem, lines_of
 from ..field.quality_flags import ALWAYS_EXCLUDE
 from ..report import write_report
 from ..report.figures import DRAWERS
-from ..report.figures.drawing import Drawing, svgs_of
+from ..report.figures.drawing import Drawing, data_uri, svgs_of
 from ..report.figures.style import journal_style, site_styles
 from ..report.figures.translated import translate_figure
 from ..report.page import tables_html
@@ -76,12 +76,12 @@ class Numbers:
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A figure: its name, the words for who cannot see it, its caption as HTML, its SVG, of a wide one a phone's."""
+    """A figure: name, words for who cannot see it, caption as HTML, addresses of its image and, if wide, a phone's."""
 
     name: str
     alt: str
     caption: str
-    svg: str
+    image: str
     narrow: str
 
 
@@ -119,7 +119,7 @@ def figure(analysis: Analysis, number: int, language: str) -> Shown | None:
         if not isinstance(drawn, Drawing):
             return None
         translate_figure(drawn.figure, language, names=frozenset(map(figure_text, data.names)))
-        return Shown(drawn.name, drawn.alt, str(drawn.whole_caption), *svgs_of(drawn))
+        return Shown(drawn.name, drawn.alt, str(drawn.whole_caption), *map(data_uri, svgs_of(drawn)))
 
 
 def ready() -> None:

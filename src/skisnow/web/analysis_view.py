@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from base64 import b64encode
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -249,17 +248,13 @@ def _counts(found: Numbers) -> str:
     )
 
 
-def _data_uri(svg: str) -> str:
-    return f"data:image/svg+xml;base64,{b64encode(svg.encode()).decode('ascii')}"
-
-
 def _figure(shown: Shown, names: Set[str]) -> None:
     with ui.element("figure"):
         with ui.element("picture"):
             if shown.narrow:
-                ui.element("source").props('media="(max-width: 46rem)"').props["srcset"] = _data_uri(shown.narrow)
+                ui.element("source").props('media="(max-width: 46rem)"').props["srcset"] = shown.narrow
             image = ui.element("img")
-        image.props["src"] = _data_uri(shown.svg)
+        image.props["src"] = shown.image
         image.props["alt"] = said(shown.alt)
         with ui.element("figcaption"):
             html_words(shown.caption, names)

@@ -55,7 +55,7 @@ def begins(key: Quantity) -> tuple[float, float] | None:
     if name in _BEGINS:
         return _BEGINS[name]
     default = key.default
-    if key.usual is not None or isinstance(default, bool) or not isinstance(default, int | float) or default <= 0.0:
+    if isinstance(default, bool) or not isinstance(default, int | float) or default <= 0.0:
         return key.usual
     low, high = max(default / 2.0, key.lowest), min(default * 2.0, key.highest)
     if key.kind == "whole number":
@@ -73,7 +73,7 @@ class AxisFields:
     keys
         What may vary.
     first
-        Its name, range and number of values at first; None: nothing, which can be chosen then.
+        Its name and number of values at first; None: nothing, which can be chosen then.
     changed
         See above.
     """
@@ -82,21 +82,22 @@ class AxisFields:
         self,
         place: str,
         keys: Mapping[str, Quantity],
-        first: tuple[str, str, str, str] | None,
+        first: tuple[str, str] | None,
         changed: Callable[[], None],
     ) -> None:
         self._keys, self._changed = keys, changed
         options = {} if first else {NOTHING: NOTHING}
-        name, low, high, n = first or (NOTHING, "", "", _USUAL)
+        name, n = first or (NOTHING, _USUAL)
         with ui.element("div").classes("inputs varied"):
             with ui.element("div").classes("input"):
                 self._key = choice(place, {**options, **{each: called(key) for each, key in keys.items()}}, name)
                 self._range = sentence("", "quiet range")
-            self._ends = [field(FROM, low, numeric=True), field(TO, high, numeric=True)]
+            self._ends = [field(words, "", numeric=True) for words in (FROM, TO)]
             self._n = field(VALUES, n, numeric=True)
             self._log = ui.switch(said(LOG)).classes("field")
         for each, words in zip((*self._ends, self._n, self._log), (FROM, TO, VALUES, LOG), strict=True):
             named(each, f"{place}: {words[0].lower()}{words[1:]}")
+        self._begin()
         for typed in (*self._ends, self._n):
             typed.on_value_change(changed)
         self._log.on_value_change(changed)
@@ -110,11 +111,14 @@ class AxisFields:
         return "" if name == NOTHING else name
 
     def _another(self) -> None:
+        self._begin()
+        self._show()
+        self._changed()
+
+    def _begin(self) -> None:
         ends = begins(self._keys[self.name]) if self.name else None
         for each, end in zip(self._ends, ends or (None, None), strict=True):
             each.set_value("" if end is None else f"{end:g}")
-        self._show()
-        self._changed()
 
     def _show(self) -> None:
         for each in (*self._ends, self._n, self._log):

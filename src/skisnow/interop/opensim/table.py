@@ -13,13 +13,13 @@ import numpy.typing as npt
 from ...errors import ParameterError
 from ...files import write_file
 from ...given import plain_text
+from ...given.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
 from ...shown import Facts, Shown, amount
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 ENDINGS: Final = (".mot", ".sto")
 MOST_BYTES: Final = 1 << 28
-_HEAD_END: Final = "endheader"
 _CLOCK: Final = "time"
 
 
@@ -81,38 +81,23 @@ def read_motion(path: str | Path) -> MotionTable:
         value are named.
     """
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
-    ends = next((i for i, line in enumerate(lines) if line.strip().lower() == _HEAD_END), None)
+    ends = next((i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END), None)
     if ends is None or ends + 1 >= len(lines):
-        raise ParameterError(f"{path} has no line {_HEAD_END} with a table behind it; a .mot or .sto file has one")
-    head = dict(_key(line) for line in lines[1:ends] if "=" in line)
+        raise ParameterError(f"{path} has no line {HEAD_END} with a table behind it; a .mot or .sto file has one")
+    head = head_of_motion(lines[1:ends])
     names = lines[ends + 1].split()
     if not names or names[0].lower() != _CLOCK or len(set(names)) < len(names):
         raise ParameterError(f"{path}, line {ends + 2}: the columns must begin with {_CLOCK}, each name once")
     first = ends + 2
     rows = [(i + 1, line.split()) for i, line in enumerate(lines[first:], start=first) if line.strip()]
-    said = _whole(head.get("nRows"))
-    if said is not None and said != len(rows):
-        raise ParameterError(f"{path}: the head says nRows={said}, there are {len(rows)}; the file is cut or joined")
-    wide = _whole(head.get("nColumns"))
-    if wide is not None and wide != len(names):
-        raise ParameterError(f"{path}: the head says nColumns={wide}, there are {len(names)}; put the head right")
+    require_whole(path, head, rows=len(rows), columns=len(names))
     numbers = np.array([_numbers(path, number, cells, names) for number, cells in rows]).reshape(-1, len(names))
-    degrees = head.get("inDegrees", "yes").strip().lower() != "no"
     others = {key: value for key, value in head.items() if key not in ("nRows", "nColumns", "inDegrees", "version")}
     try:
         columns = {name: numbers[:, place] for place, name in enumerate(names) if place}
-        return MotionTable(numbers[:, 0], columns, degrees, lines[0].strip() or Path(path).stem, others)
+        return MotionTable(numbers[:, 0], columns, is_in_degrees(head), lines[0].strip() or Path(path).stem, others)
     except ParameterError as error:
         raise ParameterError(f"{path}: {error}") from error
-
-
-def _key(line: str) -> tuple[str, str]:
-    key, _, value = line.partition("=")
-    return key.strip(), value.strip()
-
-
-def _whole(word: str | None) -> int | None:
-    return int(word) if word is not None and word.isdecimal() else None
 
 
 def _numbers(path: str | Path, number: int, cells: list[str], names: list[str]) -> list[float]:
@@ -145,6 +130,6 @@ def write_motion(table: MotionTable, path: str | Path) -> None:
     rows = np.column_stack([table.time, *table.columns.values()]).tolist()
     keys = {"version": "1", "nRows": str(len(rows)), "nColumns": str(len(names)), **table.head}
     keys["inDegrees"] = "yes" if table.in_degrees else "no"
-    lines = [table.name, *(f"{key}={value}" for key, value in keys.items()), _HEAD_END, "\t".join(names)]
+    lines = [table.name, *(f"{key}={value}" for key, value in keys.items()), HEAD_END, "\t".join(names)]
     lines += ["\t".join(map(repr, row)) for row in rows]
     write_file(path, "\n".join(lines) + "\n")

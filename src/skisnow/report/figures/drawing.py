@@ -75,12 +75,12 @@ class Picture:
     @property
     def data_uri(self) -> str:
         """The SVG inside an attribute of the HTML, in fewer bytes than its file."""
-        return _data_uri(self.svg)
+        return data_uri(self.svg)
 
     @property
     def narrow_data_uri(self) -> str:
         """The same for a telephone; empty where there is none."""
-        return _data_uri(self.narrow) if self.narrow else ""
+        return data_uri(self.narrow)
 
     @property
     def files(self) -> dict[str, str | bytes]:
@@ -92,8 +92,9 @@ FORMS: Final = ("png", "svg", "pdf", "eps")
 Form: TypeAlias = Literal["png", "svg", "pdf", "eps"]
 
 
-def _data_uri(svg: str) -> str:
-    return "data:image/svg+xml;base64," + base64.b64encode(compact_svg(svg).encode()).decode("ascii")
+def data_uri(svg: str) -> str:
+    """A drawing inside an attribute of HTML; empty where there is none."""
+    return "data:image/svg+xml;base64," + base64.b64encode(compact_svg(svg).encode()).decode("ascii") if svg else ""
 
 
 def pictured(drawing: Drawing) -> Picture:

@@ -41,10 +41,10 @@ TITLE: Final = "Study"
 CARVED: Final = "carved turns"
 OTHER: Final = ""
 FIRST: Final = {
-    CARVE: ("edge_angle_deg", "10", "70", "13"),
-    OTHER: ("start.speed_m_per_s", "6", "12", "7"),
+    CARVE: ("edge_angle_deg", "13"),
+    OTHER: ("start.speed_m_per_s", "7"),
 }
-"""What varies at first: input, ends, number of values (modelling assumption)."""
+"""What varies at first: input, number of values (modelling assumption)."""
 UNLOADING: Final = "unloading_ratio"
 TIMES: Final = ("run.duration_s", "run.length_m", "start.speed_m_per_s")
 
