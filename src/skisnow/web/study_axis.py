@@ -31,7 +31,7 @@ _BEGINS: Final = {
     "edge_angle_deg": (10.0, 70.0),
     "load_N": (400.0, 1200.0),
     "H_V_N_per_mm3": (0.1, 10.0),
-    "S_f_N_per_mm2": (0.02, 0.2),
+    "S_f_N_per_mm2": (0.05, 0.5),
     "unloading_ratio": (1.0, 50.0),
     "moment_Nm": (-50.0, 50.0),
     "speed_m_per_s": (6.0, 12.0),
