@@ -46,20 +46,24 @@ TESTED := web$(comma)pandas$(comma)xarray$(comma)racing
 CORE := CMakeLists.txt $(wildcard build_backend/*.py src/core/*)
 COMPILER := $(shell command -v c++ || command -v g++ || command -v clang++)
 PIP := -m pip --disable-pip-version-check install --quiet
+locked = { $(BIN)/python $(PIP) --no-compile --require-hashes --requirement requirements/$(1).txt \
+	|| { echo "not all of requirements/$(1).txt could be installed: 'make LOCKED=no ...' takes what pyproject.toml allows"; exit 1; }; }
+# the core is built while the rest is fetched; all processors compile the modules, of which a few are not for this Python
 define install
 	@if [ "$(LOCKED)" = yes ]; then \
-		{ $(BIN)/python $(PIP) --require-hashes --requirement requirements/$(1).txt \
-		|| { echo "not all of requirements/$(1).txt could be installed: 'make LOCKED=no ...' takes what pyproject.toml allows"; exit 1; }; } \
-		&& { [ -n "$(COMPILER)" ] || $(BIN)/python $(PIP) --require-hashes --requirement requirements/compiler.txt; } \
-		&& $(BIN)/python $(PIP) --no-deps --no-build-isolation --editable .; \
+		$(call locked,build) && { [ -n "$(COMPILER)" ] || $(call locked,compiler); } || exit 1; \
+		$(BIN)/python $(PIP) --no-deps --no-build-isolation --editable . & core=$$!; \
+		( $(call locked,$(1)) ); fetched=$$?; \
+		wait $$core && [ $$fetched = 0 ] || exit 1; \
+		$(BIN)/python -m compileall -qq -j 0 $(VENV)/lib || true; \
 	else $(BIN)/python $(PIP) --upgrade 'pip>=25.1' && $(BIN)/python $(PIP) --editable '.[$(2)]' $(3); fi
 endef
 
-$(VENV)/.skisnow: pyproject.toml requirements/run.txt $(CORE) | $(BIN)/python
+$(VENV)/.skisnow: pyproject.toml requirements/build.txt requirements/run.txt $(CORE) | $(BIN)/python
 	$(call install,run,web)
 	@touch $@
 
-$(VENV)/.skisnow-dev: pyproject.toml requirements/dev.txt $(CORE) | $(BIN)/python
+$(VENV)/.skisnow-dev: pyproject.toml requirements/build.txt requirements/dev.txt $(CORE) | $(BIN)/python
 	$(call install,dev,$(TESTED),--group dev)
 	@touch $@ $(VENV)/.skisnow
 
@@ -149,6 +153,7 @@ COMPILE := $(TOOLS)/bin/uv --quiet --no-config pip compile --universal --python-
 lock: $(TOOLS)/.tools
 	$(COMPILE) --group dev $(addprefix --extra ,web pandas xarray racing) pyproject.toml requirements/build.in --output-file requirements/dev.txt
 	$(COMPILE) --extra web --constraint requirements/dev.txt pyproject.toml requirements/build.in --output-file requirements/run.txt
+	$(COMPILE) requirements/build.in --constraint requirements/dev.txt --output-file requirements/build.txt
 	$(COMPILE) requirements/tools.in --output-file requirements/tools.txt
 	$(COMPILE) requirements/compiler.in --output-file requirements/compiler.txt
 

@@ -187,11 +187,40 @@ def test_a_gpx_beside_a_run_names_what_is_missing_and_has_no_digits_that_nobody_
     told = capsys.readouterr()
     assert re.search(r"  largest 12 m, 28 % of the measured track's length, \d+ m along it\n", told.out)
     assert "A place is known to 3 m: no further digits are printed." in told.out
+    assert main([*words, "--fall-line-azimuth-deg", "0", "--known-to-m", "0.1"]) == 0
+    assert "  largest 12.3 m, 28 % of" in capsys.readouterr().out
     assert main([*words, "--fit-offset", "start,heading"]) == 0
     assert "  mean    below 1 m, below 1 % of the measured" in capsys.readouterr().out
     found = answer([*words[1:], "--fall-line-azimuth-deg", "0"], capsys)
     assert (found["in_one_frame"], found["known_to_m"]) == (True, 3.0)
     assert found["nearest"]["max_m"] == pytest.approx(12.34, abs=1e-3)
+
+
+@pytest.mark.parametrize("azimuth", [20.0, 130.0, 250.0])
+def test_a_run_laid_onto_a_track_of_which_only_the_compass_is_known(
+    azimuth: float, tmp_path: Path, capsys: Printed
+) -> None:
+    """The slope falls by 10 degrees towards the azimuth: from above lengths down it are 1.5 % shorter, no more."""
+    along = np.linspace(0.0, 60.0, 301)
+    aside = 5.0 * np.sin(along / 6.0) + 3.0 * np.cos(along / 11.0)
+    run = write(tmp_path / "run.csv", np.column_stack([along, aside, 0.0 * along]))
+    down, to_left = (np.radians(azimuth + turn) for turn in (0.0, -90.0))
+    ahead = along * math.cos(math.radians(10.0))
+    north = ahead * np.cos(down) + aside * np.cos(to_left)
+    east = ahead * np.sin(down) + aside * np.sin(to_left)
+    lat, lon = 47.0 + north / 111_177.0, 11.0 + east / 76_057.0  # m in a degree there
+    up = 2000.0 - along * math.sin(math.radians(10.0))
+    table = np.column_stack([along / 5.0, lat, lon, up])[100:]
+    rows = [",".join(map(repr, row)) for row in table.tolist()]
+    (tmp_path / "there.csv").write_text("\n".join(["time,lat,lon,ele", *rows]), encoding="utf-8")
+    found = answer([str(run), str(tmp_path / "there.csv"), "--fit-offset", "start,heading"], capsys)
+    assert found["dimensions"] == 2
+    assert found["fitted"]["turned_deg"] == pytest.approx(math.remainder(90.0 - azimuth, 360.0), abs=1.0)
+    assert found["nearest"]["max_m"] < 0.5
+    [warning] = found["warnings"]
+    told = re.search(r"points (\d+\.\d)° from north", warning)
+    assert told is not None
+    assert float(told[1]) == pytest.approx(azimuth, abs=1.0)
 
 
 def test_two_tracks_in_degrees_are_put_on_one_plane(tmp_path: Path, capsys: Printed) -> None:

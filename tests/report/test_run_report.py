@@ -16,6 +16,7 @@ from skisnow.report.tables.run import energies_table, scenario_table
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.values import in_sections, scenario_values
 from skisnow.simulate.run import LOST, STORED, Run, SkiHistory
+from skisnow.units import DEGREE
 
 from ..conftest import without_png
 from .runs import circle_run
@@ -115,6 +116,25 @@ def test_the_headline_of_a_straight_run_is_its_speed(run: Run, tmp_path: Path) -
     page = write_run_report(straight, summary_of(run), tmp_path).read_text(encoding="utf-8")
     (headline,) = re.findall(r'<p class="headline">(.*?)</p>', page)
     assert headline == "Speed <strong>6.00 m/s</strong> (median; nine tenths of the time from 4.20 to 7.80\u00a0m/s)."
+
+
+def test_boots_that_are_moved_have_their_angles_and_forces(run: Run, html: str, tmp_path: Path) -> None:
+    """The left ski goes from flat to 30 degrees, the right one stays; nobody edges them at the scenario's angle."""
+    assert run.boots is not None
+    angle = np.stack([np.linspace(0.0, 30.0, len(run.time)), np.zeros(len(run.time))], axis=1) * DEGREE
+    across = np.stack([0.0 * angle, np.cos(angle), -np.sin(angle)], axis=2)
+    off = np.stack([0.0 * angle, np.sin(angle), np.cos(angle)], axis=2)
+    axes = np.stack([np.broadcast_to([1.0, 0.0, 0.0], across.shape), across, off], axis=2)
+    moved = replace(run, boots=replace(run.boots, axes=axes), boots_by="moved by edges.csv")
+    page = write_run_report(moved, summary_of(run), tmp_path).read_text(encoding="utf-8")
+    assert "edge angles from 0° to 30°" in page
+    assert "edge angle 30.0°" in html
+    assert "edge angle 30.0°" not in page
+    drawn = (tmp_path / "figures" / "boots.svg").read_text(encoding="utf-8")
+    assert all(word in drawn for word in ("edge angle (°)", "edging moment", "left ski"))
+    assert "Dotted: the radius" in html
+    assert "Dotted: the radius" not in page
+    assert not (tmp_path / "figures" / "balance.svg").exists()
 
 
 def test_energies_add_up(run: Run) -> None:

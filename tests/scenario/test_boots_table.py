@@ -14,6 +14,7 @@ from skisnow.geometry.boot_axes import angles_of, axes_of
 from skisnow.scenario import read_scenario, scenario_file
 from skisnow.scenario.boots import Boots
 from skisnow.scenario.boots_file import read_boots
+from skisnow.scenario.plausibility import implausible_values
 
 FLAT: dict[str, Any] = {
     "at": np.arange(4.0), "place": np.zeros((4, 2, 3)), "axes": np.tile(np.eye(3), (4, 2, 1, 1)),
@@ -71,9 +72,9 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
 @pytest.mark.parametrize(
     ("text", "name", "told"),
     [
-        (MOT.replace("2 20", "2 2O"), "a.mot", r"row 7, column left_edge_angle_deg: '2O' is no finite number"),
+        (MOT.replace("2 20", "2 2O"), "a.mot", r"row 8, column left_edge_angle_deg: '2O' is no finite number"),
         (MOT.replace("2 20", "2 inf"), "a.sto", r"'inf' is no finite number"),
-        (MOT.replace("2 20", "2"), "a.mot", "row 7: 1 cells stand under 2 names"),
+        (MOT.replace("2 20", "2"), "a.mot", "row 8: 1 cells stand under 2 names"),
         (MOT.replace("EndHeader\n", ""), "a.mot", "has no line endheader"),
         (MOT.replace("2 20\n", ""), "a.mot", r"a\.mot: the head says nRows=4, there are 3; it is cut or joined"),
         (MOT.replace("nRows=4", "nColumns=3"), "a.sto", r"a\.sto: the head says nColumns=3, there are 2"),
@@ -82,13 +83,17 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
             "a.mot",
             "inDegrees=no, and angles of boots are in degrees; multiply",
         ),
-        (MOT.replace("2 20", "2 -200"), "a.mot", r"row 7, column left_edge_angle_deg: -200 is beyond ±90"),
+        (MOT.replace("2 20", "2 -200"), "a.mot", r"row 8, column left_edge_angle_deg: -200 is beyond ±90"),
         (MOT.replace("2 20", "2 2,0"), "a.mot", r"'2,0' is no finite number; write one with a decimal point$"),
         ("time_s,left_up_m,left_up_m\n", "a.csv", "the column left_up_m is there twice"),
         ("time_s,time,left_up_m\n", "a.csv", "needs one of the columns time_s"),
-        ("time_s,left_up_m\n0,1\n\n1\n", "a.csv", "row 3: 1 cells stand under 2 names"),
-        ("time_s,left_up_m\n0,1\n1,2\n2,3\n", "a.csv", r"a\.csv: boots need 4 rows or more"),
-        ("", "a.csv", "needs one of the columns"),
+        ("time_s,left_up_m\n0,1\n\n1\n", "a.csv", "row 4: 1 cells stand under 2 names"),
+        ("time_s,left_up_m\n0,1\n1,2\n2,3\n", "a.csv", r"a\.csv: 3 rows with poses; boots need 4 rows or more"),
+        ("", "a.csv", "no row with the names of columns"),
+        ("time_s,left_force_x_N\n" + "0,1\n" * 4, "a.csv", "no column is one of a boot. There are left_forward_m"),
+        ("left_up_m\n1\n", "a.csv", "needs one of the columns"),
+        ("time_s,left_up_m\n0,1\n1,2\n\n1,3\n2,4\n", "a.csv", "row 5, column time_s: 1 after 1; it must rise"),
+        (MOT, "a.trc", r"a\.trc: boots are read from \.csv, \.mot and \.sto"),
     ],
 )
 def test_tables_that_are_none_are_refused_with_their_place(tmp_path: Path, text: str, name: str, told: str) -> None:
@@ -114,3 +119,23 @@ def test_a_scenario_given_in_python_is_changed_as_a_file() -> None:
     assert (found.scenario.start.speed, found.values["start.speed_m_per_s"], found.files) == (3.0, 3.0, ())
     assert found.scenario.sledge == base.sledge
     assert scenario_file(base).scenario.start.speed == base.start.speed  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("clock", "rows", "end", "said"),
+    [
+        ("time_s", (0.0, 1.0, 2.0, 3.0), {"run.duration_s": 3.5}, "poses from 0 to 3 s of a run from 0 to 3.5 s"),
+        ("time_s", (0.5, 1.0, 2.0, 3.0), {"run.duration_s": 3.0}, "poses from 0.5 to 3 s of a run from 0 to 3 s"),
+        ("time_s", (0.0, 1.0, 2.0, 3.0), {"run.duration_s": 3.0}, ""),
+        ("distance_m", (0.0, 1.0, 2.0, 3.0), {"run.length_m": 9.0}, "poses from 0 to 3 m of a run from 0 to 9 m"),
+        ("distance_m", (-1.0, 1.0, 2.0, 9.5), {"run.length_m": 9.0}, ""),
+    ],
+)
+def test_boots_that_rest_in_a_run_are_told(
+    tmp_path: Path, clock: str, rows: tuple[float, ...], end: dict[str, float], said: str
+) -> None:
+    path = table(tmp_path, f"{clock},left_up_m\n" + "".join(f"{at},0\n" for at in rows))
+    asked = read_scenario("carved-46m", changes={"boots.file": str(path), **end})
+    told = [each for each in implausible_values(asked) if "boots" in each]
+    assert len(told) == bool(said)
+    assert all(said in each and str(path) in each for each in told)

@@ -95,6 +95,52 @@ def test_a_short_track_cannot_be_slid_out_of_sight() -> None:
         fitted_motion(simulated, measured, start=True, heading=True)
 
 
+def two_thirds_turned(angle: float) -> tuple[Polyline, Polyline]:
+    """A track and its second two thirds, turned and with noise: nothing of the same arc length lies together."""
+    noise = 0.01 * np.random.default_rng(3).normal(size=(len(ALONG), 2))
+    measured = turned(slalom(ALONG), angle, (30.0, 12.0, 0.0))[:, :2] + noise
+    return line_of(slalom(ALONG)[:, :2]), line_of(measured[len(ALONG) // 3 :])
+
+
+@pytest.mark.parametrize("angle", [-2.6, -1.3, 0.9, 1.7, 3.0])
+def test_a_heading_is_found_where_the_measured_track_begins_later(angle: float) -> None:
+    simulated, measured = two_thirds_turned(angle)
+    motion = fitted_motion(simulated, measured, start=True, heading=True)
+    assert motion.turned == pytest.approx(angle, abs=0.01)
+    assert motion.rms < 0.01
+    assert motion.rival is None
+
+
+def test_the_next_turn_of_a_slalom_is_a_rival_where_noise_hides_the_difference() -> None:
+    simulated, measured = two_thirds_turned(0.9)
+    noise = 0.06 * np.random.default_rng(4).normal(size=measured.place.shape)
+    motion = fitted_motion(simulated, line_of(measured.place + noise), start=True, heading=True)
+    assert motion.turned == pytest.approx(0.9, abs=0.02)
+    assert motion.rival is not None
+    assert np.linalg.norm(motion.rival.moved - motion.moved) == pytest.approx(12.0 * math.pi, rel=0.05)  # one turn
+
+
+def test_a_line_that_is_the_same_turned_by_half_a_turn_keeps_its_direction() -> None:
+    """A sine about its middle: only the way the tracks run tells the two answers apart."""
+    wave = np.column_stack([ALONG, 4.0 * np.sin(ALONG / 60.0 * 4.0 * math.pi)])
+    noise = 0.05 * np.random.default_rng(8).normal(size=wave.shape)
+    motion = fitted_motion(line_of(wave), line_of(wave + noise), start=True, heading=True)
+    assert motion.turned == pytest.approx(0.0, abs=0.01)
+    assert motion.rival is None
+
+
+def test_arcs_of_one_circle_have_a_rival() -> None:
+    """A longer arc with a little noise lies on the shorter one in many ways."""
+    angle = np.linspace(0.0, 2.0, 400)
+    simulated = line_of(10.0 * np.column_stack([np.cos(angle), np.sin(angle)]))
+    noise = 0.05 * np.random.default_rng(2).normal(size=(300, 2))
+    measured = line_of(10.0 * np.column_stack([np.cos(angle[:300] * 0.8), np.sin(angle[:300] * 0.8)]) + noise)
+    motion = fitted_motion(simulated, measured, start=True, heading=True)
+    assert motion.rival is not None
+    assert abs(math.remainder(motion.rival.turned - motion.turned, math.tau)) > math.radians(5.0)
+    assert motion.rms <= motion.rival.rms < 2.0 * motion.rms
+
+
 @pytest.mark.parametrize("later", [-40.0, -0.37, 0.0, 2.2])
 def test_start_time(later: float) -> None:
     place = slalom(ALONG)

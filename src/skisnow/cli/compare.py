@@ -50,6 +50,13 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="DEG",
         help="inclination of the plane slope, with --fall-line-azimuth-deg; left out: x stays horizontal",
     )
+    parser.add_argument(
+        "--known-to-m",
+        type=number("metres", lowest=0),
+        metavar="M",
+        help="how exactly the places of both are known, which no printed digit goes below; 0: print all. Left out: as "
+        "the receiver states, else by its kind",
+    )
     parser.add_argument("--from-above", action="store_true", help="leave the heights out")
     parser.add_argument(
         "--out",
@@ -106,7 +113,9 @@ def _compared(options: argparse.Namespace) -> Comparison:
             simulated = _read(options.simulated, origin=measured.origin)
         tracks = [_in_slope(track, options) for track in (simulated, measured)]
         time_from = options.time_from and options.time_from.replace("-", "_")
-        return compare_tracks(*tracks, fit=fit, time_from=time_from, from_above=options.from_above)
+        return compare_tracks(
+            *tracks, fit=fit, time_from=time_from, from_above=options.from_above, known_to=options.known_to_m
+        )
 
 
 def _read(path: Path, *, origin: GeodeticPoint | None = None) -> Track:

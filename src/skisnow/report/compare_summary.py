@@ -111,4 +111,5 @@ def fitted_words(fitted: Mapping[str, Any]) -> str:
 
 
 def _pair(found: Mapping[str, Any], exact: float) -> str:
-    return f"{metres(found['max_m'], exact)} and {metres(found['mean_m'], exact)}"
+    largest, mean = (metres(found[key], exact) for key in ("max_m", "mean_m"))
+    return f"both {mean}" if largest == mean else f"{largest} and {mean}"

@@ -10,6 +10,7 @@ from ..units import DEGREE
 from .figures.drawing import Drawing
 from .figures.run_along_ski import run_along_ski
 from .figures.run_balance import run_balance
+from .figures.run_boots import run_boots
 from .figures.run_course import run_course
 from .figures.run_energies import run_energies
 from .figures.run_grip import run_grip
@@ -59,14 +60,25 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         "motion",
         prose(
             "(a) Speed, (b) heading of the skis and (c) radius of the path of the middle between the boots. The radius "
-            "is left out where it is more than three times its median; dotted: the radius of a ski that is bent onto a "
-            "hard plane at {angle}° without twist.",
-            angle=f"{run.scenario.sledge.edge_angle / DEGREE:.3g}",
-        ),
+            "is left out where it is more than three times its median."
+        )
+        + _carved_radius(run),
         "Speed, heading and turn radius over time.",
         run_motion(run),
         wide=True,
     )
+    if run.scenario.skier is None and run.boots_by is not None:
+        yield Drawing(
+            "boots",
+            prose(
+                "(a) Edge angle of each boot to the snow's surface. Force of each ski on its boot, in the boot's axes: "
+                "(b) off the base, (c) across it. (d) Moment of the ski on its boot about the boot's long axis, "
+                "positive where it turns the left edge up. Each axis leaves one peak in a hundred out."
+            ),
+            "Edge angles of both boots, and forces and edging moment of the skis on them, over time.",
+            run_boots(run),
+            wide=True,
+        )
     if run.scenario.skier is not None:
         yield Drawing(
             "balance",
@@ -111,6 +123,16 @@ def run_drawings(run: Run) -> Iterator[Drawing]:
         "Stored energies and losses over time, stacked.",
         run_energies(run),
         wide=True,
+    )
+
+
+def _carved_radius(run: Run) -> Markup:
+    """What the dotted line is, which boots that move have not."""
+    if run.boots_by is not None:
+        return prose("")
+    return prose(
+        " Dotted: the radius of a ski that is bent onto a hard plane at {angle}° without twist.",
+        angle=f"{run.scenario.sledge.edge_angle / DEGREE:.3g}",
     )
 
 

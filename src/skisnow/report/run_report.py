@@ -17,6 +17,7 @@ from ..scenario.keys import SCENARIO_KEYS
 from ..simulate.run_gates import run_gates
 from ..simulate.run_summary import run_warnings
 from ..units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from .figures.run_course import edge_angles_of_skis
 from .number_formatting import counted, significant, whole
 from .pictures import write_pictures
 from .run_drawings import run_drawings
@@ -36,8 +37,8 @@ if TYPE_CHECKING:
 Json = dict[str, Any]
 FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
-FURTHER: Final = ("course", "balance")
-"""Those that a run with a course, and one with a skier, has beside them."""
+FURTHER: Final = ("course", "balance", "boots")
+"""Those that a run with a course, with a skier, or with boots that are moved, has beside them."""
 CHOICES: Final = frozenset(word for key in SCENARIO_KEYS.values() for word in key.choices)
 """Words of a scenario's file: they are the same in every language."""
 REPLAY: Final = "replay.html"
@@ -108,7 +109,7 @@ def run_page(
         Section("outcome", "Outcome", key=outcome_sentences(run), pictures=by_name.get("track", ())),
         *_course_section(run, by_name),
         Section("motion", "Speed, heading, turn radius", pictures=by_name.get("motion", ())),
-        *_balance_section(by_name),
+        *_boots_sections(by_name),
         Section("along-skis", "Along the skis", pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())]),
         Section("energies", "Energies", pictures=by_name.get("energies", ()), tables=[energies_table(dict(summary))]),
     ]
@@ -130,9 +131,9 @@ def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[
     return [Section("gates", "Gates", words=words, pictures=by_name.get("course", ()), tables=[gates_table(result)])]
 
 
-def _balance_section(by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
-    pictures = by_name.get("balance")
-    return [Section("balance", "Balance of the skier", pictures=pictures)] if pictures else []
+def _boots_sections(by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
+    titles = {"balance": "Balance of the skier", "boots": "Boots"}
+    return [Section(name, title, pictures=by_name[name]) for name, title in titles.items() if name in by_name]
 
 
 def _header(run: Run, *, has_replay: bool) -> Header:
@@ -152,6 +153,10 @@ def _header(run: Run, *, has_replay: bool) -> Header:
 def _edged(run: Run) -> str:
     if run.scenario.skier is not None:
         return "edged by the skier"
+    if run.boots_by is not None:
+        angles = edge_angles_of_skis(run) / DEGREE
+        low, high = (significant(float(each), 2) for each in (angles.min(), angles.max()))
+        return f"edge angles from {low}° to {high}°"
     return f"edge angle {significant(run.scenario.sledge.edge_angle / DEGREE)}°"
 
 
@@ -227,7 +232,7 @@ def outcome_sentences(run: Run) -> list[Markup]:
     sentences.append(
         prose(
             "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m, "
-            "5 % of the time below {lower} m.",
+            "5 % of the time below {lower} m, without the first half second.",
             first=_angle(float(run.heading[0])), last=_angle(float(run.heading[-1])),
             radius=_number(run.turn_radius_quantile(0.5)), lower=_number(run.turn_radius_quantile(0.05)),
         )

@@ -9,14 +9,15 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Kind: TypeAlias = Literal[
-    "text", "words", "codes", "yes", "tick", "count", "angle", "seconds", "number", "p", "interval", "range", "estimate"
-]
+    "text", "words", "codes", "yes", "tick", "count", "angle", "hundredths", "number", "p", "interval", "range",
+    "estimate",
+]  # fmt: skip
 """What a cell holds.
 
 text: what a user wrote; words: our own, with symbols; codes: a list of names; yes: a truth value; tick: the same, shown
-only where true; count: an integer; angle: degrees as they were set; seconds: a time to a hundredth, as races are timed;
-number: a float or None; p: a p value; interval: a pair or None; range: the same, minimum and maximum; estimate: (value,
-pair), in HTML and LaTeX one cell.
+only where true; count: an integer; angle: degrees as they were set; hundredths: two decimals, as races are timed and
+poles set; number: a float or None; p: a p value; interval: a pair or None; range: the same, minimum and maximum;
+estimate: (value, pair), in HTML and LaTeX one cell.
 """
 
 ROWS_IN_HTML: Final = 300
@@ -48,7 +49,7 @@ class Column:
     @property
     def numeric(self) -> bool:
         """Whether the cells are set right-aligned."""
-        return self.kind in ("count", "angle", "seconds", "number", "p", "interval", "range", "estimate")
+        return self.kind in ("count", "angle", "hundredths", "number", "p", "interval", "range", "estimate")
 
 
 @dataclass(frozen=True)

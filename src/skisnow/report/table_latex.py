@@ -27,7 +27,7 @@ _LETTERS_UPRIGHT: Final = 115
 _LONGEST_TEXT: Final = 30
 _TEXT_WIDTH: Final = "45mm"
 """Of a column with longer texts, which are broken."""
-_ALIGNED: Final = ("number", "count", "angle", "seconds")
+_ALIGNED: Final = ("number", "count", "angle", "hundredths")
 """Kinds of single numbers, which siunitx aligns by their points."""
 _COMMAND: Final = re.compile(r"\\[A-Za-z]+|[{}$]")
 _PLAIN: Final = re.compile(r"(-?)(\d+)(?:\.(\d+))?")
@@ -151,7 +151,7 @@ _SET: Final[dict[Kind, Callable[[Any, int], str]]] = {
     "tick": lambda value, _: r"$\checkmark$" if value else "",
     "count": lambda value, _: str(value),
     "angle": lambda value, _: f"{value:.6g}",
-    "seconds": lambda value, _: f"{value:.2f}",
+    "hundredths": lambda value, _: f"{value:.2f}",
     "number": lambda value, digits: number_formatting.significant(value, digits, style="latex"),
     "p": lambda value, _: number_formatting.probability(value, style="latex"),
     "interval": lambda value, digits: f"{{{number_formatting.interval(value, digits, style='latex')}}}",

@@ -7,7 +7,7 @@ import io
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,7 @@ from ..given import plain_text
 from ..given.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
 from ..inputs import meant
 from ..units import DEGREE
-from .boots import Boots
+from .boots import FEWEST_POSES, Boots
 
 SIDES: Final = ("left", "right")
 ANGLES: Final = ("edge_angle_deg", "pitch_deg", "heading_deg")
@@ -30,6 +30,10 @@ _EDGE: Final = "_edge_angle_deg"
 _ON_ITS_SIDE: Final = 90.0
 """Edge angle (°) of a ski that stands on its edge: beyond it the base looks up."""
 _MOST_BYTES: Final = 1 << 28
+_OF_OPENSIM: Final = (".mot", ".sto")
+
+Row: TypeAlias = tuple[int, list[str]]
+"""Its line in the file, counted from 1, and its cells."""
 
 
 def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float = 0.0) -> Boots:
@@ -49,11 +53,14 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
         value are named), or it is no table of boots.
     """
     path = Path(path)
-    rows, first = _rows(path, plain_text(path, most_bytes=_MOST_BYTES))
-    head = [name.strip() for name in rows[0]] if rows else []
+    (_, names), *rows = _rows(path, plain_text(path, most_bytes=_MOST_BYTES))
+    head = [name.strip() for name in names]
     _require_columns(path, head)
-    table = {name: _column(path, rows[1:], head, place, first) for place, name in enumerate(head) if _is_read(name)}
+    table = {name: _column(path, rows, head, place) for place, name in enumerate(head) if _is_read(name)}
     clock = next(name for name in ("time_s", "time", "distance_m") if name in table)
+    if len(rows) < FEWEST_POSES:
+        raise ParameterError(f"{path}: {len(rows)} rows with poses; boots need {FEWEST_POSES} rows or more")
+    _require_rising(path, clock, rows, table[clock])
     try:
         place, axes = _of_slope(table) if "left_x_m" in head else _of_sledge(table, edge_angle, stance_width)
         return Boots(
@@ -68,27 +75,43 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
         raise ParameterError(f"{path}: {error}") from error
 
 
-def _rows(path: Path, text: str) -> tuple[list[list[str]], int]:
-    """Rows of cells from the head on, and the file's line of the first."""
-    if path.suffix.lower() not in (".mot", ".sto"):
-        try:
-            return [row for row in csv.reader(io.StringIO(text)) if any(row)], 2
-        except csv.Error as error:
-            raise ParameterError(f"{path} is no CSV text ({error})") from error
+def _rows(path: Path, text: str) -> list[Row]:
+    """Rows that are not blank, from the one with the names of columns on."""
     lines = text.splitlines()
-    ends = [i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END]
-    if not ends:
-        raise ParameterError(f"{path} has no line {HEAD_END}, which ends the head of a .mot or .sto file; add it")
-    rows = [line.split() for line in lines[ends[0] + 1 :] if line.strip()]
-    said = head_of_motion(lines[: ends[0]])
-    names = rows[0] if rows else []
-    require_whole(path, said, rows=max(len(rows) - 1, 0), columns=len(names))
+    if path.suffix.lower() in _OF_OPENSIM:
+        rows, said = _behind_head(path, lines)
+    elif path.suffix.lower() == ".csv":
+        rows, said = _of_csv(path, text), {}
+    else:
+        raise ParameterError(f"{path}: boots are read from .csv, .mot and .sto; give the file the ending of what it is")
+    if not rows:
+        raise ParameterError(f"{path}: there is no row with the names of columns")
+    names = rows[0][1]
+    require_whole(path, said, rows=len(rows) - 1, columns=len(names))
     if any(name.endswith(ANGLES) for name in names) and not is_in_degrees(said):
         raise ParameterError(
             f"{path}: the head says inDegrees=no, and angles of boots are in degrees; multiply them by 57.29578 and "
             "write inDegrees=yes"
         )
-    return rows, ends[0] + 3
+    return rows
+
+
+def _of_csv(path: Path, text: str) -> list[Row]:
+    table = csv.reader(io.StringIO(text))
+    try:
+        return [(table.line_num, row) for row in table if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        raise ParameterError(f"{path} is no CSV text ({error})") from error
+
+
+def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str]]:
+    """Rows of OpenSim's table, and what its head says."""
+    ends = [i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END]
+    if not ends:
+        raise ParameterError(f"{path} has no line {HEAD_END}, which ends the head of a .mot or .sto file; add it")
+    begin = ends[0] + 1
+    rows = [(number, line.split()) for number, line in enumerate(lines[begin:], begin + 1) if line.strip()]
+    return rows, head_of_motion(lines[: ends[0]])
 
 
 def _is_read(name: str) -> bool:
@@ -110,29 +133,40 @@ def _require_columns(path: Path, head: list[str]) -> None:
     clocks = [name for name in known[:3] if name in head]
     if len(clocks) != 1:
         raise ParameterError(f"{path}: it needs one of the columns time_s (time in .mot) and distance_m")
+    if not any(_is_read(name) and name not in clocks for name in head):
+        raise ParameterError(f"{path}: no column is one of a boot. There are {', '.join(known[3:])}")
     needed = [f"{side}_{name}" for side in SIDES for name in (*OF_SLOPE, *ANGLES)] if "left_x_m" in head else []
     for name in needed:
         if name not in head:
             raise ParameterError(f"{path}: the column {name} is missing; boots in the slope's frame need every one")
 
 
-def _column(path: Path, rows: list[list[str]], head: list[str], place: int, first: int) -> npt.NDArray[np.float64]:
+def _require_rising(path: Path, clock: str, rows: list[Row], at: npt.NDArray[np.float64]) -> None:
+    for (line, _), before, after in zip(rows[1:], at[:-1], at[1:], strict=True):
+        if not after > before:
+            raise ParameterError(
+                f"{path}, row {line}, column {clock}: {after:g} after {before:g}; it must rise. Put the rows in order, "
+                "or leave one of two with the same pose out"
+            )
+
+
+def _column(path: Path, rows: list[Row], head: list[str], place: int) -> npt.NDArray[np.float64]:
     values = np.empty(len(rows))
-    for i, row in enumerate(rows):
+    for i, (line, row) in enumerate(rows):
         if len(row) != len(head):
-            raise ParameterError(f"{path}, row {i + first}: {len(row)} cells stand under {len(head)} names of columns")
+            raise ParameterError(f"{path}, row {line}: {len(row)} cells stand under {len(head)} names of columns")
         try:
             values[i] = float(row[place])
         except ValueError:
             values[i] = math.nan
         if not math.isfinite(values[i]):
             raise ParameterError(
-                f"{path}, row {i + first}, column {head[place]}: {row[place].strip()!r} is no finite number; write one"
+                f"{path}, row {line}, column {head[place]}: {row[place].strip()!r} is no finite number; write one"
                 f"{' with a decimal point' if ',' in row[place] else ''}"
             )
         if head[place].endswith(_EDGE) and abs(values[i]) > _ON_ITS_SIDE:
             raise ParameterError(
-                f"{path}, row {i + first}, column {head[place]}: {values[i]:g} is beyond ±{_ON_ITS_SIDE:g}, a ski "
+                f"{path}, row {line}, column {head[place]}: {values[i]:g} is beyond ±{_ON_ITS_SIDE:g}, a ski "
                 "on its side; put the row right or leave it out"
             )
     return values

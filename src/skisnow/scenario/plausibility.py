@@ -29,6 +29,7 @@ def implausible_values(scenario: Scenario) -> tuple[str, ...]:
         *_like_another_unit(scenario),
         *_outside_ranges(scenario),
         *_beside_rules(scenario),
+        *_short_boots(scenario),
     )
 
 
@@ -63,6 +64,20 @@ def _beside_rules(scenario: Scenario) -> tuple[str, ...]:
     else:
         drop = float(heights_of(scenario.slope, first_x, first_y) - heights_of(scenario.slope, last_x, last_y))
     return course_warnings(course, drop=drop)
+
+
+def _short_boots(scenario: Scenario) -> list[str]:
+    boots = scenario.boots
+    if boots is None:
+        return []
+    end, unit = (scenario.stop.duration, "s") if boots.over == "time" else (scenario.stop.length, "m")
+    first, last = float(boots.at[0]), float(boots.at[-1])
+    if end is None or (first <= 0.0 and last >= end):
+        return []
+    return [
+        f"boots.file ({boots.source}) has poses from {first:g} to {last:g} {unit} of a run from 0 to {end:g} {unit}: "
+        "before and after them the boots rest"
+    ]
 
 
 ABOUT: Final = "a simulated run"

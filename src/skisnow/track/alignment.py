@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy.typing as npt
 from scipy.optimize import minimize_scalar
 
 from ..errors import FitError, ParameterError
+from ..units import DEGREE
 from .nearest_place import NearestPlaces, Path
 from .polyline import Polyline, polyline
 from .three_distances import EXACTNESS
@@ -29,6 +30,12 @@ PLACES: Final = 2048
 """Equal steps of the measured track over which squares are summed: the sum stands for an integral over its length."""
 LEAST_SHARE: Final = 0.5
 """Of the places, or of the shorter time, that must stay in the comparison: a fit may not slide a track out of sight."""
+HEADINGS: Final = 8
+"""Directions at equal angles from which a heading is sought: fewer miss turns that look alike from near by."""
+RIVAL: Final = 2.0
+"""A second answer whose rms distance is within this factor of the best is told."""
+_ANOTHER: Final = 5.0 * DEGREE
+"""Answers turned by more, or that move an end of the track by more than this times its length, are two."""
 DETERMINED: Final = 1e-3
 """Directions whose singular value is below this part of the largest are left as they are, and said."""
 _BETTER: Final = 0.99
@@ -51,11 +58,17 @@ class Motion:
         About the vertical through its first point (rad), positive to the left.
     undetermined
         How many directions the tracks do not tell, such as along two straight lines; nothing was moved along them.
+    rms
+        Of the nearest distances it leaves (m); infinite where it is no answer.
+    rival
+        The best answer that is turned otherwise, where it is about as good.
     """
 
     moved: FloatArray
     turned: float
     undetermined: int = 0
+    rms: float = math.inf
+    rival: Motion | None = None
 
     def applied(self, line: Polyline) -> Polyline:
         """The whole track, moved."""
@@ -86,48 +99,82 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
     """Least squares of the nearest distance over the measured track's length.
 
     Gauss–Newton steps with the nearest places found anew each time. Places beyond the ends of the simulated track take
-    no part. Begun with the tracks as they lie, and with the best overlay at equal arc length; the second answer counts
-    only where it is better, by mean square over the share of places that take part.
+    no part. Begun with the tracks as they lie, with the best overlay at equal arc length and, for a heading, in
+    `HEADINGS` directions. An answer counts only where it is better than those before, by mean square over the share of
+    places that take part; one in which the simulated track runs against the measured one only where there is no other.
 
     Raises
     ------
     FitError
-        Neither start leads to an answer in which half of the measured track has something beside it.
+        No beginning leads to an answer in which half of the measured track has something beside it.
     """
     path = Path(simulated.place)
     places = measured.at_arc_length(np.linspace(0.0, measured.length, PLACES + 1))
     begins = [Motion(np.zeros(places.shape[1]), 0.0)]
     begins.append(_overlay(simulated, measured, start=start, heading=heading))
-    found = [_settled(path, places, begin, start=start, heading=heading) for begin in begins]
-    (as_they_lie, first), (overlaid, second) = found
-    if not math.isfinite(min(as_they_lie, overlaid)):
+    if heading:
+        angles = np.linspace(0.0, 2.0 * math.pi, HEADINGS, endpoint=False) + begins[-1].turned
+        begins += [_overlay(simulated, measured, start=start, heading=True, turned=float(each)) for each in angles[1:]]
+    settled = [_settled(path, places, begin, start=start, heading=heading) for begin in begins]
+    answers = [each for each in settled if math.isfinite(each.rms)]
+    if not answers:
         raise FitError(
             f"start and heading cannot be fitted: less than {100 * LEAST_SHARE:g} % of the measured track then has the "
             "simulated one beside it, or the steps do not settle. Look at both tracks without a fit"
         )
+    answers = [each for each in answers if _runs_along(path, places, each)] or answers
     exact = (EXACTNESS * measured.length) ** 2
-    return second if overlaid + exact < _BETTER * as_they_lie else first
+    best = answers[0]
+    for each in answers[1:]:
+        if each.rms**2 + exact < _BETTER * best.rms**2:
+            best = each
+    others = [each for each in answers if _is_another(each, best, simulated)]
+    rival = min(others, key=lambda each: each.rms, default=None)
+    return replace(best, rival=rival if rival is not None and rival.rms < RIVAL * best.rms + exact**0.5 else None)
 
 
-def _overlay(simulated: Polyline, measured: Polyline, *, start: bool, heading: bool) -> Motion:
-    """Turned and moved so that places at equal arc length are as near as they can be (Kabsch, about the vertical)."""
+def _is_another(one: Motion, other: Motion, line: Polyline) -> bool:
+    """Whether two answers lay the track elsewhere; along what the tracks do not tell they may differ."""
+    if abs(math.remainder(one.turned - other.turned, math.tau)) > _ANOTHER:
+        return True
+    ends = (each.applied(line).place[[0, -1]] for each in (one, other))
+    apart = float(np.linalg.norm(np.subtract(*ends), axis=1).max())
+    return not (one.undetermined or other.undetermined) and apart > _ANOTHER * line.length
+
+
+def _runs_along(path: Path, places: FloatArray, motion: Motion) -> bool:
+    """Whether both tracks run the same way, on most of the measured one."""
+    local, found = _seen(path, places, motion)
+    step = np.diff(local, axis=0)
+    return float(np.sign((step * found.direction[1:]).sum(axis=1)).mean()) >= 0.0
+
+
+def _overlay(
+    simulated: Polyline, measured: Polyline, *, start: bool, heading: bool, turned: float | None = None
+) -> Motion:
+    """Turned and moved so that places at equal arc length are as near as they can be (Kabsch, about the vertical).
+
+    With an angle (rad) moved alone, that far turned.
+    """
     arc_length = np.linspace(0.0, min(simulated.length, measured.length), PLACES + 1)
     origin = simulated.place[0]
     own, other = simulated.at_arc_length(arc_length) - origin, measured.at_arc_length(arc_length) - origin
     centre = (own.mean(axis=0), other.mean(axis=0)) if start else (np.zeros_like(origin), np.zeros_like(origin))
     a, b = (own - centre[0])[:, :2], (other - centre[1])[:, :2]
-    turned = math.atan2(float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()), float((a * b).sum())) if heading else 0.0
+    if turned is None:
+        twist = float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum())
+        turned = math.atan2(twist, float((a * b).sum())) if heading else 0.0
     return Motion(centre[1] - _turn(turned, len(origin)) @ centre[0], turned)
 
 
-def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, heading: bool) -> tuple[float, Motion]:
-    """The answer from one beginning with its mean square over the share of places (m²), infinite without an answer."""
+def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, heading: bool) -> Motion:
+    """The answer from one beginning; its mean square is over the share of places, and infinite without an answer."""
     size = math.inf
     for _ in range(_ROUNDS):
         local, found = _seen(path, places, motion)
         inside = ~found.beyond
         if inside.mean() < LEAST_SHARE:
-            return math.inf, motion
+            return motion
         matrix, rest = _equations(path, local, found, inside, motion, start=start, heading=heading)
         step, undetermined = _least_norm(matrix, rest)
         moved = step[: places.shape[1]] if start else np.zeros(places.shape[1])
@@ -137,10 +184,11 @@ def _settled(path: Path, places: FloatArray, motion: Motion, *, start: bool, hea
         if size < _SETTLED:
             break
     if size > _GOOD_ENOUGH:
-        return math.inf, motion
+        return motion
     found = _seen(path, places, motion)[1]
     inside = ~found.beyond
-    return float(np.mean(found.distance[inside] ** 2) / inside.mean()) if inside.any() else math.inf, motion
+    square = float(np.mean(found.distance[inside] ** 2) / inside.mean()) if inside.any() else math.inf
+    return replace(motion, turned=math.remainder(motion.turned, math.tau), rms=math.sqrt(square))
 
 
 def _seen(path: Path, places: FloatArray, motion: Motion) -> tuple[FloatArray, NearestPlaces]:

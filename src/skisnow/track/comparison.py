@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Final, get_args
@@ -12,10 +13,10 @@ from ..errors import ParameterError
 from ..former_names import formerly
 from ..shown import Facts, Shown, amount
 from ..units import DEGREE
-from .alignment import OFFSETS, fitted_motion, fitted_time, require_offsets
+from .alignment import OFFSETS, Motion, fitted_motion, fitted_time, require_offsets
 from .apart import Apart, Numbers, numbers_of
 from .common_clock import FIRST_POINTS, Clock, TimeFrom, common_clock, lacking_time
-from .known_to import known_to
+from .known_to import known_to as place_known_to
 from .nearest_place import Path
 from .polyline import Polyline, compared_points, polyline_of
 from .solution import inexact_sentence
@@ -24,6 +25,7 @@ from .track import Axes, Track
 
 FARTHEST: Final = 1000.0
 """Tracks that are nowhere nearer to each other (m) are not of one slope."""
+_PLACED: Final = frozenset({"start", "heading"})
 MOSTLY: Final = 0.9
 """Share of the measured track below which it is said that not all of it was compared."""
 DEFINITIONS: Final = {
@@ -89,6 +91,10 @@ class Fitted(Shown):
         How much later (s) the simulated track's places are looked up than before the fit.
     undetermined
         How many directions the tracks do not tell; nothing was moved along them.
+    rms
+        Of the nearest distances that were made least (m); None where the time alone was fitted.
+    rival
+        Another move that leaves the simulated track about as near; None where there is none.
     before
         The comparison without the fit.
     """
@@ -98,6 +104,8 @@ class Fitted(Shown):
     turned: float
     later: float
     undetermined: int
+    rms: float | None
+    rival: Motion | None
     before: Comparison
 
     def _facts(self) -> Facts:
@@ -180,6 +188,7 @@ def compare_tracks(
     fit: Collection[str] = (),
     time_from: TimeFrom | None = None,
     from_above: bool = False,
+    known_to: float | None = None,
 ) -> Comparison:
     """Hold a simulated track against a measured one.
 
@@ -194,6 +203,8 @@ def compare_tracks(
         "first_point": each track's own. None: the clock, but the first points where only one of them has a date.
     from_above
         Without the heights, even where both tracks have them. Where one lacks heights it is so anyway.
+    known_to
+        How exactly places are known (m), 0 or more; None: `skisnow.track.known_to` says it of each.
 
     Returns
     -------
@@ -219,30 +230,40 @@ def compare_tracks(
     require_offsets(fit)
     if time_from not in (None, *get_args(TimeFrom)):
         raise ParameterError(f"time is counted from first_point or clock, not from {time_from!r}")
-    dimensions, seen = _dimensions(simulated, measured, from_above=from_above)
+    if known_to is not None and not (math.isfinite(known_to) and known_to >= 0.0):
+        raise ParameterError(f"places are known to 0 m or more, not to {known_to!r}")
+    dimensions, seen = _dimensions(simulated, measured, from_above=from_above, fit=fit)
     lines = polyline_of(simulated, dimensions=dimensions), polyline_of(measured, dimensions=dimensions)
     clock = common_clock(simulated, measured, time_from)
     names = (simulated.name, measured.name)
+    placed = set(fit) >= _PLACED
     warnings = _warnings(simulated, measured, dimensions)
+    together = _in_one_frame(simulated, measured)
+    if not together and not placed:
+        warnings.append(f"{_two_frames(simulated, measured)}; their coordinates are compared as they stand")
     plain = _held(lines, clock, names, seen)
     if fit:
         plain = _with_fit(plain, set(fit), clock)
     _require_near(plain.simulated, plain.measured, names)
+    if not together and plain.fitted is not None and placed:
+        warnings.append(f"{_two_frames(simulated, measured)}; {_pointing(plain.fitted, simulated, measured)}")
     return replace(
         plain,
         axes=measured.axes,
-        warnings=(*warnings, *_short(plain)),
-        in_one_frame=_in_one_frame(simulated, measured) or {"start", "heading"} <= set(fit),
-        known_to=max(known_to(simulated), known_to(measured)),
+        warnings=(*warnings, *_short(plain), *_rivalled(plain)),
+        in_one_frame=together or placed,
+        known_to=max(map(place_known_to, (simulated, measured))) if known_to is None else known_to,
     )
 
 
 compared = formerly("compared", compare_tracks)
 
 
-def _dimensions(simulated: Track, measured: Track, *, from_above: bool) -> tuple[int, str]:
+def _dimensions(simulated: Track, measured: Track, *, from_above: bool, fit: Collection[str]) -> tuple[int, str]:
     if from_above:
         return 2, "from above, as asked"
+    if set(fit) >= _PLACED and not _in_one_frame(simulated, measured):
+        return 2, "from above: heights in two frames are not the same"
     for track in (simulated, measured):
         usable, flat = int(track.usable.sum()), int((track.usable & ~np.isfinite(track.place[:, 2])).sum())
         if flat:
@@ -287,16 +308,26 @@ def _at_equal_time(simulated: Polyline, measured: Polyline, clock: Clock) -> Dis
 
 
 def _with_fit(plain: Comparison, fit: set[str], clock: Clock) -> Comparison:
-    simulated, moved, turned, left = plain.simulated, np.zeros(plain.dimensions), 0.0, 0
+    simulated, motion = plain.simulated, Motion(np.zeros(plain.dimensions), 0.0)
     if fit & {"start", "heading"}:
         motion = fitted_motion(simulated, plain.measured, start="start" in fit, heading="heading" in fit)
-        simulated, moved, turned, left = motion.applied(simulated), motion.moved, motion.turned, motion.undetermined
+        simulated = motion.applied(simulated)
     later = _fitted_time(simulated, plain) - clock.ahead if "time" in fit else 0.0
     origin = f"{clock.origin}, with the fitted offset" if "time" in fit else clock.origin
     fitted_clock = Clock(clock.ahead + later, origin, None if "time" in fit else clock.reason)
     found = _held((simulated, plain.measured), fitted_clock, plain.names, plain.seen)
     what = tuple(word for word in OFFSETS if word in fit)
-    return replace(found, fitted=Fitted(what, tuple(float(value) for value in moved), turned, later, left, plain))
+    fitted = Fitted(
+        what=what,
+        moved=tuple(float(value) for value in motion.moved),
+        turned=motion.turned,
+        later=later,
+        undetermined=motion.undetermined,
+        rms=motion.rms if math.isfinite(motion.rms) else None,
+        rival=motion.rival,
+        before=plain,
+    )
+    return replace(found, fitted=fitted)
 
 
 def _fitted_time(simulated: Polyline, plain: Comparison) -> float:
@@ -326,12 +357,22 @@ def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
         inexact = inexact_sentence(track.name, track.solution)
         if inexact:
             warnings.append(inexact)
-    if not _in_one_frame(simulated, measured):
-        warnings.append(
-            f"the tracks are not in one frame ({simulated.name}: {simulated.frame}; "
-            f"{measured.name}: {measured.frame}); their coordinates are compared as they stand"
-        )
     return warnings
+
+
+def _two_frames(simulated: Track, measured: Track) -> str:
+    return f"the tracks are not in one frame ({simulated.name}: {simulated.frame}; {measured.name}: {measured.frame})"
+
+
+def _pointing(fitted: Fitted, simulated: Track, measured: Track) -> str:
+    """Which way the simulated track's x lies where it was laid onto a track that knows the compass."""
+    if measured.axes != "east_north_up" or simulated.axes == "east_north_up":
+        return "start and heading were fitted from above"
+    azimuth = (90.0 - fitted.turned / DEGREE) % 360.0
+    return (
+        f"laid onto the measured track from above, x of {simulated.name} points {azimuth:.1f}° from north. If x is "
+        "the fall line, give this azimuth and the slope's angle: then heights count, and lengths are those on the slope"
+    )
 
 
 def _in_one_frame(simulated: Track, measured: Track) -> bool:
@@ -350,3 +391,16 @@ def _short(found: Comparison) -> list[str]:
                 "measured track could be compared"
             )
     return warnings
+
+
+def _rivalled(found: Comparison) -> list[str]:
+    if found.fitted is None or found.fitted.rival is None:
+        return []
+    fitted, rival = found.fitted, found.fitted.rival
+    other, chosen = (f"{each.turned / DEGREE:.0f}°" for each in (rival, fitted))
+    there, here = (" and ".join(f"{each:.1f}" for each in one.moved[:2]) for one in (rival, fitted))
+    return [
+        f"where the simulated track lies is not certain: moved by {there} m and turned by {other}, instead of {here} m "
+        f"and {chosen}, it is about as near (rms {amount(rival.rms, 'm')} instead of {amount(fitted.rms, 'm')}). Say "
+        "which way the slope falls, if you know, or compare a longer stretch"
+    ]

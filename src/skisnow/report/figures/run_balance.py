@@ -32,9 +32,9 @@ def run_balance(run: Run) -> Figure:
     leans.set_ylabel("lean, edge angle (°)\nto the left +")
     left = np.cross(np.array([0.0, 0.0, 1.0]), boots.axes[:, :, 0])
     side = np.einsum("nka,nka->nk", boots.force, left)
-    _both(loads, run, balance.load)
+    draw_both(loads, run, balance.load)
     loads.set_ylabel("load (N)")
-    _both(sides, run, side)
+    draw_both(sides, run, side)
     sides.set_ylabel("side force (N)\nto the left +")
     for axes in (leans, loads, sides):
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
@@ -46,10 +46,11 @@ def run_balance(run: Run) -> Figure:
     return figure
 
 
-def _both(axes: Axes, run: Run, values: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
+def draw_both(axes: Axes, run: Run, values: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
     """Both skis; the axis holds all but the last hundredth of peaks."""
     for ski, (name, colour) in enumerate((("left ski", BLUE), ("right ski", ORANGE))):
-        axes.plot(run.time, values[:, ski], color=colour, linewidth=0.8, label=name)
+        hidden = ski == 0 and np.allclose(values[:, 0], values[:, 1])
+        axes.plot(run.time, values[:, ski], color=colour, linewidth=2.4 if hidden else 0.8, label=name)
     low, high = np.quantile(values, [0.005, 0.995])
     room = 0.25 * max(high - low, 1.0)
     axes.set_ylim(low - 0.3 * room, high + room)

@@ -35,10 +35,15 @@ def run_course(run: Run) -> Figure:
 
 def edge_angles(run: Run) -> FloatArray:
     """Angle of the bases at the boots to the snow's surface, mean of both skis, positive: left edges down (rad)."""
+    return edge_angles_of_skis(run).mean(axis=1)
+
+
+def edge_angles_of_skis(run: Run) -> FloatArray:
+    """The same of each ski, (n, 2), or (n, 1) of skis that are edged alike."""
     normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
     if run.boots is not None:
         left = run.boots.axes[:, :, 1]
     else:
         angle = run.scenario.sledge.edge_angle
         left = (run.attitude @ np.array([0.0, np.cos(angle), -np.sin(angle)]))[:, None]
-    return np.asarray(np.arcsin(np.clip(-np.einsum("nka,na->nk", left, normal), -1.0, 1.0)).mean(axis=1))
+    return np.asarray(np.arcsin(np.clip(-np.einsum("nka,na->nk", left, normal), -1.0, 1.0)))

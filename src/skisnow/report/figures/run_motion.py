@@ -44,7 +44,7 @@ def _radius(axes: Axes, run: Run) -> None:
     axes.plot(run.time, values, color=BLUE)
     axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     angle = run.scenario.sledge.edge_angle
-    if angle != 0.0:
+    if angle != 0.0 and run.boots_by is None:
         carved = math.copysign(run.scenario.ski.sidecut_radius_of_three_widths * math.cos(angle), angle)
         axes.axhline(carved, color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9)
         axes.annotate(

@@ -69,7 +69,7 @@ _RC: Final[dict[str, Any]] = {
     "lines.markersize": 3.8,
     "lines.markeredgewidth": 0.7,
     "legend.frameon": False,
-    "legend.handletextpad": 0.3,
+    "legend.handletextpad": 0.5,
     "legend.columnspacing": 1.1,
     "legend.borderaxespad": 0.2,
     "savefig.dpi": 300,

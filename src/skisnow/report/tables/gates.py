@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def gates_table(result: CourseResult) -> Table:
-    """A row for each gate, times to a hundredth of a second."""
+    """A row for each gate, times and poles to a hundredth."""
     rows = [tuple(_words(row[name]) for name in COLUMNS) for row in gate_rows(result)]
     fault = result.fault
     return Table(
@@ -22,12 +22,12 @@ def gates_table(result: CourseResult) -> Table:
             Column("gate", "Gate", "text"),
             Column("side", "Side", "text"),
             Column("outcome", "Outcome", "text"),
-            Column("time_s", "Time", "seconds", unit="s"),
-            Column("split_s", "From the gate before", "seconds", unit="s"),
+            Column("time_s", "Time", "hundredths", unit="s"),
+            Column("split_s", "From the gate before", "hundredths", unit="s"),
             Column("speed_m_per_s", "Speed", unit="m/s"),
             Column("clearance_m", "From the pole", unit="m"),
-            Column("x_m", "Turning pole x", unit="m", digits=4),
-            Column("y_m", "y", unit="m", digits=3),
+            Column("x_m", "Turning pole x", "hundredths", unit="m"),
+            Column("y_m", "y", "hundredths", unit="m"),
         ),
         rows,
         note="" if fault is None else f"{fault.words[0].upper()}{fault.words[1:]}.",
