@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from skisnow.errors import OutputError
-from skisnow.files import write_file
+from skisnow.files import place_to_write, require_writable, write_file
 
 
 def test_text_and_bytes(tmp_path: Path) -> None:
@@ -38,3 +38,27 @@ def test_an_interruption_leaves_no_part_of_a_file(tmp_path: Path, monkeypatch: p
     with pytest.raises(KeyboardInterrupt):
         write_file(tmp_path / "a.txt", "text")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_whoever_may_enter_the_folder_may_read_the_file(tmp_path: Path) -> None:
+    write_file(tmp_path / "a.txt", "text")
+    assert (tmp_path / "a.txt").stat().st_mode & 0o777 == 0o644
+
+
+def test_a_file_filled_by_its_name_has_a_hidden_one_until_it_is_whole(tmp_path: Path) -> None:
+    with place_to_write(tmp_path / "a.nc") as place:
+        assert place.parent == tmp_path
+        assert place.name.startswith(".a.nc.")
+        assert place.name.endswith(".partial")
+        place.write_bytes(b"whole")
+        assert not (tmp_path / "a.nc").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["a.nc"]
+    assert (tmp_path / "a.nc").read_bytes() == b"whole"
+
+
+def test_a_folder_is_tried_before_long_work(tmp_path: Path) -> None:
+    require_writable(tmp_path / "new" / "folder")
+    assert list((tmp_path / "new" / "folder").iterdir()) == []
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    with pytest.raises(OutputError, match=r"file cannot be written: .*\. Choose another place or free some space\."):
+        require_writable(tmp_path / "file")
