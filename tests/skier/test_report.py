@@ -16,7 +16,7 @@ def test_the_page_has_every_figure_of_a_skier_and_calls_nobody_a_sledge() -> Non
     pictures = [
         Picture(each.name, Markup(""), f"the figure {each.name}", True, "<svg/>", b"") for each in run_drawings(run)
     ]
-    assert {each.name for each in pictures} == {*FIGURES, *FURTHER} - {"course"}
+    assert {each.name for each in pictures} == {*FIGURES, *FURTHER} - {"course", "boots"}
     page = run_page(run, summary_dict(run), pictures)
     assert [name for name in (*FIGURES, "balance") if f"the figure {name}" not in page] == []
     assert "A simulated run of a skier on two flexible skis" in page

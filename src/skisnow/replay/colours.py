@@ -20,6 +20,7 @@ COLOURS: Final[dict[str, Any]] = {
 }
 """In sRGB, 0 to 255, each scale from nothing to the most; up to ``least_share`` of the most a ski is unloaded."""
 
+_LARGE: Final = 0.95
 THICKEST, THINNEST = 0.018, 0.006
 """Thickness (m) of a ski under the boot and at its ends: drawn, not computed with (modelling assumption)."""
 
@@ -50,6 +51,18 @@ def linear(colour: npt.ArrayLike) -> FloatArray:
     """Linear light, 0 to 1, of an sRGB colour, 0 to 255 (IEC 61966-2-1)."""
     part = np.asarray(colour, dtype=float) / 255.0
     return np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
+
+
+def end_of_force_scale(force: FloatArray) -> float:
+    """The end (N/m) of a scale of forces per length: a round number above what a twentieth of those that press exceed.
+
+    The largest of a run may be a moment's, beside which most of a ski would be pale.
+
+    >>> end_of_force_scale(np.array([*np.linspace(10.0, 2000.0, 200), 30_000.0])), end_of_force_scale(np.zeros(3))
+    (2000.0, 1.0)
+    """
+    pressed = np.sort(force[force > 0.0], axis=None)
+    return round_above(float(pressed[int(_LARGE * pressed.size)])) if pressed.size else 1.0
 
 
 def round_above(value: float) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .colours import COLOURS, drawn_thickness, linear, linear_colours, round_above
+from .colours import COLOURS, drawn_thickness, end_of_force_scale, linear, linear_colours, round_above
 from .glb import Mesh
 from .shape import ski_edges
 
@@ -57,7 +57,7 @@ def unloaded_ski_mesh(replay: Replay, ski: int) -> Mesh:
 
 def _force_colours(replay: Replay, force: FloatArray) -> FloatArray:
     """Colours (m, 3) of forces (m,) along a ski in N/m, on the scale of the whole run."""
-    share = force / round_above(float(replay.skis.force_per_length.max()))
+    share = force / end_of_force_scale(replay.skis.force_per_length)
     face = linear_colours("force", share)
     face[share <= COLOURS["least_share"]] = linear(COLOURS["unloaded"])
     return face

@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 
 from ..files import write_file
 from .binary import at_moments, thinned
-from .colours import round_above
+from .colours import end_of_force_scale
 from .glb import Glb
 from .meshes import CORNERS, grid_mesh, groove_mesh, snow_mesh, surface_heights, unloaded_ski_mesh, upright
 from .replay import SKI_NAMES
@@ -195,9 +195,9 @@ def _steepness_behind(replay: Replay) -> FloatArray:
 
 def _extras(replay: Replay, exaggeration: float) -> dict[str, Any]:
     """What the model does not show of itself."""
-    force = round_above(float(replay.skis.force_per_length.max()))
+    force = end_of_force_scale(replay.skis.force_per_length)
     return {
         "exaggeration_of_bending_and_twist": exaggeration,
-        "colour_of_skis": f"mean over the run of the force of the snow per length, 0 to {force:g} N/m",
+        "colour_of_skis": f"mean over the run of the force of the snow per length, 0 to {force:g} N/m and more",
         "facts": dict(replay.facts),
     }

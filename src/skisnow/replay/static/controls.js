@@ -118,7 +118,7 @@ export function fillLegend(element, scales, colours, hasSkier) {
       made("span", { className: "replay-ticks" }, ...ends));
   };
   element.replaceChildren(
-    bar("force", forceTitle(), ticksOf(scales.force / 1000)),
+    bar("force", forceTitle(), ticksOf(scales.force / 1000, scales.forceGoesOn)),
     scales.staysNothing
       ? made("span", { textContent: said("Elastic snow: no groove stays; the line is where the skis went") })
       : bar("depth", depthTitle(), ticksOf(scales.depth * 1000)),
@@ -129,8 +129,9 @@ export function fillLegend(element, scales, colours, hasSkier) {
   );
 }
 
-function ticksOf(most) {
-  return [0, most / 2, most].map((value) => asWritten(Number(value.toPrecision(3))));
+function ticksOf(most, goesOn = false) {
+  const ticks = [0, most / 2, most].map((value) => asWritten(Number(value.toPrecision(3))));
+  return goesOn ? [...ticks.slice(0, 2), `≥ ${ticks[2]}`] : ticks;
 }
 
 const LEFT = 0;

@@ -25,14 +25,14 @@ export function wholeForces(run, at) {
 }
 
 /** A force per length (N/m) that a twentieth of those in the run exceed. */
-function large(run) {
+export function largeForce(run) {
   const pressed = run.arrays.force_per_length.values.filter((force) => force > 0).sort();
   return pressed.length ? pressed[Math.floor(0.95 * pressed.length)] : 1;
 }
 
 /** Arrows that `show(pose, sections)` sets; sections of both skis are those that motion.js gives. */
 export function forceArrows(run) {
-  const most = large(run);
+  const most = largeForce(run);
   const chosen = spaced(run.arrays.station.values);
   const along = arrows(2 * chosen.length, 0.007, COLOURS.along);
   const whole = arrows(2, 0.02, COLOURS.whole, { over: true }); // else it would be hidden in a skier's leg

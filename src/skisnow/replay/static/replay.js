@@ -122,9 +122,9 @@ class Player {
     const deep = this.relief === 1 || !this.shown.groove ? [] : [said("Groove {} times as deep and wide", this.relief)];
     const squares = this.shown.marks ? [marks()] : [];
     const words = [this.run.title, ...this.lines.map(({ name, text }) => `${name}: ${text}`), ...bent, ...deep, ...squares];
-    const { force, depth, staysNothing } = this.stage.scales;
+    const { force, forceGoesOn, depth, staysNothing } = this.stage.scales;
     const { colours } = this.run;
-    const scales = [{ title: forceTitle(), colours: colours.force, most: force / 1000 }];
+    const scales = [{ title: forceTitle(), colours: colours.force, most: force / 1000, goesOn: forceGoesOn }];
     if (this.shown.groove && !staysNothing) scales.push({ title: depthTitle(), colours: colours.depth, most: Number((1000 * depth).toPrecision(3)) });
     composed(this.parts.canvas, this.flat, words, scales);
   }

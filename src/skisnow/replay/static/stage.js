@@ -4,7 +4,7 @@ import * as THREE from "./three.module.min.js";
 import { largest } from "./binary.js";
 import { Follower } from "./cameras.js";
 import { GHOST, roundAbove, TRACK } from "./colours.js";
-import { forceArrows } from "./force_arrows.js";
+import { forceArrows, largeForce } from "./force_arrows.js";
 import { grid } from "./grid.js";
 import { deepest, groove, measuredTrack, path } from "./groove.js";
 import { fallLine, gates, horizonHills, poles } from "./landmarks.js";
@@ -29,8 +29,10 @@ export class Stage {
     this.effects = MOST_EFFECTS;
     this.#light();
     const runs = ghost ? [run, ghost] : [run];
+    const force = roundAbove(Math.max(...runs.map(largeForce))); // most of a ski would be pale beside a moment's largest
     this.scales = {
-      force: roundAbove(Math.max(...runs.map((each) => largest(each.arrays.force_per_length.values)))),
+      force,
+      forceGoesOn: runs.some((each) => largest(each.arrays.force_per_length.values) > force),
       depth: roundAbove(1000 * Math.max(...runs.map(deepest))) / 1000,
       staysNothing: deepest(run) < 1e-6,
     };

@@ -3,7 +3,7 @@
 import { css } from "./colours.js";
 import { asWritten } from "./words.js";
 
-/** Draw the picture with words and scales of colours, each {title, colours, most}, on a flat canvas of its own. */
+/** Draw the picture with words and scales of colours, each {title, colours, most, goesOn}, on a flat canvas of its own. */
 export function composed(canvas, flat, words, scales) {
   if (flat.width !== canvas.width || flat.height !== canvas.height) {
     flat.width = canvas.width;
@@ -27,14 +27,14 @@ export function composed(canvas, flat, words, scales) {
   return flat;
 }
 
-function bar(pen, { colours, most }, left, top, width, size) {
+function bar(pen, { colours, most, goesOn }, left, top, width, size) {
   const shades = pen.createLinearGradient(left, 0, left + width, 0);
   colours.forEach((colour, i) => shades.addColorStop(i / (colours.length - 1), css(colour)));
   pen.fillStyle = shades;
   pen.fillRect(left, top, width, size * 0.8);
   pen.fillStyle = "#10202e";
   pen.fillText("0", left, top + size);
-  const end = asWritten(most);
+  const end = `${goesOn ? "≥ " : ""}${asWritten(most)}`;
   pen.fillText(end, left + width - pen.measureText(end).width, top + size);
 }
 
