@@ -73,7 +73,9 @@ def pictures(model: bytes) -> list[Image.Image]:
 
     taken = []
     with sync_playwright() as playwright:
-        place = os.environ.get("SKISNOW_CHROMIUM") or shutil.which("chromium")
+        place = (
+            os.environ.get("SKISNOW_CHROMIUM") or shutil.which("chromium-headless-shell") or shutil.which("chromium")
+        )
         browser = playwright.chromium.launch(executable_path=place, args=SOFTWARE)
         page = browser.new_page(viewport={"width": 1120, "height": 700})
         page.route(f"{SITE}**", answer)
