@@ -54,6 +54,10 @@ def test_a_cell_without_a_finite_number_is_refused_with_its_place(tmp_path: Path
         ("", "row 1: there is no column x among ; mend it"),
         ("x,y,x\n1,2,3\n", "row 1: the column x stands there twice; keep one of them"),
         ("x,y,z,z\n1,2,3,4\n", "row 1: the column z stands there twice; keep one of them"),
+        (
+            'x,y\n1,"' + "a" * 140_000 + '"\n',
+            r"table\.csv is no CSV text \(field larger than field limit .*\); mend it",
+        ),
         ("x,y\n1,2\n1,5,2\n", "row 3: 3 cells stand under 2 names of columns, as a decimal comma makes them; mend it"),
     ],
 )

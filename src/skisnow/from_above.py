@@ -18,5 +18,8 @@ def from_above(package: str, name: str) -> Any:
         The module inside the package, such as "report.run_folder".
     name
         The function.
+
+    >>> from_above("json_number", "json_number")(2)
+    2.0
     """
     return getattr(import_module(f"{__package__}.{package}"), name)

@@ -78,6 +78,20 @@ def test_lean_and_pressure_are_those_of_the_places_and_forces() -> None:
     assert found.angulation == pytest.approx(np.full(len(TIME), -0.4))  # flat skis under a body that leans
 
 
+def test_skis_in_a_plough_lean_no_less() -> None:
+    """Each turned by 30 degrees: the mean of their axes is shorter than either, and the way ahead is the same."""
+    run = moved()
+    assert run.boots is not None
+    turned = []
+    for ski, angle in enumerate((-math.pi / 6.0, math.pi / 6.0)):
+        own = run.boots.axes[:, ski]
+        ahead = math.cos(angle) * own[:, 0] + math.sin(angle) * own[:, 1]
+        turned.append(np.stack([ahead, np.cross(own[:, 2], ahead), own[:, 2]], axis=1))
+    found = balance_of(replace(run, boots=replace(run.boots, axes=np.stack(turned, axis=1))))
+    assert found.lean == pytest.approx(np.full(len(TIME), 0.4))
+    assert found.pressure == pytest.approx(balance_of(run).pressure)
+
+
 def test_a_moment_of_the_skis_moves_the_pressure() -> None:
     """40 N m about the axis ahead, under 800 N: 5 cm, to the left as a heavier left ski."""
     run = moved()

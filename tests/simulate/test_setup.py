@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from skisnow import BootMoment, BootPose
+from skisnow.contact import Laws
 from skisnow.errors import ParameterError, SolverError
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import Plane, read_scenario
@@ -183,3 +184,12 @@ def test_a_stiffness_factor_multiplies_both_stiffnesses() -> None:
     ratio = laid_out(stiff).numbers["line_spacing_m"] / laid_out(plain).numbers["line_spacing_m"]
     assert ratio == pytest.approx(2.0, rel=1e-9)
     assert plain.flexing_ski is plain.ski
+
+
+@pytest.mark.parametrize("law", ["constant", "by-angle", "machining"])
+def test_the_law_of_shear_is_that_of_the_scenarios_snow(law: str) -> None:
+    given = read_scenario("carved-46m", changes={"shear.law": law, "snow.S_f_N_per_mm2": 0.3})
+    found = run_setup._snow(given, Laws())
+    assert found.failure_shear_stress == pytest.approx(0.3e6)
+    assert found.shear == given.shear.of(0.3e6)
+    assert (found.shear is None) == (law == "constant")

@@ -120,6 +120,18 @@ def test_the_next_turn_of_a_slalom_is_a_rival_where_noise_hides_the_difference()
     assert np.linalg.norm(motion.rival.moved - motion.moved) == pytest.approx(12.0 * math.pi, rel=0.05)  # one turn
 
 
+def test_noise_that_lengthens_a_track_does_not_slide_it() -> None:
+    """Points every 2.6 cm with noise of 5 cm: the measured track is three times as long as its way."""
+    along = np.linspace(0.0, 300.0, 6000)
+    curve = np.column_stack([along, 5.0 * np.sin(along / 6.0) + 3.0 * np.cos(along / 11.0), 0.0 * along])
+    noise = 0.05 * np.random.default_rng(1).normal(size=curve.shape)
+    measured = line_of(turned(curve + noise, 2.0, (100.0, 50.0, 3.0))[400:5600])
+    assert measured.length > 2.0 * 260.0
+    motion = fitted_motion(line_of(curve), measured, start=True, heading=True)
+    assert motion.turned == pytest.approx(2.0, abs=0.01)
+    assert motion.rms < 0.1
+
+
 def test_a_line_that_is_the_same_turned_by_half_a_turn_keeps_its_direction() -> None:
     """A sine about its middle: only the way the tracks run tells the two answers apart."""
     wave = np.column_stack([ALONG, 4.0 * np.sin(ALONG / 60.0 * 4.0 * math.pi)])
@@ -138,7 +150,7 @@ def test_arcs_of_one_circle_have_a_rival() -> None:
     motion = fitted_motion(simulated, measured, start=True, heading=True)
     assert motion.rival is not None
     assert abs(math.remainder(motion.rival.turned - motion.turned, math.tau)) > math.radians(5.0)
-    assert motion.rms <= motion.rival.rms < 2.0 * motion.rms
+    assert 0.99 * motion.rms < motion.rival.rms < 2.0 * motion.rms
 
 
 @pytest.mark.parametrize("later", [-40.0, -0.37, 0.0, 2.2])

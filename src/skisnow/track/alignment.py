@@ -111,7 +111,8 @@ def fitted_motion(simulated: Polyline, measured: Polyline, *, start: bool, headi
     path = Path(simulated.place)
     places = measured.at_arc_length(np.linspace(0.0, measured.length, PLACES + 1))
     begins = [Motion(np.zeros(places.shape[1]), 0.0)]
-    begins.append(_overlay(simulated, measured, start=start, heading=heading))
+    for ends in (None, (simulated.length, measured.length)):
+        begins.append(_overlay(simulated, measured, start=start, heading=heading, ends=ends))
     if heading:
         angles = np.linspace(0.0, 2.0 * math.pi, HEADINGS, endpoint=False) + begins[-1].turned
         begins += [_overlay(simulated, measured, start=start, heading=True, turned=float(each)) for each in angles[1:]]
@@ -150,15 +151,20 @@ def _runs_along(path: Path, places: FloatArray, motion: Motion) -> bool:
 
 
 def _overlay(
-    simulated: Polyline, measured: Polyline, *, start: bool, heading: bool, turned: float | None = None
-) -> Motion:
+    simulated: Polyline, measured: Polyline, *, start: bool, heading: bool, turned: float | None = None,
+    ends: tuple[float, float] | None = None,
+) -> Motion:  # fmt: skip
     """Turned and moved so that places at equal arc length are as near as they can be (Kabsch, about the vertical).
 
-    With an angle (rad) moved alone, that far turned.
+    With an angle (rad) moved alone, that far turned. With ends, places at equal shares of these lengths (m): noise may
+    make one track longer than its way.
     """
-    arc_length = np.linspace(0.0, min(simulated.length, measured.length), PLACES + 1)
-    origin = simulated.place[0]
-    own, other = simulated.at_arc_length(arc_length) - origin, measured.at_arc_length(arc_length) - origin
+    shorter = min(simulated.length, measured.length)
+    share, origin = np.linspace(0.0, 1.0, PLACES + 1), simulated.place[0]
+    own, other = (
+        line.at_arc_length(end * share) - origin
+        for line, end in zip((simulated, measured), ends or (shorter, shorter), strict=True)
+    )
     centre = (own.mean(axis=0), other.mean(axis=0)) if start else (np.zeros_like(origin), np.zeros_like(origin))
     a, b = (own - centre[0])[:, :2], (other - centre[1])[:, :2]
     if turned is None:
