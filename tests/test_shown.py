@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from skisnow.geometry.surfaces import Grid
 from skisnow.identify import Identified, Parameter
 from skisnow.report.figures.track_band import TimedTrack
 from skisnow.report.turn_chain import EnsembleRun
-from skisnow.shown import Shown
+from skisnow.shown import Shown, field_facts
 
 from .report.runs import circle_run
 
@@ -124,6 +125,26 @@ def test_what_a_user_wrote_is_escaped_in_a_notebook() -> None:
     shown = SnowProperties(1e8, 2e5, source="<b>mine</b>")._repr_html_()
     assert "&lt;b&gt;mine&lt;/b&gt;" in shown
     assert "<b>" not in shown
+
+
+def test_lists_and_texts_are_shown_up_to_a_length() -> None:
+    @dataclass
+    class Thing:
+        few: tuple[int, ...] = (1, 2, 3)
+        many: tuple[int, ...] = (1, 2, 3, 4)
+        by_name: Mapping[str, int] = field(default_factory=lambda: {"a": 1})
+        fits: str = "x" * 60
+        runs_over: str = "x" * 61
+        share: float = 0.123456
+
+    assert dict(field_facts(Thing(), {"share": "m"}).rows) == {
+        "few": "(1, 2, 3)",
+        "many": "4 entries",
+        "by_name": "1 entries",
+        "fits": "x" * 60,
+        "runs_over": "x" * 59 + "…",
+        "share": "0.1235 m",
+    }
 
 
 def test_a_track_of_many_points_is_shown_short() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
@@ -120,6 +121,48 @@ def test_what_another_process_is_writing_stays(tmp_path: Path) -> None:
     with staged(tmp_path, last="summary") as stage:
         write(stage.path, NEW)
         assert tidied(tmp_path) == []
+    assert seen(tmp_path) == NEW
+
+
+def open_files() -> int:
+    """Of this process, where the system tells."""
+    place = Path("/proc/self/fd")
+    return len(list(place.iterdir())) if place.is_dir() else 0
+
+
+def test_nothing_stays_open(tmp_path: Path) -> None:
+    before = open_files()
+    for _ in range(3):
+        replace_old_by_new(tmp_path)
+        (tmp_path / ".run-00000000").mkdir()
+        assert len(tidied(tmp_path)) == 1
+    assert open_files() == before
+
+
+def test_what_cannot_be_taken_away_is_left_for_the_next_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def kept(*_given: object, **_named: object) -> None:
+        raise PermissionError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "rmdir", kept)
+        replace_old_by_new(tmp_path)
+    assert seen(tmp_path) == NEW
+    assert len(list(tmp_path.glob(".skisnow-*"))) == 1
+    assert len(tidied(tmp_path)) == 1
+    assert list(tmp_path.glob(".*")) == []
+
+
+def test_a_stage_is_made_by_one_process_at_a_time(tmp_path: Path) -> None:
+    fcntl = pytest.importorskip("fcntl", reason="locks of files are those of Unix")
+    other = os.open(tmp_path, os.O_RDONLY)
+    fcntl.flock(other, fcntl.LOCK_EX)
+    waiting = Thread(target=replace_old_by_new, args=(tmp_path,))
+    waiting.start()
+    waiting.join(0.2)
+    assert waiting.is_alive()
+    assert seen(tmp_path) == {}
+    os.close(other)
+    waiting.join()
     assert seen(tmp_path) == NEW
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -24,6 +26,19 @@ def test_an_edited_source_is_refused(tmp_path: Path) -> None:
         require_current(core.SOURCE_HASH, copied)
     edited.unlink()
     assert fingerprint(copied) != core.SOURCE_HASH
+
+
+def test_the_build_asks_for_the_fingerprint_by_a_program(tmp_path: Path) -> None:
+    """It needs nothing of the package, which is not built yet; line ends of Windows are those of Unix."""
+    program = Path(skisnow.compiled.__file__).with_name("sources.py")
+    told = []
+    for name, text in (("a", b"one\ntwo\n"), ("b", b"one\r\ntwo\r\n"), ("c", b"one\n")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "core.cpp").write_bytes(text)
+        asked = [sys.executable, "-I", str(program), str(tmp_path / name)]
+        told.append(subprocess.run(asked, check=True, capture_output=True, text=True).stdout)
+        assert told[-1] == f"{fingerprint(tmp_path / name)}\n"
+    assert told[0] == told[1] != told[2]
 
 
 def test_without_sources_there_is_nothing_to_compare(tmp_path: Path) -> None:

@@ -95,6 +95,15 @@ def test_two_runs_at_once_are_refused(place: Path) -> None:
     assert rows_in(place) == {0: {}}
 
 
+def test_rows_that_are_read_are_nobody_elses_meanwhile(place: Path) -> None:
+    KeptRows.opened(place, "f").close()
+    reader = KeptRows.read(place)
+    with pytest.raises(OutputError, match="another run"):
+        KeptRows.opened(place, "f")
+    reader.close()
+    KeptRows.opened(place, "f").close()
+
+
 @pytest.mark.parametrize("damage", [b"what hours have found", b"SQLite format 3\0" + b"\1" * 5000])
 def test_a_file_that_is_none_of_rows_is_told_and_left(damage: bytes, place: Path) -> None:
     place.write_bytes(damage)
@@ -112,6 +121,8 @@ def test_a_database_of_something_else_is_told_and_left(place: Path) -> None:
     other.close()
     with pytest.raises(ParameterError, match="no file of such"):
         KeptRows.opened(place, "f")
+    with pytest.raises(ParameterError, match="no file of such"):
+        KeptRows.read(place)
 
 
 def test_a_log_without_its_file_is_no_part_of_a_new_one(place: Path) -> None:

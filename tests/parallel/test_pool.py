@@ -127,11 +127,17 @@ def test_workers_are_ended_at_once_where_work_is_left_or_an_error_came(
 
 @pytest.mark.parametrize(("at_once", "order"), [(True, ["let go", "shut down"]), (False, ["shut down", "let go"])])
 def test_processes_are_let_go_before_or_behind_their_last_point(at_once: bool, order: list[str]) -> None:
-    """A process whose leash is closed ends; nothing of the crew stays, and it may end twice."""
+    """A process whose leash is closed ends; what waits is taken back, nothing of the crew stays, it may end twice."""
     done: list[str] = []
+
+    def shut_down(*, wait: bool, cancel_futures: bool) -> None:
+        assert wait
+        assert cancel_futures
+        done.append("shut down")
+
     crew: Any = ProcessCrew(dict, 2)
     crew._leash = SimpleNamespace(close=lambda: done.append("let go"))
-    crew._executor = SimpleNamespace(shutdown=lambda **_: done.append("shut down"))
+    crew._executor = SimpleNamespace(shutdown=shut_down)
     crew.end(at_once=at_once)
     crew.end(at_once=at_once)
     assert done == order
