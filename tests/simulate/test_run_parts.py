@@ -57,6 +57,7 @@ def test_what_is_straight_or_stands_has_no_radius() -> None:
     assert np.all(np.isinf(turn_radius(time, 0.0099 * turning, up)))
     assert turn_radius(time, 0.0101 * turning, up)[5] == pytest.approx(0.0101, rel=2e-3)
     assert turn_radius(time[:1], turning[:1], up[:1]).tolist() == [math.inf]
+    assert turn_radius(time[:2], turning[:2], up[:2]) == pytest.approx(np.ones(2), rel=1e-2)
 
 
 def test_the_length_of_an_arc() -> None:
@@ -173,8 +174,8 @@ def test_tips_and_boots_end_at_the_borders_of_a_grid(x: float, y: float, heading
 
 
 def test_lean_and_height_are_against_the_slope_under_the_boots() -> None:
-    x = np.arange(-5.0, 6.0)
-    profile = Profile(x, -0.75 * x)
+    x = np.arange(-5.0, 10.0)
+    profile = Profile(x, -0.75 * np.minimum(x, 4.0))  # level from 4 m on
     setup = stub(scenario=stub(slope=profile), place=np.array([2.0, 7.0, -1.1]), attitude=np.eye(3))
     setup.slope_normal = lambda x, y: Setup.slope_normal(setup, x, y)
     setup._slope_at_boots = lambda: Setup._slope_at_boots(setup)

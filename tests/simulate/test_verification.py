@@ -11,6 +11,7 @@ from skisnow.simulate.simulated_run import simulate
 from skisnow.simulate.verification import (
     Refinement,
     limit_warnings,
+    nudged_scenarios,
     refined_solvers,
     repetitions,
     verification_dict,
@@ -72,6 +73,8 @@ def test_half_of_the_shear_displacement_and_a_thousandth_of_the_inputs() -> None
     assert (half.was, half.now) == pytest.approx((0.02, 0.01), rel=1e-12)
     assert found["start.speed_m_per_s"].end_moves == pytest.approx(0.01, rel=1e-9)
     assert abs(found["start.speed_m_per_s"].now - 5.0) == pytest.approx(0.005, rel=1e-9)
+    speeds = [each.start.speed for each in nudged_scenarios(run)["start.speed_m_per_s"]]
+    assert speeds == pytest.approx([5.005, 4.995], rel=1e-12)
     assert [found[key].end_moves for key in NUDGED[1:]] == pytest.approx([0.0] * 3, abs=1e-12)
     assert limit_warnings(run, found.values()) == ()
 
