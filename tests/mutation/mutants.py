@@ -16,6 +16,8 @@ _OTHERS: Final[dict[str, tuple[str, ...]]] = {
     "is not": ("is",), "is": ("is not",), "not in": ("in",), "in": ("not in",), "and": ("or",), "or": ("and",),
 }  # fmt: skip
 _TOKEN: Final = re.compile(r"#[^\n]*|(is\s+not|not\s+in|\*\*|//|<<|>>|<=|>=|==|!=|\b(?:is|in|and|or)\b|[-+*/%@&|^<>])")
+SYMMETRIC: Final = frozenset({"hypot", "max", "maximum", "min", "minimum"})
+"""Functions that give the same whatever the order of their arguments."""
 
 
 @dataclass(frozen=True)
@@ -129,6 +131,9 @@ class _Text:
         yield from (self._whole("condition", test, "(not ({}))") for test in tests)
 
     def _swapped_arguments(self, call: ast.Call) -> Iterator[Mutant]:
+        name = call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+        if name in SYMMETRIC:
+            return
         for left, right in pairwise(call.args):
             if not isinstance(left, ast.Starred) and not isinstance(right, ast.Starred):
                 (start, end), (begin, stop) = self._span(left), self._span(right)

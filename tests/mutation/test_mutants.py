@@ -51,6 +51,7 @@ def planted(source: str, kind: str) -> set[str]:
         ("[a for a in b if a]", "condition", {"[a for a in b if (not (a))]"}),
         ("f(a, *b, c, d)", "arguments", {"f(a, *b, d, c)"}),
         ("f(a, a)", "arguments", set()),
+        ("max(a, b) + np.hypot(c, d)", "arguments", set()),
         ("def f():\n    return a + b", "returned value", {"def f():\n    return None"}),
         ("def f():\n    return None", "returned value", set()),
         ("raise A(b) from c", "statement", {"pass"}),

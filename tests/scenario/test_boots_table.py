@@ -13,7 +13,7 @@ from skisnow.errors import ParameterError
 from skisnow.geometry.boot_axes import angles_of, axes_of
 from skisnow.scenario import read_scenario, scenario_file
 from skisnow.scenario.boots import Boots
-from skisnow.scenario.boots_file import read_boots
+from skisnow.scenario.boots_file import ANGLES, OF_SLOPE, SIDES, read_boots
 from skisnow.scenario.plausibility import implausible_values
 
 FLAT: dict[str, Any] = {
@@ -93,6 +93,14 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
         ("time_s,left_force_x_N\n" + "0,1\n" * 4, "a.csv", "no column is one of a boot. There are left_forward_m"),
         ("left_up_m\n1\n", "a.csv", "needs one of the columns"),
         ("time_s,left_up_m\n0,1\n1,2\n\n1,3\n2,4\n", "a.csv", "row 5, column time_s: 1 after 1; it must rise"),
+        (
+            "distance_m,"
+            + ",".join(f"{side}_{name}" for side in SIDES for name in (*OF_SLOPE, *ANGLES))
+            + "\n"
+            + "".join(f"{d}{',0' * 12}\n" for d in range(4)),
+            "a.csv",
+            r"a\.csv: boots in the slope's frame go over time",
+        ),
         (MOT, "a.trc", r"a\.trc: boots are read from \.csv, \.mot and \.sto"),
     ],
 )

@@ -101,10 +101,17 @@ def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: s
     assert str(error.value).startswith(str(path))
 
 
-def test_curve_that_falls_below_zero_is_refused() -> None:
-    """From 4 to 0.01 and on as flat: central differences let the curve swing 0.3 below."""
+@pytest.mark.parametrize("step", [0.1, 1.0, 20.0])
+def test_curve_that_falls_below_zero_is_refused(step: float) -> None:
+    """From 4 to 0.01 and on as flat: central differences let the curve swing 0.3 below, however far apart they are."""
+    values = np.array([4.0, 4.0, 0.01, 0.01]) * N_PER_MM3
     with pytest.raises(ParameterError, match="goes below 0 at x = "):
-        SnowMap(hardness=Grid.along(np.arange(4.0), np.array([4.0, 4.0, 0.01, 0.01]) * N_PER_MM3))
+        SnowMap(hardness=Grid.along(step * np.arange(4.0), values))
+    with pytest.raises(ParameterError, match="goes below 0 at x = 0 m, y = "):
+        SnowMap(hardness=Grid(np.zeros(1), step * np.arange(4.0), values[None, :]))
+
+
+def test_a_map_of_nothing_is_refused() -> None:
     with pytest.raises(ParameterError, match="holds neither H_V nor S_f"):
         SnowMap()
 

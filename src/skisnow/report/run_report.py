@@ -155,7 +155,7 @@ def _edged(run: Run) -> str:
         return "edged by the skier"
     if run.boots_by is not None:
         angles = edge_angles_of_skis(run) / DEGREE
-        low, high = (significant(float(each), 2) for each in (angles.min(), angles.max()))
+        low, high = (significant(float(each), 2) for each in (np.nanmin(angles), np.nanmax(angles)))
         return f"edge angles from {low}° to {high}°"
     return f"edge angle {significant(run.scenario.sledge.edge_angle / DEGREE)}°"
 
