@@ -11,7 +11,7 @@ import pytest
 
 from skisnow.errors import ParameterError
 from skisnow.inputs import Quantity, Search, checked_table, made, own_quantities
-from skisnow.inputs.json_schema import output_schema, schema_of
+from skisnow.inputs.json_schema import output_schema, schema_of, schema_text
 from skisnow.inputs.page_table import page_table
 from skisnow.units import unit_of_name, without_unit
 
@@ -129,3 +129,7 @@ def test_schema_of_what_is_written_allows_null_where_nothing_may_be_in_force() -
     assert schema_of(ANGLE)["exclusiveMaximum"] == 90.0
     numbers = {"type": "number", "exclusiveMinimum": 0.0}
     assert schema_of(STEPS) == {"type": "array", "description": "discs (N)", "minItems": 1, "items": numbers}
+
+
+def test_a_schema_stands_in_its_file_as_people_read_it() -> None:
+    assert schema_text({"unit": "°", "type": "number"}) == '{\n "unit": "°",\n "type": "number"\n}\n'

@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from skisnow import scenario
 from skisnow.errors import ParameterError
+from skisnow.geometry.surfaces import Grid
 from skisnow.interop.chrono import write_chrono_terrain
+from skisnow.scenario.snow_map import SnowMap
 
 
 def test_a_terrain_has_the_snow_of_the_scenario(tmp_path: Path) -> None:
@@ -34,6 +37,9 @@ def test_snow_that_does_not_fit_is_refused(tmp_path: Path) -> None:
     elastic = scenario("carved-46m", changes={"snow.unloading_ratio": 1.0})
     with pytest.raises(ParameterError, match="unloading_ratio is 1"):
         write_chrono_terrain(elastic, tmp_path)
+    over = SnowMap(hardness=Grid.along(np.arange(4.0), np.full(4, 2e8)))
+    with pytest.raises(ParameterError, match="the scenario's snow varies, or has no S_f"):
+        write_chrono_terrain(scenario("carved-46m").with_(snow_map=over), tmp_path)
     with pytest.raises(ParameterError, match="must be above 0"):
         write_chrono_terrain(scenario("carved-46m"), tmp_path, spacing=0.0)
     assert not list(tmp_path.iterdir())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,11 @@ def test_compliances_and_masses_of_the_hinges_add_up(tmp_path: Path) -> None:
     last = (along > along[-1] - 0.5 * (along[-1] - 0.15) / len(bend)) & front
     assert sum(bend) == pytest.approx(whole - np.trapezoid(1.0 / at.bending_stiffness[last], along[last]), rel=1e-3)
     assert [each.attrib["name"] for each in root.iter("site")] == ["boot"]
+
+
+def test_a_name_with_signs_of_xml_comes_back() -> None:
+    name = 'a & b <c> "d" &amp;'
+    assert ET.fromstring(ski_mjcf(replace(read_ski("carver"), name=name))).attrib["model"] == name
 
 
 def test_what_cannot_be_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

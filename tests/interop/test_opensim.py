@@ -112,6 +112,8 @@ def test_markers_are_read_as_they_were_written_and_in_metres(tmp_path: Path) -> 
         (TRC.replace("1300", "13oo"), "line 8, toe X: '13oo' is no number"),
         (TRC.replace("1300", "1300\t1\t2\t3"), "line 8: more cells than 2 markers have"),
         (TRC.replace("toe", "heel"), "a name is there twice"),
+        ("".join(TRC.splitlines(keepends=True)[:4]), "does not begin with PathFileType and a head of five lines"),
+        ("".join(TRC.splitlines(keepends=True)[:5]), "markers: "),
     ],
 )
 def test_wrong_markers_are_refused_in_words(tmp_path: Path, text: str, words: str) -> None:

@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from skisnow.errors import ParameterError, SkisnowError
 from skisnow.replay import measured_track, replay_bytes, replay_of_file, replay_of_run
+from skisnow.replay.of_run import facts_of
 from skisnow.report.run_file import write_run_file
 from skisnow.scenario import Profile, scenario_values
 from skisnow.scenario.values import in_sections
@@ -148,6 +149,9 @@ def test_settings_are_words_for_people() -> None:
     assert facts["H_V"] == "0.2 N/mm³"
     assert facts["S_f"] == "0.5 N/mm²"
     assert facts["Skis"] == "giant-slalom, edge angle 30°"
+    for stress, word in ((None, "not given"), (0.5, "0.5 N/mm²")):
+        told = dict(facts_of(outcome="energy_open", hardness=0.2, stress=stress, ratio=10.0, skis=""))
+        assert (told["Outcome"], told["S_f"], told["k_u / H_V"]) == ("energy open", word, "10")
 
 
 def test_gates_stand_on_the_snow() -> None:

@@ -21,7 +21,7 @@ from skisnow.replay import (
     replay_of_run,
 )
 from skisnow.replay.skier import ANKLE_BEHIND, JOINTS, STAND_HEIGHT, centre_of_mass, two_bones
-from skisnow.replay.skier_shapes import skier_mesh, skier_parts
+from skisnow.replay.skier_shapes import AROUND, _round, skier_mesh, skier_parts
 from skisnow.scenario.skier import Skier
 from skisnow.simulate.boot_history import BootHistory
 from skisnow.simulate.run import Run
@@ -116,6 +116,8 @@ def test_two_bones_meet_by_hand() -> None:
     assert two_bones(start, end, 3.0, 4.0, aside)[0] == pytest.approx([1.8, 0.0, 2.4])
     assert two_bones(start, 2.0 * end, 3.0, 4.0, aside)[0] == pytest.approx([3.0, 0.0, 0.0], abs=1e-6)
     assert np.isfinite(two_bones(start, start, 3.0, 4.0, aside)).all()
+    folded = two_bones(start, start, 3.0, 3.0, aside)  # bones of one length fold flat
+    assert np.linalg.norm(folded) == pytest.approx(3.0)
 
 
 def test_a_body_that_legs_cannot_reach_is_drawn_all_the_same(run: Run) -> None:
@@ -178,6 +180,12 @@ def test_both_models_have_the_skier(replay: Replay) -> None:
         placed = own @ matrix[:3, :3].T + matrix[:3, 3]
         assert placed == pytest.approx(upright.apply(whole.vertices[first : first + len(own)]), abs=5e-6), part.name
         first += len(own)
+
+
+def test_a_round_shape_is_closed_in_the_middles_of_its_end_rings() -> None:
+    mesh = _round([(0.0, 0.2, 0.1, 0.3), (0.5, 0.3, 0.2, -0.1), (1.0, 0.1, 0.1, 0.4)], (0, 0, 0))
+    assert mesh.vertices[:AROUND] == pytest.approx(np.tile([0.3, 0.0, 0.0], (AROUND, 1)))
+    assert mesh.vertices[-AROUND:] == pytest.approx(np.tile([0.4, 0.0, 1.0], (AROUND, 1)))
 
 
 def test_meshes_are_closed_and_look_outward(replay: Replay) -> None:
