@@ -131,5 +131,13 @@ def test_schema_of_what_is_written_allows_null_where_nothing_may_be_in_force() -
     assert schema_of(STEPS) == {"type": "array", "description": "discs (N)", "minItems": 1, "items": numbers}
 
 
+def test_three_numbers_are_three() -> None:
+    schema = schema_of(Quantity("inertia_kg_m2", "moments of inertia", lowest=0.0, kind="three numbers"))
+    assert schema == {
+        "type": "array", "description": "moments of inertia (kg m²)", "minItems": 3, "maxItems": 3,
+        "items": {"type": "number", "minimum": 0.0},
+    }  # fmt: skip
+
+
 def test_a_schema_stands_in_its_file_as_people_read_it() -> None:
     assert schema_text({"unit": "°", "type": "number"}) == '{\n "unit": "°",\n "type": "number"\n}\n'

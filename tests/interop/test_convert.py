@@ -72,6 +72,20 @@ def test_a_site_of_a_campaign_becomes_caaml(campaign: Path, tmp_path: Path, caps
     assert (pit.latitude_deg, pit.longitude_deg, pit.elevation) == (-45.5, 170.25, 2120.0)
 
 
+def test_the_only_site_of_a_campaign_needs_no_name(
+    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "b.caaml"
+    assert main(["convert", str(campaign), str(out)]) == 1
+    assert "has 2 sites; name one with --site: A, B" in told(capsys)[1]
+    lines = PENETRATION.splitlines(keepends=True)
+    (campaign / "penetration.csv").write_text("".join(line for line in lines if ",A," not in line))
+    (campaign / "density.csv").write_text("sample,site,snow_density_kg_per_m3\n2,B,300\n")
+    (campaign / "snow_micro_pen.csv").unlink()
+    assert main(["convert", str(campaign), str(out)]) == 0
+    assert read_caaml(out).name == "B"
+
+
 def test_a_pit_becomes_snowex_tables(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Heights from the ground: of 125 cm of snow the second layer lies from 113 to 83."""
     source = write_caaml(full_pit(), tmp_path / "pit.caaml")

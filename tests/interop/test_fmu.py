@@ -9,15 +9,18 @@ import zipfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
 from skisnow import scenario, simulate
-from skisnow.contact import Runner, SnowContact
+from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.errors import ParameterError
 from skisnow.interop import write_contact_fmu, write_sledge_fmu
 from skisnow.interop.fmu.description import Version
+from skisnow.interop.fmu.models import _require_own_laws
 from skisnow.simulate.run_setup import laid_out
 from skisnow.simulate.sledge.frames import rotation
 
@@ -301,6 +304,15 @@ def test_an_fmu_has_the_same_bytes_and_no_python(tmp_path: Path) -> None:
     with zipfile.ZipFile(first) as archive:
         names = {Path(name).suffix for name in archive.namelist()}
     assert names == {".xml", ".so", ".txt"}
+
+
+@pytest.mark.parametrize("own", ["penetration", "friction_in_python", "shear_in_python"])
+def test_laws_of_python_are_refused(own: str) -> None:
+    snow = SimpleNamespace(penetration=None, friction_in_python=None, shear_in_python=None)
+    _require_own_laws(cast("SnowField", snow))
+    setattr(snow, own, lambda: None)
+    with pytest.raises(ParameterError, match="an FMU has no Python in it"):
+        _require_own_laws(cast("SnowField", snow))
 
 
 def test_wrong_names_numbers_and_scenarios_are_refused(tmp_path: Path) -> None:

@@ -98,6 +98,26 @@ def test_the_masses_have_their_centre_where_the_run_has_it(run: Run, replay: Rep
     assert centre_of_mass(joints_of(replay)) == pytest.approx(run.boots.centre_of_mass, abs=2e-3)
 
 
+def test_each_segment_has_its_centre_from_its_upper_end() -> None:
+    """A body whose one joint lies 1 m aside: what of each segment's mass counts there."""
+    shares = {
+        "pelvis": TRUNK.mass * (1.0 - TRUNK.centre),
+        "neck": TRUNK.mass * TRUNK.centre,
+        "left hip": THIGH.mass * (1.0 - THIGH.centre),
+        "left knee": THIGH.mass * THIGH.centre + SHANK.mass * (1.0 - SHANK.centre),
+        "right ankle": SHANK.mass * SHANK.centre + FOOT.mass,
+        "left shoulder": UPPER_ARM.mass * (1.0 - UPPER_ARM.centre),
+        "right elbow": UPPER_ARM.mass * UPPER_ARM.centre + FOREARM.mass * (1.0 - FOREARM.centre),
+        "right hand": FOREARM.mass * FOREARM.centre,
+    }
+    names = ["pelvis", "neck"]
+    names += [f"{side} {each}" for side in ("left", "right") for each in
+              ("hip", "knee", "ankle", "shoulder", "elbow", "hand")]  # fmt: skip
+    for moved, share in shares.items():
+        joints = {name: np.array([[0.0, float(name == moved), 0.0]]) for name in names}
+        assert centre_of_mass(joints)[0] == pytest.approx([0.0, share, 0.0]), moved
+
+
 def test_ankles_are_in_the_boots_and_lower_legs_in_their_planes(run: Run, replay: Replay) -> None:
     joints, boots = joints_of(replay), run.boots
     assert boots is not None

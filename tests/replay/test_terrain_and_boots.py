@@ -11,7 +11,7 @@ import pytest
 from skisnow.course import Course, Gate
 from skisnow.geometry.boot_axes import axes_of
 from skisnow.replay import Replay, moving_replay_model, replay_bytes, replay_of_bytes, replay_of_file, replay_of_run
-from skisnow.replay.meshes import grid_mesh, snow_mesh
+from skisnow.replay.meshes import _normals, grid_mesh, snow_mesh
 from skisnow.replay.shape import ski_edges
 from skisnow.scenario import Terrain
 from skisnow.simulate.boot_history import BootHistory
@@ -85,6 +85,13 @@ def test_meshes_lie_on_the_snow() -> None:
     area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] / 2.0
     low, high = snow_mesh(replay).vertices[:, :2].min(axis=0), snow_mesh(replay).vertices[:, :2].max(axis=0)
     assert abs(area).sum() == pytest.approx(float(np.prod(high - low)))  # all of it once
+
+
+def test_normals_are_those_of_the_snow_down_and_aside() -> None:
+    replay = replay_of_run(over(-0.2 * X[:, None] + 0.3 * Y))
+    normal = np.array([0.2, -0.3, 1.0]) / np.sqrt(1.0 + 0.2**2 + 0.3**2)
+    places = np.array([[1.0, 2.0, 0.0], [7.3, -4.1, 0.0]])
+    assert _normals(replay, places) == pytest.approx(np.tile(normal, (2, 1)), abs=1e-9)
 
 
 def test_gates_of_the_course_stand_on_the_snow() -> None:

@@ -18,6 +18,7 @@ from skisnow.scenario import Plane, Profile, read_scenario, scenario_file, scena
 from skisnow.scenario.given import change_of, given_scenario
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.reading import resolved
+from skisnow.scenario.skier import Skier
 
 PROFILE = "x,y\n" + "".join(f"{x},{-0.2 * x}\n" for x in range(0, 60, 3))
 
@@ -117,6 +118,16 @@ def test_changes_by_full_name_and_without_section() -> None:
 )
 def test_change_on_a_command_line(word: str, change: tuple[str, object]) -> None:
     assert change_of(word) == change
+
+
+def test_a_word_without_an_equals_sign_changes_nothing() -> None:
+    with pytest.raises(ParameterError, match=r"^'mass_kg 90' changes nothing; write section\.key=value"):
+        change_of("mass_kg 90")
+
+
+def test_a_first_turn_that_never_comes_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"skier\.first_turn_s is infinite; give a time in s"):
+        Skier(first_turn=math.inf)
 
 
 @pytest.mark.parametrize("word", ["mass_kg=90,5", "sledge.mass_kg = 90,5", "mu_0=0,04"])

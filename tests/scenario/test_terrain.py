@@ -47,6 +47,13 @@ def test_places_that_were_rounded_are_even(tmp_path: Path) -> None:
     np.testing.assert_allclose(terrain.x, np.arange(4.0) / 3.0, atol=1e-15)
 
 
+def test_places_that_differ_by_rounding_are_one(tmp_path: Path) -> None:
+    """0.1 + 0.2 and 0.3 are the same row of places, 10^-17 m apart."""
+    rows = [f"{x!r},{y},0" for x, y in ((0.1 + 0.2, 0), (0.3, 1), (0.6, 0), (0.6, 1), (0.0, 0), (0.0, 1))]
+    terrain = read_terrain(written(tmp_path, "\n".join(["x_m,y_m,z_m", *rows])))
+    assert terrain.x == pytest.approx([0.0, 0.3, 0.6], abs=1e-12)
+
+
 def test_esri_grid_begins_in_the_north_and_its_places_are_the_middles_of_the_cells(tmp_path: Path) -> None:
     terrain = read_terrain(written(tmp_path, ASC, "heights.asc"))
     assert terrain.x.tolist() == [101.0, 103.0, 105.0]
