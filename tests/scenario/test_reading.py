@@ -126,7 +126,7 @@ def test_a_word_without_an_equals_sign_changes_nothing() -> None:
 
 
 def test_a_first_turn_that_never_comes_is_refused() -> None:
-    with pytest.raises(ParameterError, match=r"skier\.first_turn_s is infinite; give a time in s"):
+    with pytest.raises(ParameterError, match=r"skier\.first_turn_s is inf; allowed is 0 or more s"):
         Skier(first_turn=math.inf)
 
 

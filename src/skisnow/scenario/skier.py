@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
-from ..errors import ParameterError
 from ..inputs import Quantity, declared_text, require_declared
 from ..units import DEGREE
 
@@ -408,5 +407,3 @@ class Skier:
 
     def __post_init__(self) -> None:
         require_declared(self)
-        if self.first_turn == float("inf"):
-            raise ParameterError("skier.first_turn_s is infinite; give a time in s")
