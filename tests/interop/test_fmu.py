@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import platform
+import re
 import sys
+import xml.etree.ElementTree as ET
 import zipfile
+from collections import Counter
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -18,9 +21,12 @@ import pytest
 from skisnow import scenario, simulate
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.errors import ParameterError
+from skisnow.geometry.surfaces import Grid
 from skisnow.interop import write_contact_fmu, write_sledge_fmu
 from skisnow.interop.fmu.description import Version
-from skisnow.interop.fmu.models import _require_own_laws
+from skisnow.interop.fmu.models import _require_own_laws, _snow_parameters
+from skisnow.interop.fmu.variables import UNITS
+from skisnow.scenario.snow_map import SnowMap
 from skisnow.simulate.run_setup import laid_out
 from skisnow.simulate.sledge.frames import rotation
 
@@ -304,6 +310,39 @@ def test_an_fmu_has_the_same_bytes_and_no_python(tmp_path: Path) -> None:
     with zipfile.ZipFile(first) as archive:
         names = {Path(name).suffix for name in archive.namelist()}
     assert names == {".xml", ".so", ".txt"}
+
+
+def test_units_are_those_of_their_names() -> None:
+    """Read off the name: a product of units, over another."""
+    base = {"N": {"kg": 1, "m": 1, "s": -2}, "rad": {"rad": 1}, "kg": {"kg": 1}, "m": {"m": 1}, "s": {"s": 1}, "1": {}}
+    for name, exponents in UNITS.items():
+        above, _, below = name.partition("/")
+        found: Counter[str] = Counter()
+        for sign, text in ((1, above), (-1, below)):
+            for unit, power in re.findall(r"([a-zA-Z]+|1(?=$))(\d?)", text):
+                for each, exponent in base[unit].items():
+                    found[each] += sign * int(power or 1) * exponent
+        assert {each: power for each, power in found.items() if power} == exponents, name
+
+
+def test_the_description_defines_every_unit_by_base_units(tmp_path: Path) -> None:
+    with zipfile.ZipFile(write_sledge_fmu(SCENARIO, tmp_path / "a.fmu")) as archive:
+        root = ET.fromstring(archive.read("modelDescription.xml"))
+    told = {
+        unit.attrib["name"]: {base: int(power) for base, power in unit[0].attrib.items()}
+        for unit in root.iter("Unit")
+        if unit[0].tag == "BaseUnit"
+    }
+    assert told == UNITS
+
+
+def test_what_varies_over_the_place_is_not_offered() -> None:
+    grid = Grid.along(np.arange(4.0), np.array([4e5, 5e5, 4e5, 5e5]))
+    over = {"hardness": SnowMap(hardness=grid), "failure_shear_stress": SnowMap(failure_shear_stress=grid)}
+    for name, snow_map in over.items():
+        variables = _snow_parameters(laid_out(SCENARIO.with_(snow_map=snow_map)).snow)
+        assert {each.name for each in variables if not each.offered} == {f"snow.{name}"}
+    assert all(each.offered for each in _snow_parameters(laid_out(SCENARIO).snow))
 
 
 @pytest.mark.parametrize("own", ["penetration", "friction_in_python", "shear_in_python"])

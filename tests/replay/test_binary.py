@@ -12,7 +12,6 @@ import pytest
 
 from skisnow.errors import ParameterError
 from skisnow.replay import Replay, ReplayTrack, replay_bytes, replay_of_bytes, replay_of_run
-from skisnow.replay.binary import KEPT
 
 from ..report.runs import circle_run
 
@@ -32,11 +31,6 @@ def header(content: bytes) -> dict[str, Any]:
 
 def arrays(of: Any) -> dict[str, np.ndarray]:
     return {each.name: getattr(of, each.name) for each in fields(of) if isinstance(getattr(of, each.name), np.ndarray)}
-
-
-def test_each_array_says_how_it_is_kept_and_its_unit() -> None:
-    assert {each.type for each in KEPT.values()} == {"float32", "uint16"}
-    assert {each.unit for each in KEPT.values()} == {"s", "m", "1", "m/s", "1/m", "rad", "N/m"}
 
 
 def test_what_comes_back_is_within_the_stated_error(replay: Replay) -> None:

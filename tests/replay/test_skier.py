@@ -208,6 +208,25 @@ def test_a_round_shape_is_closed_in_the_middles_of_its_end_rings() -> None:
     assert mesh.vertices[-AROUND:] == pytest.approx(np.tile([0.4, 0.0, 1.0], (AROUND, 1)))
 
 
+def test_parts_are_as_large_as_those_that_were_looked_at() -> None:
+    """Least and greatest place (cm) of each, along its own axes, in a body of 1.75 m."""
+    boxes = {
+        "trunk": [-13, -19, -11, 13, 19, 54],
+        "head": [-11, -10, -2, 14, 10, 31],
+        "boot": [-20, -6, 1, 20, 6, 17],
+        "lower leg": [-8, -7, -6, 8, 7, 47],
+        "thigh": [-10, -9, -5, 10, 9, 47],
+        "upper arm": [-7, -6, -7, 7, 6, 36],
+        "forearm": [-5, -5, -4, 5, 5, 33],
+        "pole": [-4, -4, -9, 4, 4, 116],
+    }
+    parts = skier_parts(1.75)
+    assert len(parts) == 2 + 2 * 6
+    for part in parts:
+        corners = np.concatenate([part.mesh.vertices.min(axis=0), part.mesh.vertices.max(axis=0)])
+        assert 100.0 * corners == pytest.approx(boxes[part.name.removeprefix("left ").removeprefix("right ")], abs=0.6)
+
+
 def test_meshes_are_closed_and_look_outward(replay: Replay) -> None:
     """By the divergence theorem the volume of each part is above 0: that of a body, 70 litres, all together."""
     assert replay.skier is not None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from skisnow.replay.binary import KEPT
 from skisnow.replay.groove_times import groove_times
@@ -30,6 +31,15 @@ def test_pieces_of_groove_of_a_single_moment_have_its_time() -> None:
 def test_every_array_has_a_kind_and_a_unit_that_readers_know() -> None:
     assert {each.type for each in KEPT.values()} == {"float32", "uint16"}
     assert {each.unit for each in KEPT.values()} == {"1", "m", "m/s", "1/m", "rad", "s", "N/m"}
+
+
+def test_quaternions_go_on_over_more_than_a_turn() -> None:
+    """About z by 0 to 900 degrees in steps of 30: each is (cos, 0, 0, sin) of half the angle, and 30 from the last."""
+    angle = np.radians(np.arange(0.0, 901.0, 30.0))
+    sine, cosine, none = np.sin(angle), np.cos(angle), np.zeros_like(angle)
+    matrices = np.stack([cosine, -sine, none, sine, cosine, none, none, none, none + 1.0], axis=1).reshape(-1, 3, 3)
+    found = quaternions(matrices)
+    assert found == pytest.approx(np.stack([np.cos(angle / 2.0), none, none, np.sin(angle / 2.0)], axis=1), abs=1e-12)
 
 
 def test_no_matrices_are_no_quaternions() -> None:

@@ -21,6 +21,7 @@ from .binary import at_moments, thinned
 from .colours import end_of_force_scale
 from .glb import Glb
 from .meshes import CORNERS, grid_mesh, groove_mesh, snow_mesh, surface_heights, unloaded_ski_mesh, upright
+from .quaternions import continuous
 from .replay import SKI_NAMES
 from .skier import JOINTS
 from .skier_shapes import part_poses, skier_parts
@@ -148,8 +149,7 @@ def _on_the_sledge(replay: Replay, boots: ReplayBoots, ski: int) -> tuple[FloatA
     """Places (n, 3) of a boot that moves in the sledge's frame (m), and its quaternions x, y, z, w against it."""
     back = Rotation.from_quat(_xyzw(replay)).inv()
     turn = (back * Rotation.from_quat(np.roll(boots.attitude[:, ski], -1, axis=1))).as_quat()
-    turned = np.cumprod(np.append(1.0, np.where(np.sum(turn[1:] * turn[:-1], axis=1) < 0.0, -1.0, 1.0)))
-    return back.apply(boots.place[:, ski] - replay.place), turn * turned[:, None]
+    return back.apply(boots.place[:, ski] - replay.place), continuous(turn)
 
 
 def _groove(model: Glb, replay: Replay) -> list[int]:

@@ -22,7 +22,10 @@ def quaternions(matrices: FloatArray) -> FloatArray:
     """
     if not len(matrices):
         return np.zeros((0, 4))
-    found = np.roll(Rotation.from_matrix(np.array(matrices)).as_quat(canonical=True), 1, axis=1)
+    return continuous(np.roll(Rotation.from_matrix(np.array(matrices)).as_quat(canonical=True), 1, axis=1))
+
+
+def continuous(found: FloatArray) -> FloatArray:
+    """The same rotations by quaternions (n, 4) of which none is opposite to the one before."""
     turned = np.sum(found[1:] * found[:-1], axis=1) < 0.0
-    signs = np.cumprod(np.append(1.0, np.where(turned, -1.0, 1.0)))
-    return np.asarray(found * signs[:, None])
+    return np.asarray(found * np.cumprod(np.append(1.0, np.where(turned, -1.0, 1.0)))[:, None])
