@@ -89,6 +89,13 @@ def test_colour_is_that_of_the_force(replay: Replay) -> None:
     assert colours[np.argmin(force), 0] == pytest.approx(linear([214, 220, 226]), abs=1e-6)
 
 
+def test_linear_light_of_srgb() -> None:
+    """IEC 61966-2-1: straight up to 0.04045 of full light, a power of 2.4 above."""
+    assert linear(np.array([0.0, 10.0, 64.0, 128.0, 255.0])) == pytest.approx(
+        [0.0, 0.0030353, 0.0512695, 0.2158605, 1.0], abs=1e-6
+    )
+
+
 def test_the_end_of_a_scale_is_a_round_number_above() -> None:
     assert [round_above(value) for value in (1.0, 1.01, 1446.0, 2001.0, 0.0999)] == [1.0, 1.5, 1500.0, 3000.0, 0.1]
 

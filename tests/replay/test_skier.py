@@ -21,7 +21,7 @@ from skisnow.replay import (
     replay_of_run,
 )
 from skisnow.replay.skier import ANKLE_BEHIND, JOINTS, STAND_HEIGHT, centre_of_mass, two_bones
-from skisnow.replay.skier_shapes import AROUND, _round, skier_mesh, skier_parts
+from skisnow.replay.skier_shapes import AROUND, _round, part_poses, skier_mesh, skier_parts
 from skisnow.scenario.skier import Skier
 from skisnow.simulate.boot_history import BootHistory
 from skisnow.simulate.run import Run
@@ -202,25 +202,44 @@ def test_both_models_have_the_skier(replay: Replay) -> None:
         first += len(own)
 
 
+def test_parts_stand_upright_between_their_joints(replay: Replay) -> None:
+    """Their z axis goes from one joint to the other; their x axis has no part to the body's left."""
+    assert replay.skier is not None
+    for part in skier_parts(HEIGHT):
+        if part.start not in JOINTS:
+            continue
+        start, turn = part_poses(replay.skier, part)
+        axes = Rotation.from_quat(turn, scalar_first=True).as_matrix()
+        end = replay.skier.joints[:, JOINTS.index(part.end)]
+        way = (end - start) / np.linalg.norm(end - start, axis=1, keepdims=True)
+        assert axes[:, :, 2] == pytest.approx(way, abs=1e-9), part.name
+        assert axes[:, 1, 0] == pytest.approx(np.zeros(len(start)), abs=1e-9), part.name
+
+
 def test_a_round_shape_is_closed_in_the_middles_of_its_end_rings() -> None:
     mesh = _round([(0.0, 0.2, 0.1, 0.3), (0.5, 0.3, 0.2, -0.1), (1.0, 0.1, 0.1, 0.4)], (0, 0, 0))
     assert mesh.vertices[:AROUND] == pytest.approx(np.tile([0.3, 0.0, 0.0], (AROUND, 1)))
     assert mesh.vertices[-AROUND:] == pytest.approx(np.tile([0.4, 0.0, 1.0], (AROUND, 1)))
 
 
-def test_parts_are_as_large_as_those_that_were_looked_at() -> None:
-    """Least and greatest place (cm) of each, along its own axes, in a body of 1.75 m."""
-    boxes = {
-        "trunk": [-13, -19, -11, 13, 19, 54],
-        "head": [-11, -10, -2, 14, 10, 31],
-        "boot": [-20, -6, 1, 20, 6, 17],
-        "lower leg": [-8, -7, -6, 8, 7, 47],
-        "thigh": [-10, -9, -5, 10, 9, 47],
-        "upper arm": [-7, -6, -7, 7, 6, 36],
-        "forearm": [-5, -5, -4, 5, 5, 33],
-        "pole": [-4, -4, -9, 4, 4, 116],
-    }
-    parts = skier_parts(1.75)
+@pytest.mark.parametrize(
+    ("height", "boxes"),
+    [
+        (1.75, {
+            "trunk": [-13, -19, -11, 13, 19, 54], "head": [-11, -10, -2, 14, 10, 31], "boot": [-20, -6, 1, 20, 6, 17],
+            "lower leg": [-8, -7, -6, 8, 7, 47], "thigh": [-10, -9, -5, 10, 9, 47],
+            "upper arm": [-7, -6, -7, 7, 6, 36], "forearm": [-5, -5, -4, 5, 5, 33], "pole": [-4, -4, -9, 4, 4, 116],
+        }),
+        (1.5, {
+            "trunk": [-13, -19, -9, 12, 19, 47], "head": [-9, -9, -2, 12, 9, 26], "boot": [-20, -6, 1, 20, 6, 17],
+            "lower leg": [-8, -7, -6, 8, 7, 41], "thigh": [-10, -9, -4, 10, 9, 40],
+            "upper arm": [-7, -6, -6, 7, 6, 31], "forearm": [-5, -5, -3, 5, 5, 29], "pole": [-4, -4, -9, 4, 4, 99],
+        }),
+    ],
+)  # fmt: skip
+def test_parts_are_as_large_as_those_that_were_looked_at(height: float, boxes: dict[str, list[int]]) -> None:
+    """Least and greatest place (cm) of each, along its own axes."""
+    parts = skier_parts(height)
     assert len(parts) == 2 + 2 * 6
     for part in parts:
         corners = np.concatenate([part.mesh.vertices.min(axis=0), part.mesh.vertices.max(axis=0)])

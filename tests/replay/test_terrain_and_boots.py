@@ -13,7 +13,7 @@ from skisnow.geometry.boot_axes import axes_of
 from skisnow.replay import Replay, moving_replay_model, replay_bytes, replay_of_bytes, replay_of_file, replay_of_run
 from skisnow.replay.meshes import _normals, grid_mesh, snow_mesh
 from skisnow.replay.shape import ski_edges
-from skisnow.scenario import Terrain
+from skisnow.scenario import Profile, Terrain, read_terrain
 from skisnow.simulate.boot_history import BootHistory
 from skisnow.simulate.run import Run
 
@@ -87,6 +87,20 @@ def test_meshes_lie_on_the_snow() -> None:
     assert abs(area).sum() == pytest.approx(float(np.prod(high - low)))  # all of it once
 
 
+def test_lines_over_a_plane_are_in_pieces_of_a_metre_and_over_bent_snow_in_finer_ones() -> None:
+    def longest(replay: Replay) -> np.ndarray:
+        mesh = grid_mesh(replay)
+        ends = mesh.vertices[mesh.pieces][:, :, :2]
+        return np.abs(ends[:, 1] - ends[:, 0]).max(axis=0)
+
+    run = circle_run(count=5)
+    profile = Profile(np.arange(-60.0, 61.0), -0.2 * np.arange(-60.0, 61.0))
+    along = replace(run, scenario=replace(run.scenario, slope=profile))
+    assert longest(replay_of_run(run)) == pytest.approx([1.0, 1.0])
+    assert longest(replay_of_run(along)) == pytest.approx([0.25, 1.0])
+    assert longest(replay_of_run(over(hills(X[:, None], Y)))) == pytest.approx([0.25, 0.25], rel=0.02)
+
+
 def test_normals_are_those_of_the_snow_down_and_aside() -> None:
     replay = replay_of_run(over(-0.2 * X[:, None] + 0.3 * Y))
     normal = np.array([0.2, -0.3, 1.0]) / np.sqrt(1.0 + 0.2**2 + 0.3**2)
@@ -153,3 +167,6 @@ def test_files_hold_both(tmp_path: Path) -> None:
     folder.mkdir()
     written(run, folder, **{"slope.kind": "grid", "slope.grid": str(tmp_path / "heights.csv")})
     same(replay_of_file(folder), replay_of_run(run))
+    written(run, folder, **{"slope.kind": "grid", "slope.grid": str(tmp_path / "heights.csv"), "slope.smooth_m": 9.0})
+    smooth = read_terrain(tmp_path / "heights.csv", smoothing=9.0)
+    same(replay_of_file(folder), replay_of_run(replace(run, scenario=replace(run.scenario, slope=smooth))))

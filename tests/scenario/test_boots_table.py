@@ -116,6 +116,12 @@ def test_a_table_of_opensim_is_read_behind_its_head(tmp_path: Path) -> None:
     assert found.axes[3, 1] == pytest.approx(np.eye(3))
 
 
+def test_a_scenario_with_boots_shows_them(tmp_path: Path) -> None:
+    path = table(tmp_path, "time_s,left_up_m\n" + "".join(f"{t},0\n" for t in range(4)))
+    assert "Boots 4 poses of each" in repr(read_scenario("carved-46m", changes={"boots.file": str(path)}))
+    assert "Boots" not in repr(read_scenario("carved-46m"))
+
+
 def test_places_alone_have_no_degrees(tmp_path: Path) -> None:
     places = MOT.replace("nRows=4", "inDegrees=no").replace("left_edge_angle_deg", "left_up_m")
     assert read_boots(table(tmp_path, places, "a.sto")).place[3, 0, 2] == 30.0

@@ -327,6 +327,7 @@ def test_scenario_tells_its_values_back(name: str) -> None:
         ({"clamp_length_m": 2}, "the ski giant-slalom allows less than 1.71 m"),
         ({"inertia_kg_m2": [1, 1, 3]}, "none more than the sum of the others"),
         ({"mu_1_s_per_m": -0.01}, "friction at the start's speed"),
+        ({"course.name": "slalom-20-gates", "course.file": "c.csv"}, "either course.name, of the catalogue, or"),
     ],
 )
 def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: str) -> None:

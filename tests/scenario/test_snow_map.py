@@ -12,6 +12,7 @@ from skisnow.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import SnowMap, read_scenario, read_snow_map, scenario_file
 from skisnow.simulate.run_setup import laid_out
+from skisnow.snow import published_snow
 from skisnow.units import N_PER_MM2, N_PER_MM3
 
 ALONG = "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n40,0.4,0.4\n"
@@ -66,6 +67,15 @@ def test_what_the_map_has_not_comes_from_the_snow(tmp_path: Path) -> None:
     named = named.with_(snow_map=read_snow_map(path))
     assert named.contact.snow.failure_shear_stress == pytest.approx(0.3 * N_PER_MM2)
     assert named.with_(snow="race-piste").contact.snow_map is None
+
+
+def test_hardness_of_the_map_comes_before_that_of_a_named_snow(tmp_path: Path) -> None:
+    path = written(tmp_path, "x_m,H_V_N_per_mm3\n0,0.1\n10,0.4\n")
+    snow = read_scenario(
+        "carved-46m", changes={"snow.map_file": str(path), "snow.published": "race-piste"}
+    ).contact.snow
+    assert snow.snow_hardness == read_snow_map(path).mean_hardness
+    assert snow.failure_shear_stress == published_snow("race-piste").failure_shear_stress
 
 
 def test_hardness_where_it_matters(tmp_path: Path) -> None:

@@ -178,6 +178,15 @@ def test_what_is_wrong_in_an_esri_grid_is_told_with_its_place(tmp_path: Path, ol
     assert str(error.value).startswith(str(path))
 
 
+@pytest.mark.parametrize(("rows", "refused"), [(10, False), (11, True)])
+def test_rows_that_lie_on_no_grid_are_told(tmp_path: Path, rows: int, refused: bool) -> None:
+    """Ten and more different places along both axes for each row: a line across the grid."""
+    text = "x_m,y_m,z_m\n" + "".join(f"{i},{i},0\n" for i in range(rows))
+    with pytest.raises(ParameterError) as error:
+        read_terrain(written(tmp_path, text))
+    assert (f"{rows} rows have {rows} different x_m and {rows} different y_m" in str(error.value)) is refused
+
+
 def test_file_that_is_not_there_is_told(tmp_path: Path) -> None:
     for name in ("none.csv", "none.asc", "none.tif"):
         with pytest.raises(ParameterError, match=rf"{name} cannot be read"):

@@ -202,6 +202,9 @@ def test_an_address_may_try_ten_tokens_a_minute() -> None:
     assert tries.wait_s("192.168.1.7") == 0.0
     same_network = [tries.wait_s(f"2001:db8::{i}") for i in range(11)]
     assert same_network == [0.0] * 10 + [60.0]
+    assert tries.wait_s("2001:db8:0:0:ffff::1") == 60.0
+    assert tries.wait_s("2001:db8:0:1::1") == 0.0
+    assert tries.wait_s("no address") == 0.0
 
 
 def test_too_many_tries_are_told_when_to_try_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,14 +12,15 @@ import pytest
 import skisnow
 from skisnow.errors import ParameterError, StoreError
 from skisnow.estimate import analyse
-from skisnow.field import read_campaign
+from skisnow.field import QUALITY_FLAGS, read_campaign
+from skisnow.field.problems import Problem
 from skisnow.field.store import Journals, NewEntry, Store, export_corrected
 from skisnow.report.number_formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.analyses import CampaignSource
 from skisnow.web.analysing import Choice, Numbers, numbers_of
 from skisnow.web.correction_session import CorrectionSession
-from skisnow.web.edit_session import EditSession
+from skisnow.web.edit_session import EditSession, _in_words
 from skisnow.web.settings import Lab
 from skisnow.web.snow_of_campaign import campaign_snow, results_with
 from skisnow.web.transfer import entry_files, kept_files, write_entry
@@ -248,3 +249,18 @@ def test_a_workbook_that_cannot_be_gone_on_with_is_said(lab: Lab, tmp_path: Path
         uploaded(lab, tmp_path / "undescribed", packed(penetration=[["experiment"], ["1"]]))
     with pytest.raises(ParameterError, match="no workbook that can be read"):
         uploaded(lab, tmp_path / "broken", b"no workbook")
+
+
+def test_flags_of_experiments_say_what_was_found_where_there_is_something() -> None:
+    code = sorted(QUALITY_FLAGS)[0]
+    told = _in_words(
+        [
+            Problem("mark", code, "penetration.csv", None, None, name, value, "0.1 or less", "Look at it.")
+            for name, value in (("1", "0.3"), ("2", None))
+        ]
+    )
+    sentence = QUALITY_FLAGS[code].sentence
+    assert told == {
+        "penetration.csv/1": {code: f"{sentence} Found: 0.3; not flagged would be 0.1 or less. Look at it."},
+        "penetration.csv/2": {code: f"{sentence} Look at it."},
+    }
