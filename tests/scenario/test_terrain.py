@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from skisnow.errors import ParameterError
-from skisnow.scenario import Plane, Terrain, read_scenario, read_terrain
-from skisnow.scenario.slope_surface import down_and_left, normals_of
+from skisnow.geometry.surfaces import Grid
+from skisnow.scenario import Plane, Profile, Terrain, read_scenario, read_terrain
+from skisnow.scenario.slope_surface import down_and_left, normals_of, surface_of
 
 ASC = """ncols 3
 nrows 2
@@ -185,6 +186,16 @@ def test_rows_that_lie_on_no_grid_are_told(tmp_path: Path, rows: int, refused: b
     with pytest.raises(ParameterError) as error:
         read_terrain(written(tmp_path, text))
     assert (f"{rows} rows have {rows} different x_m and {rows} different y_m" in str(error.value)) is refused
+
+
+def test_a_profile_is_a_table_of_places_two_centimetres_apart_or_nearer() -> None:
+    """0.05 m of it in three steps."""
+    profile = Profile(np.array([0.0, 0.01, 0.03, 0.05]), np.array([0.0, -0.001, -0.004, -0.01]))
+    grid = surface_of(profile)
+    assert isinstance(grid, Grid)
+    places = np.linspace(0.0, 0.05, 4)
+    assert grid.steps[0] == pytest.approx(0.05 / 3.0)
+    assert grid.heights(places, 0.0 * places) == pytest.approx(profile.heights(places), abs=1e-12)
 
 
 def test_file_that_is_not_there_is_told(tmp_path: Path) -> None:

@@ -215,8 +215,6 @@ def change_of(word: str) -> tuple[str, object]:
         return name, text
     value = values["value"] if values.keys() == {"value"} else text  # a second line would say more than one value
     is_text = SCENARIO_KEYS[name].kind == "text"
-    if not is_text and isinstance(value, str):
-        _refuse_comma(word, name, text)
     return name, text if is_text and not isinstance(value, str) else value
 
 
