@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from skisnow.course import Course, Gate, read_course
 from skisnow.errors import ParameterError, SkisnowError
 from skisnow.replay import measured_track, replay_bytes, replay_of_file, replay_of_run
 from skisnow.replay.of_run import facts_of
@@ -19,6 +20,7 @@ from skisnow.report.run_file import write_run_file
 from skisnow.scenario import Profile, scenario_values
 from skisnow.scenario.values import in_sections
 from skisnow.simulate.run import Run
+from skisnow.simulate.run_gates import run_gates
 from skisnow.ski import ski_named, write_ski
 from skisnow.track.track import Track
 from skisnow.units import DEGREE
@@ -142,6 +144,31 @@ def test_a_measured_track_keeps_its_places_and_moves_in_time() -> None:
     assert found.time == pytest.approx([1.5, 1.7])
     with pytest.raises(ParameterError, match="axes of the slope"):
         measured_track(track("east_north_up"))
+    with pytest.raises(ParameterError, match="mine has 1 points with a place; a line needs 2"):
+        measured_track(replace(track(), place=np.array([[0.0, 1.0, 0.0], [np.nan] * 3, [2.0, np.nan, 0.5]])))
+
+
+def test_a_course_of_the_catalogue_stands_in_a_run_of_a_file(tmp_path: Path) -> None:
+    run = circle_run(count=3)
+    written(run, tmp_path, **{"course.name": "slalom-20-gates"})
+    gates = replay_of_file(tmp_path).gates
+    assert gates is not None
+    assert gates[:, :2].tolist() == [list(gate.turning) for gate in read_course("slalom-20-gates").gates]
+
+
+def test_times_at_gates_are_those_of_both_feet() -> None:
+    """Poles 20 cm beside either ski, on a circle: the same times as the run has."""
+    run = circle_run()
+    gates = []
+    for row, aside in ((60, 0.2 + STANCE / 2.0), (140, -0.2 - STANCE / 2.0)):
+        x, y = (run.place[row] + aside * run.attitude[row, :, 1])[:2].tolist()
+        gates.append(Gate(name=str(row), turning=(x, y), side="right" if aside > 0.0 else "left"))
+    run = replace(run, scenario=replace(run.scenario, course=Course(gates=tuple(gates))))
+    found, times = run_gates(run), replay_of_run(run).gate_times
+    assert found is not None
+    assert times is not None
+    assert found.passed == 2
+    assert times == pytest.approx([time - found.start_time for time in found.times if time is not None], abs=1e-9)
 
 
 def test_settings_are_words_for_people() -> None:

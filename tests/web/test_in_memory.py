@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
+from base64 import b64decode
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,11 @@ from skisnow.estimate import analyse
 from skisnow.field import QUALITY_FLAGS, read_campaign
 from skisnow.field.problems import Problem
 from skisnow.field.store import Journals, NewEntry, Store, export_corrected
+from skisnow.report.figures import DRAWERS
 from skisnow.report.number_formatting import significant
 from skisnow.snow import snow_from_results
 from skisnow.web.analyses import CampaignSource
-from skisnow.web.analysing import Choice, Numbers, numbers_of
+from skisnow.web.analysing import Choice, Numbers, figure, numbers_of
 from skisnow.web.correction_session import CorrectionSession
 from skisnow.web.edit_session import EditSession, _in_words
 from skisnow.web.settings import Lab
@@ -264,3 +266,17 @@ def test_flags_of_experiments_say_what_was_found_where_there_is_something() -> N
         "penetration.csv/1": {code: f"{sentence} Found: 0.3; not flagged would be 0.1 or less. Look at it."},
         "penetration.csv/2": {code: f"{sentence} Look at it."},
     }
+
+
+@pytest.mark.usefixtures("svg_alone")
+def test_a_figure_is_drawn_where_there_are_data_for_it(tmp_path: Path) -> None:
+    """Of a campaign with a few loads alone: force over depth in the page's language, none of shear stress."""
+    (tmp_path / "campaign.toml").write_text(TOML, encoding="utf-8")
+    (tmp_path / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
+    analysis = analyse(read_campaign(tmp_path), n_resamples=100)
+    by_name = {drawer.__name__: number for number, drawer in enumerate(DRAWERS)}
+    drawn = figure(analysis, by_name["force_depth"], "de")
+    assert drawn is not None
+    assert drawn.name == "fig05_force_depth"
+    assert "Eindringtiefe" in b64decode(drawn.image.partition(",")[2]).decode("utf-8")
+    assert figure(analysis, by_name["stress_angle"], "de") is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -134,6 +135,25 @@ def test_names_that_are_no_folder_everywhere(tmp_path: Path, name: str) -> None:
         LabSkis(tmp_path).save_ski(name, CARVER)
     assert LabSkis(tmp_path).saved() == []
     assert list(tmp_path.rglob("*.toml")) == []
+
+
+def test_a_ski_is_saved_with_its_table_and_read_by_its_word(tmp_path: Path) -> None:
+    skis = LabSkis(tmp_path)
+    assert (skis.word("carver"), skis.saved()) == ("carver", [])
+    skis.save_ski("Mine 2", replace(CARVER, name="Mine 2"))
+    assert skis.saved() == ["Mine 2"]
+    assert skis.names()[-1] == "Mine 2"
+    back = read_ski(skis.word("Mine 2"))
+    assert back.name == "Mine 2"
+    assert back.width == pytest.approx(CARVER.width)
+    text, table = skis.texts("Mine 2")
+    assert 'name = "Mine 2"' in text
+    assert table.count("\n") == len(CARVER.station) + 1
+    with pytest.raises(ParameterError, match="there is a ski MINE 2 already"):
+        skis.save_ski("MINE 2", CARVER)
+    with pytest.raises(ParameterError, match="the lab has no ski named 'other'"):
+        skis.word("other")
+    assert [place.name for place in (tmp_path / "skis").iterdir()] == ["Mine 2"]
 
 
 def test_a_text_names_no_file_of_the_machine(tmp_path: Path) -> None:
