@@ -15,7 +15,7 @@ import pytest
 
 from skisnow.errors import ParameterError
 from skisnow.web.settings import Limits
-from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, write_zip
+from skisnow.web.unpacking import Unpacking, campaign_folder, files_below, shown, write_zip
 from tests.given.fuzz import damaged
 
 LIMITS = Limits(upload_bytes=10_000, unpacked_bytes=5_000, files=4)
@@ -228,3 +228,20 @@ def test_an_encrypted_member_is_refused_and_no_other_flag(folder: Path, flag: in
     else:
         taking.take_zip(io.BytesIO(bytes(content)))
         assert (folder / "a.csv").read_bytes() == b"1,2\n"
+
+
+@pytest.mark.parametrize("files", [4, 5])
+def test_single_files_are_counted_one_by_one(folder: Path, files: int) -> None:
+    unpacking = Unpacking(folder, LIMITS)
+    for number in range(min(files, 4)):
+        unpacking.take(f"{number}.csv", io.BytesIO(b"x"))
+    if files > 4:
+        with pytest.raises(ParameterError, match="more than 4 files at once"):
+            unpacking.take("last.csv", io.BytesIO(b"x"))
+    assert len(list(folder.iterdir())) == 4
+
+
+def test_a_name_in_a_sentence_has_eighty_letters_that_print() -> None:
+    assert shown("a" * 80) == repr("a" * 80)
+    assert shown("a" * 81) == repr("a" * 79 + "…")
+    assert shown("a\nb\u202e") == "'a?b?'"
