@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import tempfile
 from base64 import b64decode
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 
@@ -19,7 +20,7 @@ from skisnow.field.store import Journals, NewEntry, Store, export_corrected
 from skisnow.report.figures import DRAWERS
 from skisnow.report.number_formatting import significant
 from skisnow.snow import snow_from_results
-from skisnow.web.analyses import CampaignSource
+from skisnow.web.analyses import Analyses, CampaignSource
 from skisnow.web.analysing import Choice, Numbers, figure, numbers_of
 from skisnow.web.correction_session import CorrectionSession
 from skisnow.web.edit_session import EditSession, _in_words
@@ -30,6 +31,9 @@ from skisnow.web.uploaded import add_uploaded
 
 from ..field.recordings import plain_snow
 from ..given.test_workbook import packed
+
+if TYPE_CHECKING:
+    from skisnow.web.worker import Worker
 
 TOML = """name = "Desk"
 [[tool]]
@@ -280,3 +284,40 @@ def test_a_figure_is_drawn_where_there_are_data_for_it(tmp_path: Path) -> None:
     assert drawn.name == "fig05_force_depth"
     assert "Eindringtiefe" in b64decode(drawn.image.partition(",")[2]).decode("utf-8")
     assert figure(analysis, by_name["stress_angle"], "de") is None
+
+
+def test_reports_lie_in_a_folder_that_goes_with_who_holds_it(lab: Lab, tmp_path: Path) -> None:
+    subject = CampaignSource(lab, "kept", kept_id(lab, tmp_path / "kept"))
+    place = subject.place
+    assert place.is_dir()
+    assert subject.place == place
+    del subject
+    assert not place.exists()
+
+
+def test_a_test_of_a_session_is_that_of_its_file_and_name(lab: Lab) -> None:
+    session = EditSession(lab, entered(lab))
+    found = session.test("penetration.csv", "1")
+    assert [row.cells["load_N"] for row in found.rows] == [load for load, _ in ROWS]
+    assert not session.test("penetration.csv", "2").rows
+    assert session.tests_of_site("A") == [found]
+    assert session.tests_of_site("B") == []
+
+
+def test_a_campaign_that_was_looked_at_is_known_until_something_is_entered(lab: Lab, tmp_path: Path) -> None:
+    analyses = Analyses(lab, cast("Worker", None))
+    kept, entry = kept_id(lab, tmp_path / "kept"), entered(lab)
+
+    async def looked_at() -> None:
+        for kind, id_ in (("kept", kept), ("entry", entry)):
+            assert analyses.known(kind, id_) is None
+            subject = await analyses.subject(kind, id_)
+            assert analyses.known(kind, id_) is subject
+            assert await analyses.subject(kind, id_) is subject
+        correct(lab, kept)
+        assert analyses.known("kept", kept) is None
+        assert analyses.known("entry", entry) is not None
+
+    asyncio.run(looked_at())
+    with pytest.raises(StoreError):
+        analyses.known("kept", "0" * 12)
