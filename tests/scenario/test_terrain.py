@@ -42,6 +42,14 @@ def test_table_is_a_grid_whatever_the_order_of_its_rows(tmp_path: Path) -> None:
         assert terrain.height.tolist() == [[1.0, 3.0], [2.0, 4.0]]
 
 
+def test_a_table_is_smoothed_and_shifted_only_where_that_is_asked(tmp_path: Path) -> None:
+    path = written(tmp_path, CSV)
+    terrain = read_terrain(path)
+    assert (terrain.smoothing, terrain.origin_x, terrain.origin_y) == (0.0, 0.0, 0.0)
+    asked = read_terrain(path, smoothing=3.0, origin_x=1.0, origin_y=2.0)
+    assert (asked.smoothing, asked.origin_x, asked.origin_y) == (3.0, 1.0, 2.0)
+
+
 def test_places_that_were_rounded_are_even(tmp_path: Path) -> None:
     rows = [f"{x},{y},{float(x) + float(y)}" for x in ("0", "0.333", "0.667", "1") for y in ("0", "1")]
     terrain = read_terrain(written(tmp_path, "\n".join(["x_m,y_m,z_m", *rows])))
