@@ -17,7 +17,7 @@ from skisnow.geometry.surfaces import Grid
 from skisnow.identify import Identified, Parameter
 from skisnow.report.figures.track_band import TimedTrack
 from skisnow.report.turn_chain import EnsembleRun
-from skisnow.shown import Shown, field_facts
+from skisnow.shown import Facts, Shown, field_facts
 
 from .report.runs import circle_run
 
@@ -125,6 +125,26 @@ def test_what_a_user_wrote_is_escaped_in_a_notebook() -> None:
     shown = SnowProperties(1e8, 2e5, source="<b>mine</b>")._repr_html_()
     assert "&lt;b&gt;mine&lt;/b&gt;" in shown
     assert "<b>" not in shown
+
+
+class Rows(Shown):
+    """As many rows as asked for."""
+
+    def __init__(self, count: int, text: str = "x") -> None:
+        self.count, self.text = count, text
+
+    def _facts(self) -> Facts:
+        return Facts("", tuple((f"r{number}", self.text) for number in range(self.count)))
+
+
+def test_eight_rows_are_shown_and_of_more_seven_and_the_names_of_the_rest() -> None:
+    assert repr(Rows(8)).splitlines()[1:] == [f"  r{number}  x" for number in range(7)] + ["  r7  x>"]
+    assert repr(Rows(10)).splitlines()[7:] == ["  r6    x", "  also  r7, r8, r9>"]
+
+
+def test_a_line_has_up_to_120_letters() -> None:
+    assert repr(Rows(1, "x" * 114)).splitlines()[1] == "  r0  " + "x" * 114 + ">"
+    assert repr(Rows(1, "x" * 115)).splitlines()[1] == "  r0  " + "x" * 113 + "…>"
 
 
 def test_lists_and_texts_are_shown_up_to_a_length() -> None:

@@ -36,8 +36,9 @@ class Shown:
         head = f"<{kind} {title}" if title else f"<{kind}"
         if not rows:
             return f"{_cut(head)}>"
-        width = max(len(name) for name, _ in rows)
-        return "\n".join([_cut(head), *(_cut(f"  {name.ljust(width)}  {text}") for name, text in _few(rows))]) + ">"
+        few = _few(rows)
+        width = max(len(name) for name, _ in few)
+        return "\n".join([_cut(head), *(_cut(f"  {name.ljust(width)}  {text}") for name, text in few)]) + ">"
 
     def _repr_html_(self) -> str:
         """The same as a table, which a notebook shows."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import shutil
 import subprocess
 import sys
@@ -26,6 +27,15 @@ def test_an_edited_source_is_refused(tmp_path: Path) -> None:
         require_current(core.SOURCE_HASH, copied)
     edited.unlink()
     assert fingerprint(copied) != core.SOURCE_HASH
+
+
+@pytest.mark.skipif(not SOURCES.is_dir(), reason="an installed package has no C++ sources")
+def test_the_package_looks_when_it_is_imported(monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as edited:
+        edited.setattr("skisnow.compiled.sources.fingerprint", lambda _: "another")
+        with pytest.raises(ImportError, match="older than its sources"):
+            importlib.reload(skisnow.compiled)
+    assert importlib.reload(skisnow.compiled).core is core
 
 
 def test_the_build_asks_for_the_fingerprint_by_a_program(tmp_path: Path) -> None:
