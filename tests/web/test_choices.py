@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -18,6 +17,7 @@ from skisnow.snow import published_snow
 from skisnow.web.snow_choice import ALL_SITES, PUBLISHED, SnowChoice
 from skisnow.web.study_axis import NOTHING, AxisFields
 
+from .finished import finished
 from .test_in_memory import PENETRATION, TOML
 
 ANGLE = Quantity("sledge.edge_angle_deg", "edge angle", label="edge angle", lowest=0.0, highest=90.0)
@@ -89,7 +89,7 @@ class Fields:
 
     def choose(self, key: str) -> None:
         self.inside._menu.value = key
-        asyncio.run(self.inside._another())
+        finished(self.inside._another())
 
 
 def test_a_published_snow_holds_until_numbers_are_chosen_again() -> None:
@@ -122,7 +122,7 @@ def test_a_snow_of_a_campaign_without_shear_gives_no_stress(tmp_path: Path, monk
     assert found is not None
     assert (found.words, found.site) == ("Desk", ALL_SITES)
     fields.site.value = "B"
-    asyncio.run(fields.inside._choose())
+    finished(fields.inside._choose())
     found = fields.made.chosen()
     assert found is not None
     assert (found.words, found.site) == ("Desk, B", "B")

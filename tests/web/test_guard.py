@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import pytest
@@ -20,6 +18,8 @@ from starlette.websockets import WebSocket
 
 from skisnow.web.guard import COOKIE, Access, Guard, is_loopback
 from skisnow.web.token_page import Tries
+
+from .finished import finished
 
 HOST = "127.0.0.1:8765"
 OWN = {"origin": f"http://{HOST}"}
@@ -77,8 +77,7 @@ class Client:
         async def send(message: Message) -> None:
             sent.append(message)
 
-        with ThreadPoolExecutor(1) as beside:  # in this thread a loop may run: the one that drives a browser
-            beside.submit(lambda: asyncio.run(self._app(scope, receive, send))).result()
+        finished(self._app(scope, receive, send))
         return sent
 
 

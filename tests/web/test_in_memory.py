@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 import tempfile
 from base64 import b64decode
@@ -31,6 +30,7 @@ from skisnow.web.uploaded import add_uploaded
 
 from ..field.recordings import plain_snow
 from ..given.test_workbook import packed
+from .finished import finished
 
 if TYPE_CHECKING:
     from skisnow.web.worker import Worker
@@ -318,6 +318,6 @@ def test_a_campaign_that_was_looked_at_is_known_until_something_is_entered(lab: 
         assert analyses.known("kept", kept) is None
         assert analyses.known("entry", entry) is not None
 
-    asyncio.run(looked_at())
+    finished(looked_at())
     with pytest.raises(StoreError):
         analyses.known("kept", "0" * 12)

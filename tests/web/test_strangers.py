@@ -7,13 +7,13 @@ import http.client
 import json
 import socket
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import pytest
 
 from .conftest import MISSING, Served
+from .finished import finished
 
 if "nicegui" in MISSING:
     pytest.skip("the web lab is not installed", allow_module_level=True)
@@ -144,8 +144,7 @@ def test_half_a_request_is_not_waited_for(sent: bytes) -> None:
             await serving
             return heard
 
-    with ThreadPoolExecutor(1) as beside:  # in this thread a loop may run: the one that drives a browser
-        heard = beside.submit(lambda: asyncio.run(talk())).result()
+    heard = finished(talk())
     assert heard.count(b"hi") == (1 if b"\r\n\r\nGET" in sent else 0)
 
 
