@@ -10,6 +10,8 @@ import pytest
 
 pytest.importorskip("nicegui", reason="the web lab is not installed")
 
+from starlette.requests import Request
+
 from skisnow.errors import StoreError
 from skisnow.web.error_pages import LOG, _notified, error_sentence, log_to, plain_page
 
@@ -52,6 +54,7 @@ def test_our_own_errors_say_what_to_do() -> None:
 
 
 def test_what_users_wrote_is_escaped() -> None:
-    body = bytes(plain_page("<script>", "<img src=x onerror=alert(1)>", 400).body).decode()
+    request = Request({"type": "http", "headers": []})
+    body = bytes(plain_page("<script>", "<img src=x onerror=alert(1)>", 400, request).body).decode()
     assert "<script" not in body
     assert "<img" not in body

@@ -12,7 +12,7 @@ from nicegui import app, ui
 from starlette.responses import HTMLResponse, Response
 
 from ..errors import FieldDataError, ParameterError, SkisnowError, StoreError
-from ..language import ENGLISH, catalogue
+from ..language import catalogue
 from .guard import STATUS
 from .language import language_of_request, said
 from .layout import framed, sentence
@@ -82,9 +82,9 @@ def _page(error: Exception) -> None:
         sentence(error_sentence(error), "bad")
 
 
-def plain_page(title: str, sentence: str, status: int, request: Request | None = None) -> Response:
+def plain_page(title: str, sentence: str, status: int, request: Request) -> Response:
     """A page without any script, in the language of the request: a title, a sentence, the way back."""
-    language = ENGLISH if request is None else language_of_request(request)
+    language = language_of_request(request)
     shown = {"title": title, "said": sentence, "back": "To the campaigns"}
     words = {name: escape(catalogue(language).translated(text)) for name, text in shown.items()}
     return HTMLResponse(_PLAIN.format(language=language, **words), status)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
 import io
 import os
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -25,6 +23,7 @@ from skisnow.web.replay.addresses import RunFolders, add_addresses, show_address
 from skisnow.web.replay.tracks import Placing, TrackFolders
 
 from ...report.runs import circle_run
+from ..finished import finished
 
 ODD = 'a "b" <i>&c%2e'
 
@@ -44,10 +43,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class Client:
-    """Asks the application itself: no socket, no server.
-
-    In a thread of its own, for in this one the event loop of Playwright's browser runs once another test has used it.
-    """
+    """Asks the application itself: no socket, no server."""
 
     def __init__(self, app: FastAPI) -> None:
         self.app = app
@@ -58,8 +54,7 @@ class Client:
             async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as client:
                 return await client.get(address, params=params, headers={"accept-language": language})
 
-        with ThreadPoolExecutor(max_workers=1) as thread:
-            return thread.submit(lambda: asyncio.run(asked())).result()
+        return finished(asked())
 
 
 @pytest.fixture

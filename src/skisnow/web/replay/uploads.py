@@ -33,9 +33,10 @@ def add_uploads(app: FastAPI, tracks: TrackFolders) -> None:
             async with request.form(max_files=1, max_fields=4) as form:
                 name, _ = await run_in_threadpool(_kept, tracks, form)
         except (SkisnowError, OSError) as error:
-            return plain_page("This was not taken in", f"Nothing was stored: {error_sentence(error)}", 400)
+            return plain_page("This was not taken in", f"Nothing was stored: {error_sentence(error)}", 400, request)
         except HTTPException:
-            return plain_page("This was not taken in", "Nothing was stored: one file at a time is taken in.", 400)
+            text = "Nothing was stored: one file at a time is taken in."
+            return plain_page("This was not taken in", text, 400, request)
         return RedirectResponse(f"{_BACK}?track={quote(name, safe='')}", 303)
 
     app.add_api_route(UPLOAD, take_in, methods=["POST"], include_in_schema=False, response_model=None)
