@@ -14,6 +14,9 @@ from skisnow import analyse, read_campaign
 from skisnow.errors import ParameterError
 from skisnow.inputs import Quantity
 from skisnow.snow import published_snow
+from skisnow.web.entry.kept import KeptForm
+from skisnow.web.line_chart import BEHIND
+from skisnow.web.pages.study_table import _Found
 from skisnow.web.snow_choice import ALL_SITES, PUBLISHED, SnowChoice
 from skisnow.web.study_axis import NOTHING, AxisFields
 
@@ -139,3 +142,86 @@ def test_what_is_not_there_yet_is_no_snow() -> None:
     fields.choose(f"{PUBLISHED}nowhere")
     with pytest.raises(ParameterError, match="nowhere"):
         fields.made.chosen()
+
+
+def test_a_campaign_is_analysed_once_while_it_is_chosen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "campaign.toml").write_text(TOML, encoding="utf-8")
+    (tmp_path / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
+    analysis = analyse(read_campaign(tmp_path), n_resamples=100)
+    asked: list[str] = []
+
+    async def io_bound(work: Any, *given: Any) -> Any:
+        return work(*given)
+
+    def campaign_snow(_lab: Any, key: str) -> Any:
+        asked.append(key)
+        if key == "kept-3":
+            raise ParameterError("it has no penetration tests")
+        return None if key == "kept-4" else analysis
+
+    monkeypatch.setattr("skisnow.web.snow_choice.run.io_bound", io_bound)
+    monkeypatch.setattr("skisnow.web.snow_choice.campaign_snow", campaign_snow)
+    monkeypatch.setattr("skisnow.web.snow_choice.said_options", dict)
+    fields = Fields({f"kept-{number}": f"day {number}" for number in range(1, 5)})
+    fields.inside._lab = None
+    for key in ("kept-1", "kept-1", "kept-2"):
+        fields.choose(key)
+        found = fields.made.chosen()
+        assert found is not None
+        assert found.words == f"day {key[-1]}"
+    assert asked == ["kept-1", "kept-2"]
+    assert fields.site.visible is False
+    fields.choose("kept-3")
+    assert fields.told[-1] == "it has no penetration tests"
+    with pytest.raises(ParameterError, match="it has no penetration tests"):
+        fields.made.chosen()
+    changed = fields.changed
+    fields.choose("kept-4")  # the lab is about to end
+    assert fields.changed == changed
+    with pytest.raises(ParameterError, match="wait a moment"):
+        fields.made.chosen()
+
+
+def test_a_line_for_each_value_of_the_other_input_the_named_ones_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skisnow.web.pages.study_table.said", str)
+    made: Any = object.__new__(_Found)
+    made._keys = {"load_N": Quantity("load_N", "load", label="load"), "edge_angle_deg": ANGLE}
+    made._x, made._other, made._lines = "edge_angle_deg", "load_N", [400.0, 600.0, 800.0, 1000.0]
+    rows = [
+        {"edge_angle_deg": angle, "load_N": load, "radius": load / angle}
+        for load in made._lines for angle in (30.0, 10.0)
+    ]  # fmt: skip
+    made._table = SimpleNamespace(rows=rows)
+    assert made._order() == [1, 0, 2, 3]
+    lines = {number: made._line(number, "radius") for number in range(4)}
+    assert (list(lines[1].x), list(lines[1].y)) == ([10.0, 30.0], [60.0, 20.0])
+    assert [lines[number].style for number in range(4)] == [0, BEHIND, 1, 2]
+    assert [bool(lines[number].name) for number in range(4)] == [True, False, True, True]
+    assert lines[3].name.endswith("1000")
+    made._other, made._lines = "", [None]
+    assert len(made._line(0, "radius").x) == 8
+
+
+def test_cells_that_were_typed_anew_are_those_of_every_row_that_has_them_once() -> None:
+    made: Any = object.__new__(KeptForm)
+    now = {"2/site": "A", "3/site": "A", "2/depth_mm": "1.5", "3/depth_mm": "2"}
+    assert made._is_once((2, 3), "site", now)
+    assert not made._is_once((2, 3), "depth_mm", now)
+    said: list[str] = []
+    made._view = SimpleNamespace(say=lambda words, *_: said.append(words), form=None)
+    made._fields = {
+        (2, 3): {"site": SimpleNamespace(value=" B ", error=None)},
+        (2,): {"depth_mm": SimpleNamespace(value="1.5", error=None)},
+        (3,): {"depth_mm": SimpleNamespace(value="2.5", error=None)},
+    }
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(
+            "skisnow.web.entry.kept.checked_fields",
+            lambda _, fields: {column: str(each.value).strip() for column, each in fields.items()},
+        )
+        patched.setattr("skisnow.web.entry.kept.faults", lambda fields: [each.error for each in fields if each.error])
+        assert made._changed(now) == {"2/site": "B", "3/site": "B", "3/depth_mm": "2.5"}
+        made._fields[(3,)]["depth_mm"].error = "Depth: no number"
+        assert made._changed(now) is None
+    assert said == ["Not corrected: Depth: no number."]
+    assert made._words("3/depth_mm", "", "2.5").endswith("nothing becomes 2.5")
