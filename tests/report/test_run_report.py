@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from skisnow.report.figures.drawing import FORMS
-from skisnow.report.run_report import FIGURES, write_run_report
+from skisnow.report.run_drawings import _FIGURES
+from skisnow.report.run_report import FIGURES, FURTHER, write_run_report
 from skisnow.report.tables.run import energies_table, scenario_table
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.values import in_sections, scenario_values
@@ -135,6 +136,11 @@ def test_boots_that_are_moved_have_their_angles_and_forces(run: Run, html: str, 
     assert "Dotted: the radius" in html
     assert "Dotted: the radius" not in page
     assert not (tmp_path / "figures" / "balance.svg").exists()
+    assert moved.plot("boots").axes
+
+
+def test_each_figure_of_a_report_is_drawn_alone_by_its_name() -> None:
+    assert set(_FIGURES) == {*FIGURES, *FURTHER}
 
 
 def test_energies_add_up(run: Run) -> None:

@@ -152,6 +152,7 @@ _FIGURES: Final = {
     "track": run_track,
     "course": run_course,
     "motion": run_motion,
+    "boots": run_boots,
     "balance": run_balance,
     "along_ski": run_along_ski,
     "grip": run_grip,

@@ -226,7 +226,8 @@ class Run(Shown):
         what
             "track": from above, with the grooves; "motion": speed, heading and turn radius; "along_ski": depth and
             force along both skis over time; "grip": the share of the shear strength in use; "energies";
-            "course": the line over the gates, with the edge angle as colour; "balance": lean, edge angle and forces.
+            "course": the line over the gates, with the edge angle as colour; "balance": lean, edge angle and forces;
+            "boots": edge angles of both boots, forces and edging moments of the skis on them.
 
         Returns
         -------
