@@ -99,7 +99,7 @@ _SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
     "tick": lambda value, _: Markup('<span role="img" aria-label="yes">✓</span>' if value else ""),
     "count": lambda value, _: Markup(number_formatting.whole(value)),
     "angle": lambda value, _: Markup(f"{value:.6g}"),
-    "hundredths": lambda value, _: Markup(f"{value:.2f}"),
+    "hundredths": lambda value, _: Markup(f"{value:.2f}".replace("-", "−")),
     "number": lambda value, digits: Markup(number_formatting.significant(value, digits)),
     "p": lambda value, _: Markup.escape(number_formatting.probability(value).replace(" ", "\u00a0")),
     "interval": lambda value, digits: Markup(number_formatting.interval(value, digits)),
