@@ -8,9 +8,11 @@ TOOLS ?= .venv-tools
 DEMO ?= demo
 SEED ?= 1
 SBOM ?= dist/skisnow.cdx.json
-# three workers, since those that drive a browser or another process wait;
+# three workers, since those that drive a browser or another process wait; six where others keep the processors busy,
+# since each process gets an equal share of them
+WORKERS = $(shell $(BIN)/python -c 'import os; print(3 if os.getloadavg()[0] < 3 * os.cpu_count() else 6)')
 # the same examples every time (test-all seeks others); neighbours stay in one process, which has what they share
-QUICK := -n 3 --dist worksteal -q --hypothesis-profile=ci
+QUICK = -n $(WORKERS) --dist worksteal -q --hypothesis-profile=ci
 
 # tests start hundreds of Python processes; where compiled modules are not kept, each compiles the package anew
 unexport PYTHONDONTWRITEBYTECODE

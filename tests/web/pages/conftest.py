@@ -1,0 +1,30 @@
+"""A lab at a desk: its pages, in this process."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+pytest.importorskip("nicegui", reason="the web lab is not installed")
+
+from . import desk as desks
+
+if TYPE_CHECKING:
+    from .desk import Desk
+
+
+@pytest.fixture(scope="session")
+def kept_desk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Desk]:
+    """The framework holds pages per process: one lab in each."""
+    with desks.desk(tmp_path_factory.mktemp("desk")) as made:
+        yield made
+
+
+@pytest.fixture
+def desk(kept_desk: Desk) -> Iterator[Desk]:
+    """A lab with nothing in it; no handler may fail but where the test takes the failure out."""
+    kept_desk.empty()
+    yield kept_desk
+    assert kept_desk.failures == []

@@ -1,0 +1,264 @@
+"""The lab's pages in this process, without a browser: what stands on them, and what their fields and buttons do.
+
+A page takes a twentieth of a second here, in Chromium a second or more. What the browser's own side does, such as
+where the focus goes, only Chromium shows.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import shutil
+import threading
+import time
+from collections.abc import Callable, Coroutine, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+from uuid import uuid4
+
+import httpx
+from nicegui import Client, app, core, events, ui
+from nicegui.element import Element
+from nicegui.nicegui import _on_handshake
+
+from skisnow.field.store import Store
+from skisnow.field.store.engine import writing
+from skisnow.field.store.schema import metadata
+from skisnow.web.application import lab_application
+from skisnow.web.line_chart import LineChart
+from skisnow.web.settings import Lab
+
+Answer = TypeVar("Answer")
+PATIENCE_S = 60.0  # nothing is asserted of time
+_HEADING = re.compile("h[1-6]")
+
+
+@dataclass
+class Sheet:
+    """A page that is open."""
+
+    desk: Desk
+    client: Client
+    html: str
+    scripts: list[str] = field(default_factory=list)
+    """What the page has told the browser to do."""
+
+    def of(self, kind: type[Element] | None = None) -> Iterator[Any]:
+        """Elements that are seen, in their order on the page."""
+        return _seen(self.client.layout, kind)
+
+    def outline(self) -> list[str]:
+        """A line for each heading, sentence, field, button, link and chart below the head of the page."""
+        return list(filter(None, map(_line, _seen(self.content, None))))
+
+    @property
+    def content(self) -> Element:
+        return next(each for each in self.of() if each.props.get("id") == "content")
+
+    def field(self, name: str, number: int = 0) -> Any:
+        """A field by what a screen reader calls it."""
+        found = [each for each in self.of() if _is_field(each) and _name(each) == name]
+        assert len(found) > number, (name, self.outline())
+        return found[number]
+
+    def fill(self, name: str, value: object, number: int = 0) -> None:
+        """Type or choose, and leave the field."""
+        made = self.field(name, number)
+        assert not isinstance(made, ui.select) or value in made.options, (value, made.options)
+        self.desk.do(lambda: made.set_value(value), self.client)
+        self.fire(made, "change", {})
+
+    def press(self, text: str, number: int = 0) -> None:
+        """Press a button."""
+        found = [each for each in self.of(ui.button) if text in (each.text, _name(each))]
+        assert len(found) > number, (text, self.outline())
+        self.fire(found[number], "click", {})
+
+    def fire(self, element: Element, event: str, args: object) -> None:
+        """What the browser sends of an element."""
+
+        def fired() -> None:
+            for each in list(element._event_listeners.values()):
+                if each.type == event and not element.is_deleted:
+                    said = events.GenericEventArguments(sender=element, client=self.client, args=args)
+                    events.handle_event(each.handler, said)
+
+        self.desk.do(fired, self.client)
+
+    def until(self, holds: Callable[[], Answer]) -> Answer:
+        """Wait until something holds; gives what it gave."""
+        end = time.monotonic() + PATIENCE_S
+        while not (found := self.desk.do(holds)):
+            assert not self.desk.failures
+            assert time.monotonic() < end, self.outline()
+            time.sleep(0.005)
+        return found
+
+    def shows(self, text: str) -> str:
+        """Wait until a line of the outline has this in it; gives the line."""
+        return self.until(lambda: next((line for line in self.outline() if text in line), ""))
+
+    def told(self, script: str) -> None:
+        """Wait until the browser is told to do this."""
+        self.until(lambda: any(script in each for each in self.scripts))
+
+    def charts(self) -> dict[str, dict[str, Any]]:
+        """What charts show, by the title of their vertical axis."""
+        return {each.props["panel"]["y"]: each.props["panel"] for each in self.of(LineChart)}
+
+
+@dataclass
+class Desk:
+    """A lab whose pages this process answers, without its queues: what is asked for waits."""
+
+    folder: Path
+    lab: Lab = field(init=False)
+    failures: list[Exception] = field(default_factory=list)
+    """What a handler raised that it should not have."""
+
+    def __post_init__(self) -> None:
+        self.lab = Lab(Store.open(self.folder / "store.sqlite3"), self.folder / "lab")
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._thread.start()
+        core.loop = self._loop
+        transport = httpx.ASGITransport(lab_application(self.lab, host="127.0.0.1", token=None))
+        app.on_exception(self.failures.append)
+        self._browser = httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1", follow_redirects=True)
+
+    def end(self) -> None:
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+
+    def empty(self) -> None:
+        """Take all pages away, and everything out of store and folder."""
+        self.failures.clear()
+        self.do(_close_all)
+        with writing(self.lab.store.engine) as connection:
+            for table in reversed(metadata.sorted_tables):
+                connection.execute(table.delete())
+        for each in self.lab.runs.iterdir() if self.lab.runs.is_dir() else ():
+            if each.is_dir():
+                shutil.rmtree(each)
+
+    def do(self, act: Callable[[], Answer], client: Client | None = None) -> Answer:
+        """Do something where the pages live."""
+
+        async def done() -> Answer:
+            if client is None:
+                return act()
+            with client:
+                return act()
+
+        return self.wait(done())
+
+    def wait(self, work: Coroutine[Any, Any, Answer]) -> Answer:
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result(PATIENCE_S)
+
+    def get(self, path: str, language: str = "en") -> httpx.Response:
+        """What an address answers."""
+        return self.wait(self._browser.get(path, headers={"accept-language": language}))
+
+    def open(self, path: str, language: str = "en") -> Sheet:
+        """Open a page; its connection stands."""
+        answer = self.get(path, language)
+        assert answer.status_code == 200, answer.text
+        (name,) = re.findall(r"'client_id': '([0-9a-f-]+)'", answer.text)
+        sheet = Sheet(self, Client.instances[name], answer.text)
+        self.do(lambda: _listen(sheet))
+        told = {"client_id": name, "tab_id": str(uuid4()), "document_id": str(uuid4())}
+        assert self.wait(_on_handshake(f"test-{uuid4()}", told))
+        return sheet
+
+
+def _close_all() -> None:
+    for each in list(Client.instances.values()):
+        each.delete()
+
+
+def _listen(sheet: Sheet) -> None:
+    """Write down what the page tells the browser, from here on."""
+    send = sheet.client.outbox.enqueue_message
+
+    def heard(kind: Any, data: Any, target_id: Any) -> None:
+        if kind == "run_javascript":
+            sheet.scripts.append(data["code"])
+        elif kind in ("open", "download", "notify"):
+            sheet.scripts.append(f"{kind} {data}")
+        send(kind, data, target_id)
+
+    vars(sheet.client.outbox)["enqueue_message"] = heard
+
+
+@contextmanager
+def desk(folder: Path) -> Iterator[Desk]:
+    made = Desk(folder)
+    yield made
+    made.end()
+
+
+def _seen(element: Element, kind: type[Element] | None) -> Iterator[Any]:
+    if not element.visible:
+        return
+    if kind is None or isinstance(element, kind):
+        yield element
+    for slot in element.slots.values():
+        for each in slot.children:
+            yield from _seen(each, kind)
+
+
+def _is_field(element: Element) -> bool:
+    return isinstance(element, ui.input | ui.textarea | ui.select | ui.switch | ui.checkbox)
+
+
+def _name(element: Element) -> str:
+    """What a screen reader calls it."""
+    return str(element.props.get("aria-label") or element.props.get("label") or getattr(element, "text", ""))
+
+
+def _classes(element: Element, *beside: str) -> str:
+    kept = " ".join(each for each in element.classes if each not in beside)
+    return f"[{kept}]" if kept else ""
+
+
+def _words(element: Element) -> str:
+    return " ".join(filter(None, (each.text for each in _seen(element, ui.label))))
+
+
+def _line(element: Any) -> str:
+    """Nothing for what only holds others."""
+    if _HEADING.fullmatch(element.tag):
+        line = f"{element.tag} {_words(element)}"
+    elif _is_field(element):
+        line = _field_line(element)
+    elif isinstance(element, ui.button):
+        line = f"button{_classes(element, 'act')} {element.text}"
+    elif isinstance(element, ui.link):
+        line = f"link{_classes(element, 'act', 'nicegui-link')} {element.text} -> {element.props['href']}"
+    elif isinstance(element, LineChart):
+        line = f"chart {element.props['panel']['label']}"
+    elif isinstance(element, ui.html):
+        line = f"html {' '.join(re.sub(r'<[^>]+>', ' ', element.content).split())}"
+    elif isinstance(element, ui.label) and element.text and not _is_within_heading(element):
+        line = f"{_classes(element, 'sentence')} {element.text}".lstrip()
+    else:
+        line = ""
+    return line
+
+
+def _field_line(element: Any) -> str:
+    """Its name and value, and what is particular about it; behind an exclamation mark what is wrong with it."""
+    marks = {
+        "numeric": element.props.get("inputmode") == "decimal",
+        "optional": "data-optional" in element.props,
+        "readonly": "readonly" in element.props,
+    }
+    error = f" ! {element.props['error-message']}" if element.props.get("error") else ""
+    return " ".join([f"field {_name(element)} = {element.value!r}", *(name for name in marks if marks[name])]) + error
+
+
+def _is_within_heading(element: Element) -> bool:
+    above = element.parent_slot.parent if element.parent_slot is not None else None
+    return above is not None and bool(_HEADING.fullmatch(above.tag))
