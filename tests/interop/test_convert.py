@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from skisnow import analyse, read_campaign
 from skisnow.cli import main
 from skisnow.field.caaml import read_caaml
 from skisnow.interop.caaml import write_caaml
@@ -70,6 +71,22 @@ def test_a_site_of_a_campaign_becomes_caaml(campaign: Path, tmp_path: Path, caps
     assert force.force.mean() == pytest.approx(2.0, rel=0.02)
     assert force.depth[0] == pytest.approx(0.0005, abs=1e-5)
     assert (pit.latitude_deg, pit.longitude_deg, pit.elevation) == (-45.5, 170.25, 2120.0)
+
+
+def test_shear_of_a_site_goes_along(campaign: Path, tmp_path: Path) -> None:
+    """Two tests at A, one at B; the mean of what `analyse` says of those at A."""
+    toml = campaign / "campaign.toml"
+    toml.write_text(f"{toml.read_text(encoding='utf-8')}[[plate]]\nname = 'blade'\nlength_mm = 100\n", encoding="utf-8")
+    rows = "s1,A,blade,30,40,250,3\ns2,A,blade,30,40,250,5\ns3,B,blade,30,40,250,8\n"
+    head = "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\n"
+    (campaign / "shear.csv").write_text(head + rows, encoding="utf-8")
+    assert main(["convert", str(campaign), str(tmp_path / "a.caaml"), "--site", "A"]) == 0
+    stress = read_caaml(tmp_path / "a.caaml").failure_shear_stress
+    assert stress is not None
+    shear = analyse(read_campaign(campaign)).results["shear"]["experiments"]
+    here = [row["S_f_N_per_mm2"] for row in shear if row["site"] == "A"]
+    assert len(here) == 2 < len(shear)
+    assert stress.value == pytest.approx((here[0] + here[1]) / 2.0, rel=1e-3)
 
 
 def test_the_only_site_of_a_campaign_needs_no_name(

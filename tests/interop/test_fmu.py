@@ -336,6 +336,16 @@ def test_the_description_defines_every_unit_by_base_units(tmp_path: Path) -> Non
     assert told == UNITS
 
 
+def test_an_importer_that_is_told_nothing_begins_at_0_in_steps_that_suit_the_model(tmp_path: Path) -> None:
+    """A contact is read at a fifth of a millisecond, the outputs of a sledge are 10 ms apart."""
+    for write, step in ((write_contact_fmu, "0.0002"), (write_sledge_fmu, "0.01")):
+        with zipfile.ZipFile(write(SCENARIO, tmp_path / "a.fmu")) as archive:
+            root = ET.fromstring(archive.read("modelDescription.xml"))
+        experiment = root.find("DefaultExperiment")
+        assert experiment is not None
+        assert experiment.attrib == {"startTime": "0", "stepSize": step}
+
+
 def test_what_varies_over_the_place_is_not_offered() -> None:
     grid = Grid.along(np.arange(4.0), np.array([4e5, 5e5, 4e5, 5e5]))
     over = {"hardness": SnowMap(hardness=grid), "failure_shear_stress": SnowMap(failure_shear_stress=grid)}
