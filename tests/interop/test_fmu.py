@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ET
 import zipfile
 from collections import Counter
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
@@ -24,7 +24,7 @@ from skisnow.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 from skisnow.interop import write_contact_fmu, write_sledge_fmu
 from skisnow.interop.fmu.description import Version
-from skisnow.interop.fmu.models import _require_own_laws, _snow_parameters
+from skisnow.interop.fmu.models import _require_own_laws, _snow_parameters, contact_model, sledge_model
 from skisnow.interop.fmu.variables import UNITS
 from skisnow.scenario.snow_map import SnowMap
 from skisnow.simulate.run_setup import laid_out
@@ -362,6 +362,22 @@ def test_laws_of_python_are_refused(own: str) -> None:
     setattr(snow, own, lambda: None)
     with pytest.raises(ParameterError, match="an FMU has no Python in it"):
         _require_own_laws(cast("SnowField", snow))
+
+
+def test_every_variable_has_a_unit_that_is_defined_and_says_what_it_is() -> None:
+    for model in (contact_model(SCENARIO, skis=2, step=STEP), sledge_model(SCENARIO, step=STEP)):
+        assert {each.unit for each in model.variables} <= set(UNITS)
+        assert all(each.about and each.about not in UNITS for each in model.variables)
+
+
+@pytest.mark.parametrize("model", [partial(contact_model, skis=2), sledge_model])
+def test_no_model_is_made_of_laws_in_python(model: Callable[..., object], monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(_: SnowField) -> None:
+        raise ParameterError("an FMU has no Python in it")
+
+    monkeypatch.setattr("skisnow.interop.fmu.models._require_own_laws", refused)
+    with pytest.raises(ParameterError, match="no Python"):
+        model(SCENARIO, step=STEP)
 
 
 def test_wrong_names_numbers_and_scenarios_are_refused(tmp_path: Path) -> None:

@@ -56,3 +56,17 @@ def test_a_rigid_ski_is_boxes_that_touch_nothing() -> None:
     assert len(boxes) == 10
     assert {box.attrib["contype"] for box in boxes} == {"0"}
     assert {box.attrib["mass"] for box in boxes} == {"0"}
+
+
+def test_the_boxes_of_a_rigid_ski_lie_on_its_base() -> None:
+    """Axes x ahead, y left, z up: a turn about y by a positive angle takes the front end down."""
+    ski = read_ski("slalom")
+    for box in ET.fromstring(f"<ski>{rigid_ski_geoms(ski, segments=10)}</ski>"):
+        x, y, z = map(float, box.attrib["pos"].split())
+        roll, pitch, yaw = map(float, box.attrib["euler"].split())
+        half, wide, thick = map(float, box.attrib["size"].split())
+        assert (y, roll, yaw) == (0.0, 0.0, 0.0)
+        ends = ski.at(np.array([x - half, x, x + half]))
+        assert wide == pytest.approx(ends.width[1] / 2.0)
+        under = z - thick + np.array([1.0, -1.0]) * half * np.tan(pitch)
+        assert under == pytest.approx(ends.base_height[[0, 2]], abs=1e-9)
