@@ -11,6 +11,7 @@ from skisnow import analyse, read_campaign
 from skisnow.cli import main
 from skisnow.field.caaml import read_caaml
 from skisnow.interop.caaml import write_caaml
+from skisnow.interop.site_pit import site_pit
 
 from ..field.recordings import plain_snow
 from .pits import full_pit
@@ -71,6 +72,18 @@ def test_a_site_of_a_campaign_becomes_caaml(campaign: Path, tmp_path: Path, caps
     assert force.force.mean() == pytest.approx(2.0, rel=0.02)
     assert force.depth[0] == pytest.approx(0.0005, abs=1e-5)
     assert (pit.latitude_deg, pit.longitude_deg, pit.elevation) == (-45.5, 170.25, 2120.0)
+
+
+def test_recordings_of_another_site_and_cancelled_ones_stay_out(campaign: Path) -> None:
+    (campaign / "snow_micro_pen.csv").write_text(
+        "recording,site,file,status\nr,A,r.pnt,\nq,A,q.pnt,slipped\ns,B,s.pnt,\n"
+    )
+    for name, force in (("q", 5.0), ("s", 9.0)):
+        (campaign / f"{name}.pnt").write_bytes(plain_snow(force))
+    analysis = analyse(read_campaign(campaign), n_resamples=100)
+    for site, force in (("A", 2.0), ("B", 9.0)):
+        (profile,) = site_pit(analysis, site).forces
+        assert profile.force.mean() == pytest.approx(force, rel=0.02)
 
 
 def test_shear_of_a_site_goes_along(campaign: Path, tmp_path: Path) -> None:

@@ -346,6 +346,27 @@ def test_an_importer_that_is_told_nothing_begins_at_0_in_steps_that_suit_the_mod
         assert experiment.attrib == {"startTime": "0", "stepSize": step}
 
 
+def test_a_description_has_a_guid_and_says_which_variables_are_outputs(pair: Fmu) -> None:
+    """By their places in the list in 2.0, from 1; by their references in 3.0."""
+    hexadecimal = "[0-9a-f]"
+    assert re.fullmatch(r"\{%s{8}(-%s{4}){3}-%s{12}\}" % ((hexadecimal,) * 3), pair.token)
+    outputs = [name for name in pair.references if re.fullmatch(r"(left|right)\.(force|moment)\[[123]\]", name)]
+    assert len(outputs) == 12
+    names = list(pair.references)
+    at = {str(names.index(name) + 1 if pair.fmi == 2 else pair.references[name]) for name in outputs}
+    structure = pair.description.find("ModelStructure")
+    assert structure is not None
+    if pair.fmi == 2:
+        told = {each.tag: [unknown.attrib["index"] for unknown in each] for each in structure}
+        assert list(told) == ["Outputs", "InitialUnknowns"]
+    else:
+        told = {}
+        for each in structure:
+            told.setdefault(each.tag, []).append(each.attrib["valueReference"])
+        assert list(told) == ["Output", "InitialUnknown"]
+    assert [set(each) for each in told.values()] == [at, at]
+
+
 def test_what_varies_over_the_place_is_not_offered() -> None:
     grid = Grid.along(np.arange(4.0), np.array([4e5, 5e5, 4e5, 5e5]))
     over = {"hardness": SnowMap(hardness=grid), "failure_shear_stress": SnowMap(failure_shear_stress=grid)}

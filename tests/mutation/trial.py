@@ -54,16 +54,18 @@ class Trials:
     def verdict(self, path: Path, mutant: Mutant) -> str:
         """Whether the tests catch the error in this file (given from the tree's top); the file is itself again.
 
-        The tests that call the changed function are asked before the others, the quick ones before the slow ones.
+        The tests that call the changed function are asked before the others, the quick ones before the slow ones. What
+        stands outside all functions, such as a constant, may be read by any test.
         """
         file = self.tree / path
         source = file.read_bytes()
         text = source.decode()
-        first = nearest(self.reach, path, function_at(text, mutant.start)) if self.reach else []
+        function = function_at(text, mutant.start)
+        first = nearest(self.reach, path, function) if self.reach else []
         try:
             file.write_text(mutant.planted(text), encoding="utf-8", newline="")
             status = self.status(first) if first else 0
-            if status == 0 and not (first and self.only_reaching):
+            if status == 0 and not (first and self.only_reaching and function is not None):
                 status = self._status_of_others(first)
         finally:
             file.write_bytes(source)
