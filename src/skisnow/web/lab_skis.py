@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import warnings
 from pathlib import Path
 from tempfile import TemporaryDirectory, mkdtemp
 from typing import TYPE_CHECKING, Final
 
-from ..errors import OutputError, ParameterError, RangeWarning
+from ..errors import OutputError, ParameterError
 from ..files import cannot_write, write_file
 from ..given import GivenError, toml_values
 from ..ski import read_ski, ski_names, write_ski
+from ..snow.measured_range import with_range_warnings
 
 if TYPE_CHECKING:
     from ..ski import Ski
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 FOLDER: Final = "skis"
 FILE: Final = "ski.toml"
 TABLE: Final = "ski.csv"
+NOTHING: Final = "nothing"
+EDITED: Final = "the edited ski"
+"""What stands between the names of skis in the pages' lists, and so is none."""
 _NAME: Final = re.compile(r"[A-Za-z0-9À-ž](?:[A-Za-z0-9À-ž _-]{0,38}[A-Za-z0-9À-ž])?")
 _DEVICES: Final = re.compile(r"(?i)con|prn|aux|nul|com[0-9]|lpt[0-9]")
 _NAME_LINE: Final = re.compile(r"(?m)^name\s*=.*$")
@@ -95,6 +98,8 @@ class LabSkis:
         """Refuse a name that is taken or that is no name of a folder everywhere."""
         if not _NAME.fullmatch(name) or _DEVICES.fullmatch(name):
             raise ParameterError("a ski's name has 1 to 40 letters, digits, blanks, - and _; give it another one")
+        if name.casefold() in (NOTHING, EDITED):
+            raise ParameterError(f"{name} stands for something else in the lists of skis; give this one another name")
         if name.casefold() in (other.casefold() for other in self.names()):
             raise ParameterError(f"there is a ski {name} already, and none is overwritten; give this one another name")
 
@@ -124,17 +129,16 @@ def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
         As `read_ski`; or the text names a file other than its table, which a page has no business with.
     """
     _require_no_other_file(text)
-    with warnings.catch_warnings(record=True) as caught, TemporaryDirectory(prefix="skisnow-ski-") as name:
-        warnings.simplefilter("always", RangeWarning)
+    with TemporaryDirectory(prefix="skisnow-ski-") as name:
         place = Path(name) / FILE
         place.write_text(text, encoding="utf-8", newline="")
         if table:
             place.with_name(TABLE).write_text(table, encoding="utf-8", newline="")
         try:
-            ski = read_ski(place)
+            ski, warned = with_range_warnings(lambda: read_ski(place))
         except ParameterError as error:
             raise ParameterError(_without(name, str(error))) from error
-    return ski, " ".join(_without(name, str(each.message)) for each in caught)
+    return ski, " ".join(_without(name, each) for each in warned)
 
 
 def check_ski_texts(text: str, table: str) -> None:

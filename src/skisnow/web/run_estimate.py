@@ -17,6 +17,7 @@ SLOWNESS: Final = 1.0
 AROUND_S: Final = 8.0
 """Start, files and report of a run, where none has told it yet (modelling assumption)."""
 LOOKED_AT: Final = 5
+_NEVER_S: Final = 1e9
 
 
 def estimated_s(folder: Path, jobs: list[Job], values: Mapping[str, Any]) -> float | None:
@@ -67,7 +68,7 @@ def simulated_s(values: Mapping[str, Any]) -> float | None:
     ends = [float(duration)] if duration else []
     if length and speed:
         ends.append(float(length) / float(speed))
-    return min(ends, default=None)
+    return min((end for end in ends if 0.0 < end < _NEVER_S), default=None)  # what is typed may be "inf" or "nan"
 
 
 class _Told(NamedTuple):

@@ -59,7 +59,7 @@ def range_words(key: Quantity) -> str:
 
 def _as_sentence(words: str) -> str:
     """With a large letter in front, unless that is a symbol's."""
-    return f"{words[0].upper()}{words[1:]}." if words[:2].isalpha() and words.isascii() else f"{words}."
+    return f"{words[0].upper()}{words[1:]}." if words[:2].isalpha() and words[:2].isascii() else f"{words}."
 
 
 def written(value: Any) -> str:

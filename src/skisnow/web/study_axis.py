@@ -163,7 +163,7 @@ class AxisFields:
         if not self.name:
             return 1
         text = with_point(str(self._n.value or "").strip())
-        if not text.isdecimal() or int(text) < 2:
+        if not text.isdecimal() or not 2 <= float(text) <= MOST_VALUES:
             raise ParameterError(
                 f"{called(self._keys[self.name])}: the number of values is {text!r}; it must be 2 or more"
             )

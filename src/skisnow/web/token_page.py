@@ -86,7 +86,7 @@ def token_page(
 def too_many_tries(scope: Scope, wait_s: float) -> Response:
     """The form, with how long to wait."""
     seconds = math.ceil(wait_s)
-    answer = token_page(scope, 429, f"That were {TRIES} tries in a minute. Wait {seconds} seconds, then try again.")
+    answer = token_page(scope, 429, f"Those were {TRIES} tries in a minute. Wait {seconds} seconds, then try again.")
     answer.headers["retry-after"] = str(seconds)
     return answer
 

@@ -44,6 +44,8 @@ class Sheet:
     html: str
     scripts: list[str] = field(default_factory=list)
     """What the page has told the browser to do."""
+    at_first: list[str] = field(default_factory=list)
+    """What it told while it was built."""
 
     def of(self, kind: type[Element] | None = None) -> Iterator[Any]:
         """Elements that are seen, in their order on the page."""
@@ -104,6 +106,16 @@ class Sheet:
         """Wait until the browser is told to do this."""
         self.until(lambda: any(script in each for each in self.scripts))
 
+    def focused(self) -> Any:
+        """The element that the page has put the focus on last."""
+        told = " ".join([*self.at_first, *self.scripts])
+        numbers = re.findall(r'(?:runMethod|getHtmlElement)\((\d+)(?:\)\.focus|, "focus")', told)
+        return self.client.elements[int(numbers[-1])] if numbers else None
+
+    def tagged(self, tag: str) -> list[Any]:
+        """Elements of HTML that are seen."""
+        return [each for each in self.of() if each.tag == tag]
+
     def charts(self) -> dict[str, dict[str, Any]]:
         """What charts show, by the title of their vertical axis."""
         return {each.props["panel"]["y"]: each.props["panel"] for each in self.of(LineChart)}
@@ -161,6 +173,11 @@ class Desk:
         """What an address answers."""
         return self.wait(self._browser.get(path, headers={"accept-language": language}))
 
+    def post(self, path: str, language: str = "en", **form: Any) -> httpx.Response:
+        """What an address answers to a form of the lab's own; a redirection is not followed."""
+        headers = {"accept-language": language, "origin": "http://127.0.0.1"}
+        return self.wait(self._browser.post(path, headers=headers, follow_redirects=False, **form))
+
     def open(self, path: str, language: str = "en") -> Sheet:
         """Open a page; its connection stands."""
         answer = self.get(path, language)
@@ -181,6 +198,8 @@ def _close_all() -> None:
 def _listen(sheet: Sheet) -> None:
     """Write down what the page tells the browser, from here on."""
     send = sheet.client.outbox.enqueue_message
+    told = [data for _, kind, data in sheet.client.outbox.messages if kind == "run_javascript"]
+    sheet.at_first += [each["code"] for each in told]
 
     def heard(kind: Any, data: Any, target_id: Any) -> None:
         if kind == "run_javascript":

@@ -1,16 +1,452 @@
-"""*Carve*: what stands on it, and what its fields ask for."""
+"""*Carve*: what stands on it, and what its sliders and menus ask for."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import json
+import threading
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from skisnow.carve.answer import answered
+from skisnow.carve.answer_dict import answer_dict
+from skisnow.carve.question import carve_question
+from skisnow.estimate import analyse, results_dict
+from skisnow.estimate.results_text import results_json
+from skisnow.field import read_campaign
+from skisnow.report.number_formatting import significant
+from skisnow.ski import ski_names
+from skisnow.snow import published_names
+from skisnow.web.lab_skis import LabSkis
+from skisnow.web.pages import carve
 
 if TYPE_CHECKING:
-    from .desk import Desk
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from .desk import Desk, Sheet
+
+ANGLE, LOAD = "Edge angle (°)", "Load on this ski (N)"
+HARDNESS, STRESS = "Snow hardness H_V (N/mm³)", "Failure shear stress S_f (N/mm²)"
+RATIO = "Unloading ratio k_u/H_V"
+FIRST_SNOW = {"H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
+FACTS = {
+    "Load on the forebody": ("forebody_load_N", "N"),
+    "Load on the afterbody": ("afterbody_load_N", "N"),
+    "Contact length": ("contact_length_m", "m"),
+    "Side force": ("side_force_N", "N"),
+    "Shear capacity of the snow": ("side_force_limit_N", "N"),
+    "Moment at the boot about the cross axis": ("boot_pitch_moment_Nm", "N\u00a0m"),
+    "Radius, were the side force spread the other way": ("turn_radius_boot_other_spread_m", "m"),
+    "Radius through the ends of the contact": ("turn_radius_chord_m", "m"),
+}
+CHARTS = {
+    "Depth of the edge (mm)": "edge_depth_mm",
+    "Force per length (N/m)": "force_per_length_N_per_m",
+    "Deflection (mm)": "bending_mm",
+    "Twist (°)": "twist_deg",
+}
+_SOFT = (0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.2, 1.5, 2)
+_HARD = (2.5, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 90)
+CAMPAIGN = """name = "Desk"
+[[tool]]
+name = "ski piece"
+shape = "ski"
+length_mm = 200
+width_mm = 62
+[[plate]]
+name = "blade"
+length_mm = 100
+"""
+PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n" + "".join(
+    f"{name},{site},ski piece,30,{load},{depth}\n"
+    for name, site, depths in (("1", "A", (1.5, 2.1, 2.6)), ("2", "B", (1.0, 1.4, 1.7)))
+    for load, depth in zip((20, 40, 60), depths, strict=True)
+)
+SHEAR = "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\na,A,blade,90,5,250,20\n"
+
+
+@cache
+def answer(ski: str = "carver", angle: float = 45.0, load: float = 800.0, ratio: float = 10.0, snow: str = "") -> Any:
+    """What the library says; ``snow`` as JSON."""
+    numbers = {"ski": ski, "edge_angle_deg": angle, "load_N": load, "unloading_ratio": ratio}
+    return answer_dict(answered(carve_question(numbers | (json.loads(snow) if snow else FIRST_SNOW))))
+
+
+def radius(found: Any) -> str:
+    return f"[value] {found['ski']['name']}: carved radius {significant(found['turn_radius_boot_m'])} m"
+
+
+def facts(*found: Any) -> list[str]:
+    """The lines of the table."""
+    lines = [each["ski"]["name"] for each in found]
+    for words, (key, unit) in FACTS.items():
+        lines += [words, *(f"{significant(each[key])} {unit}" for each in found)]
+    return lines
+
+
+def slider(page: Sheet, name: str) -> Any:
+    (found,) = (each for each in page.tagged("input") if each.props.get("aria-label") == name)
+    return found
+
+
+def move(page: Sheet, name: str, place: object) -> None:
+    page.fire(slider(page, name), "input", place)
+
+
+def told(page: Sheet) -> str:
+    return next(line for line in page.outline() if line.startswith("[status] ")).removeprefix("[status] ")
+
+
+def held(monkeypatch: pytest.MonkeyPatch) -> tuple[threading.Event, list[Any]]:
+    """Answers that come when the event is set, and what was asked."""
+    released, asked = threading.Event(), list[Any]()
+    at_once = carve._Solver.answers
+
+    def late(self: Any, questions: Sequence[dict[str, object]], snow: Any) -> Any:
+        asked.append(list(questions))
+        assert released.wait(60)
+        return at_once(self, questions, snow)
+
+    monkeypatch.setattr(carve._Solver, "answers", late)
+    return released, asked
+
+
+def said_instead(monkeypatch: pytest.MonkeyPatch, *found: Any) -> None:
+    """Let these be the answers."""
+    monkeypatch.setattr(carve._Solver, "answers", lambda *_: list(found))
+
+
+def campaign(desk: Desk, folder: Path, *, shear: str = "") -> str:
+    """A kept campaign with two sites: how the menu calls it."""
+    folder.mkdir()
+    (folder / "campaign.toml").write_text(CAMPAIGN, encoding="utf-8")
+    (folder / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
+    if shear:
+        (folder / "shear.csv").write_text(shear, encoding="utf-8")
+    return f"kept-{desk.lab.store.add(folder).id}"
 
 
 def test_a_turn_is_there_with_the_page(desk: Desk) -> None:
+    page, found = desk.open("/carve"), answer()
+    page.shows("carver: equilibrium.")
+    lines = page.outline()
+    assert lines[:-4] == [
+        "h1 Carve",
+        radius(found),
+        "field Ski = 'carver'",
+        "field Compared with = 'nothing'",
+        f"field {RATIO} = '10'",
+        "field Snow = 'the sliders'",
+        "link Add or change a ski -> /skis",
+        f"{ANGLE}: 45",
+        f"{LOAD}: 800",
+        f"{HARDNESS}: 0.2",
+        f"{STRESS}: 0.5",
+        "[status] carver: equilibrium.",
+        *facts(found),
+    ]
+    for line, (title, key) in zip(lines[-4:], CHARTS.items(), strict=True):
+        values = [each for each in found[key] if each is not None]
+        assert line == f"chart {title} along the ski: {significant(min(values))} to {significant(max(values))} (carver)"
+    assert "<title>Carve · skisnow</title>" in page.html
+    assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Carve"]
+    (place,) = page.tagged("section")
+    assert place.props["aria-label"] == "Carved radius"
+
+
+def test_the_menus_name_what_there_is(desk: Desk) -> None:
+    LabSkis(desk.lab.runs).save_texts("mine", LabSkis(desk.lab.runs).texts("slalom")[0], "")
+    page = desk.open("/carve")
+    skis = [*ski_names(), "mine"]
+    assert list(page.field("Ski").options) == skis
+    assert list(page.field("Compared with").options) == ["nothing", *skis]
+    assert page.field(RATIO).options == {"1": "1 (elastic)", "10": "10", "100": "100", "inf": "no spring back"}
+    assert list(page.field("Snow").options) == ["the sliders", *(f"published-{name}" for name in published_names())]
+    page.shows("carver: equilibrium.")
+
+
+@pytest.mark.parametrize(
+    ("name", "stops", "start"),
+    [
+        (ANGLE, [str(angle) for angle in range(86)], "45"),
+        (LOAD, [str(load) for load in range(100, 3050, 50)], "800"),
+        (
+            HARDNESS,
+            [f"{number:g}" for number in (*_SOFT, *_HARD)],
+            "0.2",
+        ),
+        (STRESS, [f"{number / 50:g}" for number in range(2, 27)], "0.5"),
+    ],
+)
+def test_a_slider_has_its_stops_in_the_browser(desk: Desk, name: str, stops: list[str], start: str) -> None:
     page = desk.open("/carve")
     page.shows("carver: equilibrium.")
-    page.fill("Compared with", "slalom")
-    page.shows("slalom: carved radius")
+    made = slider(page, name)
+    assert dict(made.props) == {
+        "type": "range", "min": "0", "max": str(len(stops) - 1), "step": "1", "aria-label": name,
+        "aria-valuetext": start, "^value": str(stops.index(start)),
+    }  # fmt: skip
+    (listener,) = made._event_listeners.values()
+    assert listener.type == "input"
+    words = "event.target.setAttribute('aria-valuetext', "
+    assert f"{words}{json.dumps(stops)}[event.target.value]);" in listener.js_handler
+    assert "emit(event.target.value);" in listener.js_handler
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "stands", "asked"),
+    [
+        (ANGLE, "46", "46", {"angle": 46.0}),
+        (ANGLE, "-3", "0", {"angle": 0.0}),
+        (LOAD, "15", "850", {"load": 850.0}),
+        (LOAD, "1000", "3000", {"load": 3000.0}),
+        (HARDNESS, "8", "0.25", {"snow": json.dumps(FIRST_SNOW | {"H_V_N_per_mm3": 0.25})}),
+        (STRESS, "24", "0.52", {"snow": json.dumps(FIRST_SNOW | {"S_f_N_per_mm2": 0.52})}),
+    ],
+)
+def test_the_answer_follows_a_slider(desk: Desk, name: str, place: str, stands: str, asked: Any) -> None:
+    page = desk.open("/carve")
+    page.shows("carver: equilibrium.")
+    move(page, name, place)
+    assert f"{name}: {stands}" in page.outline()
+    found = answer(**asked)
+    line = f"{significant(found['side_force_limit_N'])} N"
+    page.until(lambda: line in page.outline())
+    assert told(page).startswith(f"carver: {found['outcome']}")
+    assert next(words for words in page.outline() if words.startswith("[value] ")) == (
+        radius(found) if found["turn_radius_boot_m"] is not None else "[value] carver: no carved radius"
+    )
+
+
+def test_the_ratio_is_asked_for(desk: Desk) -> None:
+    page = desk.open("/carve")
+    page.fill(RATIO, "inf")
+    page.shows(radius(answer(ratio=float("inf"))))
+    assert radius(answer(ratio=float("inf"))) != radius(answer())
+
+
+def test_two_skis_stand_beside_each_other(desk: Desk) -> None:
+    page = desk.open("/carve?ski=slalom&other=giant-slalom")
+    page.shows("slalom: equilibrium. giant-slalom: equilibrium.")
+    found = answer("slalom"), answer("giant-slalom")
+    assert [line for line in page.outline() if line.startswith("[value] ")] == list(map(radius, found))
+    lines = page.outline()
+    begin = lines.index("slalom")
+    assert lines[begin : begin + 26] == facts(*found)
+    for title, key in CHARTS.items():
+        chart = page.charts()[title]
+        shown = [(line["name"], line["style"], len(line["x"])) for line in chart["lines"]]
+        assert shown == [("slalom", 0, len(found[0]["station_m"])), ("giant-slalom", 1, len(found[1]["station_m"]))]
+        for line, each in zip(chart["lines"], found, strict=True):
+            assert line["x"] == pytest.approx(each["station_m"], abs=1e-4)
+            assert line["y"] == pytest.approx(each[key], rel=1e-3, abs=0.05, nan_ok=True)
+        assert (chart["x"], chart["ends"]) == ("Along the ski (m), boot = 0", ["tail", "tip"])
+    colours = [each.style["color"] for each in page.of() if {"value"} & set(each.classes)]
+    assert colours == ["#0b4f8a", "#b3450b"]
+    assert [each.style["color"] for each in page.tagged("th") if "color" in each.style] == colours
+    assert [each.style["color"] for each in page.tagged("td") if "n" in each.classes] == colours * 8
+    assert [each.props["scope"] for each in page.tagged("th")] == ["col", "col", *["row"] * 8]
+
+
+def test_depth_counts_downwards_to_a_little_below_the_deepest_edge(desk: Desk) -> None:
+    page = desk.open("/carve?ski=slalom&other=carver")
+    page.shows("slalom: equilibrium. carver: equilibrium.")
+    deepest = max(each for ski in ("slalom", "carver") for each in answer(ski)["edge_depth_mm"] if each is not None)
+    ranges = {title: chart["range"] for title, chart in page.charts().items()}
+    assert ranges.pop("Depth of the edge (mm)") == pytest.approx((1.1 * deepest, -3.0))
+    assert list(ranges.values()) == [None] * 3
+
+
+def test_skis_that_are_not_there_are_not_chosen(desk: Desk) -> None:
+    page = desk.open("/carve?ski=none&other=neither")
+    page.shows("carver: equilibrium.")
+    assert page.outline()[2:4] == ["field Ski = 'carver'", "field Compared with = 'nothing'"]
+
+
+def test_the_answer_follows_the_menus(desk: Desk) -> None:
+    page = desk.open("/carve")
     page.fill("Ski", "slalom")
+    page.shows("[status] slalom: equilibrium.")
+    page.fill("Compared with", "carver")
+    page.shows("[status] slalom: equilibrium. carver: equilibrium.")
+    assert facts(answer("slalom"), answer())[:5] == page.outline()[13:18]
+    page.fill("Compared with", "nothing")
+    page.until(lambda: told(page) == "slalom: equilibrium.")
+    assert [line for line in page.outline() if line.startswith("[value] ")] == [radius(answer("slalom"))]
+
+
+def test_a_table_stays_while_its_skis_do(desk: Desk) -> None:
+    page = desk.open("/carve")
+    page.shows("carver: equilibrium.")
+    (table,) = page.tagged("table")
+    move(page, ANGLE, "50")
+    page.shows(radius(answer(angle=50.0)))
+    assert page.tagged("table") == [table]
+    page.fill("Ski", "slalom")
+    page.shows("slalom: equilibrium.")
+    assert page.tagged("table") != [table]
+    assert len(page.tagged("table")) == 1
+
+
+def test_what_the_snow_cannot_hold_is_said(desk: Desk) -> None:
+    page = desk.open("/carve")
+    page.shows("carver: equilibrium.")
+    move(page, STRESS, "1")
+    found = answer(snow=json.dumps(FIRST_SNOW | {"S_f_N_per_mm2": 0.06}))
+    page.shows("slips")
+    assert told(page) == f"carver: slips, {found['remedy']}."
+    assert f"{radius(found)}, were the snow to hold it" in page.outline()
+    move(page, ANGLE, "70")
+    found = answer(angle=70.0, snow=json.dumps(FIRST_SNOW | {"S_f_N_per_mm2": 0.06}))
+    page.shows("Warning")
+    (warning,) = found["warnings"]
+    assert told(page) == f"carver: slips, {found['remedy']}. Warning: {warning}."
+
+
+def test_a_turn_that_is_none_has_no_numbers(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    nothing = dict.fromkeys(("turn_radius_boot_m", *(key for key, _ in FACTS.values()), *CHARTS.values()))
+    said_instead(monkeypatch, answer() | nothing | {"outcome": "not_converged", "remedy": "take less", "holds": False})
+    page = desk.open("/carve")
+    page.shows("[status] carver: not converged, take less.")
+    lines = page.outline()
+    assert lines[1] == "[value] carver: no carved radius"
+    assert [line for line in lines if line == "–"] == ["–"] * 8
+    assert lines[-4:] == [f"chart {title} along the ski: nothing yet" for title in CHARTS]
+    assert [chart["range"] for chart in page.charts().values()] == [None] * 4
+
+
+def test_numbers_that_some_stations_lack_are_left_out(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    few = {"station_m": [-1.0, 0.0, 1.0], "edge_depth_mm": [None, 2.0, -4.0], "twist_deg": None}
+    said_instead(monkeypatch, answer() | few, answer("slalom"))
+    page = desk.open("/carve?other=slalom")
+    page.shows("carver: equilibrium. slalom: equilibrium.")
+    charts = page.charts()
+    assert [line["name"] for line in charts["Twist (°)"]["lines"]] == ["slalom"]
+    assert charts["Twist (°)"]["lines"][0]["style"] == 1
+    assert charts["Depth of the edge (mm)"]["lines"][0]["y"] == [None, 2.0, -4.0]
+
+
+def test_a_published_snow_takes_the_place_of_its_sliders(desk: Desk) -> None:
+    page = desk.open("/carve")
+    page.fill("Snow", "published-race-piste")
+    found = answer(snow='{"published": "race-piste"}')
+    page.shows(radius(found))
+    assert not [line for line in page.outline() if line.startswith((HARDNESS, STRESS))]
+    assert f"{LOAD}: 800" in page.outline()
+    page.shows(f"{significant(found['side_force_limit_N'])} N")
+    page.fill("Snow", "the sliders")
+    page.shows(radius(answer()))
+    assert f"{HARDNESS}: 0.2" in page.outline()
+    assert f"{STRESS}: 0.5" in page.outline()
+
+
+@pytest.mark.parametrize(
+    ("shear", "site", "own"), [("", "", {"S_f_N_per_mm2": 0.5}), ("", "B", {"S_f_N_per_mm2": 0.5}), (SHEAR, "", {})]
+)
+def test_the_snow_of_a_campaign_gives_what_was_measured(
+    desk: Desk, tmp_path: Path, shear: str, site: str, own: dict[str, float]
+) -> None:
+    key = campaign(desk, tmp_path / "kept", shear=shear)
+    (tmp_path / "results.json").write_bytes(results_json(results_dict(analyse(read_campaign(tmp_path / "kept")))))
+    snow = {"results": str(tmp_path / "results.json"), **({"site": site} if site else {}), **own}
+    found = answer(snow=json.dumps(snow))
+    page = desk.open("/carve")
+    page.fill("Snow", key)
+    page.shows("[snow] Snow: H_V = ")
+    if site:
+        page.fill("Site", site)
+    page.shows(radius(found))
+    page.until(lambda: f"{significant(found['side_force_limit_N'])} N" in page.outline())
+    assert [line for line in page.outline() if line.startswith((HARDNESS, STRESS))] == [f"{STRESS}: 0.5" for _ in own]
+
+
+def test_a_campaign_that_gives_no_snow_says_why_and_leaves_the_answer(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / "campaign.toml").write_text(CAMPAIGN, encoding="utf-8")
+    key = f"kept-{desk.lab.store.add(tmp_path / 'kept').id}"
+    page = desk.open("/carve")
+    page.shows("carver: equilibrium.")
+    page.fill("Snow", key)
+    page.shows("[snow] this campaign gives no snow yet. ")
+    page.fill(RATIO, "1")  # asks with no snow
+    assert told(page) == "carver: equilibrium."
+    page.fill("Snow", "the sliders")
+    page.shows(radius(answer(ratio=1.0)))
+
+
+def test_a_ski_that_cannot_be_read_is_told(desk: Desk) -> None:
+    skis = LabSkis(desk.lab.runs)
+    skis.save_texts("mine", skis.texts("slalom")[0], "")
+    page = desk.open("/carve?ski=mine")
+    page.shows("[status] mine: equilibrium.")
+    skis.save_texts("other", skis.texts("slalom")[0], "")
+    page = desk.open("/carve")
+    page.shows("[status] carver: equilibrium.")
+    path = desk.lab.runs / "skis" / "other" / "ski.toml"
+    path.write_text("length_m = 'a'", encoding="utf-8")
+    page.fill("Ski", "other")
+    assert page.shows(str(path)).startswith(f"[status] {path}")
+    page.fill("Ski", "slalom")
+    page.shows("[status] slalom: equilibrium.")
+
+
+def test_while_an_answer_is_late_it_is_said_and_only_the_last_question_waits(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    released, asked = held(monkeypatch)
+    monkeypatch.setattr(carve, "PATIENCE_S", 0.0)
+    page = desk.open("/carve")
+    assert told(page) == "Computing …"
+    page.until(lambda: asked)
+    for place in ("46", "47", "48"):
+        move(page, ANGLE, place)
+    released.set()
+    page.shows(radius(answer(angle=48.0)))
+    assert [[each["edge_angle_deg"] for each in questions] for questions in asked] == [[45.0], [48.0]]
+    released.clear()
+    move(page, ANGLE, "49")
+    page.shows("[status] Computing …")
+    assert radius(answer(angle=48.0)) in page.outline()
+    released.set()
+    page.shows("[status] carver: equilibrium.")
+    page.shows(radius(answer(angle=49.0)))
+
+
+def test_an_answer_that_is_in_time_does_not_flicker(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(carve, "PATIENCE_S", 60.0)
+    page = desk.open("/carve")
+    page.shows("[status] carver: equilibrium.")
+    released, asked = held(monkeypatch)
+    move(page, ANGLE, "49")
+    page.until(lambda: asked)
+    assert told(page) == "carver: equilibrium."
+    released.set()
+    page.shows(radius(answer(angle=49.0)))
+
+
+def test_a_question_names_its_numbers(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = list[Any]()
+
+    def noted(_: Any, questions: Any, snow: Any) -> str:
+        asked.append((questions, snow))
+        return "so"
+
+    monkeypatch.setattr(carve._Solver, "answers", noted)
+    page = desk.open("/carve?other=slalom")
+    page.shows("[status] so")
+    numbers = {"edge_angle_deg": 45.0, "load_N": 800.0, "unloading_ratio": 10.0}
+    assert asked == [([{"ski": ski, **numbers, **FIRST_SNOW} for ski in ("carver", "slalom")], None)]
+    page.fill("Snow", "published-glacier")
+    page.until(lambda: len(asked) == 2)
+    assert asked[1][0] == [{"ski": ski, **numbers, "published": "glacier"} for ski in ("carver", "slalom")]
+    assert asked[1][1].words == "glacier"
+
+
+def test_the_sliders_in_german(desk: Desk) -> None:
+    page = desk.open("/carve", "de")
+    page.shows("carver: equilibrium.")  # said in German by its label
+    assert slider(page, "Kantwinkel (°)").props["aria-valuetext"] == "45"
+    move(page, "Schneehärte H_V (N/mm³)", "8")
+    page.shows("Schneehärte H_V (N/mm³): 0.25")

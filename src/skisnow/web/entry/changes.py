@@ -77,7 +77,8 @@ def ask_reason(
 
     def left() -> None:
         place.clear()
-        leave()
+        with place:  # the button that was pressed is gone
+            leave()
 
     with place, form("card ask", sends=done):
         sentence(words)

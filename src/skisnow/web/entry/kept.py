@@ -59,7 +59,7 @@ class KeptForm:
             asking_button("Correct", lambda: self._ask_correction(name), "main")
         with self._places.below:
             changes(self._view, test, self._ask, lambda: self.show(name), cancelled=bool(cancelled))
-        self._beside.follow(name, now[cell_key(min(rows), "site")])
+        self._beside.follow(name, now.get(cell_key(min(rows), "site"), ""))  # a file may lack the column
 
     def _draw(self, lines: tuple[int, ...], now: Mapping[str, str]) -> None:
         once = [column for column in self._columns if column in ONCE and self._is_once(lines, column, now)]

@@ -171,8 +171,11 @@ class SingleForm:
             self.show(test.name)
             return True
 
-        words = "; ".join(f"{label(column)}: {now.get(column, '')} becomes {new}" for column, new in changed.items())
-        ask_reason(self._ask, f"{words}.", ("Correct it", correct), usual=USUAL_REASON, leave=lambda: None)
+        parts = (
+            f"{label(column)}: {now.get(column) or 'nothing'} becomes {new or 'nothing'}"
+            for column, new in changed.items()
+        )
+        ask_reason(self._ask, f"{'; '.join(parts)}.", ("Correct it", correct), usual=USUAL_REASON, leave=lambda: None)
         return True
 
     def _list(self) -> None:

@@ -36,7 +36,7 @@ class AfterWaiting:
         """What is typed and not stored, by load."""
         test = self._test
         typed = {load: str(each.value or "").strip() for load, each in self._fields.items()}
-        return {load: text for load, text in typed.items() if text != _stored(test, load)}
+        return {load: text for load, text in typed.items() if text.replace(",", ".") != _stored(test, load)}
 
     @property
     def _test(self) -> ReplayedTest:

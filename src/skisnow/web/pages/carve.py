@@ -211,7 +211,8 @@ class _Carve:
     def _questions(self, snow: ChosenSnow | None) -> list[dict[str, object]]:
         numbers: dict[str, object] = {key: float(value) for key, value in self._values.items()}
         if snow is not None:
-            where = {"published": snow.published} if snow.published else {"results": RESULTS, "site": snow.site or None}
+            site = {"site": snow.site} if snow.site else {}
+            where = {"published": snow.published} if snow.published else {"results": RESULTS, **site}
             given = OF_SNOW if self._snow.gives_stress else OF_SNOW[:1]
             numbers = {key: value for key, value in numbers.items() if key not in given} | where
         skis = [str(name) for name in (self._ski.value, self._other.value) if name != NOTHING]

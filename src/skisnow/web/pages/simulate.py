@@ -21,7 +21,7 @@ from ..run_estimate import duration_words, estimated_s
 from ..runs import Job, Runs
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice
-from ..snow_of_campaign import require_scenario, results_with
+from ..snow_of_campaign import require_scenario, results_with, snow_words
 from ..worded import Words, named
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ PATH: Final = "/simulate"
 TITLE: Final = "Simulate"
 GIVEN: Final = "as in the scenario"
 NUMBERS: Final = "the numbers below"
-GIVEN_BY_NAME: Final = ("ski.file", "course.file", "course.name", "snow.results")
+GIVEN_BY_NAME: Final = ("ski.file", "course.file", "course.name", "snow.results", "snow.site", "snow.published")
 _FOR_COURSE: Final = "slalom-20-gates"
 """The scenario that a course which was just uploaded is for, until another one is chosen."""
 SNOW_FILE: Final = "snow.json"
@@ -223,6 +223,7 @@ class _Form:
         else:
             if snow is not None:
                 changes["snow.published"] = snow.published
+                given.append(f"snow: {snow.words}, {snow_words(snow.snow)}")
             await run.io_bound(require_scenario, scenario, changes)
         return self._runs.ask(
             scenario, changes, files=files, given="; ".join(given), language=language_of(self._ski.client)

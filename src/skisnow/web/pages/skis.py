@@ -12,7 +12,7 @@ from ...report.ski_drawing import SkiDrawing, ski_drawing
 from ..confined import OF_A_SKI, confined
 from ..error_pages import error_sentence
 from ..fields import button, choice, field, link, said_options
-from ..lab_skis import FILE, TABLE, LabSkis, check_ski_texts, texts_of_ski
+from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..language import said
 from ..layout import framed, heading, sentence
 from ..line_chart import STYLES, ChartLine, LineChart
@@ -38,8 +38,6 @@ PANELS: Final = {
     "GJ_N_m2": "GJ (N m²)",
 }
 STIFFNESSES: Final = ("EI_N_m2", "GJ_N_m2")
-NOTHING: Final = "nothing"
-EDITED: Final = "the edited ski"
 
 
 def add_page(lab: Lab) -> None:

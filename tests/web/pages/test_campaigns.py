@@ -1,0 +1,529 @@
+"""The list of campaigns, and the description of one: what stands on them, what is stored, and what is refused."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from nicegui import ui
+
+from skisnow.field import write_reference
+from skisnow.field.store import Journals, NewEntry
+from skisnow.web.answering import ASK, ASK_FOR_ROW, ONWARD
+from skisnow.web.edit_session import EditSession
+from skisnow.web.fields import FIRST
+from skisnow.web.local_time import minute_words
+
+if TYPE_CHECKING:
+    from .desk import Desk, Sheet
+
+TOML = """name = "Slope"
+place = "a hill"
+observers = ["Ada", "Bo"]
+load_steps_N = [20.0, 40.5]
+gauge_resolution_mm = 0.01
+moment_uncertainty_Nm = 0.5
+
+[[tool]]
+name = "ski piece"
+shape = "ski"
+length_mm = 200.0
+width_mm = 62.0
+
+[[tool]]
+name = "round"
+shape = "disc"
+diameter_mm = 40.0
+
+[[plate]]
+name = "blade"
+length_mm = 100.0
+"""
+IMPORT = [
+    "h2 Import",
+    "[quiet] A campaign's folder, its files, a workbook (.xlsx), or a zip. It is stored byte for byte; corrections "
+    "stand beside it. At most 200 files.",
+    "Folder",
+    "Import folder",
+    "Files or zip",
+    "Import files or zip",
+]
+
+
+def begun(desk: Desk, text: str = TOML) -> str:
+    return Journals(desk.lab.store).begin(text)
+
+
+def add_shear(desk: Desk, id_: str, name: str = "1") -> None:
+    """A shear test."""
+    cells = {"experiment": name, "site": "A", "plate": "blade", "edge_angle_deg": "90", "depth_mm": "6"}
+    cells |= {"lever_arm_mm": "250", "moment_Nm": "30"}
+    entry = NewEntry(action="add", file="shear.csv", test=name, cells=cells, position=0)
+    Journals(desk.lab.store).append(id_, entry, seen=0)
+
+
+def add_reading(desk: Desk, id_: str, tool: str) -> None:
+    cells = {"experiment": "9", "site": "A", "tool": tool, "edge_angle_deg": "0", "load_N": "20", "depth_mm": "2"}
+    entry = NewEntry(action="add", file="penetration.csv", test="9", cells=cells, position=0)
+    Journals(desk.lab.store).append(id_, entry, seen=0)
+
+
+def kept(desk: Desk, folder: Path, text: str = TOML) -> str:
+    folder.mkdir()
+    (folder / "campaign.toml").write_text(text, encoding="utf-8")
+    (folder / "density.csv").write_text("sample,site,snow_density_kg_per_m3\n1,A,350\n", encoding="utf-8")
+    return desk.lab.store.add(folder).id
+
+
+def last_at(desk: Desk, id_: str) -> str:
+    (head,) = (each for each in Journals(desk.lab.store).list() if each.id == id_)
+    return minute_words(head.last_at)
+
+
+def handlers(sheet: Sheet, text: str) -> list[Any]:
+    """What the browser does at a press of a button."""
+    (button,) = (each for each in sheet.tagged("q-btn") if each.text == text)
+    return [each.js_handler for each in button._event_listeners.values() if each.type == "click"]
+
+
+# The list
+
+
+def test_an_empty_lab_says_what_it_is_for_and_offers_a_sample(desk: Desk) -> None:
+    page = desk.open("/")
+    assert page.outline() == [
+        "h1 Campaigns",
+        "Here what was measured on a slope becomes snow hardness and shear stress, and these become turns of a ski: "
+        "enter tests, analyse them, carve and simulate.",
+        "link[main] New campaign -> /describe",
+        "button Look at a sample campaign",
+        "h2 Drafts",
+        "[quiet] None. Begin one with New campaign.",
+        "h2 Imported",
+        "[quiet] None. Import one below.",
+        *IMPORT,
+    ]
+    assert handlers(page, "Look at a sample campaign") == [FIRST]
+
+
+def test_the_sample_is_the_synthetic_campaign_and_its_analysis_is_shown(desk: Desk, tmp_path: Path) -> None:
+    page = desk.open("/")
+    page.press("Look at a sample campaign")
+    page.told("open ")
+    (stored,) = desk.lab.store.list()
+    assert [each for each in page.scripts if each.startswith("open ")] == [
+        f"open {{'path': '/analysis/kept/{stored.id}', 'new_tab': False}}"
+    ]
+    write_reference(tmp_path / "sample", seed=1)
+    assert desk.lab.store.add(tmp_path / "sample").already_stored
+
+
+def test_a_draft_stands_with_its_place_its_tests_and_its_last_entry(desk: Desk) -> None:
+    id_ = begun(desk)
+    for name in "123":
+        add_shear(desk, id_, name)
+    (entry,) = (each for each in Journals(desk.lab.store).entries(id_) if each.test == "2")
+    undo = NewEntry(action="undo", file="shear.csv", test="2", about=entry.sequence)
+    Journals(desk.lab.store).append(id_, undo, seen=entry.sequence)
+    assert desk.open("/").outline() == [
+        "h1 Campaigns",
+        "link[main] New campaign -> /describe",
+        "h2 Drafts",
+        "h3 Slope",
+        f"[quiet] a hill · 2 tests · last entry {last_at(desk, id_)}",
+        f"link[main] Enter tests -> /enter/{id_}",
+        f"link Analysis -> /analysis/entry/{id_}",
+        f"link Export -> /export/entry/{id_}.zip",
+        "h2 Imported",
+        "[quiet] None. Import one below.",
+        *IMPORT,
+    ]
+
+
+def test_a_draft_without_name_and_place_is_there_too(desk: Desk) -> None:
+    id_ = begun(desk, 'observers = ["Ada"]\n')
+    outline = desk.open("/").outline()
+    assert outline[outline.index("h2 Drafts") + 1 :][:2] == [
+        "h3 (no name)",
+        f"[quiet] 0 tests · last entry {last_at(desk, id_)}",
+    ]
+
+
+def test_a_damaged_draft_is_named_beside_the_others(desk: Desk) -> None:
+    broken = begun(desk, 'name = "broken"\n')
+    sound = begun(desk)
+    with desk.lab.store.engine.begin() as connection:
+        connection.exec_driver_sql("UPDATE journal_entry SET cells = replace(cells, 'broken', 'bsoken')")
+    page = desk.open("/")
+    at = page.outline().index(f"h3 {broken}")
+    line = page.outline()[at + 1]
+    assert line.startswith("[bad] The entry ") and f"of the campaign in entry {broken} is damaged" in line
+    assert f"link[main] Enter tests -> /enter/{sound}" in page.outline()
+    assert f"link[main] Enter tests -> /enter/{broken}" not in page.outline()
+    assert len([each for each in page.tagged("section") if "card" in each.classes]) == 2
+
+
+def test_an_imported_campaign_stands_with_what_its_check_found(desk: Desk, tmp_path: Path) -> None:
+    id_ = kept(desk, tmp_path / "one")
+    stored = desk.lab.store.show(id_)
+    with desk.lab.store.engine.begin() as connection:
+        connection.exec_driver_sql("UPDATE campaign SET n_errors = 1, n_warnings = 3")
+    page = desk.open("/?added=1")
+    assert page.outline() == [
+        "h1 Campaigns",
+        "[good] The campaign is imported, byte for byte.",
+        "link[main] New campaign -> /describe",
+        "h2 Drafts",
+        "[quiet] None. Begin one with New campaign.",
+        "h2 Imported",
+        "h3 Slope",
+        f"[quiet] {id_} · added {minute_words(stored.added_at)} · 1 error, 3 warnings",
+        f"link Correct -> /correct/{id_}",
+        f"link Analysis -> /analysis/kept/{id_}",
+        f"link Export -> /export/kept/{id_}.zip",
+        *IMPORT,
+    ]
+    (said,) = (each for each in page.of() if getattr(each, "text", "") == "The campaign is imported, byte for byte.")
+    assert said.props["role"] == "status"
+    assert not any("imported, byte" in line for line in desk.open("/").outline())
+
+
+def test_a_campaign_whose_check_failed_is_not_checked(desk: Desk, tmp_path: Path) -> None:
+    id_ = kept(desk, tmp_path / "one")
+    with desk.lab.store.engine.begin() as connection:
+        connection.exec_driver_sql("UPDATE campaign SET n_errors = NULL, n_warnings = NULL")
+    assert desk.open("/").shows(f"[quiet] {id_} · ").endswith(" · not checked")
+
+
+def test_the_last_imported_stands_first(desk: Desk, tmp_path: Path) -> None:
+    for name in ("first", "second"):
+        kept(desk, tmp_path / name, f'name = "{name}"\n')
+    with desk.lab.store.engine.begin() as connection:
+        connection.exec_driver_sql("UPDATE campaign SET added_at = '2001' || substr(added_at, 5) WHERE name = 'first'")
+    outline = desk.open("/").outline()
+    assert outline.index("h3 second") < outline.index("h3 first")
+
+
+def test_a_folder_or_files_are_sent_by_plain_forms(desk: Desk) -> None:
+    page = desk.open("/")
+    forms = [each for each in page.of() if each.tag == "form"]
+    for form in forms:
+        assert (form.props["method"], form.props["action"]) == ("post", "/import")
+        assert form.props["enctype"] == "multipart/form-data"
+    inputs = [each.props for each in page.of() if each.tag == "input"]
+    assert [(each["type"], each["name"], each["id"]) for each in inputs] == [
+        ("file", "files", "import-folder"),
+        ("file", "files", "import-files"),
+    ]
+    assert all("multiple" in each and "required" in each for each in inputs)
+    assert ["webkitdirectory" in each for each in inputs] == [True, False]
+    assert [each.props["for"] for each in page.tagged("label")] == ["import-folder", "import-files"]
+    assert [each.props["type"] for each in page.tagged("button")] == ["submit", "submit"]
+
+
+# The description
+
+
+def stored_description(desk: Desk) -> dict[str, Any]:
+    """Of the only draft."""
+    (head,) = Journals(desk.lab.store).list()
+    return tomllib.loads(EditSession(desk.lab, head.id).campaign.description)
+
+
+def test_the_form_of_a_new_campaign_has_the_published_discs_and_tool(desk: Desk) -> None:
+    page = desk.open("/describe")
+    assert page.outline() == [
+        "h1 New campaign",
+        "field Name of the campaign = ''",
+        "field Place = ''",
+        "field Observers, with commas between = ''",
+        "h2 Discs and gauges",
+        "[quiet] What is left empty counts as 0, and the report says so.",
+        "field Disc loads (N), with blanks between = '12 92 172 252 332 412 492'",
+        "field Step of the depth gauge (mm) = '' numeric",
+        "field Uncertainty of the load (N) = '' numeric",
+        "field Uncertainty of the moment (N m) = '' numeric",
+        "field Uncertainty of the lever arm (mm) = '' numeric",
+        "h2 Tools",
+        "field Name of tool 1 = 'ski piece'",
+        "field Shape of tool 1 = 'ski'",
+        "field Length (mm) of tool 1 = '200' numeric",
+        "field Width (mm) of tool 1 = '62' numeric",
+        "button[adds] Another tool",
+        "h2 Plates of the shear test",
+        "field Name of plate 1 = 'plate'",
+        "field Length (mm) of plate 1 = '100' numeric",
+        "button[adds] Another plate",
+        "button[main] Store and enter tests",
+    ]
+    wide = [each for each in page.of(ui.input) if "wide" in each.classes]
+    assert wide == [
+        page.field(name)
+        for name in (
+            "Name of the campaign",
+            "Place",
+            "Observers, with commas between",
+            "Disc loads (N), with blanks between",
+        )
+    ]
+    assert page.focused() is page.field("Name of the campaign")
+    assert page.field("Shape of tool 1").options == {
+        "ski": "piece of ski", "disc": "disc", "cylinder": "cylinder on its side",
+    }  # fmt: skip
+    assert page.at_first.count("lab.answered(0, true)") == 1
+    (status,) = (each for each in page.of() if "status" in getattr(each, "classes", ()))
+    assert status.props["role"] == "status"
+    assert handlers(page, "Store and enter tests") == [ASK]
+    assert handlers(page, "Another tool") == handlers(page, "Another plate") == [ASK_FOR_ROW]
+    at_enter = [each.js_handler for form in page.tagged("div") for each in form._event_listeners.values()]
+    assert at_enter == [ONWARD]
+    assert [each.props["data-rows"] for each in page.tagged("div") if "data-rows" in each.props] == ["tool", "plate"]
+
+
+def test_a_new_campaign_is_stored_as_it_is_typed(desk: Desk) -> None:
+    page = desk.open("/describe")
+    page.fill("Name of the campaign", " Slope ")
+    page.fill("Place", " a hill ")
+    page.fill("Observers, with commas between", "Ada, ,Bo ")
+    page.fill("Disc loads (N), with blanks between", "20; 40,5")
+    page.fill("Step of the depth gauge (mm)", "0,01")
+    page.fill("Uncertainty of the moment (N m)", "0.5")
+    page.press("Another tool")
+    page.fill("Name of tool 2", " round ")
+    page.fill("Shape of tool 2", "disc")
+    page.fill("Diameter (mm) of tool 2", "40")
+    page.fill("Name of plate 1", "blade")
+    page.press("Another plate")  # stays empty, and is left out
+    page.press("Store and enter tests")
+    (head,) = Journals(desk.lab.store).list()
+    assert EditSession(desk.lab, head.id).campaign.description == TOML
+    page.told(f'lab.leave("/enter/{head.id}")')
+
+
+def test_a_campaign_that_is_sent_twice_is_begun_once(desk: Desk) -> None:
+    page = desk.open("/describe")
+    page.fill("Name of the campaign", "Slope")
+    (button,) = (each for each in page.tagged("q-btn") if each.text == "Store and enter tests")
+    page.fire(button, "click", {"number": 1, "once": "a"})
+    page.fire(button, "click", {"number": 2, "once": "a"})
+    assert len(Journals(desk.lab.store).list()) == 1
+    assert [each for each in page.scripts if "answered" in each] == ["lab.answered(1, true)", "lab.answered(2, true)"]
+
+
+@pytest.mark.parametrize(
+    ("typed", "told"),
+    [
+        ({}, "Not stored: the campaign has no name"),
+        ({"Name of the campaign": "  "}, "Not stored: the campaign has no name"),
+        (
+            {"Name of the campaign": "S", "Disc loads (N), with blanks between": "20 x"},
+            "Not stored: the loads: 'x' is no number. Correct it",
+        ),
+        (
+            {"Name of the campaign": "S", "Uncertainty of the load (N)": "much"},
+            "Not stored: Uncertainty of the load (N): 'much' is no number. Correct it",
+        ),
+        (
+            {"Name of the campaign": "S", "Width (mm) of tool 1": "wide"},
+            "Not stored: Width (mm) of ski piece: 'wide' is no number. Correct it",
+        ),
+        (
+            {"Name of the campaign": "S", "Name of tool 1": ""},
+            "Not stored: tool 1 has lengths and no name; give it one, or empty them",
+        ),
+        (
+            {"Name of the campaign": "S", "Name of plate 1": " "},
+            "Not stored: plate 1 has lengths and no name; give it one, or empty them",
+        ),
+    ],
+)
+def test_what_cannot_be_stored_is_said_and_stays(desk: Desk, typed: dict[str, str], told: str) -> None:
+    page = desk.open("/describe")
+    for name, text in typed.items():
+        page.fill(name, text)
+    (button,) = (each for each in page.tagged("q-btn") if each.text == "Store and enter tests")
+    page.fire(button, "click", {"number": 1})
+    assert page.shows("Not stored") == f"[status bad] {told}"
+    assert page.scripts[-1] == "lab.answered(1, false)"
+    assert any('"scrollIntoView"' in each for each in page.scripts)
+    assert not any("lab.leave" in each for each in page.scripts)
+    assert Journals(desk.lab.store).list() == ()
+    for name, text in typed.items():
+        assert page.field(name).value == text
+
+
+def test_each_shape_asks_for_its_own_lengths(desk: Desk) -> None:
+    page = desk.open("/describe")
+    asked = {
+        "ski": ["Length (mm)", "Width (mm)"],
+        "disc": ["Diameter (mm)"],
+        "cylinder": ["Width (mm)", "Radius (mm)"],
+    }
+    for shape in ("disc", "cylinder", "ski"):
+        page.fill("Shape of tool 1", shape)
+        lengths = [line.split(" of ")[0] for line in page.outline() if line.endswith("numeric") and "of tool 1" in line]
+        assert lengths == [f"field {each}" for each in asked[shape]]
+
+
+def test_another_row_is_empty_and_has_the_focus(desk: Desk) -> None:
+    page = desk.open("/describe")
+    page.press("Another tool")
+    outline = page.outline()
+    at = outline.index("field Name of tool 2 = ''")
+    assert outline[at : at + 5] == [
+        "field Name of tool 2 = ''",
+        "field Shape of tool 2 = 'ski'",
+        "field Length (mm) of tool 2 = '' numeric",
+        "field Width (mm) of tool 2 = '' numeric",
+        "button[adds] Another tool",
+    ]
+    assert page.focused() is page.field("Name of tool 2")
+    page.press("Another tool")
+    assert page.focused() is page.field("Name of tool 3")
+    page.press("Another plate")
+    assert page.focused() is page.field("Name of plate 2")
+    assert page.outline()[-5:] == [
+        "field Length (mm) of plate 1 = '100' numeric",
+        "field Name of plate 2 = ''",
+        "field Length (mm) of plate 2 = '' numeric",
+        "button[adds] Another plate",
+        "button[main] Store and enter tests",
+    ]
+
+
+def rows(page: Sheet, kind: str) -> int:
+    return sum(line.startswith(f"field Name of {kind} ") for line in page.outline())
+
+
+def test_rows_and_shapes_that_the_browser_kept_come_back(desk: Desk) -> None:
+    page = desk.open("/describe")
+    kept_rows = {"rows": {"tool": 3, "plate": 2}, "choices": {"Shape of tool 2": "disc", "Shape of tool 3": "square"}}
+    page.fire(page.client.layout, "grow", kept_rows)
+    assert (rows(page, "tool"), rows(page, "plate")) == (3, 2)
+    assert [page.field(f"Shape of tool {number}").value for number in (1, 2, 3)] == ["ski", "disc", "ski"]
+    assert page.scripts[-1] == "lab.grown()"
+
+
+@pytest.mark.parametrize(
+    ("said", "n_tools"),
+    [
+        (None, 1),
+        ({"rows": [3], "choices": None}, 1),
+        ({"rows": {"tool": "3"}}, 1),
+        ({"rows": {"tool": 0}, "choices": {"Shape of tool 1": 7}}, 1),
+        ({"rows": {"tool": 201}}, 200),
+    ],
+)
+def test_what_no_form_has_kept_counts_as_not_said(desk: Desk, said: object, n_tools: int) -> None:
+    page = desk.open("/describe")
+    page.fire(page.client.layout, "grow", said)
+    assert (rows(page, "tool"), rows(page, "plate")) == (n_tools, 1)
+    assert page.field("Shape of tool 1").value == "ski"
+    assert page.scripts[-1] == "lab.grown()"
+
+
+def test_the_description_of_a_draft_is_shown_as_it_is(desk: Desk) -> None:
+    page = desk.open(f"/describe?entry={begun(desk)}")
+    assert page.outline() == [
+        "h1 Campaign",
+        "field Name of the campaign = 'Slope'",
+        "field Place = 'a hill'",
+        "field Observers, with commas between = 'Ada, Bo'",
+        "h2 Discs and gauges",
+        "[quiet] What is left empty counts as 0, and the report says so.",
+        "field Disc loads (N), with blanks between = '20 40.5'",
+        "field Step of the depth gauge (mm) = '0.01' numeric",
+        "field Uncertainty of the load (N) = '' numeric",
+        "field Uncertainty of the moment (N m) = '0.5' numeric",
+        "field Uncertainty of the lever arm (mm) = '' numeric",
+        "h2 Tools",
+        "field Name of tool 1 = 'ski piece'",
+        "field Shape of tool 1 = 'ski'",
+        "field Length (mm) of tool 1 = '200' numeric",
+        "field Width (mm) of tool 1 = '62' numeric",
+        "field Name of tool 2 = 'round'",
+        "field Shape of tool 2 = 'disc'",
+        "field Diameter (mm) of tool 2 = '40' numeric",
+        "button[adds] Another tool",
+        "h2 Plates of the shear test",
+        "field Name of plate 1 = 'blade'",
+        "field Length (mm) of plate 1 = '100' numeric",
+        "button[adds] Another plate",
+        "button[main] Store and enter tests",
+    ]
+    assert page.focused() is None
+
+
+def test_a_draft_that_says_little_has_empty_rows(desk: Desk) -> None:
+    id_ = begun(desk, 'name = "Bare"')
+    outline = desk.open(f"/describe?entry={id_}").outline()
+    assert "field Disc loads (N), with blanks between = ''" in outline
+    assert "field Name of tool 1 = ''" in outline
+    assert "field Name of plate 1 = ''" in outline
+
+
+def test_a_description_that_is_changed_is_written_down_and_one_that_is_not_is_not(desk: Desk) -> None:
+    id_ = begun(desk)
+    page = desk.open(f"/describe?entry={id_}")
+    page.press("Store and enter tests")
+    page.told(f'lab.leave("/enter/{id_}")')
+    assert len(Journals(desk.lab.store).entries(id_)) == 1
+    page.fill("Place", "another hill")
+    page.press("Store and enter tests")
+    assert [each.action for each in Journals(desk.lab.store).entries(id_)] == ["describe", "describe"]
+    assert stored_description(desk) == tomllib.loads(TOML) | {"place": "another hill"}
+
+
+def test_the_description_that_somebody_else_wrote_meanwhile_is_not_written_over(desk: Desk) -> None:
+    id_ = begun(desk)
+    mine, theirs = desk.open(f"/describe?entry={id_}"), desk.open(f"/describe?entry={id_}")
+    theirs.fill("Place", "theirs")
+    theirs.press("Store and enter tests")
+    mine.fill("Place", "mine")
+    mine.press("Store and enter tests")
+    mine.shows("[status bad] Not stored: Nothing was stored: somebody wrote about campaign.toml meanwhile")
+    assert stored_description(desk)["place"] == "theirs"
+
+
+def test_what_the_form_does_not_know_stays(desk: Desk) -> None:
+    id_ = begun(desk, TOML + '\n[screening]\nexclude = ["poor_fit"]\n')
+    page = desk.open(f"/describe?entry={id_}")
+    page.fill("Place", "")
+    page.press("Store and enter tests")
+    page.told("lab.leave")
+    assert "place" not in stored_description(desk)
+    assert stored_description(desk)["screening"] == {"exclude": ["poor_fit"]}
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "test"), [("plate", "blade", "1"), ("tool", "round", "9"), ("tool", "ski piece", "9")]
+)
+def test_a_name_that_tests_were_made_with_stays(desk: Desk, kind: str, name: str, test: str) -> None:
+    id_ = begun(desk)
+    if kind == "plate":
+        add_shear(desk, id_)
+    else:
+        add_reading(desk, id_, name)
+    page = desk.open(f"/describe?entry={id_}")
+    place = f"Name of {kind} {2 if name == 'round' else 1}"
+    page.fill(place, "renamed")
+    page.press("Store and enter tests")
+    assert page.shows("[status bad]") == (
+        f"[status bad] Not stored: test {test} was made with the {kind} {name}: leave that name as it is, and give"
+        f" another {kind} an entry of its own"
+    )
+    page.fill(place, name)
+    page.fill("Place", "elsewhere")
+    page.press("Store and enter tests")
+    page.told("lab.leave")
+    assert stored_description(desk)["place"] == "elsewhere"
+
+
+def test_an_address_that_names_no_campaign_is_refused(desk: Desk) -> None:
+    for address in ("/describe?entry=none", "/enter/none", "/correct/none"):
+        answer = desk.get(address)
+        assert answer.status_code == 404
+        assert "This address names no campaign; the list of campaigns names all." in answer.text
+    desk.failures.clear()

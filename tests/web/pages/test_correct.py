@@ -1,0 +1,449 @@
+"""Correcting an imported campaign: what stands on the page, what is written down beside its files, what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from nicegui import ui
+
+from skisnow import analyse, read_campaign
+from skisnow.errors import FieldDataError, StoreError
+from skisnow.field.store import Journals, NewEntry, export_corrected
+from skisnow.web.correction_session import OWN_SHEET, CorrectionSession
+from skisnow.web.local_time import minute_words
+from skisnow.web.words import hardness_words
+
+from ...given.test_workbook import packed
+
+if TYPE_CHECKING:
+    from skisnow.field.store import JournalEntry
+
+    from .desk import Desk, Sheet
+
+TOML = """name = "From a drawer"
+observers = ["Ada", "Bo"]
+[[tool]]
+name = "ski piece"
+shape = "ski"
+length_mm = 200
+width_mm = 62
+[[plate]]
+name = "plate"
+length_mm = 100
+"""
+PENETRATION = """experiment;site;spot;tool;edge_angle_deg;load_N;depth_mm;remark;time;status;colour
+1;A;;ski piece;30;20;1,5;warm;;;red
+1;A;;ski piece;30;40;2,1;;;;
+1;A;;ski piece;30;60;2,6;;;;
+2;A;;ski piece;30;20;1,4;;;too wet;
+3;B;;ski piece;30;20;1,9;;;;
+"""
+MIXED = PENETRATION + "4;B;p;old piece;30;20;1,9;;;;\n4;B;p;ski piece;45;40;2,7;;;;\n"
+SHEAR = "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\n1,A,plate,90,6,250,30\n"
+FILES = {"campaign.toml": TOML, "penetration.csv": PENETRATION, "shear.csv": SHEAR}
+
+
+def kept(desk: Desk, folder: Path, files: dict[str, str] = FILES) -> str:
+    folder.mkdir()
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return desk.lab.store.add(folder).id
+
+
+@pytest.fixture
+def id_(desk: Desk, tmp_path: Path) -> str:
+    return kept(desk, tmp_path / "drawer")
+
+
+def opened(desk: Desk, id_: str, test: str = "1", table: str = "penetration.csv") -> Sheet:
+    return desk.open(f"/correct/{id_}?table={table}&test={test}")
+
+
+def history(desk: Desk, id_: str) -> list[JournalEntry]:
+    return list(Journals(desk.lab.store).corrections(id_))
+
+
+def status(page: Sheet) -> str:
+    return next((line for line in page.outline() if line.startswith("[status")), "")
+
+
+def between(page: Sheet, first: str, last: str = "") -> list[str]:
+    """Lines from the one to before the other, or one that begins so, or to the end."""
+    outline = page.outline()
+    rest = outline[outline.index(first) :]
+    return rest[: next(at for at, line in enumerate(rest) if line.startswith(last))] if last else rest
+
+
+def press(page: Sheet, text: str, number: int) -> str:
+    """Press a button; what the browser, which waits, is answered."""
+    button = next(each for each in page.of(ui.button) if each.text == text)
+    page.fire(button, "click", {"number": number})
+    return page.scripts[-1]
+
+
+def asking_form(page: Sheet, name: str) -> Any:
+    """The form that a field stands in, which Enter sends."""
+    above = page.field(name).parent_slot.parent
+    while not any(each.type == "keydown.enter" for each in above._event_listeners.values()):
+        above = above.parent_slot.parent
+    return above
+
+
+HEAD = [
+    "h1 From a drawer",
+    "[quiet] Imported: its files stay as they came in. What is corrected here stands beside them.",
+    "link Penetration -> /correct/{id}?table=penetration.csv",
+    "link Shear -> /correct/{id}?table=shear.csv",
+    "link Analysis -> /analysis/kept/{id}",
+    "link Export -> /export/kept/{id}.zip",
+]
+
+
+def head(id_: str) -> list[str]:
+    return [line.format(id=id_) for line in HEAD]
+
+
+def test_the_tests_of_a_table_are_listed_by_their_sites(desk: Desk, id_: str) -> None:
+    page = desk.open(f"/correct/{id_}")
+    assert page.outline() == [
+        *head(id_),
+        "h2 Tests",
+        "A: 2",
+        f"link[small] 1 -> /correct/{id_}?table=penetration.csv&test=1",
+        f"link[small] 2 -> /correct/{id_}?table=penetration.csv&test=2",
+        "B: 1",
+        f"link[small] 3 -> /correct/{id_}?table=penetration.csv&test=3",
+    ]
+    assert ["open" in each.props for each in page.tagged("details")] == [False, False]
+    assert [each.text for each in page.tagged("nicegui-link") if "aria-current" in each.props] == [
+        "Campaigns",
+        "Penetration",
+    ]
+    assert "data-keeps" in page.html
+    assert "data-ahead" not in page.html
+
+
+@pytest.mark.parametrize(("n", "is_open"), [(40, True), (41, False)])
+def test_a_few_tests_of_one_site_stand_open(desk: Desk, tmp_path: Path, n: int, is_open: bool) -> None:
+    rows = "".join(f"{number},,350\n" for number in range(n))
+    files = {"campaign.toml": 'name = ""\n', "density.csv": f"sample,site,snow_density_kg_per_m3\n{rows}"}
+    page = desk.open(f"/correct/{kept(desk, tmp_path / 'few', files)}")
+    assert page.outline()[0] == "h1 few"
+    assert f"No site: {n}" in page.outline()
+    assert ["open" in each.props for each in page.tagged("details")] == [is_open]
+
+
+def test_tests_that_were_spoken_of_are_marked(desk: Desk, id_: str) -> None:
+    correct(desk, id_, "1", {"2/depth_mm": "1.6"})
+    Journals(desk.lab.store).correct(
+        id_, NewEntry(action="cancel", file="penetration.csv", test="3", why="slip"), seen=0, standing={}
+    )
+    outline = desk.open(f"/correct/{id_}").outline()
+    assert [line.split(" -> ")[0] for line in outline if "link[small]" in line] == [
+        "link[small] 1 (corrected)",
+        "link[small] 2",
+        "link[small] 3 (cancelled)",
+    ]
+
+
+def correct(desk: Desk, id_: str, test: str, cells: dict[str, str]) -> JournalEntry:
+    session = CorrectionSession(desk.lab, id_)
+    seen = session.test("penetration.csv", test).last
+    entry = NewEntry(action="correct", file="penetration.csv", test=test, cells=cells, who="Bo", why="slip", about=0)
+    return session.write_down(entry, seen=seen)
+
+
+# A test
+
+
+def test_a_test_stands_there_cell_by_cell(desk: Desk, id_: str, tmp_path: Path) -> None:
+    """What it has once stands once; the hardness is that of an analysis."""
+    page = opened(desk, id_)
+    row = analyse(read_campaign(tmp_path / "drawer")).results["penetration"]["experiments"][0]
+    page.shows(f"[value] H_V = {hardness_words(row)}")
+    assert between(page, "h1 From a drawer", f"[value] H_V = {hardness_words(row)}") == [
+        *head(id_),
+        "field Operator = 'Ada'",
+        "h2 Test 1",
+        "field Site = 'A'",
+        "field Tool = 'ski piece'",
+        "field Edge angle (°) = '30' numeric",
+        "field Measurement point = '' optional",
+        "field Load (N), row 2 = '20' numeric",
+        "field Depth (mm), row 2 = '1,5' numeric",
+        "field Load (N), row 3 = '40' numeric",
+        "field Depth (mm), row 3 = '2,1' numeric",
+        "field Load (N), row 4 = '60' numeric",
+        "field Depth (mm), row 4 = '2,6' numeric",
+        "button[main] Correct",
+        "[quiet] Test 1",
+    ]
+    assert page.outline()[-2:] == [
+        "button Cancel this test",
+        f"link Another test -> /correct/{id_}?table=penetration.csv",
+    ]
+    assert [each.props["aria-label"] for each in page.tagged("section")] == [
+        "Cells",
+        "Results of the readings",
+        "Changes",
+    ]
+    assert len([each for each in page.tagged("div") if each.classes == ["fields", "row"]]) == 3
+    assert len([each for each in page.tagged("div") if each.classes == ["fields"]]) == 1
+    assert page.field("Tool").options == {"ski piece": "ski piece"}
+
+
+def test_a_test_of_one_row_has_no_numbers_of_rows(desk: Desk, id_: str) -> None:
+    page = opened(desk, id_, table="shear.csv")
+    assert between(page, "h2 Test 1", "button[main] Correct") == [
+        "h2 Test 1",
+        "field Site = 'A'",
+        "field Plate = 'plate'",
+        "field Edge angle (°) = '90' numeric",
+        "field Depth (mm) = '6' numeric",
+        "field Lever arm (mm) = '250' numeric",
+        "field Moment (N m) = '30' numeric",
+    ]
+    page.shows("S_f = 0.200 N/mm²")  # 30 N m/0.25 m/(100 mm × 6 mm), by hand
+    assert page.field("Plate").options == {"plate": "plate"}
+
+
+def test_what_differs_between_the_rows_of_a_test_stands_in_each(desk: Desk, tmp_path: Path) -> None:
+    id_ = kept(desk, tmp_path / "mixed", FILES | {"penetration.csv": MIXED})
+    page = opened(desk, id_, "4")
+    assert between(page, "h2 Test 4", "button[main] Correct") == [
+        "h2 Test 4",
+        "field Site = 'B'",
+        "field Measurement point = 'p'",
+        "field Tool, row 7 = 'old piece'",
+        "field Edge angle (°), row 7 = '30' numeric",
+        "field Load (N), row 7 = '20' numeric",
+        "field Depth (mm), row 7 = '1,9' numeric",
+        "field Tool, row 8 = 'ski piece'",
+        "field Edge angle (°), row 8 = '45' numeric",
+        "field Load (N), row 8 = '40' numeric",
+        "field Depth (mm), row 8 = '2,7' numeric",
+    ]
+    assert page.field("Tool, row 7").options == {"old piece": "old piece", "ski piece": "ski piece"}
+
+
+def test_a_test_that_its_file_cancels_says_so(desk: Desk, id_: str) -> None:
+    page = opened(desk, id_, "2")
+    assert between(page, "h2 Test 2")[1] == "[bad] Cancelled: too wet"
+    assert "button Cancel this test" not in page.outline()
+
+
+def test_a_test_without_a_site_can_be_looked_at(desk: Desk, tmp_path: Path) -> None:
+    files = {"campaign.toml": TOML, "density.csv": "sample,snow_density_kg_per_m3\n1,350\n"}
+    page = opened(desk, kept(desk, tmp_path / "siteless", files), table="density.csv")
+    assert between(page, "h2 Test 1", "button") == ["h2 Test 1", "field Density (kg/m³) = '350' numeric"]
+    page.shows("[value] The campaign cannot be used as it is: ")
+
+
+@pytest.mark.parametrize(
+    ("address", "told"),
+    [
+        ("?table=density.csv", "this campaign has no such table"),
+        ("?table=campaign.toml", "this campaign has no such table"),
+    ],
+)
+def test_an_address_of_another_table_is_refused(desk: Desk, id_: str, address: str, told: str) -> None:
+    answer = desk.get(f"/correct/{id_}{address}")
+    assert answer.status_code == 404
+    assert told in answer.text
+    desk.failures.clear()
+
+
+def test_a_test_that_is_not_there_is_the_list(desk: Desk, id_: str) -> None:
+    assert "h2 Tests" in opened(desk, id_, "9").outline()
+
+
+def test_a_campaign_without_a_table_that_can_be_read_says_where_to_look(desk: Desk, tmp_path: Path) -> None:
+    id_ = kept(desk, tmp_path / "none", {"campaign.toml": TOML})
+    answer = desk.get(f"/correct/{id_}")
+    assert answer.status_code == 404
+    assert "no table of this campaign can be read; what is wrong in its files stands under Analysis" in answer.text
+    desk.failures.clear()
+
+
+# Corrections
+
+
+def test_a_cell_is_corrected_with_a_reason(desk: Desk, id_: str, tmp_path: Path) -> None:
+    page = opened(desk, id_)
+    page.fill("Depth (mm), row 3", "2,15")
+    page.fire(asking_form(page, "Depth (mm), row 3"), "keydown.enter", {"number": 1, "once": "a"})
+    assert page.scripts[-1] == "lab.answered(1, true)"
+    words = "Depth (mm): 2,1 becomes 2.15."
+    assert between(page, words)[:5] == [
+        words,
+        "field Why = 'typing error'",
+        "button[main] Correct it",
+        "button Leave it as it was",
+        "button[main] Correct",
+    ]
+    assert page.focused() is page.field("Why")
+    page.fill("Why", " ")
+    assert press(page, "Correct it", 2) == "lab.answered(2, false)"
+    assert status(page) == "[status bad] A correction needs a reason."
+    page.fill("Why", "misheard")
+    assert press(page, "Correct it", 3) == "lab.answered(3, true)"
+    assert status(page) == "[status good] Corrected; the first reading is kept."
+    first, entry = history(desk, id_)
+    assert (first.action, first.why, first.cells["3/depth_mm"]) == ("add", "as the file has it", "2,1")
+    assert (entry.action, entry.about, entry.why, entry.who) == ("correct", first.sequence, "misheard", "Ada")
+    assert entry.cells == {"3/depth_mm": "2.15"}
+    assert page.field("Depth (mm), row 3").value == "2.15"
+    assert page.field("Depth (mm), row 2").value == "1,5"
+    line = "button Undo: corrected Depth (mm) in row 3 to 2.15 (misheard)"
+    assert between(page, line) == [
+        line,
+        "button Cancel this test",
+        "History of 1",
+        f"{minute_words(first.at)} · as the file has it",
+        f"{minute_words(entry.at)} · Ada · corrected Depth (mm) in row 3 to 2.15 (misheard)",
+        f"link Another test -> /correct/{id_}?table=penetration.csv",
+    ]
+    export_corrected(desk.lab.store, id_, tmp_path / "out")
+    row = analyse(read_campaign(tmp_path / "out")).results["penetration"]["experiments"][0]
+    page.shows(f"[value] H_V = {hardness_words(row)}")
+    page.press(line.removeprefix("button "))
+    assert status(page) == "[status good] Undone."
+    assert page.field("Depth (mm), row 3").value == "2,1"
+
+
+def test_what_a_test_has_once_is_corrected_in_every_row(desk: Desk, id_: str) -> None:
+    page = opened(desk, id_)
+    page.fill("Site", "B")
+    page.fill("Measurement point", "q")
+    page.fill("Depth (mm), row 4", "2.7")
+    assert press(page, "Correct", 1) == "lab.answered(1, true)"
+    assert "Site: A becomes B; Measurement point: nothing becomes q; Depth (mm): 2,6 becomes 2.7." in page.outline()
+    page.press("Correct it")
+    entry = history(desk, id_)[-1]
+    assert entry.cells == {
+        **{f"{line}/site": "B" for line in (2, 3, 4)},
+        **{f"{line}/spot": "q" for line in (2, 3, 4)},
+        "4/depth_mm": "2.7",
+    }
+    page.fill("Measurement point", "")
+    page.press("Correct")
+    assert "Measurement point: q becomes nothing." in page.outline()
+    page.press("Correct it")
+    assert page.field("Measurement point").value == ""
+    assert any("Measurement point in row 2 to nothing" in line for line in page.outline())
+
+
+def test_a_question_that_is_left_shows_the_cells_as_they_are(desk: Desk, id_: str) -> None:
+    page = opened(desk, id_)
+    page.fill("Site", "B")
+    page.press("Correct")
+    page.press("Leave it as it was")
+    assert page.field("Site").value == "A"
+    assert not any("field Why" in line for line in page.outline())
+    assert press(page, "Correct", 1) == "lab.answered(1, true)"
+    assert status(page) == "[status good] Nothing is different."
+    assert history(desk, id_) == []
+
+
+def test_what_no_cell_can_hold_is_refused(desk: Desk, id_: str) -> None:
+    page = opened(desk, id_)
+    page.fill("Site", " ")
+    page.fill("Depth (mm), row 3", "two")
+    page.fill("Depth (mm), row 4", "2.7")
+    assert press(page, "Correct", 1) == "lab.answered(1, false)"
+    faults = ["site is blank; give it a name", "Depth (mm) is a number of 0 or more; 'two' stands there"]
+    assert status(page) == f"[status bad] Not corrected: {'; '.join(faults)}."
+    assert f"field Depth (mm), row 3 = 'two' numeric ! {faults[1]}" in page.outline()
+    assert not any("field Why" in line for line in page.outline())
+    page.fill("Site", "A")
+    page.fill("Depth (mm), row 3", "2,1")
+    page.press("Correct")
+    assert "Depth (mm): 2,6 becomes 2.7." in page.outline()
+
+
+def test_a_correction_after_somebody_elses_is_refused(desk: Desk, id_: str) -> None:
+    page = opened(desk, id_)
+    page.fill("Depth (mm), row 3", "2.15")
+    page.press("Correct")
+    correct(desk, id_, "1", {"2/depth_mm": "1.6"})
+    assert press(page, "Correct it", 1) == "lab.answered(1, false)"
+    assert status(page).startswith("[status bad] Nothing was stored: Bo wrote about Penetration, 1 meanwhile (")
+    assert len(history(desk, id_)) == 2
+
+
+def test_a_test_is_cancelled_and_stays_in_its_file(desk: Desk, id_: str) -> None:
+    page = opened(desk, id_)
+    page.press("Cancel this test")
+    page.fill("Why", "the tool slipped")
+    page.press("Cancel the test")
+    assert between(page, "h2 Test 1")[1] == "[bad] Cancelled: the tool slipped"
+    assert history(desk, id_)[-1].action == "cancel"
+    assert "button Undo: cancelled (the tool slipped)" in page.outline()
+    page.press("Undo: cancelled (the tool slipped)")
+    assert between(page, "h2 Test 1")[1] == "field Site = 'A'"
+
+
+# A kept campaign as a page sees it
+
+
+def test_a_test_that_nobody_spoke_of_is_what_its_file_says(desk: Desk, id_: str) -> None:
+    session = CorrectionSession(desk.lab, id_)
+    test = session.test("shear.csv", "1")
+    assert test.rows[0].cells == {
+        f"2/{name}": text
+        for name, text in zip(SHEAR.splitlines()[0].split(","), SHEAR.splitlines()[1].split(","), strict=True)
+    }
+    assert (test.history, test.last, test.rows[0].entered.sequence) == ([], 0, 0)
+    assert (test.file, test.name, test.rows[0].entered.test) == ("shear.csv", "1", "1")
+    assert session.test("shear.csv", "9").rows == []
+    assert session.standing("shear.csv", "9") == {}
+    assert set(session.tables) == {"penetration.csv", "shear.csv"}
+
+
+def test_a_session_hears_what_others_corrected(desk: Desk, id_: str) -> None:
+    session, other = CorrectionSession(desk.lab, id_), CorrectionSession(desk.lab, id_)
+    written = correct(desk, id_, "1", {"3/depth_mm": "2.15"})
+    assert written == history(desk, id_)[-1]
+    assert session.test("penetration.csv", "1").history == []
+    before = session.quick_results("A").penetration["1"]
+    for _ in range(2):
+        session.refresh()
+        assert len(session.test("penetration.csv", "1").history) == 2
+    assert session.test("penetration.csv", "1").rows[0].cells["3/depth_mm"] == "2.15"
+    assert session.quick_results("A").penetration["1"] != before
+    assert other.quick_results("A").penetration["1"] == before
+    entry = NewEntry(action="undo", file="penetration.csv", test="1", about=written.sequence)
+    session.write_down(entry, seen=written.sequence)
+    assert session.test("penetration.csv", "1").rows[0].corrections == []
+    assert session.quick_results("A").penetration["1"] == before
+
+
+def test_the_description_is_that_of_the_file(desk: Desk, tmp_path: Path) -> None:
+    sound = CorrectionSession(desk.lab, kept(desk, tmp_path / "sound"))
+    assert (sound.described.name, sound.described.observers) == ("From a drawer", ("Ada", "Bo"))
+    missing = {name: text for name, text in FILES.items() if name != "campaign.toml"}
+    gone = CorrectionSession(desk.lab, kept(desk, tmp_path / "gone", missing))
+    with pytest.raises(StoreError, match=r"^campaign\.toml of this campaign cannot be read, so nothing in it can be\."):
+        _ = gone.described
+    broken = CorrectionSession(desk.lab, kept(desk, tmp_path / "broken", FILES | {"campaign.toml": "name ="}))
+    with pytest.raises(FieldDataError, match=r"campaign\.toml"):
+        _ = broken.described
+
+
+def test_a_workbook_that_corrects_itself_is_corrected_there(desk: Desk, tmp_path: Path) -> None:
+    columns = ["file", "experiment", "row", "column", "old", "new", "who", "when", "why"]
+    content = packed(
+        campaign=[["key", "value"], ["name", "Desk"]],
+        density=[["sample", "site", "snow_density_kg_per_m3"], ["1", "A", "350"]],
+        corrections=[columns],
+    )
+    (tmp_path / "book").mkdir()
+    (tmp_path / "book" / "Hang.xlsx").write_bytes(content)
+    id_ = desk.lab.store.add(tmp_path / "book").id
+    session = CorrectionSession(desk.lab, id_)
+    entry = NewEntry(action="cancel", file="density.csv", test="1", why="slip")
+    with pytest.raises(StoreError) as refused:
+        session.write_down(entry, seen=0)
+    assert str(refused.value) == OWN_SHEET

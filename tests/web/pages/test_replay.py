@@ -1,0 +1,534 @@
+"""*Replay*: the runs that are kept, the form that puts two together, and the tracks that are taken in beside them."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from skisnow import replay as library
+from skisnow.errors import OutputError, ParameterError
+from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file, replay_of_run
+from skisnow.replay.page import in_language, static_text
+from skisnow.report.gaps_report import gaps_of_folders
+from skisnow.report.run_file import write_run_file
+from skisnow.scenario import scenario_values
+from skisnow.scenario.values import in_sections
+from skisnow.simulate.run_summary import summary_dict
+from skisnow.ski import read_ski
+from skisnow.track.read import read_track
+from skisnow.web import replay as former
+from skisnow.web.lab_skis import LabSkis
+from skisnow.web.replay import addresses, tracks, uploads
+from skisnow.web.replay.addresses import RunFolders, program_file, show_address, show_page
+from skisnow.web.replay.tracks import Placing, TrackFolders, points_of_track, track_on_slope
+
+from ...report.runs import circle_run
+
+if TYPE_CHECKING:
+    from .desk import Desk, Sheet
+
+ODD = 'a "b" \\n <i>&c\\'
+TRACK = b"time_s,x_m,y_m,z_m\n0,1,2,0.1\n1,4,6,0.2\n"
+EARTH = 6_371_000.0  # m
+ADDING = (
+    "[quiet] CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to 20 MB and 20000 points. A track in latitude and longitude needs "
+    "the compass direction in which the slope falls; it begins where the run begins. One in the run's own axes (x down "
+    "the fall line, y left, z out of the snow, in m) needs none, and stands where it says. Nothing is fitted."
+)
+BELOW = [
+    "Add a measured track",
+    ADDING,
+    "Track",
+    "Direction of the fall line (°), clockwise from north",
+    "Time of the run at its first point (s)",
+    "Add the track",
+]
+
+
+@pytest.fixture(scope="module")
+def run_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """Of a turn, as the command leaves them."""
+    place, run = tmp_path_factory.mktemp("run") / "run.nc", circle_run(count=11)
+    write_run_file(run, in_sections(scenario_values(run.scenario)), place)
+    summary = json.dumps(summary_dict(run), allow_nan=False)
+    return {"run.nc": place.read_bytes(), "summary.json": summary.encode()}
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What was sent is read in this process; gives the limits that it was to be read with."""
+    bounds: list[Any] = []
+
+    def done(most: Any, work: Any, *what: Any) -> Any:
+        bounds.append(most)
+        return work(*what)
+
+    monkeypatch.setattr(uploads, "confined", done)
+    monkeypatch.setattr(addresses, "confined", done)
+    return bounds
+
+
+def keep(runs: Path, name: str, files: dict[str, bytes], *, when: int = 1_000_000_000) -> Path:
+    """A run in the lab's folder."""
+    place = runs / name
+    place.mkdir(parents=True)
+    for file, content in files.items():
+        (place / file).write_bytes(content)
+    os.utime(place / "run.nc", (when, when))
+    return place
+
+
+def keep_track(runs: Path, called: str = "measured.csv", **placed: Any) -> str:
+    return TrackFolders(runs).keep(io.BytesIO(TRACK), Placing(called, **placed))[0]
+
+
+def options(page: Sheet, key: str) -> list[tuple[str, str, bool]]:
+    """Value, words and whether it is chosen, of each entry of a menu."""
+    (menu,) = (each for each in page.tagged("select") if each.props["name"] == key)
+    assert menu.props["id"] == f"replay-{key}"
+    found = [each.props for slot in menu.slots.values() for each in slot.children]
+    return [(each["value"], each["label"], "selected" in each) for each in found]
+
+
+def labels(page: Sheet) -> list[tuple[str, str]]:
+    """What each label is for, and its words."""
+    made = page.tagged("label")
+    return [(each.props["for"], next(iter(each.default_slot.children)).text) for each in made if "for" in each.props]
+
+
+def test_without_a_run_the_page_says_where_one_comes_from(desk: Desk) -> None:
+    page = desk.open("/replay")
+    assert page.outline() == [
+        "h1 Replay",
+        "[quiet] 0 runs kept, the newest first.",
+        "Simulate one, then it can be watched here.",
+        *BELOW,
+    ]
+    assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Replay"]
+    assert "<title>Replay · skisnow</title>" in page.html
+    assert page.tagged("select") == []
+
+
+def test_a_run_alone_is_listed_and_has_nothing_to_stand_beside(desk: Desk, run_files: dict[str, bytes]) -> None:
+    """The turn goes on for 4 s at 8 m/s."""
+    keep(desk.lab.runs, "a turn", run_files)
+    page = desk.open("/replay")
+    assert page.outline() == [
+        "h1 Replay",
+        "[quiet] 1 run kept, the newest first.",
+        *BELOW,
+        "h2 a turn",
+        "[quiet] 32.0 m in 4.00 s, finished",
+        "link[main] Watch -> /replay/show?run=a%20turn",
+    ]
+    assert [each.props["aria-label"] for each in page.of() if each.props.get("href", "").startswith("/replay/")] == [
+        "Watch a turn"
+    ]
+    assert [each.tag for each in page.of() if "card" in each.classes] == ["section"]
+
+
+def test_two_runs_are_put_together_the_newest_over_the_one_before(desk: Desk, run_files: dict[str, bytes]) -> None:
+    keep(desk.lab.runs, "older", run_files, when=1_000_000_000)
+    keep(desk.lab.runs, ODD, run_files, when=1_100_000_000)
+    page = desk.open("/replay")
+    assert page.outline()[1:8] == [
+        "[quiet] 2 runs kept, the newest first.",
+        "h2 Side by side",
+        "Run",
+        "Laid over it, translucent",
+        "Measured track beside it",
+        "Watch together",
+        "Compare times at gates",
+    ]
+    assert page.outline()[14:16] == [f"h2 {ODD}", "[quiet] 32.0 m in 4.00 s, finished"]
+    assert options(page, "run") == [(ODD, ODD, True), ("older", "older", False)]
+    assert options(page, "ghost") == [("", "none", False), (ODD, ODD, False), ("older", "older", True)]
+    assert options(page, "track") == [("", "none", True)]
+    form = page.tagged("form")[0]
+    assert form.props == {"action": "/replay/show", "method": "get"}
+    together, compared, _ = page.tagged("button")
+    assert together.props == {"type": "submit"}
+    assert together.classes == ["act", "main"]
+    assert compared.props == {"type": "submit", "formaction": "/replay/gates"}
+    assert labels(page)[:3] == [
+        ("replay-run", "Run"),
+        ("replay-ghost", "Laid over it, translucent"),
+        ("replay-track", "Measured track beside it"),
+    ]
+    assert options(desk.open("/replay", "de"), "track") == [("", "keine", True)]
+
+
+def test_a_track_that_was_taken_in_is_chosen_for_a_run_alone(desk: Desk, run_files: dict[str, bytes]) -> None:
+    keep(desk.lab.runs, "older", run_files)
+    name = keep_track(desk.lab.runs)
+    page = desk.open("/replay")
+    assert page.outline()[2] == "h2 Side by side"
+    assert options(page, "ghost") == [("", "none", True), ("older", "older", False)]
+    assert options(page, "track") == [("", "none", True), (name, name, False)]
+    keep(desk.lab.runs, "newer", run_files, when=1_100_000_000)
+    page = desk.open(f"/replay?track={name}")
+    assert page.outline()[1] == f"[good] The track {name} is kept. Choose the run that it is to stand beside."
+    assert [each.props["role"] for each in page.of() if "good" in each.classes] == ["status"]
+    assert options(page, "ghost")[0] == ("", "none", True)
+    assert options(page, "track") == [("", "none", False), (name, name, True)]
+    assert "[good]" not in "".join(desk.open("/replay?track=nothing").outline())
+
+
+@pytest.mark.parametrize(
+    ("summary", "words"),
+    [
+        (None, "without a readable summary"),
+        ("{", "without a readable summary"),
+        ("[]", "without a readable summary"),
+        ('{"run_length_m": 1}', "without a readable summary"),
+        ('{"run_length_m": null, "simulated_s": 1, "outcome": "x"}', "without a readable summary"),
+        ('{"run_length_m": 12.345, "simulated_s": 1.2345, "outcome": "missed_gate"}', "12.3 m in 1.23 s, missed gate"),
+    ],
+)
+def test_a_run_is_told_in_a_line(desk: Desk, run_files: dict[str, bytes], summary: str | None, words: str) -> None:
+    place = keep(desk.lab.runs, "mine", run_files)
+    (place / "summary.json").unlink()
+    if summary is not None:
+        (place / "summary.json").write_text(summary, encoding="utf-8")
+    assert desk.open("/replay").outline()[-2] == f"[quiet] {words}"
+
+
+def test_a_track_is_sent_by_a_form_that_needs_no_script(desk: Desk) -> None:
+    page = desk.open("/replay")
+    (form,) = page.tagged("form")
+    assert form.props == {"method": "post", "action": "/replay/track", "enctype": "multipart/form-data"}
+    assert [each.props for each in page.tagged("input")] == [
+        {"id": "track-file", "name": "file", "type": "file", "required": True},
+        {"id": "track-azimuth", "name": "azimuth", "inputmode": "decimal"},
+        {"id": "track-start", "name": "start", "inputmode": "decimal", "value": "0"},
+    ]
+    assert [each.classes for each in page.tagged("input")] == [[], ["act", "plain"], ["act", "plain"]]
+    assert labels(page) == [
+        ("track-file", "Track"),
+        ("track-azimuth", "Direction of the fall line (°), clockwise from north"),
+        ("track-start", "Time of the run at its first point (s)"),
+    ]
+    assert [each.props["type"] for each in page.tagged("button")] == ["submit"]
+
+
+def test_a_track_is_taken_in_with_what_was_typed(desk: Desk, here: list[Any]) -> None:
+    def taken(file: str, content: bytes = TRACK, **typed: str) -> dict[str, Any]:
+        answer = desk.post("/replay/track", files={"file": (file, content)}, data=typed)
+        name = TrackFolders(desk.lab.runs).names()[0]
+        assert (answer.status_code, answer.headers["location"]) == (303, f"/replay?track={name}")
+        found: dict[str, Any] = json.loads((desk.lab.runs / "tracks" / name / "about.json").read_text("utf-8"))
+        (desk.lab.runs / "tracks" / name / "about.json").unlink()
+        return found
+
+    assert taken("Hang 3.csv") == {"called": "Hang 3.csv", "fall_line_azimuth_deg": None, "starts_at_s": 0.0}
+    with_start = taken("a.csv", start="2,5", azimuth="")
+    assert with_start == {"called": "a.csv", "fall_line_azimuth_deg": None, "starts_at_s": 2.5}
+    turned = taken("a.gpx", gpx([(0, 0), (1, 1)]), azimuth="−90", start="")
+    assert turned == {"called": "a.gpx", "fall_line_azimuth_deg": -90.0, "starts_at_s": 0.0}
+    assert taken(f"{'a' * 250}.csv")["called"] == "a" * 200
+    assert [each.seconds for each in here] == [120.0] * 4
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize(
+    ("files", "typed", "told"),
+    [
+        ([("file", ("a.csv", TRACK))] * 2, {}, "one file at a time is taken in."),
+        ([("other", ("a.csv", TRACK))], {}, "no file was chosen; choose the file of a track"),
+        ([("file", ("a.csv", TRACK))], {"azimuth": "x"}, "the direction of the fall line: &#x27;x&#x27; is no number"),
+        ([("file", ("a.csv", TRACK))], {"start": "x"}, "the time at the first point: &#x27;x&#x27; is no number"),
+        (
+            [("file", ("a.csv", TRACK))],
+            {"start": "36001"},
+            "the start of the track is 36001 s; it must be within 36000 s",
+        ),
+    ],
+)
+def test_what_is_no_track_is_told_on_a_page(desk: Desk, files: list[Any], typed: dict[str, str], told: str) -> None:
+    answer = desk.post("/replay/track", files=files, data=typed)
+    assert answer.status_code == 400
+    assert f"<h1>This was not taken in</h1><p>Nothing was stored: {told}" in answer.text
+    assert TrackFolders(desk.lab.runs).names() == []
+
+
+def test_a_track_without_a_file_is_told_on_a_page(desk: Desk) -> None:
+    answer = desk.post("/replay/track", data={"file": "a.csv"})
+    assert answer.status_code == 400
+    assert "Nothing was stored: no file was chosen; choose the file of a track" in answer.text
+
+
+def gpx(points: list[tuple[float, float]]) -> bytes:
+    """Metres east and north of a point at 47° N, a second apart."""
+    lines = []
+    for second, (east, north) in enumerate(points):
+        latitude = 47.0 + math.degrees(north / EARTH)
+        longitude = 11.0 + math.degrees(east / (EARTH * math.cos(math.radians(47.0))))
+        time = f"2026-02-01T10:00:{second:02d}Z"
+        lines.append(f'<trkpt lat="{latitude:.9f}" lon="{longitude:.9f}"><time>{time}</time></trkpt>')
+    text = f"<trk><trkseg>{''.join(lines)}</trkseg></trk>"
+    return f'<gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">{text}</gpx>'.encode()
+
+
+def test_tracks_are_listed_the_newest_first_without_what_is_half_there(tmp_path: Path) -> None:
+    folders = TrackFolders(tmp_path)
+    assert folders.names() == []
+    older, newer = keep_track(tmp_path, "z.csv"), keep_track(tmp_path, "a.csv")
+    for name, when in ((older, 1_000_000_000), (newer, 1_100_000_000)):
+        os.utime(tmp_path / "tracks" / name / "about.json", (when, when))
+    (tmp_path / "tracks" / ".partial-x").mkdir()
+    (tmp_path / "tracks" / ".partial-x" / "about.json").touch()
+    (tmp_path / "tracks" / "empty").mkdir()
+    assert folders.names() == [newer, older]
+    assert newer[:2] == "a-" and len(newer) == 6
+    assert sorted(each.name for each in (tmp_path / "tracks" / newer).iterdir()) == ["about.json", "track.csv"]
+
+
+def test_a_track_keeps_an_ending_that_says_how_it_is_read(tmp_path: Path) -> None:
+    files = []
+    for called in ("a.CSV", "b.odd", "c"):
+        name, _ = TrackFolders(tmp_path).keep(io.BytesIO(TRACK), Placing(called))
+        files += [each.name for each in (tmp_path / "tracks" / name).iterdir() if each.name != "about.json"]
+    assert files == ["track.csv", "track", "track"]
+    name, _ = TrackFolders(tmp_path).keep(io.BytesIO(TRACK), Placing("Hütte.csv"))
+    about = (tmp_path / "tracks" / name / "about.json").read_text(encoding="utf-8")
+    assert about == '{\n "called": "Hütte.csv",\n "fall_line_azimuth_deg": null,\n "starts_at_s": 0.0\n}'
+
+
+def test_no_more_tracks_than_the_lab_can_list(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tracks, "MOST", 1)
+    keep_track(tmp_path)
+    with pytest.raises(ParameterError) as found:
+        keep_track(tmp_path)
+    assert str(found.value) == "1 tracks are kept already; take some out of the folder tracks of the lab"
+
+
+def test_tracks_of_a_folder_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "tracks").write_bytes(b"")
+    with pytest.raises(OutputError, match="tracks"):
+        keep_track(tmp_path)
+
+
+def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = b"".join(b"%d,%d,0,0\n" % (i, i) for i in range(3))
+    monkeypatch.setattr(tracks, "MOST_POINTS", 3)
+    folders = TrackFolders(tmp_path)
+    content = b"time_s,x_m,y_m,z_m\n" + rows
+    assert folders.keep(io.BytesIO(content), Placing("x.csv"))[1] == 3
+    with pytest.raises(ParameterError) as found:
+        folders.keep(io.BytesIO(content + b"3,3,0,0\n"), Placing("x.csv"))
+    assert str(found.value) == "x.csv has 4 points; at most 3 are drawn beside a run. Cut the turn out"
+    (tmp_path / "long.csv").write_bytes(content + b"3,3,0,0\n")
+    with pytest.raises(ParameterError, match="4 points"):
+        track_on_slope(tmp_path / "long.csv", Placing("x.csv"), 0.0)
+    monkeypatch.setattr(tracks, "LARGEST_BYTES", 2_000_000)
+    monkeypatch.setattr(tracks, "_CHUNK", 1_500_000)
+    counted = folders.keep(io.BytesIO(bytes(2_000_000)), Placing("x.csv"), count=lambda place, _: place.stat().st_size)
+    assert counted[1] == 2_000_000
+    with pytest.raises(ParameterError, match=r"^a track of more than 2 MB is not taken in$"):
+        folders.keep(io.BytesIO(bytes(2_000_001)), Placing("x.csv"), count=lambda *_: 1)
+
+
+@pytest.mark.parametrize(
+    ("placing", "told"),
+    [
+        (Placing("x.csv", 360.0), ""),
+        (Placing("x.csv", -360.0), ""),
+        (Placing("x.csv", 360.5), "the fall line's direction is 360.5°; it must be from −360 to 360"),
+        (Placing("x.csv", -360.5), "the fall line's direction is -360.5°; it must be from −360 to 360"),
+        (Placing("x.csv", math.nan), "the fall line's direction is nan°; it must be from −360 to 360"),
+        (Placing("x.csv", None, math.nan), "the start of the track is nan s; it must be within 36000 s of the run's"),
+        (Placing("x.csv", None, -36_000.5), "the start of the track is -36000.5 s; it must be within 36000 s of the"),
+    ],
+)
+def test_what_places_a_track_is_within_limits(tmp_path: Path, placing: Placing, told: str) -> None:
+    def kept() -> None:
+        TrackFolders(tmp_path).keep(io.BytesIO(b""), placing, count=lambda *_: 0)
+
+    if told:
+        with pytest.raises(ParameterError) as found:
+            kept()
+        assert str(found.value).startswith(told)
+    else:
+        kept()
+
+
+def test_a_track_is_placed_by_what_it_is_in(tmp_path: Path) -> None:
+    """To the east down a plane of 60°: a metre east is two along it; towards the north is left."""
+    (tmp_path / "own.csv").write_bytes(TRACK)
+    (tmp_path / "earth.gpx").write_bytes(gpx([(0, 0), (10, 0), (10, 5)]))
+    own = track_on_slope(tmp_path / "own.csv", Placing("own.csv", None, 3.0), 1.0)
+    assert own.place.tolist() == [[1.0, 2.0, 0.1], [4.0, 6.0, 0.2]]
+    assert (own.name, list(own.time if own.time is not None else ())) == ("own.csv", [3.0, 4.0])
+    earth = track_on_slope(tmp_path / "earth.gpx", Placing("x.gpx", 90.0), math.radians(60.0))
+    assert earth.place[:, :2] == pytest.approx(np.array([[0, 0], [20, 0], [20, 5]]), rel=5e-3, abs=1e-3)
+    assert points_of_track(tmp_path / "earth.gpx", Placing("x.gpx", 90.0)) == 3
+    with pytest.raises(ParameterError) as found:
+        points_of_track(tmp_path / "earth.gpx", Placing("mine.gpx"))
+    expected = "mine.gpx is in latitude and longitude: say in which compass direction the slope falls"
+    assert str(found.value) == expected
+    slope = replace(read_track(tmp_path / "own.csv"), axes="slope")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(tracks, "read_track", lambda _: slope)
+        with pytest.raises(ParameterError) as found:
+            points_of_track(tmp_path / "own.csv", Placing("mine.csv", 90.0))
+    assert str(found.value) == "mine.csv is in the axes of the slope already: leave the direction out"
+    (tmp_path / "track.csv").write_bytes(b"nonsense")
+    with pytest.raises(ParameterError) as found:
+        points_of_track(tmp_path / "track.csv", Placing("mine.csv"))
+    assert str(tmp_path) not in str(found.value) and "track.csv" not in str(found.value)
+    assert "mine.csv" in str(found.value)
+
+
+def test_a_track_is_turned_to_the_slope_of_its_run(tmp_path: Path) -> None:
+    """A plane has an angle, a measured profile its heights."""
+    name, shown = keep_track(tmp_path), replay_of_run(circle_run(count=11))
+    given: list[Any] = []
+
+    def read(*what: Any) -> Any:
+        given.append(what)
+
+    TrackFolders(tmp_path).beside(name, shown, read=read)
+    TrackFolders(tmp_path).beside(name, replace(shown, profile=np.zeros((2, 2))), read=read)
+    place = tmp_path / "tracks" / name / "track.csv"
+    assert given == [(place, Placing("measured.csv"), shown.tilt), (place, Placing("measured.csv"), None)]
+    assert shown.tilt == pytest.approx(math.radians(10.0))
+    with pytest.raises(ParameterError) as found:
+        TrackFolders(tmp_path).beside("x", shown)
+    assert str(found.value) == "there is no track 'x' here. Choose one from the list"
+
+
+def test_a_run_is_fetched_with_its_track_and_in_the_readers_language(
+    desk: Desk, run_files: dict[str, bytes], here: list[Any]
+) -> None:
+    keep(desk.lab.runs, "mine", run_files)
+    name = keep_track(desk.lab.runs, starts_at_s=2.0)
+    alone = replay_of_file(desk.lab.runs / "mine", title="mine")
+    answer = desk.get("/replay/data/mine")
+    assert answer.content == replay_bytes(alone)
+    assert answer.headers["content-type"] == "application/octet-stream"
+    assert answer.headers["cache-control"] == "no-cache"
+    assert desk.get("/replay/data/mine", "de").content == replay_bytes(in_language(alone, "de"))
+    assert here == []
+    track = tracks.track_on_slope(
+        desk.lab.runs / "tracks" / name / "track.csv", Placing("measured.csv", None, 2.0), 0.0
+    )
+    beside = replay_of_file(desk.lab.runs / "mine", title="mine", track=track)
+    assert desk.get(f"/replay/data/mine?track={name}").content == replay_bytes(beside)
+    assert [each.seconds for each in here] == [120.0]
+    refused = desk.get("/replay/data/mine?track=x")
+    assert (refused.status_code, refused.text) == (404, "there is no track 'x' here. Choose one from the list")
+    refused = desk.get("/replay/data/x")
+    assert (refused.status_code, refused.text) == (404, "there is no run 'x' here. Choose one from the list")
+
+
+def test_a_run_has_the_ski_that_its_job_names(desk: Desk, run_files: dict[str, bytes]) -> None:
+    LabSkis(desk.lab.runs).save_texts("mine", LabSkis(desk.lab.runs).texts("slalom")[0], "")
+    word = LabSkis(desk.lab.runs).word("mine")
+    place = keep(desk.lab.runs, "run", run_files)
+    (place / "job.json").write_text(json.dumps({"changes": {"ski.file": word}}), encoding="utf-8")
+    expected = replay_of_file(place, title="run", ski=read_ski(word))
+    assert replay_bytes(RunFolders(desk.lab.runs).replay("run")) == replay_bytes(expected)
+    assert replay_bytes(expected) != replay_bytes(replay_of_file(place, title="run"))
+    for job in ("{", "[]", '{"changes": {}}', "null"):
+        (place / "job.json").write_text(job, encoding="utf-8")
+        assert replay_bytes(RunFolders(desk.lab.runs).replay("run")) == replay_bytes(replay_of_file(place, title="run"))
+
+
+@pytest.mark.usefixtures("here")
+def test_a_run_with_a_track_beside_it_keeps_its_ski(desk: Desk, run_files: dict[str, bytes]) -> None:
+    LabSkis(desk.lab.runs).save_texts("mine", LabSkis(desk.lab.runs).texts("slalom")[0], "")
+    word = LabSkis(desk.lab.runs).word("mine")
+    place = keep(desk.lab.runs, "run", run_files)
+    (place / "job.json").write_text(json.dumps({"changes": {"ski.file": word}}), encoding="utf-8")
+    found = RunFolders(desk.lab.runs).replay("run", keep_track(desk.lab.runs))
+    assert found.track is not None
+    assert found.track.name == "measured.csv"
+    expected = replay_of_file(place, title="run", ski=read_ski(word))
+    assert replay_bytes(replace(found, track=None)) == replay_bytes(expected)
+
+
+def test_models_are_those_of_the_library(desk: Desk, run_files: dict[str, bytes]) -> None:
+    keep(desk.lab.runs, "a b", run_files)
+    shown = replay_of_file(desk.lab.runs / "a b", title="a b")
+    still, moving = desk.get("/replay/model/a%20b.glb"), desk.get("/replay/moving-model/a%20b.glb")
+    assert still.content == replay_model(shown, 0.0, exaggeration=1.0)
+    assert moving.content == moving_replay_model(shown, exaggeration=1.0)
+    assert still.headers["content-disposition"] == "attachment; filename*=UTF-8''a%20b-0.00s.glb"
+    assert moving.headers["content-disposition"] == "attachment; filename*=UTF-8''a%20b.glb"
+    assert {each.headers["content-type"] for each in (still, moving)} == {"model/gltf-binary"}
+    at = desk.get("/replay/model/a%20b.glb?time=1.5&exaggeration=2")
+    assert at.content == replay_model(shown, 1.5, exaggeration=2.0)
+    for path in ("model", "moving-model"):
+        refused = desk.get(f"/replay/{path}/x.glb")
+        assert (refused.status_code, refused.text) == (404, "there is no run 'x' here. Choose one from the list")
+
+
+def test_the_page_of_a_run_names_what_it_fetches(desk: Desk, run_files: dict[str, bytes]) -> None:
+    keep(desk.lab.runs, "mine", run_files)
+    keep(desk.lab.runs, "a b", run_files)
+    answer = desk.get("/replay/show?run=mine")
+    assert answer.text == show_page("mine", None)
+    assert 'data-run="/replay/data/mine"' in answer.text and "data-ghost" not in answer.text
+    assert 'data-model="/replay/model/mine.glb"' in answer.text
+    assert 'data-moving-model="/replay/moving-model/mine.glb"' in answer.text
+    assert '<link rel="stylesheet" href="/replay/files/replay.css">' in answer.text
+    assert '<a href="/replay">All runs</a>' in answer.text
+    answer = desk.get("/replay/show?run=a%20b&ghost=mine&track=c%2Fd", "de")
+    assert answer.text == show_page("a b", "mine", "c/d", "de")
+    assert 'data-run="/replay/data/a%20b?track=c%2Fd" data-ghost="/replay/data/mine"' in answer.text
+    assert 'data-moving-model="/replay/moving-model/a%20b.glb"' in answer.text
+    for query in ("run=x", "run=mine&ghost=x"):
+        refused = desk.get(f"/replay/show?{query}")
+        assert (refused.status_code, refused.text) == (404, "there is no run 'x' here. Choose one from the list")
+    assert show_address("a/b") == "/replay/show?run=a%2Fb"
+    assert show_address("a b", "c/d") == "/replay/show?run=a%20b&ghost=c%2Fd"
+
+
+def test_times_at_gates_are_asked_of_both_folders(
+    desk: Desk, run_files: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("mine", "theirs"):
+        keep(desk.lab.runs, name, run_files)
+    given: list[Any] = []
+
+    def page(most: Any, work: Any, *what: Any) -> str:
+        given.append((most.seconds, work, *what))
+        return "<p>so</p>"
+
+    monkeypatch.setattr(addresses, "confined", page)
+    answer = desk.get("/replay/gates?run=mine&ghost=theirs", "de")
+    assert (answer.status_code, answer.text, answer.headers["content-type"]) == (
+        200, "<p>so</p>", "text/html; charset=utf-8",
+    )  # fmt: skip
+    places = (desk.lab.runs / "mine", desk.lab.runs / "theirs")
+    assert given == [(120.0, gaps_of_folders, *places, "de")]
+    refused = desk.get("/replay/gates?run=mine")
+    assert refused.status_code == 404
+    told = "There is no run &#x27;&#x27; here. Choose one from the list."
+    assert f"<h1>This cannot be shown</h1><p>{told}</p>" in refused.text
+
+
+def test_files_of_the_program_are_given_out_as_they_are() -> None:
+    for name, kind in (("replay.js", "text/javascript; charset=utf-8"), ("replay.css", "text/css; charset=utf-8")):
+        answer = program_file(name)
+        assert bytes(answer.body).decode("utf-8") == static_text(name)
+        assert (answer.headers["content-type"], answer.headers["cache-control"]) == (kind, "no-cache")
+    refused = program_file("show.html")
+    assert (refused.status_code, bytes(refused.body)) == (404, b"The replay has no such file.")
+
+
+def test_the_replays_former_place_leads_to_the_library_and_warns() -> None:
+    told = "skisnow.web.replay.replay_bytes is called skisnow.replay.replay_bytes now"
+    with pytest.warns(DeprecationWarning, match=told) as warned:
+        assert former.replay_bytes is library.replay_bytes
+    assert warned[0].filename == __file__
+    with pytest.raises(AttributeError, match=r"^module 'skisnow\.web\.replay' has no attribute 'nothing'$"):
+        former.nothing  # noqa: B018
